@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "scene/mesh.h"
-#include "trace/ray.h"
+#include "trace/intersect/ray.h"
 
 namespace pertev::bench {
 

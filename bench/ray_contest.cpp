@@ -36,7 +36,7 @@ double seconds_of(const F& f) {
     return now_s() - start;
 }
 
-constexpr WalkOptions kClosest = {}, kAny = {.near_first = false}; // as pictures have them (render/find_hits.h)
+constexpr WalkOptions kClosest = {}, kAny = {.near_first = false}; // as pictures have them (device_scene/find_hits.h)
 
 double trace_one_by_one(const HostTrees& trees, std::span<const Ray> rays, bool any_hit, std::size_t& hits) {
     std::vector<Hit> results(rays.size());

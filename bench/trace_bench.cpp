@@ -34,7 +34,7 @@ struct Work {
     double nodes = 0, triangles = 0; // a ray
 };
 
-constexpr WalkOptions kClosest = {}, kAny = {.near_first = false}; // as pictures have them (render/find_hits.h)
+constexpr WalkOptions kClosest = {}, kAny = {.near_first = false}; // as pictures have them (device_scene/find_hits.h)
 
 Work count_work(const HostTrees& trees, const RaySet& set) {
     uint64_t nodes = 0, triangles = 0;

@@ -3,7 +3,9 @@
 
 ALLOWED is the "may know" column of docs/architecture.md: a module may include itself and the modules that stand there, all
 of which come before it. Beyond that table: only device/cuda and .cu files include CUDA's headers, no integrator includes
-another, but for the machines that several are made of (integrators/ray_tree, subpaths), and no files include each other in a circle.
+another, but for the machines that several are made of (integrators/ray_tree, subpaths), and
+neither files nor folders include each other in a circle: the files that lie in a folder itself are one room, each
+folder below it is another.
 
 `check_includes.py [ROOT]` checks ROOT/src; `--self-test` makes trees that break each rule and must be caught.
 """
@@ -24,8 +26,10 @@ ALLOWED = {
     "accel": {"base", "math"},
     "trace": {"base", "math", "device", "accel"},
     "shading": {"base", "math", "scene"},
-    "render": {"base", "math", "image", "device", "scene", "accel", "trace", "shading"},
+    "device_scene": {"base", "math", "image", "device", "scene", "accel", "trace", "shading"},
 }
+ALLOWED["tracer"] = ALLOWED["device_scene"] | {"device_scene"}
+ALLOWED["render"] = ALLOWED["tracer"] | {"tracer"}
 ALLOWED["radiosity"] = ALLOWED["render"] | {"render"}
 ALLOWED["integrators"] = ALLOWED["radiosity"] | {"radiosity"}
 ALLOWED["denoise"] = ALLOWED["render"] | {"render"}
@@ -35,6 +39,9 @@ ALLOWED["lab"] = set(ALLOWED)
 
 # The machines that several integrators are made of.
 SHARED = (("integrators", "ray_tree"), ("integrators", "subpaths"))
+
+# Where all of them are known.
+KINDS = ("integrators", "kinds")
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 CUDA_HEADER = re.compile(r"^(cuda|cub/|thrust/|cooperative_groups|nccl|device_launch_parameters|curand|nvtx)")
@@ -60,8 +67,9 @@ def fault_of(path, module, quoted, target):
         return f"{module} may know {known or 'nothing of ours'}, and not {owner}"
     parts = pathlib.PurePath(target).parts
     is_shared = path.parts[0] == "integrators" and len(path.parts) > 2 and parts[:2] in SHARED
-    if owner == "integrators" and len(parts) > 2 and path.parts[:2] != parts[:2] and path.stem != "make_integrator" and not is_shared:
-        return "an integrator's folder is seen by itself and integrators/make_integrator alone"
+    is_inside = path.parts[:2] in (parts[:2], KINDS)
+    if owner == "integrators" and len(parts) > 2 and parts[:2] != KINDS and not is_inside and not is_shared:
+        return "an integrator's folder is seen by itself and integrators/kinds alone"
     return None
 
 
@@ -84,6 +92,16 @@ def circles(includes):
     return faults
 
 
+def by_folder(includes):
+    """The same of folders: {folder: folders that its own files include}."""
+    folders = {}
+    for file, included in includes.items():
+        folder = str(pathlib.PurePath(file).parent)
+        known = folders.setdefault(folder, [])
+        known.extend(sorted({str(pathlib.PurePath(f).parent) for f in included if f in includes} - {folder}))
+    return folders
+
+
 def check(root):
     faults, includes = [], {}
     source = root / "src"
@@ -103,7 +121,7 @@ def check(root):
                 faults.append(f"src/{path}:{number}: #include {match[2]}: {fault}")
             if match and match[1] == '"':
                 included.append(match[2])
-    return faults + circles(includes)
+    return faults + (circles(includes) or circles(by_folder(includes)))
 
 
 # File, include line, and whether that is allowed.
@@ -120,15 +138,15 @@ CASES = [
     ("accel/build.cpp", '#include "device/queue.h"', False),
     ("trace/warps.h", '#include "device/queue.h"', True),
     ("shading/bsdf.h", '#include "scene/material.h"', True),
-    ("shading/bsdf.h", '#include "trace/ray.h"', False),
+    ("shading/bsdf.h", '#include "trace/intersect/ray.h"', False),
     ("render/prepare.cpp", '#include "formats/read_scene.h"', False),
     ("integrators/integrator.h", '#include "formats/read_scene.h"', False),
     ("denoise/filter.h", '#include "render/film.h"', True),
     ("denoise/filter.h", '#include "integrators/integrator.h"', False),
-    ("radiosity/patches.h", '#include "render/surface.h"', True),
+    ("radiosity/patches.h", '#include "device_scene/surface.h"', True),
     ("radiosity/patches.h", '#include "integrators/integrator.h"', False),
     ("integrators/radiosity/radiosity.h", '#include "radiosity/patches.h"', True),
-    ("restir/reservoir.h", '#include "render/surface.h"', True),
+    ("restir/reservoir.h", '#include "device_scene/surface.h"', True),
     ("restir/reservoir.h", '#include "denoise/filter.h"', False),
     ("session/open.cpp", '#include "formats/read_scene.h"', True),
     ("session/open.cpp", '#include "lab/report.h"', False),
@@ -146,7 +164,7 @@ CASES = [
     ("render/film.h", '#include "film_sum.h"', False),
     ("integrators/path/stages.h", '#include "integrators/path/state.h"', True),
     ("integrators/path/stages.h", '#include "integrators/integrator.h"', True),
-    ("integrators/make_integrator.h", '#include "integrators/path/stages.h"', True),
+    ("integrators/kinds/make_integrator.h", '#include "integrators/path/stages.h"', True),
     ("integrators/photon_map/gather.h", '#include "integrators/path/state.h"', False),
     ("integrators/photon_map/gather.h", '#include "integrators/ray_tree/stages.h"', True),
     ("integrators/ray_tree/stages.h", '#include "integrators/photon_map/gather.h"', False),
@@ -184,6 +202,16 @@ def self_test():
         if faults != ["a circle: math/b.h -> math/d.h -> math/e.h -> math/b.h"]:
             failures += 1
             print(f"not the one circle that there is: {faults}")
+    with tempfile.TemporaryDirectory() as folder:
+        files = {"math/a.h": "math/deep/b.h", "math/deep/b.h": "math/c.h", "math/c.h": None}
+        for name, included in files.items():
+            target = pathlib.Path(folder) / "src" / name
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(f'#include "{included}"\n' if included else "\n")
+        faults = check(pathlib.Path(folder))
+        if faults != ["a circle: math -> math/deep -> math"]:
+            failures += 1
+            print(f"not the one circle of folders that there is: {faults}")
     return failures
 
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Writes src/shading/energy_table_data.h: how much energy GGX microfacets lose to single scattering.
+"""Writes src/shading/lobes/energy_table_data.h: how much energy GGX microfacets lose to single scattering.
 
 Run from anywhere, needs numpy, takes about two minutes of one core:  tools/make_energy_tables.py
 
 Each value is an integral over the distribution of visible normals (Heitz 2018; Dupuy and Benyoub 2023 for the warp),
 done with a product rule: Gauss-Legendre along the cap's height, midpoints about its axis (the integrand is even and
-periodic there). Axes and meaning are stated in src/shading/energy_tables.h, which must agree with this file.
+periodic there). Axes and meaning are stated in src/shading/lobes/energy_tables.h, which must agree with this file.
 
 The tables are interpolated linearly. Where the chord lies above the curve a lookup would give energy away that was
 never lost, so nodes are lowered where the inside of a cell overshoots by more than OVERSHOOT.
@@ -240,7 +240,7 @@ inline constexpr float kAlphaMin = {ALPHA_MIN:g}f, kIorMin = {ETA_MIN:g}f, kIorM
         array("float", "glass_average_lost_at", flat(average_glass),
               "average of 1 - E, over alpha: [outside, inside][ior][roughness]"),
     ]
-    path = pathlib.Path(__file__).resolve().parent.parent / "src/shading/energy_table_data.h"
+    path = pathlib.Path(__file__).resolve().parent.parent / "src/shading/lobes/energy_table_data.h"
     path.write_text(header + "\n".join(body) + "\n} // namespace pertev::energy_table\n// clang-format on\n")
 
 

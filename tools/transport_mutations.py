@@ -74,7 +74,7 @@ TRANSPORT_MUTATIONS = [
     Mutation("dicing does not hear that it is to end",
              [edit("src/integrators/reyes/reyes_integrator.cpp", "if (!goes_on()) return false;", "goes_on();")],
              ["robust/cli_integrators"]),
-    Mutation("new settings take new queues", [edit("src/integrators/make_integrator.cpp", "from.integrator != to.integrator ||",
+    Mutation("new settings take new queues", [edit("src/integrators/kinds/make_integrator.cpp", "from.integrator != to.integrator ||",
                                                    "from.path != to.path ||")],
              ["unit/session"]),
     Mutation("a turn counts the light at the horizon like that above",

@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "accel/bvh/builders.h"
+#include "accel/builders/builders.h"
 #include "apps/cli/bench_parts.h"
 #include "apps/cli/choose_device.h"
 #include "apps/cli/flag_checks.h"
@@ -17,11 +17,11 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "device/device_timer.h"
+#include "device_scene/place_meshes.h"
 #include "formats/read_scene.h"
 #include "lab/record_scenes.h"
 #include "lab/stored_figures.h"
-#include "render/place_meshes.h"
-#include "render/tracer/hploc/device_builder.h"
+#include "tracer/hploc/device_builder.h"
 
 namespace pertev {
 namespace {

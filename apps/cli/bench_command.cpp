@@ -9,7 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "accel/bvh/bvh_cache.h"
+#include "accel/builders/bvh_cache.h"
 #include "apps/cli/bench_parts.h"
 #include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
@@ -19,8 +19,8 @@
 #include "apps/cli/tracer_flags.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "session/choose_camera.h"
-#include "session/open_scene.h"
+#include "session/opening/choose_camera.h"
+#include "session/opening/open_scene.h"
 #include "session/session.h"
 
 namespace pertev {

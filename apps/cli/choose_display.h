@@ -4,8 +4,8 @@
 
 #include "apps/cli/render_flags.h"
 #include "apps/cli/reporter.h"
-#include "session/picture_metadata.h"
 #include "session/session.h"
+#include "session/writing/picture_metadata.h"
 
 namespace pertev {
 

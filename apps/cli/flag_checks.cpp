@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "apps/cli/parse_values.h"
-#include "formats/parse_number.h"
+#include "formats/files/parse_number.h"
 
 namespace pertev {
 namespace {

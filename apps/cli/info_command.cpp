@@ -14,7 +14,7 @@
 #include "apps/cli/scene_options.h"
 #include "base/error.h"
 #include "base/file_extension.h"
-#include "formats/file_choices.h"
+#include "formats/files/file_choices.h"
 #include "formats/read_scene.h"
 #include "image/image_format.h"
 #include "image/picture_hash.h"
@@ -22,7 +22,7 @@
 #include "image/read_image.h"
 #include "radiosity/radiosity_solution.h"
 #include "scene/scene_origin.h"
-#include "session/metadata_json.h"
+#include "session/writing/metadata_json.h"
 #include "shading/build_light_set.h"
 
 namespace pertev {

@@ -19,7 +19,7 @@
 #include "apps/cli/thesis_command.h"
 #include "apps/cli/transport_command.h"
 #include "base/error.h"
-#include "formats/parse_number.h"
+#include "formats/files/parse_number.h"
 #include "lab/list_combinations.h"
 #include "lab/ray_sets.h"
 #include "lab/record_scenes.h"

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "accel/bvh/bvh_cache.h"
+#include "accel/builders/bvh_cache.h"
 #include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"

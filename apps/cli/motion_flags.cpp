@@ -10,7 +10,7 @@
 #include "apps/cli/render_flags.h"
 #include "base/error.h"
 #include "base/limits.h"
-#include "formats/parse_number.h"
+#include "formats/files/parse_number.h"
 
 namespace pertev {
 namespace {

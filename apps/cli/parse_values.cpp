@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
-#include "formats/parse_number.h"
+#include "formats/files/parse_number.h"
 
 namespace pertev {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "accel/bvh/bvh_cache.h"
+#include "accel/builders/bvh_cache.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/render_frames.h"
 #include "apps/cli/strictness.h"

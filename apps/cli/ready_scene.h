@@ -8,9 +8,9 @@
 
 #include "apps/cli/render_flags.h"
 #include "device/queue.h"
-#include "session/moving_camera.h"
 #include "session/moving_scene.h"
-#include "session/picture_metadata.h"
+#include "session/opening/moving_camera.h"
+#include "session/writing/picture_metadata.h"
 
 namespace pertev {
 

@@ -16,8 +16,8 @@
 #include "apps/cli/tracer_flags.h"
 #include "session/frame_sequence.h"
 #include "session/photometry.h"
-#include "session/picture_metadata.h"
 #include "session/settings_text.h"
+#include "session/writing/picture_metadata.h"
 
 namespace pertev {
 

@@ -15,7 +15,7 @@
 #include "base/read_file.h"
 #include "base/stopwatch.h"
 #include "image/picture_hash.h"
-#include "session/sequence_record.h"
+#include "session/writing/sequence_record.h"
 
 namespace pertev {
 namespace {

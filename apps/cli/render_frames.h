@@ -4,10 +4,10 @@
 // to frame what does not move.
 
 #include "apps/cli/render_flags.h"
-#include "session/moving_camera.h"
 #include "session/moving_scene.h"
-#include "session/picture_metadata.h"
+#include "session/opening/moving_camera.h"
 #include "session/session.h"
+#include "session/writing/picture_metadata.h"
 
 namespace pertev {
 

@@ -9,7 +9,7 @@
 
 #include "base/byte_units.h"
 #include "base/message_text.h"
-#include "session/metadata_json.h"
+#include "session/writing/metadata_json.h"
 
 namespace pertev {
 uint64_t peak_memory_bytes() {

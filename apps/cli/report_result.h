@@ -7,7 +7,7 @@
 
 #include "apps/cli/reporter.h"
 #include "base/error.h"
-#include "session/write_picture.h"
+#include "session/writing/write_picture.h"
 
 namespace pertev {
 

@@ -8,7 +8,7 @@
 #include "apps/cli/parse_values.h"
 #include "base/limits.h"
 #include "formats/builtin_scenes.h"
-#include "session/open_scene.h"
+#include "session/opening/open_scene.h"
 #include "session/photometry.h"
 
 namespace pertev {

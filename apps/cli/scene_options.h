@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/messages.h"
-#include "session/choose_camera.h"
-#include "session/open_scene.h"
+#include "session/opening/choose_camera.h"
+#include "session/opening/open_scene.h"
 
 namespace CLI {
 class App;
@@ -56,12 +56,12 @@ void add_read_options(CLI::App& verb, SceneOptions& options);
 /// What can be told before the scene is read. Throws Error(BadInput) for a flag that another one makes useless.
 void check_scene_options(const SceneOptions& options);
 
-/// A file, or a built-in scene by its name, with nothing added (session/open_scene.h's read_scene_and_lamps). Throws
-/// Error.
+/// A file, or a built-in scene by its name, with nothing added (session/opening/open_scene.h's read_scene_and_lamps).
+/// Throws Error.
 Scene read_any_scene(const SceneOptions& options, Messages& messages);
 
-// The rest is session/open_scene.h and session/choose_camera.h for flags as they stand on the command line. Each throws
-// Error(BadInput) also for text that is no value.
+// The rest is session/opening/open_scene.h and session/opening/choose_camera.h for flags as they stand on the command
+// line. Each throws Error(BadInput) also for text that is no value.
 
 /// Lumens that a watt of the scene counts as: --efficacy, or by the kind of file.
 double efficacy_of(const SceneOptions& options);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "render/tracer/tracer_choice.h"
+#include "tracer/tracer_choice.h"
 
 namespace CLI {
 class App;

@@ -24,7 +24,7 @@
 #include "apps/viewer/viewer.h"
 #include "base/error.h"
 #include "base/limits.h"
-#include "formats/file_choices.h"
+#include "formats/files/file_choices.h"
 #include "formats/read_camera_path.h"
 #include "image/write_jpeg.h"
 #include "scene/scene_origin.h"

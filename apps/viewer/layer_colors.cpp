@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <vector>
 
+#include "device_scene/ray_queue.h"
 #include "image/srgb.h"
 #include "lab/heat_map.h"
 #include "math/random.h"
-#include "render/ray_queue.h"
 
 namespace pertev {
 namespace {

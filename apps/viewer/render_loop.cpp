@@ -9,7 +9,7 @@
 #include "apps/viewer/panel_text.h"
 #include "base/error.h"
 #include "scene/scene_origin.h"
-#include "session/write_picture.h"
+#include "session/writing/write_picture.h"
 
 namespace pertev {
 namespace {

@@ -10,10 +10,10 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/stopwatch.h"
+#include "device_scene/ray_queue.h"
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
 #include "render/film_channels.h"
-#include "render/ray_queue.h"
 #include "scene/scene_origin.h"
 
 namespace pertev {

@@ -4,8 +4,8 @@
 
 #include "apps/viewer/session_frames.h"
 #include "apps/viewer/steering.h"
+#include "device_scene/ray_queue.h"
 #include "render/film_channels.h"
-#include "render/ray_queue.h"
 #include "scene/scene_origin.h"
 
 namespace pertev {

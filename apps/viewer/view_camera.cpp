@@ -6,8 +6,8 @@
 
 #include "math/portable_math.h"
 #include "scene/scene_origin.h"
-#include "session/choose_camera.h"
 #include "session/degrees.h"
+#include "session/opening/choose_camera.h"
 
 namespace pertev {
 namespace {

@@ -9,7 +9,7 @@
 #include "apps/viewer/steering.h"
 #include "scene/camera_path.h"
 #include "scene/scene.h"
-#include "session/picture_metadata.h"
+#include "session/writing/picture_metadata.h"
 
 namespace pertev {
 

@@ -12,8 +12,8 @@
 #include "apps/viewer/client_message.h"
 #include "denoise/reconstruction_settings.h"
 #include "restir/restir_settings.h"
-#include "session/picture_metadata.h"
 #include "session/render_settings.h"
+#include "session/writing/picture_metadata.h"
 
 namespace pertev {
 

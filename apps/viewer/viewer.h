@@ -13,7 +13,7 @@
 #include "apps/viewer/view_camera.h"
 #include "apps/viewer/web_server.h"
 #include "scene/scene.h"
-#include "session/picture_metadata.h"
+#include "session/writing/picture_metadata.h"
 
 namespace pertev {
 

@@ -7,7 +7,7 @@
 #include "denoise/reproject.h"
 #include "image/image.h"
 #include "render/picture_view.h"
-#include "render/tracer/scene_tracer.h"
+#include "tracer/scene_tracer.h"
 
 namespace pertev {
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/limits.h"
-#include "formats/json_file.h"
+#include "formats/json/json_file.h"
 #include "math/transform.h"
 
 namespace pertev {

@@ -11,12 +11,12 @@
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "formats/builtin_scenes.h"
-#include "formats/file_choices.h"
-#include "formats/read_gltf.h"
-#include "formats/read_obj.h"
-#include "formats/read_ply.h"
+#include "formats/files/file_choices.h"
+#include "formats/gltf/read_gltf.h"
+#include "formats/obj/read_obj.h"
+#include "formats/ply/read_ply.h"
 #include "scene/invisible_materials.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 
 namespace pertev {
 namespace {

@@ -5,23 +5,12 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "base/messages.h"
-#include "formats/file_access.h"
-#include "formats/file_space.h"
+#include "formats/files/read_options.h"
 #include "scene/scene.h"
 
 namespace pertev {
-
-struct ReadOptions {
-    std::vector<std::filesystem::path> allowed_paths; // --allow-path
-    bool geometry_only = false;                       // skip textures and materials: every surface grey
-    bool two_sided_lights = false;                    // surfaces emit from both faces, whatever the file says
-    FileSpace space;                                  // of files that do not tell theirs; others are as they say
-    std::string animation;                            // plays: a name, a number from 0, or "all"; empty: the first
-    std::string file_scene; // is shown: a name or a number from 0 of the file's scenes; empty: the file's own choice
-};
 
 /// The scene in a file, or the one that is part of the program under this name (formats/builtin_scenes.h). Throws
 /// Error(BadInput) that names the file, the place in it and what would be right; so it does for an animation or a scene

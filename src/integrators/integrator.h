@@ -1,7 +1,7 @@
 #pragma once
 
 // The seam between an algorithm of light transport and what lives around it: sessions, the command line, viewers. Each
-// algorithm has a folder of its own and includes no other; integrators/make_integrator.h knows them all.
+// algorithm has a folder of its own and includes no other; integrators/kinds/make_integrator.h knows them all.
 
 #include <atomic>
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 #include "render/film_view.h"
 #include "render/picture_view.h"
-#include "render/tracer/scene_tracer.h"
+#include "tracer/scene_tracer.h"
 
 namespace pertev {
 

@@ -11,8 +11,8 @@
 #include "integrators/integrator.h"
 #include "lab/ray_sets.h"
 #include "render/prepare_scene.h"
-#include "render/tracer/tracer.h"
-#include "render/tracer/tracer_choice.h"
+#include "tracer/tracer.h"
+#include "tracer/tracer_choice.h"
 
 namespace pertev {
 

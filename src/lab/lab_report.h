@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "image/image.h"
-#include "render/tracer/built_structure.h"
-#include "render/tracer/combination.h"
+#include "tracer/built_structure.h"
+#include "tracer/combination.h"
 
 namespace pertev {
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "render/tracer/walk_kernels.h"
+#include "tracer/walk_kernels.h"
 
 namespace pertev {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "formats/read_scene.h"
 #include "lab/record_scenes.h"
-#include "session/choose_camera.h"
-#include "session/open_scene.h"
+#include "session/opening/choose_camera.h"
+#include "session/opening/open_scene.h"
 
 namespace pertev {
 namespace {

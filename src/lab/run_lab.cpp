@@ -16,12 +16,12 @@
 #include "base/stopwatch.h"
 #include "base/version.h"
 #include "device/device_timer.h"
+#include "device_scene/place_meshes.h"
 #include "lab/describe_camera.h"
 #include "lab/in_pieces.h"
 #include "lab/list_combinations.h"
 #include "lab/measure_rays.h"
 #include "lab/traced_set.h"
-#include "render/place_meshes.h"
 #include "render/tiled_pixel.h"
 
 namespace pertev {

@@ -13,7 +13,7 @@
 #include "image/flip.h"
 #include "image/metrics.h"
 #include "image/tone_map_image.h"
-#include "integrators/make_integrator.h"
+#include "integrators/kinds/make_integrator.h"
 #include "lab/describe_camera.h"
 #include "lab/transport_light.h"
 #include "lab/transport_solutions.h"

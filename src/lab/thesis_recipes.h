@@ -5,8 +5,8 @@
 #include <span>
 
 #include "lab/thesis_scenes.h"
-#include "render/tracer/combination.h"
 #include "session/render_settings.h"
+#include "tracer/combination.h"
 
 namespace pertev {
 

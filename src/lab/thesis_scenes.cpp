@@ -7,7 +7,7 @@
 #include "formats/read_scene.h"
 #include "lab/transport_presets.h"
 #include "math/portable_math.h"
-#include "session/choose_camera.h"
+#include "session/opening/choose_camera.h"
 
 namespace pertev {
 namespace {

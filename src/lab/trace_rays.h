@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "device/buffer.h"
-#include "render/ray_queue.h"
-#include "render/tracer/tracer.h"
+#include "device_scene/ray_queue.h"
+#include "tracer/tracer.h"
 
 namespace pertev {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "session/choose_camera.h"
+#include "session/opening/choose_camera.h"
 
 namespace pertev {
 

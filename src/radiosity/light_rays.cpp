@@ -1,7 +1,7 @@
 #include "radiosity/light_rays.h"
 
+#include "device_scene/find_hits.h"
 #include "math/sampler.h"
-#include "render/find_hits.h"
 #include "shading/power_heuristic.h"
 
 namespace pertev {

@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
+#include "device_scene/find_hits.h"
 #include "radiosity/light_rays.h"
 #include "radiosity/link_nodes.h"
-#include "render/find_hits.h"
 
 namespace pertev {
 

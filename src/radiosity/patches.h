@@ -10,11 +10,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "device_scene/scene_view.h"
+#include "device_scene/surface.h"
 #include "math/rgb.h"
 #include "radiosity/patch_tree.h"
 #include "radiosity/work_watch.h"
-#include "render/scene_view.h"
-#include "render/surface.h"
 
 namespace pertev {
 

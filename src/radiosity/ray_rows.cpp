@@ -6,10 +6,10 @@
 // Source: Malley, "A Shading Method for Computer Generated Images", 1988: directions by the cosine are points of a disk
 // (Nusselt's analog); Wallace, Elmquist, Haines, "A Ray Tracing Algorithm for Progressive Radiosity", SIGGRAPH 1989.
 
+#include "device_scene/find_hits.h"
 #include "math/sampler.h"
 #include "radiosity/light_rays.h"
 #include "radiosity/row_maker.h"
-#include "render/find_hits.h"
 
 namespace pertev {
 namespace {

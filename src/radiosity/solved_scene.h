@@ -4,9 +4,9 @@
 
 #include <optional>
 
+#include "device_scene/scene_on_device.h"
 #include "render/prepare_scene.h"
-#include "render/scene_on_device.h"
-#include "render/tracer/scene_tracer.h"
+#include "tracer/scene_tracer.h"
 
 namespace pertev {
 

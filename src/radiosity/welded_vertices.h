@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/scene_view.h"
+#include "device_scene/scene_view.h"
 
 namespace pertev {
 

@@ -3,8 +3,8 @@
 // Adds the samples of a noisy frame to a film: all that the path tracer would have added itself had it been given the
 // film, to the bit.
 
+#include "device_scene/surface.h"
 #include "render/film_view.h"
-#include "render/surface.h"
 
 namespace pertev {
 

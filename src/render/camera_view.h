@@ -9,7 +9,7 @@
 #include "math/transform.h"
 #include "math/vec2.h"
 #include "scene/camera.h"
-#include "trace/ray.h"
+#include "trace/intersect/ray.h"
 
 namespace pertev {
 

@@ -6,7 +6,7 @@
 
 #include "device/queue.h"
 #include "render/picture_view.h"
-#include "render/tracer/scene_tracer.h"
+#include "tracer/scene_tracer.h"
 
 namespace pertev {
 

@@ -8,7 +8,7 @@
 
 #include "image/tone_map.h"
 #include "render/film_view.h"
-#include "trace/ray.h"
+#include "trace/intersect/ray.h"
 
 namespace pertev {
 

@@ -2,9 +2,9 @@
 
 // Auxiliary channels of what a camera ray met first, the same whatever integrator asks.
 
+#include "device_scene/surface.h"
 #include "render/film_view.h"
 #include "render/picture_view.h"
-#include "render/surface.h"
 
 namespace pertev {
 

@@ -11,7 +11,7 @@
 // in which no index is left (Veach 1997, section 5.3, has it without the raise). What it is not the adjoint of: a delta
 // direction folded back at the triangle's plane, and a normal that valid_normal has turned, which then depends on wo.
 
-#include "render/surface.h"
+#include "device_scene/surface.h"
 
 namespace pertev {
 

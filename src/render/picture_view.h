@@ -3,8 +3,8 @@
 // What samples are taken of: a scene, seen by a camera. Views and numbers; whoever begins a picture keeps what they
 // point to.
 
+#include "device_scene/scene_view.h"
 #include "render/camera_rays.h"
-#include "render/scene_view.h"
 
 namespace pertev {
 

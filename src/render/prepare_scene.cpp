@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "accel/bvh/bvh_cache.h"
+#include "accel/builders/bvh_cache.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
+#include "device_scene/place_meshes.h"
 #include "image/srgb_table.h"
 #include "render/balance_lights.h"
-#include "render/place_meshes.h"
 #include "shading/bsdf.h"
 
 namespace pertev {

@@ -8,12 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "accel/bvh/top_level_bvh.h"
 #include "base/messages.h"
-#include "render/tracer/scene_structures.h"
-#include "scene/scene.h"
-#include "shading/build_light_set.h"
+#include "device_scene/placed_scene.h"
+#include "tracer/scene_structures.h"
 
 namespace pertev {
 
@@ -29,21 +28,12 @@ struct PrepareOptions {
     std::shared_ptr<const MotionKeys> motions; // PreparedScene's
 };
 
-struct PreparedScene {
-    const Scene* scene = nullptr;                // outlives this
-    Vec3 centre;                                 // origin of the moved world, in the scene's coordinates, metres
-    std::vector<bool> is_baked;                  // of each instance
+struct PreparedScene : PlacedScene {
     BinaryTrees trees;                           // moved world and local spaces, by structures->builder()
     TopLevelBvh top_level;                       // over the instances that are not baked
     std::shared_ptr<SceneStructures> structures; // of `trees` and of others, built when they are asked for
-    LightSetData lights;                         // moved world
     uint64_t triangles = 0;                      // in all trees
-    /// Of meshes whose vertices move, by Scene::shapes; those that are not on the host are at rest in all of the above.
-    /// For whoever has such meshes (session/moving_scene.h); empty: no vertex moves.
-    std::vector<MeshPose> poses;
-    std::vector<uint32_t> tree_of_mesh;        // MeshPlacement's
-    std::vector<PlacedBvh> placed;             // what top_level is built of
-    std::shared_ptr<const MotionKeys> motions; // of instances while a shutter is open, moved world; null: none moves
+    std::vector<PlacedBvh> placed;               // what top_level is built of
     double build_seconds = 0; // placement, trees (built or read from the cache), structures asked for at once
 };
 

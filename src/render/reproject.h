@@ -6,12 +6,12 @@
 
 #include <cstdint>
 
+#include "device_scene/scene_view.h"
 #include "math/float4.h"
 #include "math/rgb.h"
 #include "math/vec2.h"
 #include "math/vec3.h"
 #include "render/camera_view.h"
-#include "render/scene_view.h"
 
 namespace pertev {
 

@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "base/stopwatch.h"
+#include "device_scene/place_meshes.h"
+#include "device_scene/scene_on_device.h"
 #include "image/srgb_table.h"
 #include "render/balance_lights.h"
-#include "render/place_meshes.h"
-#include "render/scene_on_device.h"
 
 namespace pertev {
 namespace {

@@ -4,9 +4,9 @@
 // the camera's ray, which follows from the pixel's and the frame's number. Where their instances have moved since, they
 // are where these are now.
 
+#include "device_scene/surface.h"
 #include "math/float4.h"
 #include "render/camera_rays.h"
-#include "render/surface.h"
 
 namespace pertev {
 

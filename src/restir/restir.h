@@ -14,10 +14,10 @@
 #include "render/noisy_frame.h"
 #include "render/picture_view.h"
 #include "render/reproject.h"
-#include "render/tracer/scene_tracer.h"
 #include "restir/bounce_reservoir.h"
 #include "restir/restir_settings.h"
 #include "restir/reuse_reservoirs.h"
+#include "tracer/scene_tracer.h"
 
 namespace pertev {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "device/atomic_add.h"
-#include "render/accept_hit.h"
-#include "render/ray_queue.h"
+#include "device_scene/accept_hit.h"
+#include "device_scene/ray_queue.h"
 
 namespace pertev {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 // What moves over time, as glTF 2.0 has it (section 3.11): each channel changes one part of one node, camera or light
-// by key frames. scene/posed_scene.h applies them.
+// by key frames. scene/pose/posed_scene.h applies them.
 
 #include <cstdint>
 #include <string>

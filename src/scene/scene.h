@@ -1,9 +1,9 @@
 #pragma once
 
-// A scene as a reader leaves it, at rest, or as it is at a time (scene/posed_scene.h): plain data. Ids are positions in
-// these vectors; the order of `instances` is the scene order of the one-picture law (docs/conventions.md). What has an
-// `origin` says with it where the file describes it, for messages: a JSON pointer, or a line; empty where the format
-// has neither.
+// A scene as a reader leaves it, at rest, or as it is at a time (scene/pose/posed_scene.h): plain data. Ids are
+// positions in these vectors; the order of `instances` is the scene order of the one-picture law (docs/conventions.md).
+// What has an `origin` says with it where the file describes it, for messages: a JSON pointer, or a line; empty where
+// the format has neither.
 //
 // All coordinates are relative to `origin_in_file`, which the reader takes off in double before it rounds to floats
 // (scene/scene_origin.h). It is 0 where the scene lies at the file's origin.
@@ -67,7 +67,7 @@ Transform placed_in(const NodePlace& place, const Transform& node_from_local, Do
 std::string origin_of(const Instance& instance);
 
 /// Whether a transform squeezes one direction so much more than another that its instance is baked into the world at
-/// any time at which it does: a condition number over 2^12 (render/place_meshes.h).
+/// any time at which it does: a condition number over 2^12 (device_scene/place_meshes.h).
 inline constexpr float kMaxCondition = 4096;
 inline bool is_skewed(const Transform& world_from_local) {
     return !(condition_number(world_from_local) <= kMaxCondition);

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/read_file.h"
-#include "formats/parse_number.h"
+#include "formats/files/parse_number.h"
 #include "image/decode_image.h"
 #include "scene/names.h"
 

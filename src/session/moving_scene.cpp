@@ -8,8 +8,8 @@
 
 #include "base/error.h"
 
-#include "render/place_meshes.h"
-#include "render/scene_on_device.h"
+#include "device_scene/place_meshes.h"
+#include "device_scene/scene_on_device.h"
 
 namespace pertev {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
-// A scene that moves, ready to be rendered at any of its times: the scene as it is at a time (scene/posed_scene.h) and
-// what is prepared of it, of which a step in time renews what moved and nothing else. For whoever shows times one after
-// the other:
+// A scene that moves, ready to be rendered at any of its times: the scene as it is at a time (scene/pose/posed_scene.h)
+// and what is prepared of it, of which a step in time renews what moved and nothing else. For whoever shows times one
+// after the other:
 //     MovingScene moving(open_scene(...), first_time_s, options, messages);
 //     Session session(queue, moving.prepared(), camera, settings);
 //     session.update_scene(moving.prepared(), moving.set_time(next_time_s, messages));
@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "render/update_scene.h"
-#include "scene/posed_scene.h"
+#include "scene/pose/posed_scene.h"
 #include "session/shutter.h"
 
 namespace pertev {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "integrators/make_integrator.h"
+#include "integrators/kinds/make_integrator.h"
 #include "render/film.h"
 #include "render/pixel_filter.h"
 #include "render/prepare_scene.h"

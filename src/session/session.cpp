@@ -7,10 +7,10 @@
 #include "base/stopwatch.h"
 #include "denoise/motion_vectors.h"
 #include "device/launch.h"
+#include "device_scene/place_meshes.h"
 #include "render/add_frame_to_film.h"
 #include "render/camera_work.h"
 #include "render/hidden_back_share.h"
-#include "render/place_meshes.h"
 #include "session/check_integrator.h"
 #include "session/meter_exposure.h"
 

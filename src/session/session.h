@@ -27,11 +27,11 @@
 #include "denoise/picture_denoiser.h"
 #include "denoise/reconstruction.h"
 #include "device/device_timer.h"
+#include "device_scene/scene_on_device.h"
 #include "image/tone_map_image.h"
 #include "render/filter_table.h"
 #include "render/picture_view.h"
 #include "render/prepare_scene.h"
-#include "render/scene_on_device.h"
 #include "restir/restir.h"
 #include "session/render_settings.h"
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "formats/parse_number.h"
+#include "formats/files/parse_number.h"
 #include "scene/names.h"
 #include "session/lamp_surface.h"
 #include "session/photometry.h"

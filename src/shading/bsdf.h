@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "base/host_device.h"
-#include "shading/bsdf_sample.h"
+#include "shading/lobes/bsdf_sample.h"
 #include "shading/lobes/coat_lobe.h"
 #include "shading/lobes/conductor_lobe.h"
 #include "shading/lobes/dielectric_lobe.h"

@@ -6,7 +6,7 @@
 // laboratory judges all walks, this one too, by an oracle that shares none of these (lab/brute_force_rays.h).
 
 #include "trace/intersect/test_leaf.h"
-#include "trace/walk_options.h"
+#include "trace/traversal/walk_options.h"
 
 namespace pertev {
 

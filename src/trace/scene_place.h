@@ -1,7 +1,7 @@
 #pragma once
 
 // Where a ray stands in the walk of a whole scene between two turns, for walks that can be left there
-// (trace/warps/dynamic_fetch.h): in one tree, or on its way through the trees of a scene with instances. The walk from
+// (trace/dynamic_fetch.h): in one tree, or on its way through the trees of a scene with instances. The walk from
 // tree to tree is that of trace/walk_scene.h.
 
 #include <cstdint>

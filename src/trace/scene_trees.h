@@ -11,7 +11,7 @@
 #include "base/host_device.h"
 #include "math/rigid_motion.h"
 #include "math/transform.h"
-#include "trace/ray.h"
+#include "trace/intersect/ray.h"
 
 namespace pertev {
 

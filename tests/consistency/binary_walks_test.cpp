@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "accel/bvh/parent_links.h"
 #include "accel/bvh/skip_bvh.h"
 #include "tests/support/check_walk.h"
@@ -19,7 +19,6 @@
 #include "tests/support/split_bvh.h"
 #include "trace/binary/if_if_walk.h"
 #include "trace/binary/octant_walk.h"
-#include "trace/binary/packet_walk.h"
 #include "trace/binary/parent_links_walk.h"
 #include "trace/binary/short_stack_walk.h"
 #include "trace/binary/skip_links_walk.h"
@@ -27,6 +26,7 @@
 #include "trace/binary/warp_packet_walk.h"
 #include "trace/binary/while_while_walk.h"
 #include "trace/brute_force_walk.h"
+#include "trace/packet_walk.h"
 
 using namespace pertev;
 using namespace pertev::test;

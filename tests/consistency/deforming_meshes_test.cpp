@@ -1,7 +1,7 @@
 // Skins and morph targets whose vertices are made on the device: the pictures, to the bit, of those made on the host,
 // by every layout of trees; what travels for a step in time; where things were in the frame before.
 
-#include "render/deforming_meshes.h"
+#include "device_scene/deforming_meshes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,17 +10,17 @@
 
 #include "base/error.h"
 #include "denoise/reproject.h"
+#include "device_scene/scene_on_device.h"
 #include "image/picture_hash.h"
-#include "render/scene_on_device.h"
-#include "render/tracer/deforming_tree.h"
-#include "render/tracer/walk_kernels.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 #include "session/moving_scene.h"
 #include "session/session.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"
 #include "tests/support/render_scenes.h"
+#include "tracer/deforming_tree.h"
+#include "tracer/walk_kernels.h"
 
 using namespace pertev;
 

@@ -5,9 +5,9 @@
 
 #include "device/buffer.h"
 #include "device/launch.h"
+#include "device_scene/scene_on_device.h"
 #include "lab/trace_rays.h"
 #include "render/prepare_scene.h"
-#include "render/scene_on_device.h"
 #include "tests/statistical/bsdf_cases.h"
 #include "tests/support/device_stages.h"
 #include "tests/support/make_tracer.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "accel/bvh/compressed_bvh.h"
 #include "tests/support/check_walk.h"
 #include "tests/support/emulated_walks.h"

@@ -6,11 +6,11 @@
 #include <doctest/doctest.h>
 
 #include "base/error.h"
-#include "render/tracer/walk_kernels.h"
 #include "session/session.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/tell_if_stuck.h"
+#include "tracer/walk_kernels.h"
 
 using namespace pertev;
 

@@ -3,10 +3,10 @@
 
 #include <doctest/doctest.h>
 
-#include "formats/read_gltf.h"
+#include "formats/gltf/read_gltf.h"
 #include "image/picture_hash.h"
 #include "render/update_scene.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 #include "session/frame_sequence.h"
 #include "session/moving_scene.h"
 #include "session/session.h"

@@ -5,8 +5,8 @@
 
 #include "base/parallel_for.h"
 #include "render/raster/camera_raster.h"
-#include "session/choose_camera.h"
-#include "session/open_scene.h"
+#include "session/opening/choose_camera.h"
+#include "session/opening/open_scene.h"
 #include "session/session.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"

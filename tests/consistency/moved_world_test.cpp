@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "render/place_meshes.h"
+#include "device_scene/place_meshes.h"
 #include "tests/support/render_scenes.h"
 
 using namespace pertev;

@@ -6,9 +6,9 @@
 #include <doctest/doctest.h>
 
 #include "base/error.h"
-#include "formats/read_gltf.h"
-#include "scene/validate.h"
-#include "session/choose_camera.h"
+#include "formats/gltf/read_gltf.h"
+#include "scene/validate/validate.h"
+#include "session/opening/choose_camera.h"
 #include "session/session.h"
 #include "session/survey/default_light.h"
 #include "tests/support/options.h"

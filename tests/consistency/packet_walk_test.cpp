@@ -1,7 +1,7 @@
 // Rays that share a stack get the hits that they would get alone, bit for bit: closest and any, with every switch and
 // with any of the packet's rays missing. A packet of one ray visits what that ray visits by itself.
 
-#include "trace/binary/packet_walk.h"
+#include "trace/packet_walk.h"
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "tests/support/check_walk.h"
 #include "tests/support/instanced_scene.h"
 #include "tests/support/nasty_meshes.h"

@@ -11,17 +11,17 @@
 #include <string>
 
 #include "base/parallel_for.h"
+#include "device_scene/find_hits.h"
 #include "render/camera_rays.h"
-#include "render/find_hits.h"
 #include "render/light_paths/light_path_expression.h"
-#include "render/tracer/walk_kernels.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 #include "session/moving_scene.h"
 #include "session/session.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/thrown_error.h"
+#include "tracer/walk_kernels.h"
 
 using namespace pertev;
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "accel/bvh/build_bvh.h"
-#include "accel/bvh/builders.h"
+#include "accel/builders/build_bvh.h"
+#include "accel/builders/builders.h"
 #include "accel/bvh/top_level_bvh.h"
 #include "math/random.h"
 #include "tests/support/check_walk.h"

@@ -5,10 +5,10 @@
 
 #include <doctest/doctest.h>
 
+#include "device_scene/scene_on_device.h"
 #include "image/picture_hash.h"
-#include "integrators/make_integrator.h"
+#include "integrators/kinds/make_integrator.h"
 #include "render/filter_table.h"
-#include "render/scene_on_device.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 

@@ -5,10 +5,10 @@
 
 #include <doctest/doctest.h>
 
-#include "render/tracer/walk_kernels.h"
 #include "session/session.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tracer/walk_kernels.h"
 
 using namespace pertev;
 

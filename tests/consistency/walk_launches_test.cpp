@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "accel/bvh/compressed_bvh.h"
 #include "accel/bvh/parent_links.h"
 #include "device/buffer.h"

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "accel/bvh/top_level_bvh.h"
 #include "accel/bvh/wide_bvh.h"
 #include "tests/support/check_walk.h"

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "accel/bvh/compressed_bvh.h"
 #include "accel/bvh/top_level_bvh.h"
 #include "accel/bvh/wide_bvh.h"

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "accel/bvh/wide_bvh.h"
 #include "base/parallel_for.h"
 #include "tests/support/embree_scene.h"

@@ -8,9 +8,9 @@
 
 #include "base/error.h"
 #include "base/read_file.h"
-#include "formats/read_gltf.h"
-#include "scene/posed_scene.h"
-#include "scene/validate.h"
+#include "formats/gltf/read_gltf.h"
+#include "scene/pose/posed_scene.h"
+#include "scene/validate/validate.h"
 #include "tests/support/cpu_seconds.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/options.h"

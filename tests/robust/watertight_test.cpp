@@ -13,11 +13,11 @@
 #include "base/parallel_for.h"
 #include "lab/measure_rays.h"
 #include "math/random.h"
-#include "render/tracer/tracer_choice.h"
 #include "tests/support/make_tracer.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tracer/tracer_choice.h"
 
 using namespace pertev;
 using namespace pertev::test;

@@ -6,8 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include "device_scene/scene_on_device.h"
 #include "integrators/path/path_stages.h"
-#include "render/scene_on_device.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 

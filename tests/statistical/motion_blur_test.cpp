@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "math/portable_math.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 #include "session/moving_scene.h"
 #include "tests/support/compare_pictures.h"
 #include "tests/support/flat_scenes.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "image/metrics.h"
-#include "session/open_scene.h"
+#include "session/opening/open_scene.h"
 #include "tests/support/cpu_seconds.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"

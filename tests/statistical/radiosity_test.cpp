@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "session/open_scene.h"
+#include "session/opening/open_scene.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/radiosity_scenes.h"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/surface.h"
+#include "device_scene/surface.h"
 #include "tests/statistical/bsdf_cases.h"
 #include "tests/statistical/tilted_surface.h"
 #include "tests/support/chi_square.h"

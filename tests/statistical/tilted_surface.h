@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "render/surface.h"
+#include "device_scene/surface.h"
 
 namespace pertev::test {
 

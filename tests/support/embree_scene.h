@@ -9,7 +9,7 @@
 #endif
 
 #include "tests/support/meshes.h"
-#include "trace/ray.h"
+#include "trace/intersect/ray.h"
 
 namespace pertev::test {
 

@@ -1,4 +1,4 @@
-// render/tracer/hploc/warp_kernels.h compiled as for a device: see tests/support/emulated_device.h.
+// tracer/hploc/warp_kernels.h compiled as for a device: see tests/support/emulated_device.h.
 
 #include "tests/support/emulated_hploc.h"
 
@@ -46,7 +46,7 @@ inline float __uint_as_float(uint32_t x) { return __builtin_bit_cast(float, x); 
 } // namespace pertev
 
 #define __shared__ static // of kernels that are not run here: only their bodies are, with memory of their own
-#include "render/tracer/hploc/warp_kernels.h"
+#include "tracer/hploc/warp_kernels.h"
 
 #undef pertev
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The builder's kernels for CUDA (render/tracer/hploc/warp_kernels.h) on emulated warps.
+// The builder's kernels for CUDA (tracer/hploc/warp_kernels.h) on emulated warps.
 
 #include <cstdint>
 #include <string>

@@ -1,4 +1,4 @@
-// The kernels of src/device/launch_body.h, src/trace/warps/persistent.h and src/trace/warps/dynamic_fetch.h with the
+// The kernels of src/device/launch_body.h, src/trace/warps/persistent.h and src/trace/dynamic_fetch.h with the
 // walks that vote, compiled as for a device: see tests/support/emulated_device.h. The host's views, rays and hits have
 // the layout of the device's, so addresses of the ones serve as addresses of the others; nothing else passes between
 // the two.
@@ -14,8 +14,8 @@
 #include "trace/binary/speculative_walk.h"
 #include "trace/binary/warp_packet_walk.h"
 #include "trace/binary/while_while_walk.h"
+#include "trace/dynamic_fetch.h"
 #include "trace/scene_trees.h"
-#include "trace/warps/dynamic_fetch.h"
 #include "trace/warps/lane_counter.h"
 #include "trace/warps/persistent.h"
 #include "trace/wide/compressed_walk.h"

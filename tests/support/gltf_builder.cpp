@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "base/write_file_atomically.h"
-#include "formats/read_gltf.h"
+#include "formats/gltf/read_gltf.h"
 #include "tests/support/options.h"
 
 namespace fs = std::filesystem;

@@ -1,6 +1,6 @@
 #include "tests/support/instanced_scene.h"
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 
 namespace pertev::test {
 

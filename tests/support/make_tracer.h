@@ -7,7 +7,7 @@
 
 #include "lab/isolated_rays.h"
 #include "render/prepare_scene.h"
-#include "render/tracer/tracer.h"
+#include "tracer/tracer.h"
 
 namespace pertev::test {
 

@@ -8,7 +8,7 @@
 
 #include "accel/bvh/bvh.h"
 #include "tests/support/meshes.h"
-#include "trace/ray.h"
+#include "trace/intersect/ray.h"
 
 namespace pertev::test {
 

@@ -10,7 +10,7 @@
 #include "trace/binary/speculative_walk.h"
 #include "trace/binary/warp_packet_walk.h"
 #include "trace/binary/while_while_walk.h"
-#include "trace/warps/dynamic_fetch.h"
+#include "trace/dynamic_fetch.h"
 #include "trace/warps/persistent.h"
 #include "trace/wide/compressed_walk.h"
 

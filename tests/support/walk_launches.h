@@ -8,7 +8,7 @@
 
 #include "accel/bvh/compressed_bvh.h"
 #include "device/queue.h"
-#include "trace/ray.h"
+#include "trace/intersect/ray.h"
 #include "trace/scene_trees.h"
 #include "trace/warps/lane_counter.h"
 

@@ -4,9 +4,9 @@
 
 #include <doctest/doctest.h>
 
+#include "device_scene/accept_hit.h"
+#include "device_scene/scene_on_device.h"
 #include "math/portable_math.h"
-#include "render/accept_hit.h"
-#include "render/scene_on_device.h"
 #include "tests/support/random.h"
 #include "trace/intersect/intersect_triangle.h"
 

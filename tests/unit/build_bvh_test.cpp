@@ -1,7 +1,7 @@
 // Whatever the triangles and the settings, the builder gives a sound tree: every box holds what is beneath it, each
 // triangle is reached once, the stack suffices, and neither threads nor chance enter.
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 
 #include <doctest/doctest.h>
 

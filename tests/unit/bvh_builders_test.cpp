@@ -1,17 +1,17 @@
 // Every builder of the laboratory gives, on meshes made to break them, a sound tree that does not depend on threads and
 // in which walks find what testing every triangle finds; and each is as good as its kind should be.
 
-#include "accel/bvh/builders.h"
+#include "accel/builders/builders.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <string_view>
 
-#include "accel/bvh/binary_tree.h"
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/binary_tree.h"
+#include "accel/builders/build_bvh.h"
+#include "accel/builders/cut_triangle.h"
 #include "accel/bvh/check_bvh.h"
-#include "accel/bvh/cut_triangle.h"
 #include "base/limits.h"
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"

@@ -1,7 +1,7 @@
 // The on-disk cache gives back the very tree that was stored, or nothing: whatever happens to the file, no byte of it
 // is believed unchecked.
 
-#include "accel/bvh/bvh_cache.h"
+#include "accel/builders/bvh_cache.h"
 
 #include <doctest/doctest.h>
 

@@ -31,7 +31,7 @@ Vec3 floor_point(uint32_t x, uint32_t y) {
     return {(static_cast<float>(x) + 0.5f) * pixel - kView / 2, 0, (static_cast<float>(y) + 0.5f) * pixel - kView / 2};
 }
 
-/// No pixel's middle lies on the edge between its triangles, which hits keep off (render/surface.h).
+/// No pixel's middle lies on the edge between its triangles, which hits keep off (device_scene/surface.h).
 Mesh wide_floor() { return test::sheet({0.05f, 0, 0}, {0, 0, 10}, {10, 0, 0}); }
 
 RenderResult look_down(const Scene& scene, float from_height, const RenderSettings& settings) {

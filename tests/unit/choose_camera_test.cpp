@@ -4,8 +4,8 @@
 
 #include "base/error.h"
 #include "math/portable_math.h"
-#include "session/choose_camera.h"
-#include "session/open_scene.h"
+#include "session/opening/choose_camera.h"
+#include "session/opening/open_scene.h"
 #include "tests/support/options.h"
 #include "tests/support/write_text.h"
 

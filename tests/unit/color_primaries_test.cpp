@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "formats/load_textures.h"
+#include "formats/files/load_textures.h"
 #include "image/color_primaries.h"
 #include "image/decode_image.h"
 #include "image/picture_primaries.h"

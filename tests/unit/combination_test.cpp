@@ -1,4 +1,4 @@
-#include "render/tracer/combination.h"
+#include "tracer/combination.h"
 
 #include <doctest/doctest.h>
 

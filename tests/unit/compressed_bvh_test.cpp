@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "base/limits.h"
 #include "tests/support/check_walk.h"
 #include "tests/support/meshes.h"

@@ -1,14 +1,14 @@
 // The builder that runs on the device: sound trees of every mesh, as good as those of its kind should be, and the same
 // bytes by any number of threads. That warps make these bytes too: emulated_warps_hploc_test.cpp.
 
-#include "render/tracer/hploc/device_builder.h"
+#include "tracer/hploc/device_builder.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cstring>
 
-#include "accel/bvh/builders.h"
+#include "accel/builders/builders.h"
 #include "tests/support/built_trees.h"
 #include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"

@@ -1,13 +1,13 @@
-// Warps make of triangles the tree that single threads make: the kernels of render/tracer/hploc on emulated warps.
+// Warps make of triangles the tree that single threads make: the kernels of tracer/hploc on emulated warps.
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cstring>
 
-#include "render/tracer/hploc/device_builder.h"
 #include "tests/support/built_trees.h"
 #include "tests/support/emulated_hploc.h"
+#include "tracer/hploc/device_builder.h"
 
 using namespace pertev;
 using namespace pertev::test;

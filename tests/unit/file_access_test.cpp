@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "formats/file_access.h"
+#include "formats/files/file_access.h"
 #include "tests/support/options.h"
 #include "tests/support/thrown_error.h"
 #include "tests/support/write_text.h"

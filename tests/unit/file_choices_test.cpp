@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "base/error.h"
-#include "formats/file_choices.h"
+#include "formats/files/file_choices.h"
 
 using namespace pertev;
 

@@ -2,7 +2,7 @@
 
 #include "formats/read_scene.h"
 #include "scene/scene_origin.h"
-#include "session/open_scene.h"
+#include "session/opening/open_scene.h"
 #include "tests/support/options.h"
 #include "tests/support/thrown_error.h"
 #include "tests/support/write_text.h"

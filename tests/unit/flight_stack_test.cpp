@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "accel/bvh/wide_bvh.h"
 #include "tests/support/random.h"
 #include "trace/wide/walk_in_flight.h"

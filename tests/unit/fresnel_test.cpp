@@ -1,4 +1,4 @@
-#include "shading/fresnel.h"
+#include "shading/lobes/fresnel.h"
 
 #include <doctest/doctest.h>
 

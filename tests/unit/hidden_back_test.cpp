@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include "render/accept_hit.h"
-#include "render/scene_on_device.h"
+#include "device_scene/accept_hit.h"
+#include "device_scene/scene_on_device.h"
 #include "tests/support/render_scenes.h"
 
 using namespace pertev;

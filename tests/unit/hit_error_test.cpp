@@ -1,12 +1,12 @@
-// What render/surface.h says of the rounding of a hit's position, against the same sums in double.
+// What device_scene/surface.h says of the rounding of a hit's position, against the same sums in double.
 
 #include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>
 
+#include "device_scene/surface.h"
 #include "math/double_vec3.h"
-#include "render/surface.h"
 #include "tests/support/random.h"
 
 using namespace pertev;

@@ -8,7 +8,7 @@
 #include <initializer_list>
 
 #include "tests/support/random.h"
-#include "trace/ray.h"
+#include "trace/intersect/ray.h"
 
 using namespace pertev;
 using namespace pertev::test;

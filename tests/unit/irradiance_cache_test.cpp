@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/parallel_for.h"
+#include "device_scene/scene_on_device.h"
 #include "integrators/irradiance_cache/do_in_parts.h"
 #include "integrators/irradiance_cache/hemisphere.h"
 #include "integrators/irradiance_cache/irradiance_cache_integrator.h"
@@ -19,7 +20,6 @@
 #include "integrators/irradiance_cache/space_records.h"
 #include "render/film.h"
 #include "render/filter_table.h"
-#include "render/scene_on_device.h"
 #include "session/check_integrator.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "base/json_text.h"
-#include "session/metadata_json.h"
+#include "session/writing/metadata_json.h"
 
 using namespace pertev;
 

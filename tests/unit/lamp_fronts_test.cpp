@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "session/open_scene.h"
+#include "session/opening/open_scene.h"
 #include "tests/support/options.h"
 #include "tests/support/write_text.h"
 

@@ -11,10 +11,10 @@
 
 #include "formats/read_scene.h"
 #include "image/write_png.h"
-#include "scene/posed_scene.h"
+#include "scene/pose/posed_scene.h"
 #include "scene/shape_mesh.h"
 #include "scene/tangents/corner_tangents.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/options.h"
 #include "tests/support/write_text.h"

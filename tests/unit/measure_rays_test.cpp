@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "tests/support/check_walk.h"
 #include "tests/support/make_tracer.h"
 

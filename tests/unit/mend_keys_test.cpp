@@ -6,9 +6,9 @@
 
 #include "formats/gltf/mend_keys.h"
 #include "math/scalar.h"
-#include "scene/sample_channel.h"
+#include "scene/pose/sample_channel.h"
 #include "scene/scene.h"
-#include "scene/validate_nodes.h"
+#include "scene/validate/validate_nodes.h"
 #include "tests/support/gltf_builder.h"
 
 using namespace pertev;

@@ -1,11 +1,11 @@
 // The camera of a moving scene: what is left open is decided at rest, and a scene's own camera goes with its node.
 
-#include "session/moving_camera.h"
+#include "session/opening/moving_camera.h"
 
 #include <doctest/doctest.h>
 
 #include "base/error.h"
-#include "scene/posed_scene.h"
+#include "scene/pose/posed_scene.h"
 #include "tests/support/render_scenes.h"
 
 using namespace pertev;

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "render/place_meshes.h"
+#include "device_scene/place_meshes.h"
 #include "scene/scene.h"
 
 using namespace pertev;

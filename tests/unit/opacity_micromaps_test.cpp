@@ -9,10 +9,10 @@
 
 #include <doctest/doctest.h>
 
-#include "render/accept_hit.h"
-#include "render/opacity/classify_opacity.h"
-#include "render/opacity/opacity_micromaps.h"
-#include "render/scene_on_device.h"
+#include "device_scene/accept_hit.h"
+#include "device_scene/classify_opacity.h"
+#include "device_scene/opacity_micromaps.h"
+#include "device_scene/scene_on_device.h"
 #include "tests/support/random.h"
 
 using namespace pertev;

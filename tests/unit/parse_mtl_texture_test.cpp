@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "formats/parse_mtl_texture.h"
+#include "formats/obj/parse_mtl_texture.h"
 
 using namespace pertev;
 

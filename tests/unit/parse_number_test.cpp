@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "formats/parse_number.h"
+#include "formats/files/parse_number.h"
 
 using namespace pertev;
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "formats/parse_obj.h"
+#include "formats/obj/parse_obj.h"
 
 using namespace pertev;
 

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "device/launch.h"
+#include "device_scene/scene_on_device.h"
 #include "integrators/photon_map/find_targets.h"
 #include "integrators/photon_map/order_photons.h"
 #include "integrators/photon_map/photon_map_integrator.h"
 #include "render/film.h"
 #include "render/filter_table.h"
-#include "render/scene_on_device.h"
 #include "session/check_integrator.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/meshes.h"

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
-#include "render/place_meshes.h"
+#include "device_scene/place_meshes.h"
 #include "render/prepare_scene.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/thrown_error.h"

@@ -1,6 +1,6 @@
 // A scene at a time: nodes, skins, morph targets, cameras, lights; and what is told to have changed.
 
-#include "scene/posed_scene.h"
+#include "scene/pose/posed_scene.h"
 
 #include <cmath>
 #include <limits>
@@ -8,11 +8,11 @@
 #include <doctest/doctest.h>
 
 #include "base/error.h"
-#include "formats/read_gltf.h"
-#include "render/place_meshes.h"
+#include "device_scene/place_meshes.h"
+#include "formats/gltf/read_gltf.h"
 #include "scene/shape_mesh.h"
-#include "scene/validate.h"
-#include "session/choose_camera.h"
+#include "scene/validate/validate.h"
+#include "session/opening/choose_camera.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/options.h"
 

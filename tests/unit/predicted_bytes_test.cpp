@@ -2,11 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include "device_scene/scene_on_device.h"
 #include "integrators/path/path_integrator.h"
-#include "render/scene_on_device.h"
-#include "render/tracer/scene_tracer.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tracer/scene_tracer.h"
 
 using namespace pertev;
 

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "render/place_meshes.h"
+#include "device_scene/place_meshes.h"
 #include "render/prepare_scene.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"

@@ -9,7 +9,7 @@
 #include <functional>
 
 #include "base/read_file.h"
-#include "integrators/make_integrator.h"
+#include "integrators/kinds/make_integrator.h"
 #include "radiosity/corner_light.h"
 #include "radiosity/solve_memory.h"
 #include "tests/support/cpu_seconds.h"

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "render/ray_origin.h"
+#include "device_scene/ray_origin.h"
 #include "tests/support/meshes.h"
 
 using namespace pertev;

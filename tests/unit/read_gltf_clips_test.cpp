@@ -4,8 +4,8 @@
 #include <doctest/doctest.h>
 
 #include "base/error.h"
-#include "formats/read_gltf.h"
-#include "render/place_meshes.h"
+#include "device_scene/place_meshes.h"
+#include "formats/gltf/read_gltf.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/options.h"
 

@@ -4,8 +4,8 @@
 
 #include "base/error.h"
 #include "base/write_file_atomically.h"
+#include "formats/gltf/read_gltf.h"
 #include "formats/gltf/uri.h"
-#include "formats/read_gltf.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/options.h"
 

@@ -10,9 +10,9 @@
 
 #include "base/error.h"
 #include "base/write_file_atomically.h"
+#include "formats/gltf/read_gltf.h"
 #include "formats/gltf/uri.h"
-#include "formats/read_gltf.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/options.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/write_file_atomically.h"
-#include "formats/read_gltf.h"
+#include "formats/gltf/read_gltf.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/options.h"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <set>
 
-#include "formats/parse_obj.h"
-#include "formats/read_obj.h"
-#include "scene/validate.h"
+#include "formats/obj/parse_obj.h"
+#include "formats/obj/read_obj.h"
+#include "scene/validate/validate.h"
 #include "tests/support/options.h"
 #include "tests/support/write_text.h"
 

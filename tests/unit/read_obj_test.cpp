@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/parallel_for.h"
-#include "formats/read_obj.h"
-#include "formats/triangulate_polygon.h"
+#include "formats/mesh/triangulate_polygon.h"
+#include "formats/obj/read_obj.h"
 #include "image/write_png.h"
 #include "tests/support/options.h"
 #include "tests/support/thrown_error.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "formats/read_ply.h"
+#include "formats/ply/read_ply.h"
 #include "image/srgb.h"
 #include "tests/support/options.h"
 #include "tests/support/thrown_error.h"

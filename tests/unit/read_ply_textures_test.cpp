@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "base/error.h"
-#include "formats/read_ply.h"
+#include "formats/ply/read_ply.h"
 #include "image/write_png.h"
 #include "tests/support/options.h"
 #include "tests/support/write_text.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "formats/read_gltf.h"
+#include "formats/gltf/read_gltf.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/options.h"
 

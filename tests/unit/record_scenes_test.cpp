@@ -10,7 +10,7 @@
 #include "base/parallel_for.h"
 #include "lab/make_bunny_box.h"
 #include "lab/make_forest.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/thrown_error.h"

@@ -1,19 +1,19 @@
 // A tree that is refitted to moved triangles is sound, and walks find in it what they find in one built afresh.
 
-#include "accel/bvh/refit_bvh.h"
+#include "accel/builders/refit_bvh.h"
 
 #include <doctest/doctest.h>
 
 #include <cstring>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "accel/bvh/check_bvh.h"
 #include "accel/bvh/compressed_bvh.h"
 #include "accel/bvh/wide_bvh.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
-#include "render/tracer/binary_trees.h"
 #include "tests/support/check_walk.h"
+#include "tracer/binary_trees.h"
 
 using namespace pertev;
 using namespace pertev::test;

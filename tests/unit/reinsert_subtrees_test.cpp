@@ -1,6 +1,6 @@
 // What reinsertion leaves behind it; how good its trees are is in bvh_builders_test.cpp.
 
-#include "accel/bvh/reinsert_subtrees.h"
+#include "accel/builders/reinsert_subtrees.h"
 
 #include <doctest/doctest.h>
 

@@ -13,8 +13,8 @@
 #include "lab/run_transport.h"
 #include "lab/transport_solutions.h"
 #include "radiosity/radiosity_view.h"
-#include "session/choose_camera.h"
-#include "session/open_scene.h"
+#include "session/opening/choose_camera.h"
+#include "session/opening/open_scene.h"
 #include "tests/support/thrown_error.h"
 
 using namespace pertev;

@@ -1,6 +1,6 @@
 // The three interpolations of glTF 2.0 (appendix C), against values worked out by hand.
 
-#include "scene/sample_channel.h"
+#include "scene/pose/sample_channel.h"
 
 #include <array>
 #include <cmath>

@@ -4,10 +4,10 @@
 
 #include <doctest/doctest.h>
 
+#include "device_scene/part_arrays.h"
+#include "device_scene/scene_on_device.h"
 #include "image/picture_hash.h"
-#include "integrators/make_integrator.h"
-#include "render/part_arrays.h"
-#include "render/scene_on_device.h"
+#include "integrators/kinds/make_integrator.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 

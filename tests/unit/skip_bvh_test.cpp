@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "tests/support/nasty_meshes.h"
 #include "tests/support/split_bvh.h"
 

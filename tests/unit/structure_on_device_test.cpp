@@ -1,7 +1,7 @@
 // A structure's copy on a device follows changes of the scene: what did not change is neither copied nor allocated
 // again. The copy is made on the CPU too, where pictures do without it.
 
-#include "render/tracer/structure_on_device.h"
+#include "tracer/structure_on_device.h"
 
 #include <memory>
 

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "accel/bvh/top_level_bvh.h"
 #include "math/transform.h"
 #include "tests/support/meshes.h"

@@ -1,10 +1,10 @@
 // Which trees stand behind pictures.
 
-#include "render/tracer/tracer_choice.h"
+#include "tracer/tracer_choice.h"
 
 #include <doctest/doctest.h>
 
-#include "accel/bvh/refit_bvh.h"
+#include "accel/builders/refit_bvh.h"
 #include "render/prepare_scene.h"
 #include "tests/support/render_scenes.h"
 

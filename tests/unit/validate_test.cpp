@@ -3,7 +3,7 @@
 #include <functional>
 #include <limits>
 
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 #include "tests/support/thrown_error.h"
 
 using namespace pertev;

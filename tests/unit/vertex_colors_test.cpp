@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
-#include "formats/read_obj.h"
-#include "formats/read_ply.h"
+#include "formats/obj/read_obj.h"
+#include "formats/ply/read_ply.h"
 #include "image/srgb.h"
 #include "image/write_png.h"
 #include "tests/support/options.h"

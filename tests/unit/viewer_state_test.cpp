@@ -11,7 +11,7 @@
 #include "apps/viewer/packer.h"
 #include "apps/viewer/panel_text.h"
 #include "apps/viewer/view_state.h"
-#include "render/ray_queue.h"
+#include "device_scene/ray_queue.h"
 
 using namespace pertev;
 

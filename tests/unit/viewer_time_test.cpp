@@ -5,7 +5,7 @@
 #include "apps/viewer/scene_clock.h"
 #include "apps/viewer/view_camera.h"
 #include "scene/scene_origin.h"
-#include "session/choose_camera.h"
+#include "session/opening/choose_camera.h"
 #include "tests/support/random.h"
 
 using namespace pertev;

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "accel/bvh/wide_bvh.h"
 #include "tests/support/meshes.h"
 #include "trace/wide/walk_wide.h"

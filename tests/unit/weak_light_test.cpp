@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "formats/read_scene.h"
-#include "session/open_scene.h"
+#include "session/opening/open_scene.h"
 #include "session/survey/default_light.h"
 #include "session/survey/weak_light.h"
 #include "tests/support/options.h"

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "tests/support/meshes.h"
 #include "tests/support/nasty_meshes.h"
 

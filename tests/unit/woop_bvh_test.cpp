@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "accel/bvh/build_bvh.h"
+#include "accel/builders/build_bvh.h"
 #include "accel/bvh/woop_bvh.h"
 #include "tests/support/check_walk.h"
 #include "tests/support/meshes.h"

@@ -6,9 +6,9 @@
 // Source: Benthin, Meister, Barczak, Mehalwal, Tsakok, Kensler, "H-PLOC: Hierarchical Parallel Locally-Ordered
 // Clustering for Bounding Volume Hierarchy Construction", HPG 2024, sections 3 and 4; the climb is Apetrei's, "Fast and
 // Simple Agglomerative LBVH Construction", CGVC 2014. What a node of the radix tree is left with is a function of what
-// its children were left with, so the tree does not depend on who comes when. Ties as in accel/bvh/build_ploc.cpp.
+// its children were left with, so the tree does not depend on who comes when. Ties as in accel/builders/build_ploc.cpp.
 //
-// Here is the form of one thread a leaf, for the CPU; render/tracer/hploc/warp_kernels.h has
+// Here is the form of one thread a leaf, for the CPU; tracer/hploc/warp_kernels.h has
 // the same with a warp a node.
 
 #include <cstdint>

@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include "base/message_text.h"
+#include "formats/files/parse_number.h"
 #include "formats/gltf/leave_out.h"
 #include "formats/gltf/mend_keys.h"
-#include "formats/parse_number.h"
-#include "scene/validate_nodes.h"
+#include "scene/validate/validate_nodes.h"
 
 namespace pertev::gltf {
 namespace {

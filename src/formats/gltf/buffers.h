@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "formats/file_access.h"
+#include "formats/files/file_access.h"
 #include "formats/gltf/document.h"
 
 namespace pertev::gltf {

@@ -2,7 +2,7 @@
 
 // glTF cameras. Source: glTF 2.0 section 3.10.
 
-#include "formats/gltf/json_value.h"
+#include "formats/json/json_value.h"
 #include "scene/camera.h"
 
 namespace pertev::gltf {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "formats/file_choices.h"
+#include "formats/files/file_choices.h"
 #include "formats/gltf/leave_out.h"
 
 namespace pertev::gltf {

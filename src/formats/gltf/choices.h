@@ -2,8 +2,8 @@
 
 // What a glTF file has several of, and the reader takes one of: animations, and scenes.
 
+#include "formats/files/read_options.h"
 #include "formats/gltf/buffers.h"
-#include "formats/read_scene.h"
 
 namespace pertev::gltf {
 

@@ -13,8 +13,8 @@
 #include "base/file_extension.h"
 #include "base/message_text.h"
 #include "formats/gltf/extensions.h"
-#include "formats/gltf/find_json_fault.h"
 #include "formats/gltf/leave_out.h"
+#include "formats/json/find_json_fault.h"
 
 namespace pertev::gltf {
 namespace {

@@ -17,7 +17,7 @@
 #include <simdjson.h>
 
 #include "base/messages.h"
-#include "formats/gltf/json_value.h"
+#include "formats/json/json_value.h"
 
 namespace pertev::gltf {
 

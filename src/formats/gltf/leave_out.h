@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/messages.h"
-#include "formats/gltf/json_value.h"
+#include "formats/json/json_value.h"
 
 namespace pertev::gltf {
 

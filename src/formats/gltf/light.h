@@ -5,7 +5,7 @@
 // Source: KHR_lights_punctual.
 
 #include "base/messages.h"
-#include "formats/gltf/json_value.h"
+#include "formats/json/json_value.h"
 #include "scene/light.h"
 
 namespace pertev::gltf {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/messages.h"
+#include "formats/files/load_textures.h"
 #include "formats/gltf/buffers.h"
 #include "formats/gltf/document.h"
-#include "formats/load_textures.h"
 #include "scene/texture.h"
 
 namespace pertev::gltf {

@@ -4,9 +4,9 @@
 // light in alike whatever is seen: nothing, or one reflection, whose part in f(wo, wi) is a product of one of wo and
 // one of wi (lobes/passage.h). The second is in the record, with the surface's material.
 
+#include "device_scene/surface.h"
 #include "integrators/irradiance_cache/irradiance_record.h"
 #include "render/camera_rays.h"
-#include "render/surface.h"
 
 namespace pertev {
 

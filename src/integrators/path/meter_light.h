@@ -7,14 +7,14 @@
 
 #include <cstdint>
 
+#include "device_scene/ray_queue.h"
+#include "device_scene/surface.h"
 #include "integrators/path/path_settings.h"
 #include "integrators/path/path_state.h"
 #include "render/film_view.h"
 #include "render/picture_view.h"
-#include "render/ray_queue.h"
-#include "render/surface.h"
-#include "render/tracer/scene_tracer.h"
 #include "shading/power_heuristic.h"
+#include "tracer/scene_tracer.h"
 
 namespace pertev {
 

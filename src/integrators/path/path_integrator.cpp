@@ -333,7 +333,8 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
                    GeneratePaths{picture_.camera, work.settings, work.samples, counts, last, any_alpha, paths});
             const HitQueueView camera_hits = {hits.places + last, hits.instances + last, -1};
             if (raster_) {
-                tracer_->find_hits(*raster_, paths.query_back(last), fresh, camera_hits);
+                tracer_->timed(RayKind::Camera,
+                               [&] { raster_->find_hits(paths.query_back(last), fresh, camera_hits); });
             } else {
                 tracer_->find_hits(RayKind::Camera, paths.query_back(last), fresh, camera_hits, pool(RayKind::Camera));
             }

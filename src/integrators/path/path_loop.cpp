@@ -2,10 +2,10 @@
 
 #include <type_traits>
 
+#include "device_scene/find_hits.h"
 #include "integrators/path/eight_samples.h"
 #include "integrators/path/host_shading.h"
 #include "integrators/path/shade_to_layers.h"
-#include "render/find_hits.h"
 
 namespace pertev {
 namespace {

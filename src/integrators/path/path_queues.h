@@ -10,9 +10,9 @@
 #include <cstdint>
 
 #include "device/list_places.h"
+#include "device_scene/ray_queue.h"
 #include "integrators/path/path_state.h"
 #include "math/float4.h"
-#include "render/ray_queue.h"
 
 namespace pertev {
 

@@ -4,12 +4,12 @@
 
 #include <cstdint>
 
+#include "device_scene/accept_hit.h"
 #include "math/float4.h"
 #include "math/rgb.h"
 #include "math/sampler.h"
-#include "render/accept_hit.h"
 #include "render/camera_rays.h"
-#include "trace/ray.h"
+#include "trace/intersect/ray.h"
 
 namespace pertev {
 

@@ -6,16 +6,16 @@
 // Source: Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, chapter 9 (multiple importance
 // sampling, power heuristic) and 10.4 (Russian roulette).
 
+#include "device_scene/moved_surface.h"
+#include "device_scene/ray_origin.h"
+#include "device_scene/surface.h"
 #include "integrators/path/path_settings.h"
 #include "integrators/path/path_state.h"
 #include "integrators/path/vertex_events.h"
 #include "integrators/path/vertex_numbers.h"
 #include "render/film_view.h"
 #include "render/first_hit.h"
-#include "render/moved_surface.h"
 #include "render/picture_view.h"
-#include "render/ray_origin.h"
-#include "render/surface.h"
 #include "shading/power_heuristic.h"
 
 namespace pertev {

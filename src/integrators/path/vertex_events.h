@@ -4,7 +4,7 @@
 // light-path expressions. And what it is told: that the first surface is a light meter, for pictures of irradiance.
 // Other renders have NoEvents, of which no code is left.
 
-#include "render/surface.h"
+#include "device_scene/surface.h"
 
 namespace pertev {
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "render/tracer/hploc/sort_codes.h"
+#include "tracer/hploc/sort_codes.h"
 
 namespace pertev {
 namespace {

@@ -101,7 +101,7 @@ private:
 
 /// Sorts `keys` of so many bits, 1 to 63, each with its number in `order`, of which order[i] is i; equal keys stay in
 /// the order of numbers. What was in `keys` and `order` is lost. On the host by bytes, on a GPU by
-/// render/tracer/hploc/sort_codes.h, whose `scratch` it is.
+/// tracer/hploc/sort_codes.h, whose `scratch` it is.
 void sort_photons(Queue& queue, Buffer<std::byte>& scratch, uint64_t* keys, uint32_t* order, uint64_t* sorted_keys,
                   uint32_t* sorted_order, uint32_t count, int bits);
 

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "device/launch.h"
 #include "integrators/photon_map/order_photons.h"
-#include "render/tracer/hploc/sort_codes.h"
+#include "tracer/hploc/sort_codes.h"
 
 namespace pertev {
 namespace {

@@ -116,7 +116,8 @@ struct ShadePhotons {
 
 private:
     HD void keep(const Surface& surface, uint32_t walk, const WalkState& state, Vec3 wi, bool is_caustic) const {
-        // Walks from the camera carry radiance over the square of the index (shading/bsdf_sample.h), photons power.
+        // Walks from the camera carry radiance over the square of the index (shading/lobes/bsdf_sample.h), photons
+        // power.
         const Rgb power = (1.0f / gather.index_squared(walk)) * state.throughput;
         if (!(max_component(power) <= kMaxSampleValue)) {
             atomic_add(pass.invalid, 1);

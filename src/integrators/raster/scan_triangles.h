@@ -7,8 +7,8 @@
 
 #include "device/atomic_add.h"
 #include "device/atomic_min.h"
+#include "device_scene/accept_hit.h"
 #include "integrators/raster/raster_settings.h"
-#include "render/accept_hit.h"
 #include "render/picture_view.h"
 #include "render/raster/scan_row.h"
 

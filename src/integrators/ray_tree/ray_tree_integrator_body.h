@@ -10,9 +10,9 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "device/launch.h"
+#include "device_scene/find_hits.h"
 #include "integrators/ray_tree/ray_tree_integrator.h"
 #include "integrators/ray_tree/tree_stages.h"
-#include "render/find_hits.h"
 
 namespace pertev {
 namespace ray_tree {

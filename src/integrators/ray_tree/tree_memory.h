@@ -10,11 +10,11 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "device_scene/accept_hit.h"
+#include "device_scene/ray_queue.h"
 #include "math/float4.h"
 #include "math/rgb.h"
-#include "render/accept_hit.h"
-#include "render/ray_queue.h"
-#include "trace/ray.h"
+#include "trace/intersect/ray.h"
 
 namespace pertev {
 

@@ -3,12 +3,12 @@
 // A surface that a ray of a tree has met, as an algorithm sees it: what it may ask for there. Each algorithm
 // (integrators/cast/cast.h, whitted/whitted.h, distributed/distributed.h) is a few lines over these.
 
+#include "device_scene/moved_surface.h"
+#include "device_scene/ray_origin.h"
+#include "device_scene/surface.h"
 #include "integrators/ray_tree/ray_tree_settings.h"
 #include "integrators/ray_tree/tree_memory.h"
-#include "render/moved_surface.h"
 #include "render/picture_view.h"
-#include "render/ray_origin.h"
-#include "render/surface.h"
 #include "shading/power_heuristic.h"
 
 namespace pertev {

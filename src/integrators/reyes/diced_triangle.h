@@ -8,9 +8,9 @@
 // so are its normal and its height where they share those of the corners. Whether an edge is halved depends on its two
 // ends alone, and treats them alike.
 
+#include "device_scene/textured_factor.h"
 #include "integrators/reyes/displacement.h"
 #include "render/raster/project_triangle.h"
-#include "render/textured_factor.h"
 
 namespace pertev {
 

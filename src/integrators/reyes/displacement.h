@@ -2,7 +2,7 @@
 
 // Heights of a material as device code reads them: bilinear, in our own arithmetic, repeating.
 
-#include "render/scene_view.h"
+#include "device_scene/scene_view.h"
 #include "shading/texture_lookup.h"
 
 namespace pertev {

@@ -8,10 +8,10 @@
 
 #include "device/atomic_add.h"
 #include "device/atomic_min.h"
+#include "device_scene/accept_hit.h"
 #include "integrators/reyes/diced_triangle.h"
 #include "integrators/reyes/piece.h"
 #include "integrators/reyes/sample_lists.h"
-#include "render/accept_hit.h"
 #include "render/raster/local_light.h"
 
 namespace pertev {

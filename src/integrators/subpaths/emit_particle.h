@@ -7,11 +7,11 @@
 
 #include <cstdint>
 
+#include "device_scene/scene_view.h"
+#include "device_scene/surface.h"
 #include "integrators/subpaths/mis_walk.h"
 #include "integrators/subpaths/subpath_settings.h"
 #include "math/frame.h"
-#include "render/scene_view.h"
-#include "render/surface.h"
 
 namespace pertev {
 

@@ -8,9 +8,9 @@
 
 #include "device/launch.h"
 #include "device/readback.h"
+#include "device_scene/find_hits.h"
 #include "integrators/subpaths/particle_stages.h"
-#include "render/find_hits.h"
-#include "render/tracer/scene_tracer.h"
+#include "tracer/scene_tracer.h"
 
 namespace pertev {
 

@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-#include "shading/bsdf_sample.h"
+#include "shading/lobes/bsdf_sample.h"
 
 namespace pertev {
 

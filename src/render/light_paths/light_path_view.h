@@ -9,11 +9,11 @@
 
 #include <cstdint>
 
+#include "device_scene/accept_hit.h"
+#include "device_scene/scene_view.h"
 #include "math/rgb.h"
-#include "render/accept_hit.h"
 #include "render/film_view.h"
 #include "render/light_paths/light_path_automaton.h"
-#include "render/scene_view.h"
 
 namespace pertev {
 

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "device/launch.h"
-#include "render/tracer/hploc/sort_codes.h"
+#include "tracer/hploc/sort_codes.h"
 
 namespace pertev {
 namespace {

@@ -3,9 +3,9 @@
 // What a ray of the camera meets first, by the list of its pixel's tile: the same triangle test, the same rules of what
 // counts and the same choice among candidates as a walk of trees has (trace/trace_closest.h), so the same bits.
 
-#include "render/accept_hit.h"
+#include "device_scene/accept_hit.h"
+#include "device_scene/ray_queue.h"
 #include "render/raster/tile_lists.h"
-#include "render/ray_queue.h"
 #include "trace/intersect/intersect_triangle.h"
 #include "trace/scene_trees.h"
 #include "trace/trace_closest.h"

@@ -3,8 +3,8 @@
 // How a picture without rays is lit: by what a surface emits, an ambient light, and of each point, spot and directional
 // light what the diffuse and glossy lobes of its BSDF scatter. No shadow is cast; mirrors and glass are black.
 
+#include "device_scene/surface.h"
 #include "render/picture_view.h"
-#include "render/surface.h"
 
 namespace pertev {
 

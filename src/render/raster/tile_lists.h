@@ -12,9 +12,9 @@
 
 #include "accel/bvh/bvh.h"
 #include "device/atomic_add.h"
+#include "device_scene/scene_view.h"
 #include "math/float4.h"
 #include "render/raster/seen_bounds.h"
-#include "render/scene_view.h"
 
 namespace pertev {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "device/queue.h"
-#include "scene/posed_scene.h"
+#include "scene/pose/posed_scene.h"
 #include "session/meter_exposure.h"
 #include "session/session.h"
 #include "session/survey/default_camera.h"

@@ -9,10 +9,10 @@
 // wo.z > 0 is the outside, where the index is 1; the inside has index `ior`.
 
 #include "base/host_device.h"
-#include "shading/energy_tables.h"
-#include "shading/fresnel.h"
-#include "shading/ggx.h"
-#include "shading/grazing_lobe.h"
+#include "shading/lobes/energy_tables.h"
+#include "shading/lobes/fresnel.h"
+#include "shading/lobes/ggx.h"
+#include "shading/lobes/grazing_lobe.h"
 #include "shading/lobes/passage.h"
 
 namespace pertev {

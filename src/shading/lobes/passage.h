@@ -6,15 +6,15 @@
 //   lobe_class  what it scatters
 //   energy      about the largest share of light that it scatters, [0, 1]: how often it is drawn from beneath a layer
 //   evaluate    value and density of what it adds under a Passage; a layer then moves the Passage to beneath itself
-//   gloss       seen at a cosine: what a denoiser is told (shading/gloss.h); none of a diffuse lobe
+//   gloss       seen at a cosine: what a denoiser is told (shading/lobes/gloss.h); none of a diffuse lobe
 //   draw        a direction from u_lobe and u in [0, 1), or word that what is beneath is to draw one
 //   specular    what it sends along single directions, as if it were alone; a lobe that is diffuse has none
 // A layer also takes `beneath`, the energy of all that it lies on.
 
 #include "base/host_device.h"
 #include "math/scalar.h"
-#include "shading/bsdf_sample.h"
-#include "shading/gloss.h"
+#include "shading/lobes/bsdf_sample.h"
+#include "shading/lobes/gloss.h"
 
 namespace pertev {
 

@@ -7,10 +7,10 @@
 // and a white base together return all light. Below kSmoothAlpha a perfect mirror. Both sides reflect alike.
 
 #include "base/host_device.h"
-#include "shading/energy_tables.h"
-#include "shading/fresnel.h"
-#include "shading/ggx.h"
-#include "shading/grazing_lobe.h"
+#include "shading/lobes/energy_tables.h"
+#include "shading/lobes/fresnel.h"
+#include "shading/lobes/ggx.h"
+#include "shading/lobes/grazing_lobe.h"
 #include "shading/lobes/passage.h"
 
 namespace pertev {

@@ -9,7 +9,7 @@
 
 #include "math/portable_pow.h"
 #include "math/sampling.h"
-#include "shading/energy_tables.h"
+#include "shading/lobes/energy_tables.h"
 #include "shading/lobes/passage.h"
 #include "shading/lobes/sheen_table_data.h"
 

@@ -11,7 +11,7 @@
 #include "trace/binary/walk_stack.h"
 #include "trace/intersect/octant_boxes.h"
 #include "trace/intersect/test_leaf.h"
-#include "trace/walk_options.h"
+#include "trace/traversal/walk_options.h"
 #include "trace/warps/warp_vote.h"
 
 namespace pertev {

@@ -11,7 +11,7 @@
 
 #include "accel/bvh/parent_links.h"
 #include "trace/intersect/test_leaf.h"
-#include "trace/walk_options.h"
+#include "trace/traversal/walk_options.h"
 
 namespace pertev {
 

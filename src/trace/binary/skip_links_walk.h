@@ -9,7 +9,7 @@
 
 #include "accel/bvh/skip_bvh.h"
 #include "trace/intersect/test_leaf.h"
-#include "trace/walk_options.h"
+#include "trace/traversal/walk_options.h"
 
 namespace pertev {
 

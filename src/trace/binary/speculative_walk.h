@@ -8,7 +8,7 @@
 // one ray, nothing is put off and the nodes tested are those of WhileWhileWalk.
 
 #include "trace/binary/while_while_walk.h"
-#include "trace/walk_by_turns.h"
+#include "trace/traversal/walk_by_turns.h"
 #include "trace/warps/warp_vote.h"
 
 namespace pertev {

@@ -12,8 +12,8 @@
 #include "base/host_device.h"
 #include "base/limits.h"
 #include "math/scalar.h"
+#include "trace/intersect/load_bvh.h"
 #include "trace/intersect/ray_boxes.h"
-#include "trace/load_bvh.h"
 
 namespace pertev {
 

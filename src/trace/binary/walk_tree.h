@@ -11,9 +11,9 @@
 #include "accel/bvh/bvh.h"
 #include "base/host_device.h"
 #include "trace/binary/walk_stack.h"
+#include "trace/intersect/load_bvh.h"
 #include "trace/intersect/ray_boxes.h"
-#include "trace/load_bvh.h"
-#include "trace/walk_counter.h"
+#include "trace/traversal/walk_counter.h"
 
 namespace pertev {
 

@@ -15,7 +15,7 @@
 #include "base/limits.h"
 #include "trace/binary/walk_stack.h"
 #include "trace/intersect/test_leaf.h"
-#include "trace/walk_options.h"
+#include "trace/traversal/walk_options.h"
 #include "trace/warps/warp_vote.h"
 
 namespace pertev {

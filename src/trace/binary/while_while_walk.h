@@ -7,13 +7,13 @@
 
 #include "trace/binary/walk_stack.h"
 #include "trace/intersect/test_leaf.h"
-#include "trace/walk_by_turns.h"
-#include "trace/walk_options.h"
+#include "trace/traversal/walk_by_turns.h"
+#include "trace/traversal/walk_options.h"
 #include "trace/warps/warp_vote.h"
 
 namespace pertev {
 
-/// Where a walk with a stack stands between two turns; dynamic fetch (trace/warps/dynamic_fetch.h) may leave it there.
+/// Where a walk with a stack stands between two turns; dynamic fetch (trace/dynamic_fetch.h) may leave it there.
 template <WalkOptions kOptions>
 struct WalkPlace {
     using Tests = TestsOf<kOptions>;

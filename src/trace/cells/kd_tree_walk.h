@@ -13,8 +13,8 @@
 #include "base/host_device.h"
 #include "trace/cells/cell_span.h"
 #include "trace/intersect/test_references.h"
-#include "trace/walk_counter.h"
-#include "trace/walk_options.h"
+#include "trace/traversal/walk_counter.h"
+#include "trace/traversal/walk_options.h"
 
 namespace pertev {
 

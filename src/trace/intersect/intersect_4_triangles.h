@@ -9,7 +9,7 @@
 
 #include "accel/bvh/bvh.h"
 #include "trace/intersect/intersect_triangle.h"
-#include "trace/ray.h"
+#include "trace/intersect/ray.h"
 
 namespace pertev {
 

@@ -12,7 +12,7 @@
 #include "accel/bvh/bvh.h"
 #include "base/host_device.h"
 #include "trace/intersect/fast_min_max.h"
-#include "trace/ray.h"
+#include "trace/intersect/ray.h"
 
 namespace pertev {
 

@@ -24,9 +24,9 @@
 #include "math/scalar.h"
 #include "math/vec3.h"
 #include "trace/intersect/fast_min_max.h"
+#include "trace/intersect/ray.h"
 #include "trace/intersect/ray_boxes.h"
 #include "trace/intersect/ray_tests.h"
-#include "trace/ray.h"
 
 namespace pertev {
 

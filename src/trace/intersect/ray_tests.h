@@ -8,8 +8,8 @@
 
 #include "base/host_device.h"
 #include "trace/intersect/intersect_triangle.h"
+#include "trace/intersect/ray.h"
 #include "trace/intersect/ray_boxes.h"
-#include "trace/ray.h"
 
 namespace pertev {
 

@@ -6,9 +6,9 @@
 
 #include "accel/bvh/bvh.h"
 #include "base/host_device.h"
+#include "trace/intersect/load_bvh.h"
+#include "trace/intersect/ray.h"
 #include "trace/intersect/ray_tests.h"
-#include "trace/load_bvh.h"
-#include "trace/ray.h"
 
 namespace pertev {
 

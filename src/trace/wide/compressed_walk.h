@@ -23,9 +23,9 @@
 #include "base/limits.h"
 #include "math/bits.h"
 #include "trace/intersect/compressed_boxes.h"
-#include "trace/load_bvh.h"
-#include "trace/walk_by_turns.h"
-#include "trace/walk_options.h"
+#include "trace/intersect/load_bvh.h"
+#include "trace/traversal/walk_by_turns.h"
+#include "trace/traversal/walk_options.h"
 #include "trace/warps/warp_vote.h"
 
 namespace pertev {

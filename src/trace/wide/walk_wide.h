@@ -13,7 +13,7 @@
 #include "accel/bvh/wide_bvh.h"
 #include "trace/intersect/intersect_4_triangles.h"
 #include "trace/intersect/ray_boxes.h"
-#include "trace/walk_options.h"
+#include "trace/traversal/walk_options.h"
 
 namespace pertev {
 

@@ -13,9 +13,9 @@
 #include "math/float4.h"
 #include "trace/binary/walk_stack.h"
 #include "trace/intersect/fast_min_max.h"
+#include "trace/intersect/load_bvh.h"
 #include "trace/intersect/test_leaf.h"
-#include "trace/load_bvh.h"
-#include "trace/walk_options.h"
+#include "trace/traversal/walk_options.h"
 
 namespace pertev {
 

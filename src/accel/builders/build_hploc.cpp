@@ -1,0 +1,70 @@
+// H-PLOC on the host, for layouts other than the one that tracer/hploc/device_builder.h makes: the same binary
+// tree, by the same pieces (accel/hploc), its leaves then chosen as for every builder.
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "accel/builders/binary_tree.h"
+#include "accel/builders/builders.h"
+#include "accel/hploc/climb.h"
+#include "accel/hploc/leaves.h"
+#include "base/parallel_for.h"
+
+namespace pertev {
+namespace {
+
+template <class Stage>
+void run(uint32_t count, const Stage& stage) {
+    parallel_for(count, 256, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
+}
+
+/// The triangles' places along the curve, and their codes in that order.
+struct Curve {
+    std::vector<uint32_t> order;
+    std::vector<uint64_t> codes;
+
+    explicit Curve(const std::vector<BvhTriangle>& triangles) : order(triangles.size()), codes(triangles.size()) {
+        const auto count = static_cast<uint32_t>(triangles.size());
+        hploc::OrderedBounds centres;
+        std::memset(&centres, hploc::kNothing, sizeof(centres));
+        const uint32_t threads = (count + hploc::kTrianglesAtOnce - 1) / hploc::kTrianglesAtOnce;
+        run(threads, hploc::FindBounds{triangles.data(), count, threads, &centres});
+        std::vector<uint64_t> of_triangles(count);
+        run(count, hploc::MakeCodes{triangles.data(), &centres, of_triangles.data(), order.data()});
+        hploc::sort_along_curve(of_triangles.data(), order.data(), count);
+        for (uint32_t i = 0; i < count; ++i) codes[i] = of_triangles[order[i]];
+    }
+};
+
+} // namespace
+
+Bvh build_hploc_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
+    check_reference_count(2 * static_cast<uint64_t>(triangles.size())); // nodes of clusters
+    if (triangles.empty()) return {};
+    const auto count = static_cast<uint32_t>(triangles.size());
+    Curve curve(triangles);
+    std::vector<hploc::ClusterNode> nodes(2 * static_cast<std::size_t>(count));
+    std::vector<hploc::CollapsePlan> plans(count);
+    std::vector<hploc::CollapseSize> sizes(count);
+    std::vector<hploc::Cluster> clusters(count);
+    std::vector<uint32_t> ends(count);
+    uint32_t root = 0;
+    const hploc::Climb climb = {
+        {nodes.data(), plans.data(), sizes.data(), count, {}}, curve.codes.data(), clusters.data(), ends.data(), &root};
+    run(count, hploc::PlaceLeaves{triangles.data(), curve.order.data(), climb});
+    run(count, hploc::ClimbFromLeaves{climb});
+
+    BinaryTree tree;
+    tree.references = std::move(curve.order);
+    tree.nodes.resize(nodes.size());
+    tree.root = root;
+    for (uint32_t i = 0; i < nodes.size(); ++i) {
+        if (i == count) continue; // is not used
+        const hploc::ClusterNode& node = nodes[i];
+        tree.nodes[i] = node.is_leaf() ? make_leaf(node.box(), i) : BinaryNode{node.box(), {node.left, node.right}};
+    }
+    return make_bvh(std::move(tree), triangles, settings);
+}
+
+} // namespace pertev

@@ -1,0 +1,271 @@
+#include "accel/builders/bvh_cache.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <ranges>
+
+#include <fmt/format.h>
+
+#include "accel/bvh/check_bvh.h"
+#include "base/error.h"
+#include "base/write_file_atomically.h"
+
+namespace pertev {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kMagic[8] = {'P', 'e', 'r', 't', 'e', 'v', 'B', '2'};
+constexpr uint32_t kVersion = 3; // of the file's layout and of the builders: raised when one changes
+constexpr uint32_t kByteOrder = 0x01020304;
+constexpr uint64_t kMaxCopies = 8;           // of a triangle that is cut, on average
+constexpr uint32_t kEndOfLeaf = 0x80000000u; // in the order's words
+
+struct Header {
+    char magic[8];
+    uint32_t byte_order, version;
+    Hash128 key;
+    Hash128 checksum; // of the header with 0 here, and of all that follows it
+    uint64_t node_count, triangle_count;
+    Bounds3 bounds;
+    uint32_t root;
+    int32_t depth;
+    float sah_cost;
+    uint32_t order_count; // triangles in leaves: more than there are where some are cut
+};
+static_assert(sizeof(Header) == 104, "no padding: its bytes are hashed");
+
+Hash128 checksum_of(Header header, std::span<const BvhNode> nodes, std::span<const uint32_t> order) {
+    header.checksum = {};
+    Hasher hasher;
+    hasher.add(std::as_bytes(std::span(&header, 1)));
+    hasher.add(std::as_bytes(nodes));
+    hasher.add(std::as_bytes(order));
+    return hasher.result();
+}
+
+fs::path file_of(const Hash128& key, const fs::path& folder) { return folder / (key.hex() + ".bvh"); }
+
+Hash128 hash_of(const std::vector<BvhTriangle>& triangles) {
+    Hasher hasher;
+    hasher.add(std::as_bytes(std::span(triangles)));
+    return hasher.result();
+}
+
+Hash128 key_of(const Hash128& triangles, const BvhBuildSettings& settings, BvhBuilder builder) {
+    Hasher hasher;
+    hasher.add_value(kVersion);
+    hasher.add_value(builder);
+    hasher.add_value(settings.bins);
+    hasher.add_value(settings.max_leaf);
+    hasher.add_value(settings.max_depth);
+    hasher.add_value(settings.node_cost);
+    hasher.add_value(settings.leaf_cost);
+    hasher.add_value(triangles);
+    return hasher.result();
+}
+
+struct Unusable {
+    std::string why;
+};
+
+template <class T>
+void read_values(std::ifstream& file, std::span<T> values) {
+    file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
+    if (!file) throw Unusable{"it cannot be read to its end"};
+}
+
+/// Every number of the file is checked before it is used.
+BuiltTree read_tree(const fs::path& path, const Hash128& key, std::size_t triangle_count) {
+    const uint64_t size = fs::file_size(path);
+    std::ifstream file(path, std::ios::binary);
+    Header header;
+    if (size < sizeof header) throw Unusable{"it is cut short"};
+    read_values(file, std::span(&header, 1));
+    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) throw Unusable{"it is not a tree of Pertev's"};
+    if (header.byte_order != kByteOrder || header.version != kVersion) throw Unusable{"another version wrote it"};
+    if (!(header.key == key) || header.triangle_count != triangle_count) throw Unusable{"it is of another mesh"};
+    if (header.node_count >= kMaxBvhTriangles || header.order_count < header.triangle_count ||
+        header.order_count > kMaxCopies * header.triangle_count ||
+        size != sizeof header + header.node_count * sizeof(BvhNode) + header.order_count * sizeof(uint32_t)) {
+        throw Unusable{"its size is not what it says"};
+    }
+    BuiltTree tree;
+    tree.nodes.resize(header.node_count);
+    tree.order.resize(header.order_count);
+    read_values(file, std::span(tree.nodes));
+    read_values(file, std::span(tree.order));
+    if (!(checksum_of(header, tree.nodes, tree.order) == header.checksum)) throw Unusable{"its checksum is wrong"};
+
+    tree.is_last.resize(tree.order.size());
+    std::vector<bool> seen(triangle_count);
+    std::size_t missing = triangle_count;
+    for (std::size_t i = 0; i < tree.order.size(); ++i) {
+        tree.is_last[i] = (tree.order[i] & kEndOfLeaf) != 0;
+        tree.order[i] &= ~kEndOfLeaf;
+        if (tree.order[i] >= triangle_count) throw Unusable{"its order of triangles is broken"};
+        missing -= seen[tree.order[i]] ? 0 : 1;
+        seen[tree.order[i]] = true;
+    }
+    if (missing > 0) throw Unusable{"its order of triangles is broken"};
+    tree.root = header.root;
+    tree.bounds = header.bounds;
+    tree.depth = header.depth;
+    tree.sah_cost = header.sah_cost;
+    return tree;
+}
+
+/// What write_file_atomically leaves behind when its process is killed: ".NAME.bvh.XXXXXX", old enough that nobody
+/// writes it any more.
+bool is_abandoned(const fs::directory_entry& entry) {
+    std::error_code error;
+    const bool is_temporary = entry.path().stem().extension() == ".bvh" && entry.path().filename().string()[0] == '.';
+    const auto written = entry.last_write_time(error);
+    return is_temporary && !error && written < fs::file_time_type::clock::now() - std::chrono::hours(1);
+}
+
+/// Removes the files used longest ago, and those of processes that were killed. Another process may do the same at the
+/// same time: what is gone is gone.
+void remove_oldest(const fs::path& folder, uint64_t max_bytes) {
+    struct Entry {
+        fs::path path;
+        fs::file_time_type used;
+        uint64_t size;
+    };
+    std::vector<Entry> entries;
+    uint64_t total = 0;
+    std::error_code error;
+    for (const fs::directory_entry& found : fs::directory_iterator(folder, error)) {
+        if (is_abandoned(found)) fs::remove(found.path(), error);
+        if (found.path().extension() != ".bvh" || !found.is_regular_file(error)) continue;
+        const uint64_t size = found.file_size(error);
+        if (error) continue;
+        entries.push_back({found.path(), found.last_write_time(error), size});
+        total += size;
+    }
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
+    for (const Entry& entry : entries) {
+        if (total <= max_bytes) break;
+        fs::remove(entry.path, error);
+        total -= entry.size;
+    }
+}
+
+/// Any builder's tree as a file holds it: which triangle lies where in its leaves.
+BuiltTree build_by_position(BvhBuilder builder, const std::vector<BvhTriangle>& triangles,
+                            const BvhBuildSettings& settings) {
+    if (builder == BvhBuilder::Binned) return build_triangle_tree(triangles, settings);
+    std::vector<BvhTriangle> numbered = triangles; // the tree then says which is which
+    for (std::size_t i = 0; i < numbered.size(); ++i) numbered[i].primitive = static_cast<uint32_t>(i);
+    Bvh bvh = build_bvh(builder, numbered, settings);
+    BuiltTree tree = {.nodes = std::move(bvh.nodes),
+                      .order = std::vector<uint32_t>(bvh.triangles.size()),
+                      .is_last = std::vector<bool>(bvh.triangles.size()),
+                      .root = bvh.root,
+                      .bounds = bvh.bounds,
+                      .depth = bvh.depth,
+                      .sah_cost = bvh.sah_cost};
+    for (std::size_t i = 0; i < bvh.triangles.size(); ++i) {
+        tree.order[i] = bvh.triangles[i].primitive;
+        tree.is_last[i] = (bvh.triangles[i].flags & kLastInLeaf) != 0;
+    }
+    return tree;
+}
+
+} // namespace
+
+std::optional<fs::path> bvh_cache_folder() {
+    const auto absolute = [](const char* name) -> std::optional<fs::path> {
+        const char* value = std::getenv(name);
+        if (value == nullptr || !fs::path(value).is_absolute()) return std::nullopt;
+        return fs::path(value);
+    };
+    if (const auto cache = absolute("XDG_CACHE_HOME")) return *cache / "pertev";
+    if (const auto home = absolute("HOME")) return *home / ".cache" / "pertev";
+    return std::nullopt;
+}
+
+Hash128 bvh_cache_key(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings, BvhBuilder builder) {
+    return key_of(hash_of(triangles), settings, builder);
+}
+
+std::optional<Bvh> load_cached_bvh(const Hash128& key, const fs::path& folder,
+                                   const std::vector<BvhTriangle>& triangles, Messages& messages) {
+    const fs::path path = file_of(key, folder);
+    try {
+        if (!fs::exists(path)) return std::nullopt;
+        if (!fs::is_regular_file(path)) throw Unusable{"it is not a regular file"};
+        Bvh bvh = make_bvh(read_tree(path, key, triangles.size()), triangles);
+        if (const auto fault = find_broken_link(bvh)) throw Unusable{*fault};
+        std::error_code ignored; // a read-only cache still serves
+        fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
+        return bvh;
+    } catch (const Unusable& unusable) {
+        messages.warn(fmt::format("{}: ignored and built anew: {}", path.string(), unusable.why));
+    } catch (const fs::filesystem_error& error) {
+        messages.warn(fmt::format("{}: ignored and built anew: {}", path.string(), error.code().message()));
+    }
+    return std::nullopt;
+}
+
+void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTree& tree, std::size_t triangle_count,
+                      Messages& messages, uint64_t max_bytes) {
+    std::vector<uint32_t> order(tree.order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = tree.order[i] | (tree.is_last[i] ? kEndOfLeaf : 0u);
+    Header header = {.magic = {},
+                     .byte_order = kByteOrder,
+                     .version = kVersion,
+                     .key = key,
+                     .checksum = {},
+                     .node_count = tree.nodes.size(),
+                     .triangle_count = triangle_count,
+                     .bounds = tree.bounds,
+                     .root = tree.root,
+                     .depth = tree.depth,
+                     .sah_cost = tree.sah_cost,
+                     .order_count = static_cast<uint32_t>(order.size())};
+    std::memcpy(header.magic, kMagic, sizeof kMagic);
+    header.checksum = checksum_of(header, tree.nodes, order);
+
+    std::vector<std::byte> bytes;
+    bytes.reserve(sizeof header + tree.nodes.size() * sizeof(BvhNode) + order.size() * sizeof(uint32_t));
+    for (const std::span<const std::byte> part :
+         {std::as_bytes(std::span(&header, 1)), std::as_bytes(std::span(tree.nodes)),
+          std::as_bytes(std::span(order))}) {
+        bytes.insert(bytes.end(), part.begin(), part.end());
+    }
+    try {
+        fs::create_directories(folder);
+        write_file_atomically(file_of(key, folder), bytes);
+        remove_oldest(folder, max_bytes);
+    } catch (const fs::filesystem_error& error) {
+        messages.warn(
+            fmt::format("{}: the structure cache cannot be written: {}", folder.string(), error.code().message()));
+    } catch (const Error& error) {
+        messages.warn(fmt::format("{}: the structure cache cannot be written: {}", folder.string(), error.what()));
+    }
+}
+
+Bvh load_or_build_bvh(const std::vector<BvhTriangle>& triangles, std::span<const BvhBuilder> builders,
+                      const BvhBuildSettings& settings, const std::optional<fs::path>& folder, Messages& messages,
+                      BvhBuilder* taken) {
+    const BvhBuilder builder = builders.front();
+    if (taken != nullptr) *taken = builder;
+    if (!folder || triangles.size() < kMinCachedTriangles) return build_bvh(builder, triangles, settings);
+    const Hash128 hash = hash_of(triangles);
+    for (const BvhBuilder stored : std::views::reverse(builders)) {
+        const Hash128 key = key_of(hash, settings, stored);
+        std::optional<Bvh> bvh = load_cached_bvh(key, *folder, triangles, messages);
+        if (!bvh) continue;
+        if (taken != nullptr) *taken = stored;
+        return std::move(*bvh);
+    }
+    BuiltTree tree = build_by_position(builder, triangles, settings);
+    store_cached_bvh(key_of(hash, settings, builder), *folder, tree, triangles.size(), messages);
+    return make_bvh(std::move(tree), triangles);
+}
+
+} // namespace pertev

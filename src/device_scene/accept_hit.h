@@ -1,0 +1,128 @@
+#pragma once
+
+// Which candidates of a walk count: not the triangle that the ray starts on, not the one that it is aimed at, of
+// surfaces with alpha those that the texture (cut-out) or a coin (blend) lets through, and for rays from the camera not
+// the backs of surfaces that are not double sided. A function of the ray, the instance, the primitive and the place on
+// it; never of the walk.
+
+#include <cstdint>
+
+#include "device_scene/scene_view.h"
+#include "device_scene/textured_factor.h"
+#include "math/random.h"
+#include "math/sampler.h"
+#include "trace/scene_trees.h"
+
+namespace pertev {
+
+/// A triangle of the scene, or none.
+struct TriangleId {
+    uint32_t instance = kNoHit, primitive = 0;
+    bool operator==(const TriangleId&) const = default;
+};
+
+/// Alpha of the material there: its factor, the textures' and the vertex colour's.
+HD inline float alpha_at(const SceneView& scene, const MaterialView& material, const MeshView& mesh, uint32_t primitive,
+                         float u, float v) {
+    const TriangleIndices i = triangle_indices(mesh, primitive);
+    TextureRef color = material.base_color_texture;
+    color.channel = 3;
+    float alpha = textured_factor(scene, mesh, material.alpha, color, i, u, v);
+    alpha = textured_factor(scene, mesh, alpha, material.alpha_texture, i, u, v);
+    if (mesh.colors != nullptr) {
+        // So written that equal values stay what they are.
+        const float a = mesh.colors[i.a].w;
+        alpha *= a + (u * (mesh.colors[i.b].w - a) + v * (mesh.colors[i.c].w - a));
+    }
+    return alpha;
+}
+
+/// What the coin of a blended surface belongs to: the triangle, but at its border the edge or the corner that the hit
+/// lies on, known by the positions of its ends. A ray exactly through an edge meets the triangles on both sides of it
+/// (trace/intersect/intersect_triangle.h), and with one coin they count as one surface.
+HD inline uint32_t coin_owner(const MeshView& mesh, uint32_t primitive, float u, float v) {
+    constexpr float kLeastWeight = 0x1p-20f; // weights round by a quarter of this at most
+    const float w = 1.0f - u - v;
+    if (min(u, min(v, w)) >= kLeastWeight) return primitive;
+    const auto hash_of = [&](uint32_t vertex) {
+        const Vec3 p = mesh.positions[vertex];
+        return hash_words(bits_of(p.x + 0.0f), bits_of(p.y + 0.0f), bits_of(p.z + 0.0f)).x; // -0 as 0
+    };
+    const TriangleIndices i = triangle_indices(mesh, primitive);
+    uint32_t sum = 0; // in whichever order the neighbour has the ends
+    if (w >= kLeastWeight) sum += hash_of(i.a);
+    if (u >= kLeastWeight) sum += hash_of(i.b);
+    if (v >= kLeastWeight) sum += hash_of(i.c);
+    return sum;
+}
+
+/// The coin of blended surfaces that the ray of a sample's path tosses after `depth` scatterings.
+HD inline uint32_t coin_key(SampleKey sample, uint32_t depth, bool is_shadow) {
+    return hash_words(sample.pixel, sample.sample, sample.seed, depth * 2 + (is_shadow ? 1u : 0u)).x;
+}
+
+struct AcceptHit {
+    const SceneView& scene;
+    TriangleId start, target; // not hit by this ray
+    uint32_t key;             // of the path and depth: the coin of blended surfaces
+    float time = kAtRest;     // of the ray, while the shutter is open, [0, 1]
+
+    HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
+        if (instance == start.instance && primitive == start.primitive) return false;
+        if (instance == target.instance && primitive == target.primitive) return false;
+        if (scene.any_alpha == 0) return true;
+        return passes_alpha(instance, primitive, u, v);
+    }
+
+    HD Ray move_back(uint32_t motion, const Ray& ray) const {
+        return pertev::move_back(scene.motions.at(motion, time), ray);
+    }
+
+    /// Whether alpha lets the candidate count.
+    HD bool passes_alpha(uint32_t instance, uint32_t primitive, float u, float v) const {
+        const Opacity known = known_opacity(scene.micromaps, instance, primitive, u, v);
+        if (known != Opacity::Unknown) return known == Opacity::Opaque;
+        const InstanceView& placed = scene.instances[instance];
+        if (placed.has_alpha == 0) return true;
+        const MaterialView& material = scene.materials[placed.material];
+        const MeshView& mesh = scene.meshes[placed.mesh];
+        const float alpha = alpha_at(scene, material, mesh, primitive, u, v);
+        if (material.alpha_mode == AlphaMode::Mask) return alpha >= material.alpha_cutoff;
+        return unit_interval(hash_words(key, instance, coin_owner(mesh, primitive, u, v)).x) < alpha;
+    }
+};
+
+/// Whether the instance, where it has been put, hides from a camera's ray of that direction (world space) the side that
+/// the ray comes to. In the mesh's own space: the winding there tells the front, mirrored or not.
+HD inline bool hides_side(const SceneView& scene, Vec3 direction, uint32_t instance, uint32_t primitive) {
+    const InstanceView& placed = scene.instances[instance];
+    if (placed.hides_back == 0) return false;
+    const MeshView& mesh = scene.meshes[placed.mesh];
+    const TriangleIndices i = triangle_indices(mesh, primitive);
+    const Vec3 a = mesh.positions[i.a], ab = mesh.positions[i.b] - a, ac = mesh.positions[i.c] - a;
+    const float size = max(max_component(abs(ab)), max_component(abs(ac)));
+    const Vec3 normal = cross((1.0f / size) * ab, ac); // scaled: the product of two tiny edges would underflow
+    return dot(normal, transform_vector(placed.local_from_world, direction)) > 0;
+}
+
+/// The same of a ray of the camera in a scene where backs are hidden from those. A type of its own: the other rays'
+/// walk has no registers to spare for it.
+struct AcceptCameraHit {
+    AcceptHit accept;
+    Vec3 direction; // of the ray, world space
+
+    HD Ray move_back(uint32_t motion, const Ray& ray) const { return accept.move_back(motion, ray); }
+    HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
+        return !meets_hidden_back(instance, primitive) && accept(instance, primitive, u, v);
+    }
+
+    HD bool meets_hidden_back(uint32_t instance, uint32_t primitive) const {
+        if (accept.scene.instances[instance].hides_back == 0) return false;
+        const uint32_t motion = accept.scene.motions.of(instance);
+        const Vec3 at_rest =
+            motion == kNoMotion ? direction : accept.scene.motions.at(motion, accept.time).turn_back(direction);
+        return hides_side(accept.scene, at_rest, instance, primitive);
+    }
+};
+
+} // namespace pertev

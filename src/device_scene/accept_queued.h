@@ -1,0 +1,107 @@
+#pragma once
+
+// Which candidates of a queued ray count (device_scene/accept_hit.h), for kernels: nothing of it is held in registers
+// while a ray walks. What the rule needs of the ray is looked up when there is a candidate, which is seldom.
+
+#include <cstdint>
+
+#include "device_scene/accept_hit.h"
+#include "device_scene/ray_queue.h"
+
+namespace pertev {
+
+/// Rays, and what decides which of their candidates count.
+struct TraceQuery {
+    RayQueueView rays;
+    // In the device's memory; null where every surface is opaque, and shown from both sides to these rays.
+    const SceneView* scene = nullptr;
+    const uint32_t* passing = nullptr;              // the scene's
+    const OpacityMicromapView* micromaps = nullptr; // likewise; null for rays that pass backs, which is asked first
+    const SceneView* moving = nullptr;              // likewise; null where nothing moves while the shutter is open
+    bool hides_backs = false;                       // rays of the camera, which pass backs that are hidden
+
+    bool is_opaque() const { return scene == nullptr; }
+};
+
+/// Of an instance at rest that may let something pass. Out of line: what it does with textures must not cost the walk
+/// registers.
+HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
+                                   uint32_t instance, uint32_t primitive, float u, float v) {
+    if (hides_backs && hides_side(*scene, ray->direction, instance, primitive)) return true;
+    return scene->any_alpha != 0 && !AcceptHit{*scene, {}, {}, key}.passes_alpha(instance, primitive, u, v);
+}
+
+/// The same of one that may have moved. `time`: null where nothing moves while the shutter is open.
+HD_CALL inline bool passes_moved_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
+                                         const float* time, uint32_t instance, uint32_t primitive, float u, float v) {
+    const AcceptHit accept{*scene, {}, {}, key, time != nullptr ? *time : kAtRest};
+    if (hides_backs && AcceptCameraHit{accept, ray->direction}.meets_hidden_back(instance, primitive)) return true;
+    return scene->any_alpha != 0 && !accept.passes_alpha(instance, primitive, u, v);
+}
+
+/// Where a ray begins and where it goes, as an instance meets it that has moved. Out of line: no still instance pays
+/// for it.
+struct MovedLine {
+    Vec3 origin, direction;
+};
+HD_CALL inline MovedLine moved_back(const SceneView* scene, uint32_t motion, const float* time, const Ray* ray) {
+    const RigidMotion now = scene->motions.at(motion, time != nullptr ? *time : kAtRest);
+    return {now.move_back(ray->origin), now.turn_back(ray->direction)};
+}
+
+/// Where all surfaces are opaque and shown from both sides: a walk has no registers to spare for the others.
+struct AcceptOpaque {
+    const TraceQuery& query;
+    uint32_t i; // the ray's number
+
+    HD bool operator()(uint32_t instance, uint32_t primitive, float, float) const {
+        const RayQueueView& rays = query.rays;
+        return !is_at(rays.starts, rays, instance, primitive) && !is_at(rays.targets, rays, instance, primitive);
+    }
+
+private:
+    HD bool is_at(const Uint2* ends, const RayQueueView& rays, uint32_t instance, uint32_t primitive) const {
+        if (ends == nullptr) return false;
+        const Uint2 end = ends[rays.place(i)];
+        return instance == end.x && primitive == end.y;
+    }
+};
+
+/// `kMayMove`: not where everything stands still, as baked triangles always do. One more argument would cost every
+/// candidate of a surface with alpha.
+template <bool kMayMove>
+struct AcceptQueued {
+    const TraceQuery& query;
+    uint32_t i;
+
+    HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
+        if (!AcceptOpaque{query, i}(instance, primitive, u, v)) return false;
+        if (query.scene == nullptr) return true;
+        // A word of 32 instances is in the cache where their views are not.
+        if ((query.passing[instance / 32] >> instance % 32 & 1u) == 0) return true;
+        // Asked here, it takes no call where it knows.
+        const Opacity known = known_opacity(query.micromaps, instance, primitive, u, v);
+        if (known != Opacity::Unknown) return known == Opacity::Opaque;
+        const Ray* const ray = query.rays.rays + query.rays.place(i);
+        const uint32_t key = query.rays.keys != nullptr ? query.rays.keys[query.rays.place(i)] : 0;
+        if constexpr (kMayMove) {
+            return !passes_moved_surface(query.scene, ray, key, query.hides_backs, time(), instance, primitive, u, v);
+        } else {
+            return !passes_surface(query.scene, ray, key, query.hides_backs, instance, primitive, u, v);
+        }
+    }
+    HD Ray move_back(uint32_t motion, const Ray& ray) const
+        requires kMayMove
+    {
+        if (query.moving == nullptr) return ray;
+        const MovedLine line = moved_back(query.moving, motion, time(), query.rays.rays + query.rays.place(i));
+        return {line.origin, ray.t_min, line.direction, ray.t_max};
+    }
+
+private:
+    HD const float* time() const {
+        return query.rays.times != nullptr ? query.rays.times + query.rays.place(i) : nullptr;
+    }
+};
+
+} // namespace pertev

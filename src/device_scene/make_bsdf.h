@@ -1,0 +1,53 @@
+#pragma once
+
+// From a material and a place on a mesh to the BSDF there: textures and vertex colours applied.
+
+#include "device_scene/textured_factor.h"
+#include "shading/bsdf.h"
+
+namespace pertev {
+
+/// The material's base colour there, [0, 1] per channel.
+template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
+HD inline Rgb base_color_at(const SceneView& scene, const MaterialView& material, const MeshView& mesh,
+                            TriangleIndices i, float u, float v) {
+    Rgb color = material.base_color;
+    if (const TextureRef& ref = material.base_color_texture; has_texture<kKnown>(ref)) {
+        const Vec4 texel =
+            lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, i, u, v), scene.linear_from_srgb);
+        color = color * Rgb{texel.x, texel.y, texel.z};
+    }
+    if (mesh.colors != nullptr) {
+        const Vec4 vertex = interpolate(mesh.colors, i, u, v);
+        color = color * Rgb{vertex.x, vertex.y, vertex.z};
+    }
+    return {clamp(color.r, 0.0f, 1.0f), clamp(color.g, 0.0f, 1.0f), clamp(color.b, 0.0f, 1.0f)};
+}
+
+template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
+HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialView& material, const MeshView& mesh, TriangleIndices i,
+                         float u, float v, Rgb base_color) {
+    if (kKnown != MaterialsKnown::Nothing || material.kind == MaterialKind::Diffuse ||
+        material.kind == MaterialKind::Unlit) {
+        return make_diffuse(base_color);
+    }
+    const float roughness =
+        clamp(textured_factor(scene, mesh, material.roughness, material.roughness_texture, i, u, v), 0.0f, 1.0f);
+    switch (material.kind) {
+    case MaterialKind::Diffuse:
+    case MaterialKind::Unlit:
+        break; // above
+    case MaterialKind::Conductor:
+        return make_conductor(material.eta, material.k, roughness);
+    case MaterialKind::Dielectric:
+        return make_dielectric(material.ior, roughness, base_color);
+    case MaterialKind::MetallicRoughness: {
+        const float metallic =
+            clamp(textured_factor(scene, mesh, material.metallic, material.metallic_texture, i, u, v), 0.0f, 1.0f);
+        return make_metallic_roughness(base_color, metallic, roughness, material.ior);
+    }
+    }
+    return make_diffuse(base_color);
+}
+
+} // namespace pertev

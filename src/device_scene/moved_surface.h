@@ -1,0 +1,69 @@
+#pragma once
+
+// Surfaces and lamps at the time of a ray, while a shutter is open: everything is found where it has been put, and then
+// moved (math/rigid_motion.h). So what does not move is what it is without a shutter, to the bit.
+
+#include "device_scene/surface.h"
+
+namespace pertev {
+
+/// What code knows of its scene when it is compiled: whether something moves while the shutter is open. Code for both
+/// would cost each of them registers, and on a GPU keep surfaces in memory.
+enum class MotionKnown : uint8_t { None, Perhaps, Some };
+
+template <MotionKnown kMotion>
+HD inline bool is_moving(const SceneView& scene) {
+    return kMotion == MotionKnown::Some || (kMotion == MotionKnown::Perhaps && scene.motions.is_there());
+}
+
+HD inline void move_surface(const RigidMotion& motion, Surface& surface) {
+    const float error = motion.error(surface.position);
+    surface.error = motion.turn_sizes(surface.error) + Vec3{error, error, error};
+    surface.position = motion.move(surface.position);
+    surface.geometric_normal = motion.turn(surface.geometric_normal);
+    Frame& frame = surface.frame;
+    frame = {motion.turn(frame.tangent), motion.turn(frame.bitangent), motion.turn(frame.normal)};
+}
+
+/// Where the instance of a hit is at the time of the ray. What it has met is made where it was put, of the ray that
+/// leads there, and then moved:
+///     const MovedHit moved(scene, hit, time);
+///     Surface surface = make_surface(scene, hit, moved.back(direction));
+///     moved.move(surface);
+struct MovedHit {
+    bool moves;
+    RigidMotion motion;
+
+    HD MovedHit(const SceneView& scene, const Hit& hit, float time) {
+        const uint32_t number = scene.motions.of(hit.instance);
+        moves = number != kNoMotion && time >= 0;
+        if (moves) motion = scene.motions.at(number, time);
+    }
+    HD Vec3 back(Vec3 direction) const { return moves ? motion.turn_back(direction) : direction; }
+    HD void move(Surface& surface) const {
+        if (moves) move_surface(motion, surface);
+    }
+};
+
+/// For sample_light: where the lamps are at a time.
+struct LampsAt {
+    const MotionsView& motions;
+    float time;
+
+    HD RigidMotion operator()(uint32_t instance) const { return motions.of_instance_at(instance, time); }
+};
+
+/// pdf_light_hit of a ray that has a time.
+HD inline float pdf_light_hit_at(const SceneView& scene, uint32_t light, uint32_t instance, Vec3 from_point,
+                                 Vec3 hit_point, float time) {
+    const RigidMotion motion = scene.motions.of_instance_at(instance, time);
+    return pdf_light_hit(scene.lights, light, motion.move_back(from_point), motion.move_back(hit_point));
+}
+
+/// What ray_to_light adds for a lamp that moves.
+HD inline float lamp_error_at(const SceneView& scene, const LightSample& light, float time) {
+    if (light.instance == kNoLight || scene.motions.of(light.instance) == kNoMotion) return 0;
+    return scene.motions.of_instance_at(light.instance, time).error(light.light_point);
+}
+
+} // namespace pertev

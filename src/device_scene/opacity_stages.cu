@@ -1,0 +1,7 @@
+#include "device/launch_body.h"
+#include "device_scene/classify_opacity.h"
+
+namespace pertev {
+template void launch(Queue&, const char*, WorkCount, const HalveTexelBounds&);
+template void launch(Queue&, const char*, WorkCount, const ClassifyOpacity&);
+} // namespace pertev

@@ -1,0 +1,81 @@
+#pragma once
+
+// Rays that wait to be traced and what they meet, in a device's memory: the form in which integrators hand rays to a
+// tracer (tracer/scene_tracer.h) and get hits back.
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "math/float4.h"
+#include "math/scalar.h"
+#include "trace/intersect/ray.h"
+
+namespace pertev {
+
+static_assert(sizeof(Ray) == 32);
+
+/// *at, by two loads of 16 bytes on the device; `at` is a multiple of 16 there, as in every buffer.
+HD inline Ray load_ray(const Ray* at) {
+#if PERTEV_ON_DEVICE
+    const float4* from = reinterpret_cast<const float4*>(at);
+    const float4 a = __ldg(from), b = __ldg(from + 1);
+    return {{a.x, a.y, a.z}, a.w, {b.x, b.y, b.z}, b.w};
+#else
+    return *at;
+#endif
+}
+
+HD inline void store_ray(Ray* at, const Ray& ray) {
+#if PERTEV_ON_DEVICE
+    float4* to = reinterpret_cast<float4*>(at);
+    to[0] = {ray.origin.x, ray.origin.y, ray.origin.z, ray.t_min};
+    to[1] = {ray.direction.x, ray.direction.y, ray.direction.z, ray.t_max};
+#else
+    *at = ray;
+#endif
+}
+
+/// Rays one after the other, from the first element on or from the last one backwards.
+struct RayQueueView {
+    const Ray* rays = nullptr;
+    // Instance and primitive of the triangle that a ray leaves, and of the one that it is aimed at: neither is hit.
+    // kNoHit: none. Null: none of any ray.
+    const Uint2* starts = nullptr;
+    const Uint2* targets = nullptr;
+    const uint32_t* keys = nullptr; // of the coin that blended surfaces toss; null where no surface is blended
+    const float* times = nullptr;   // while the shutter is open, [0, 1]; null: all is at rest
+    int32_t step = 1;               // -1: these are the last elements, and ray i lies i before them
+    bool is_endless = false;        // all go from t = 0 to infinity; numbers of the owner's stand in these places
+
+    HD int64_t place(uint32_t i) const { return step * static_cast<int64_t>(i); }
+    HD Ray load(uint32_t i) const {
+        Ray ray = load_ray(rays + place(i));
+        if (is_endless) {
+            ray.t_min = 0;
+            ray.t_max = kInfinity;
+        }
+        return ray;
+    }
+};
+
+/// What rays 0, 1, ... meet.
+struct HitQueueView {
+    Float4* places = nullptr;      // t, u, v, bits of the primitive. Not there for an any-hit search
+    uint32_t* instances = nullptr; // kNoHit: nothing; of an any-hit search else 0
+    int32_t step = 1;              // as RayQueueView's
+
+    HD Hit load(uint32_t i) const {
+        const Float4 p = places[place(i)];
+        return {p.x, p.y, p.z, instances[place(i)], bits_of(p.w)};
+    }
+    HD void store(uint32_t i, const Hit& hit) const {
+        places[place(i)] = {hit.t, hit.u, hit.v, float_of(hit.primitive)};
+        instances[place(i)] = hit.instance;
+    }
+    HD void store_any(uint32_t i, bool found) const { instances[place(i)] = found ? 0 : kNoHit; }
+
+private:
+    HD int64_t place(uint32_t i) const { return step * static_cast<int64_t>(i); }
+};
+
+} // namespace pertev

@@ -1,0 +1,230 @@
+#include "device_scene/scene_on_device.h"
+
+#include "base/error.h"
+#include "device_scene/part_arrays.h"
+#include "image/srgb_table.h"
+
+namespace pertev {
+namespace {
+
+// Each list below says what a part is made of, for the upload and for the prediction of memory alike. Arrays that are
+// made for the device alone stand in the arguments, so that they outlive the list.
+
+/// Vertices of meshes with a pose are DeformingMeshes'.
+PartArrays list_geometry(const PlacedScene& prepared, std::vector<MeshView>& meshes, SceneView& view) {
+    const Scene& scene = *prepared.scene;
+    PartArrays arrays;
+    meshes.resize(scene.meshes.size());
+    std::vector<bool> deforms(meshes.size());
+    for (std::size_t i = 0; i < prepared.poses.size(); ++i) deforms[scene.shapes[i].mesh] = true;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const Mesh& mesh = scene.meshes[i];
+        if (!deforms[i]) {
+            arrays.add(mesh.positions, meshes[i].positions);
+            arrays.add(mesh.normals, meshes[i].normals);
+            arrays.add(mesh.tangents, meshes[i].tangents);
+        }
+        for (int set = 0; set < 2; ++set) arrays.add(mesh.uv[set], meshes[i].uv[set]);
+        arrays.add(mesh.colors, meshes[i].colors);
+        arrays.add(mesh.indices, meshes[i].indices);
+    }
+    arrays.add(meshes, view.meshes);
+    return arrays;
+}
+
+struct Instances {
+    std::vector<InstanceView> views;
+    std::vector<uint32_t> passing;        // SceneView's
+    std::vector<uint32_t> first_triangle; // likewise
+};
+
+PartArrays list_instances(const PlacedScene& prepared, Instances& instances, SceneView& view) {
+    const Scene& scene = *prepared.scene;
+    view.any_alpha = 0;
+    view.any_hidden_back = 0;
+    view.centre = prepared.centre;
+    // In the file's coordinates; a far scene's positions are in its own, since floats could not tell them apart there.
+    view.position_shift = scene.is_far ? prepared.centre : to_float(scene.origin_in_file + to_double(prepared.centre));
+    instances.views.reserve(scene.instances.size());
+    instances.passing.resize((scene.instances.size() + 31) / 32);
+    view.instance_count = static_cast<uint32_t>(scene.instances.size());
+    view.background = 0;
+    view.triangle_count = 0;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const Transform world_from_local = moved_to(instance.world_from_local, prepared.centre);
+        const Material& material = scene.materials[instance.material];
+        instances.first_triangle.push_back(static_cast<uint32_t>(view.triangle_count));
+        view.triangle_count += scene.meshes[instance.mesh].triangle_count();
+        const uint16_t has_alpha = material.alpha_mode != AlphaMode::Opaque ? 1 : 0;
+        const uint16_t hides_back = material.double_sided ? 0 : 1;
+        if (instance.is_background) view.background = static_cast<uint32_t>(i) + 1;
+        view.any_alpha |= has_alpha;
+        view.any_hidden_back |= hides_back;
+        instances.passing[i / 32] |= uint32_t(has_alpha | hides_back) << i % 32;
+        instances.views.push_back({world_from_local, inverse(world_from_local), instance.mesh, instance.material,
+                                   has_alpha, hides_back, uint16_t(is_mirroring(world_from_local)),
+                                   uint16_t(instance.is_hidden), prepared.is_baked[i] ? 1u : 0u});
+    }
+    instances.first_triangle.push_back(static_cast<uint32_t>(view.triangle_count));
+    if (view.triangle_count > UINT32_MAX) instances.first_triangle.clear();
+    PartArrays arrays;
+    arrays.add(instances.views, view.instances);
+    arrays.add(instances.passing, view.passing);
+    arrays.add(instances.first_triangle, view.first_triangle);
+    static const MotionKeys none;
+    const MotionKeys& motions = prepared.motions != nullptr ? *prepared.motions : none;
+    arrays.add(motions.keys, view.motions.keys);
+    arrays.add(motions.pivots, view.motions.pivots);
+    arrays.add(motions.of_instance, view.motions.of_instance);
+    view.motions.segments = motions.segments;
+    return arrays;
+}
+
+PartArrays list_materials(const Scene& scene, std::vector<MaterialView>& materials, SceneView& view) {
+    for (const Material& material : scene.materials) materials.push_back(make_material_view(material));
+    view.known = known_of(materials);
+    PartArrays arrays;
+    arrays.add(materials, view.materials);
+    return arrays;
+}
+
+PartArrays list_textures(const Scene& scene, std::vector<TextureImageView>& images, SceneView& view) {
+    PartArrays arrays;
+    images = views_of_images(scene);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        arrays.add(scene.images[i].rgba8.pixels, images[i].rgba8);
+        arrays.add(scene.images[i].rgba_float.pixels, images[i].rgba_float);
+    }
+    arrays.add(images, view.images);
+    arrays.add(std::span<const float>(srgb_decode_table()), view.linear_from_srgb);
+    return arrays;
+}
+
+void add_table(PartArrays& arrays, const OrderedTable& table, OrderedTableView& view) {
+    arrays.add(table.starts, view.starts);
+    arrays.add(table.guide, view.guide);
+}
+
+PartArrays list_lights(const LightSetData& lights, LightSetView& view) {
+    PartArrays arrays;
+    add_table(arrays, lights.choice, view.choice);
+    arrays.add(lights.emitters, view.emitters);
+    arrays.add(lights.triangle_order, view.triangle_order);
+    arrays.add(lights.triangle_starts, view.triangle_starts);
+    arrays.add(lights.triangle_guides, view.triangle_guides);
+    arrays.add(lights.triangles, view.triangles);
+    arrays.add(lights.punctual, view.punctual);
+    arrays.add(lights.first_light, view.first_light);
+    arrays.add(lights.emissions, view.emissions);
+    return arrays;
+}
+
+PartArrays list_environment(const EnvironmentData* environment, EnvironmentView& view) {
+    PartArrays arrays;
+    if (environment == nullptr) return arrays;
+    arrays.add(environment->pixels, view.pixels);
+    arrays.add(environment->row_bounds, view.row_bounds);
+    add_table(arrays, environment->rows, view.rows);
+    add_table(arrays, environment->columns, view.columns);
+    return arrays;
+}
+
+} // namespace
+
+MaterialsKnown materials_known(const Scene& scene) {
+    std::vector<MaterialView> materials;
+    SceneView view = {};
+    list_materials(scene, materials, view);
+    return view.known;
+}
+
+SceneOnDevice::SceneOnDevice(Queue& queue, const PlacedScene& prepared) { update(queue, prepared, kAllParts); }
+
+void SceneOnDevice::update(Queue& queue, const PlacedScene& prepared, uint32_t parts) {
+    if ((parts & kPartShapes) != 0) update_shapes(queue, prepared);
+    if ((parts & (kPartShapes | kPartGeometry)) != 0) update_geometry(queue, prepared);
+    if ((parts & kPartPoses) != 0) update_poses(prepared);
+    if ((parts & kPartInstances) != 0) update_instances(queue, prepared);
+    if ((parts & kPartMaterials) != 0) update_materials(queue, *prepared.scene);
+    if ((parts & kPartTextures) != 0) update_textures(queue, *prepared.scene);
+    if ((parts & kPartLights) != 0) update_lights(queue, prepared); // after the textures, which it looks at
+    if ((parts & kPartEnvironment) != 0) update_environment(queue, prepared);
+    update_micromaps(queue, *prepared.scene, parts);
+}
+
+/// On a CPU there are none: asking textures costs less there than making micromaps.
+void SceneOnDevice::update_micromaps(Queue& queue, const Scene& scene, uint32_t parts) {
+    if (!queue.is_cuda()) return;
+    constexpr uint32_t kMadeOf = kPartShapes | kPartGeometry | kPartMaterials | kPartTextures;
+    try {
+        if ((parts & (kMadeOf | kPartInstances)) != 0) micromaps_.update(queue, scene, view_, (parts & kMadeOf) != 0);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::OutOfMemory) throw;
+        micromaps_ = OpacityMicromaps(); // the picture is the same without
+    }
+    view_.micromaps = micromaps_.of_instances();
+}
+
+void SceneOnDevice::update_shapes(Queue& queue, const PlacedScene& prepared) {
+    const uint64_t version = deforming_.version();
+    deforming_ = DeformingMeshes(); // before the new ones, so that both need not fit
+    deforming_ = DeformingMeshes(queue, prepared, version);
+}
+
+void SceneOnDevice::update_geometry(Queue& queue, const PlacedScene& prepared) {
+    std::vector<MeshView> meshes;
+    const PartArrays arrays = list_geometry(prepared, meshes, view_);
+    deforming_.point(meshes);
+    arrays.upload(queue, geometry_, "geometry");
+    deforming_.set_meshes(meshes);
+    if (deforming_.is_empty()) meshes.clear();
+    meshes_ = std::move(meshes);
+}
+
+void SceneOnDevice::update_instances(Queue& queue, const PlacedScene& prepared) {
+    Instances instances;
+    list_instances(prepared, instances, view_).upload(queue, instances_, "instances");
+}
+
+void SceneOnDevice::update_materials(Queue& queue, const Scene& scene) {
+    std::vector<MaterialView> materials;
+    list_materials(scene, materials, view_).upload(queue, materials_, "materials");
+}
+
+void SceneOnDevice::update_textures(Queue& queue, const Scene& scene) {
+    std::vector<TextureImageView> images;
+    list_textures(scene, images, view_).upload(queue, textures_, "textures");
+    view_.lights.images = view_.images; // lights look at textures too
+    view_.lights.linear_from_srgb = view_.linear_from_srgb;
+}
+
+void SceneOnDevice::update_lights(Queue& queue, const PlacedScene& prepared) {
+    const EnvironmentView environment = view_.lights.environment;
+    view_.lights = view_of(prepared.lights, view_.images, view_.linear_from_srgb);
+    view_.lights.environment = environment;
+    list_lights(prepared.lights, view_.lights).upload(queue, lights_, "lights");
+}
+
+void SceneOnDevice::update_environment(Queue& queue, const PlacedScene& prepared) {
+    const EnvironmentData* environment = prepared.lights.environment.get();
+    EnvironmentView& view = view_.lights.environment;
+    view = environment != nullptr ? view_of(*environment) : EnvironmentView{};
+    list_environment(environment, view).upload(queue, environment_, "environment");
+}
+
+std::size_t predicted_bytes(const PlacedScene& prepared, bool on_cuda) {
+    const Scene& scene = *prepared.scene;
+    SceneView view{};
+    std::vector<MeshView> meshes;
+    Instances instances;
+    std::vector<MaterialView> materials;
+    std::vector<TextureImageView> images;
+    const std::size_t micromaps = on_cuda ? OpacityMicromaps::predicted_bytes(scene) : 0;
+    return micromaps + DeformingMeshes::predicted_bytes(prepared) + list_geometry(prepared, meshes, view).bytes() +
+           list_instances(prepared, instances, view).bytes() + list_materials(scene, materials, view).bytes() +
+           list_textures(scene, images, view).bytes() + list_lights(prepared.lights, view.lights).bytes() +
+           list_environment(prepared.lights.environment.get(), view.lights.environment).bytes();
+}
+
+} // namespace pertev

@@ -1,0 +1,252 @@
+#pragma once
+
+// What a ray has hit, ready for shading: place, geometric and shading normal, BSDF and emission, with textures and
+// vertex colours applied. One function for baked and instanced geometry: both read the mesh through its instance.
+
+#include "device_scene/accept_hit.h"
+#include "device_scene/make_bsdf.h"
+#include "device_scene/ray_origin.h"
+#include "math/frame.h"
+#include "shading/shading_frame.h"
+#include "shading/shadow_terminator.h"
+
+namespace pertev {
+
+struct Surface {
+    Vec3 position;         // moved world, metres
+    Vec3 error;            // bound of its rounding, per component
+    Vec3 geometric_normal; // unit, out of the front; wo may lie on either side
+    Frame frame;           // shading frame, its normal within a quarter turn of it
+    Bsdf bsdf;
+    Rgb emission; // W/(sr m2); of an unlit surface its colour
+    Rgb albedo;   // base colour, for the auxiliary channel
+    TriangleId triangle;
+    uint32_t material;
+    bool is_unlit;
+    float tilt; // of the interpolated normal (shadow_terminator.h); 0 where the mesh has none
+
+    /// Both directions before the triangle, or both behind it.
+    HD bool same_side(Vec3 wo, Vec3 wi) const {
+        return (dot(wo, geometric_normal) > 0) == (dot(wi, geometric_normal) > 0);
+    }
+    /// Whether the shading frame takes the pair for what the triangle says it is, reflection or transmission. Where
+    /// they disagree (near the horizon of a bent normal) no light is carried: it would leak through.
+    HD bool is_consistent(Vec3 wo, Vec3 wi, Vec3 wo_local, Vec3 wi_local) const {
+        return same_side(wo, wi) == (wo_local.z * wi_local.z > 0);
+    }
+
+    /// The BSDF as it scatters from this triangle: light along wi to wo (unit, world space), by the lobes of `classes`.
+    /// Not reciprocal: render/particle_scatter.h has its adjoint.
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, LobeClasses classes = kAllLobeClasses) const {
+        const Vec3 wo_local = frame.to_local(wo), wi_local = frame.to_local(wi);
+        if (!is_consistent(wo, wi, wo_local, wi_local)) return {};
+        if (!(tilt > 0)) return bsdf.evaluate(wo_local, wi_local, classes);
+        const RaisedDirection from = lower_direction(wi_local, tilt);
+        if (!(from.slope > 0)) return {};
+        const BsdfValue value = bsdf.evaluate(wo_local, from.direction, classes);
+        return {(1.0f / from.slope) * value.f, value.pdf / from.slope};
+    }
+
+    /// About how much of evaluate() is by diffuse lobes, [0, 1]: a guide for denoisers.
+    HD Rgb diffuse_share(Vec3 wo, Vec3 wi) const { return bsdf.diffuse_share(frame.to_local(wo), frame.to_local(wi)); }
+
+    /// A wi in world space with the density of evaluate(), or of a delta lobe; pdf 0: nothing.
+    HD BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
+        const Vec3 wo_local = frame.to_local(wo);
+        BsdfSample sample = bsdf.sample(wo_local, u_lobe, u);
+        if (!(sample.pdf > 0) || is_black(sample.weight)) return {};
+        if (tilt > 0 && !sample.is_delta()) {
+            const RaisedDirection raised = raise_direction(sample.wi, tilt);
+            sample.wi = raised.direction;
+            sample.pdf = sample.pdf / raised.slope;
+        }
+        const Vec3 wi = normalize(frame.to_world(sample.wi));
+        const bool goes_on = is_consistent(wo, wi, wo_local, sample.wi);
+        sample.wi = wi;
+        if (goes_on) return sample;
+        // A mirror or smooth glass needs no soft horizon: its direction is the right one but here, where it is folded
+        // back at the triangle's plane, so that no light is lost.
+        if (!sample.is_delta() || frame.normal == geometric_normal) return {};
+        sample.wi = folded(wi);
+        return sample;
+    }
+
+    /// The delta direction `wi_local` of the BSDF seen from wo, in world space, folded back as sample() does it. False
+    /// where it carries nothing.
+    HD bool place_specular(Vec3 wo, Vec3 wo_local, Vec3 wi_local, Vec3& wi) const {
+        wi = normalize(frame.to_world(wi_local));
+        if (is_consistent(wo, wi, wo_local, wi_local)) return true;
+        wi = folded(wi);
+        return !(frame.normal == geometric_normal);
+    }
+
+    /// Mirrored at the triangle's plane.
+    HD Vec3 folded(Vec3 wi) const { return wi - (2.0f * dot(wi, geometric_normal)) * geometric_normal; }
+};
+
+/// Bound of the rounding of a point on a light, per component: 16 units, as of an instance that is not turned.
+HD inline Vec3 light_point_error(Vec3 point) { return 0x1p-20f * abs(point); }
+
+/// The ray from a point of a surface, known to `error`, of unit normal `normal`, to what was drawn of a light; it ends
+/// there. `lamp_error`: bound of what the motion of a lamp adds to the error of its point, metres.
+HD inline Ray ray_to_light(const LightSample& light, Vec3 position, Vec3 error, Vec3 normal, float lamp_error = 0) {
+    Ray ray;
+    ray.origin = offset_ray_origin(position, error, normal, light.wi);
+    if (light.distance < kInfinity) { // to a point: t_max = 1 is that point
+        Vec3 end = light.light_point;
+        if (light.instance != kNoLight) {
+            const Vec3 off = light_point_error(end) + Vec3{lamp_error, lamp_error, lamp_error};
+            end = offset_ray_origin(end, off, light.light_normal, -light.wi);
+        }
+        ray.direction = end - ray.origin;
+        ray.t_max = 1;
+    } else {
+        ray.direction = light.wi;
+        ray.t_max = kInfinity;
+    }
+    return ray;
+}
+
+/// Corners and everything else of a triangle that make_surface looks at twice.
+struct PlacedTriangle {
+    TriangleIndices i;
+    Vec3 a, ab, ac; // first corner and the edges from it, world space
+    Vec3 normal;    // unit, by the winding in the mesh's own space
+    Vec3 position;  // of the hit, off the edges
+    Vec3 error;     // bound of its rounding and of all that the test of a triangle of this size adds, per component
+
+    HD Vec3 at(float u, float v) const { return a + (u * ab + v * ac); }
+};
+
+/// In units of 2^-24. Of a baked triangle the walk has the very corners, so what counts is the rounding of the point P
+/// and of the origin that is moved off it (1 each), of the terms of a + u ab + v ac (3) and of the test of a triangle
+/// from there (6): 2 of |P| and 10 of the edges. An instance's walk moves the origin by L = local_from_world, t: with
+/// the rounding of L itself 5 |M| (|L||P| + |t|), M = world_from_local. Its corners here are off by 4 |M||a| + 4 |T|,
+/// which is at most 8 |M| (|L||P| + |t|) and 4 |M||L| of the edges. As |M||L| is at least 1, 16 times holds all of it.
+HD inline Vec3 hit_error(const InstanceView& instance, Vec3 position, Vec3 ab, Vec3 ac) {
+    const Vec3 edges = abs(ab) + abs(ac);
+    if (instance.is_baked != 0) return 0x1p-23f * abs(position) + 0x1.4p-21f * edges;
+    const Transform& l = instance.local_from_world;
+    return 0x1p-20f *
+           transform_sizes(instance.world_from_local, transform_sizes(l, abs(position) + edges) + abs(l.translation));
+}
+
+/// Why no light leaks at an edge: there the computed point may lie behind a neighbour's plane by its error e (the
+/// largest component), and no move along its own normal mends that. So none of its weights is under 16 e s / (2 area),
+/// s the longest component of ab and ac; that is 16 e s / length >= 4.6 e off an edge of that length. Where the
+/// neighbour stands at an angle x to this triangle, the origin, up to 1.7 e off this one, is then 4.6 e sin x - 1.7 e
+/// cos x within the other: past the 1.7 e that rounding can take, from 42 degrees to flat, and for most triangles (11
+/// e) from 17. Slivers are taken for a sixteenth as high as long, so that no point moves by more than 900 e.
+HD inline PlacedTriangle place_triangle(const InstanceView& instance, const MeshView& mesh, const Hit& hit) {
+    PlacedTriangle triangle;
+    triangle.i = triangle_indices(mesh, hit.primitive);
+    const Transform& m = instance.world_from_local;
+    triangle.a = transform_point(m, mesh.positions[triangle.i.a]);
+    triangle.ab = transform_point(m, mesh.positions[triangle.i.b]) - triangle.a;
+    triangle.ac = transform_point(m, mesh.positions[triangle.i.c]) - triangle.a;
+    const float size = max(max_component(abs(triangle.ab)), max_component(abs(triangle.ac)));
+    const float inv = 1.0f / size; // scaled: the product of two tiny edges would underflow
+    const Vec3 across = cross(inv * triangle.ab, inv * triangle.ac);
+    const float sign = instance.is_mirrored != 0 ? -1.0f : 1.0f;
+    triangle.normal = normalize_or(sign * across, Vec3{0, 0, 1});
+
+    triangle.error = hit_error(instance, triangle.at(hit.u, hit.v), triangle.ab, triangle.ac);
+    const float least = (16.0f * inv) * max_component(triangle.error) / max(length(across), 0x1p-4f);
+    const PlaceOnTriangle place = keep_off_edges(hit.u, hit.v, min(least, 0.25f));
+    triangle.position = triangle.at(place.u, place.v);
+    return triangle;
+}
+
+/// The normal by the winding, which says which side emits (scene/material.h), or its opposite where there are vertex
+/// normals that call the other side the front: of shading.
+HD inline Vec3 front_normal(const InstanceView& instance, const MeshView& mesh, const PlacedTriangle& triangle) {
+    if (mesh.normals == nullptr) return triangle.normal;
+    const Vec3 sum = mesh.normals[triangle.i.a] + mesh.normals[triangle.i.b] + mesh.normals[triangle.i.c];
+    const bool is_behind = dot(transform_transposed(instance.local_from_world, sum), triangle.normal) < 0;
+    return is_behind ? -triangle.normal : triangle.normal;
+}
+
+/// The frame before the normal map: interpolated normal and tangent, turned as the map's coordinates are.
+HD inline Frame tangent_frame(const InstanceView& instance, const MeshView& mesh, const PlacedTriangle& triangle,
+                              const Hit& hit, Vec3 normal, const TextureRef& map) {
+    if (mesh.tangents == nullptr) return make_frame(normal); // no texture coordinates either (make_tangents.h)
+    const Vec4 local = interpolate(mesh.tangents, triangle.i, hit.u, hit.v);
+    const Vec3 world = transform_vector(instance.world_from_local, {local.x, local.y, local.z});
+    const Frame frame =
+        frame_with_tangent(normal, {world.x, world.y, world.z, instance.is_mirrored != 0 ? -local.w : local.w});
+    return frame_of_transformed_map(frame, {map.m00, map.m01}, {map.m10, map.m11});
+}
+
+/// Sine of the angle between a vertex normal (mesh space, any length) and the geometric one.
+HD inline float corner_tilt(const InstanceView& instance, Vec3 local_normal, Vec3 geometric_normal) {
+    const Vec3 normal = transform_transposed(instance.local_from_world, local_normal);
+    return sine_between(normalize_or(normal, geometric_normal), geometric_normal);
+}
+
+/// The shading frame at the hit, seen from `wo` (unit). Writes `tilt` of the interpolated normal, before the normal
+/// map: a map's bumps have no neighbours whose horizon they would have to clear.
+template <MaterialsKnown kKnown>
+HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instance, const MeshView& mesh,
+                              const MaterialView& material, const PlacedTriangle& triangle, const Hit& hit,
+                              Vec3 geometric_normal, Vec3 wo, float& tilt) {
+    tilt = 0;
+    if (mesh.normals == nullptr && !has_texture<kKnown>(material.normal_texture)) return make_frame(geometric_normal);
+    const Vec3 local = mesh.normals != nullptr ? interpolate(mesh.normals, triangle.i, hit.u, hit.v) : Vec3{0, 0, 0};
+    Vec3 normal = world_normal(instance.local_from_world, local, geometric_normal);
+    if (mesh.normals != nullptr) {
+        const Vec3 corners = {corner_tilt(instance, mesh.normals[triangle.i.a], geometric_normal),
+                              corner_tilt(instance, mesh.normals[triangle.i.b], geometric_normal),
+                              corner_tilt(instance, mesh.normals[triangle.i.c], geometric_normal)};
+        tilt = terminator_tilt(sine_between(normal, geometric_normal),
+                               dot(Vec3{1.0f - hit.u - hit.v, hit.u, hit.v}, corners));
+    }
+    if (has_texture<kKnown>(material.normal_texture)) {
+        const TextureRef& ref = material.normal_texture;
+        const Frame frame = tangent_frame(instance, mesh, triangle, hit, normal, ref);
+        const Vec4 texel = lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, triangle.i, hit.u, hit.v),
+                                          scene.linear_from_srgb);
+        normal = mapped_normal(frame, {texel.x, texel.y, texel.z}, material.normal_scale);
+    }
+    const bool behind = dot(wo, geometric_normal) < 0; // valid_normal looks from the front
+    const float side = behind ? -1.0f : 1.0f;
+    return make_frame(side * valid_normal(side * normal, side * geometric_normal, wo));
+}
+
+/// The surface at `hit` of a ray that arrives along `direction` (unit).
+template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
+HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 direction) {
+    const InstanceView& instance = scene.instances[hit.instance];
+    const MeshView& mesh = scene.meshes[instance.mesh];
+    const MaterialView& material = scene.materials[instance.material];
+    const PlacedTriangle triangle = place_triangle(instance, mesh, hit);
+
+    const Vec3 geometric_normal = front_normal(instance, mesh, triangle);
+    float tilt = 0;
+    const Frame frame =
+        shading_frame<kKnown>(scene, instance, mesh, material, triangle, hit, geometric_normal, -direction, tilt);
+    const Rgb albedo = base_color_at<kKnown>(scene, material, mesh, triangle.i, hit.u, hit.v);
+    const bool is_unlit = material.kind == MaterialKind::Unlit;
+    Rgb emission = {};
+    if (is_unlit) {
+        emission = albedo;
+    } else if ((material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0) &&
+               (material.two_sided_emission || dot(triangle.normal, direction) < 0)) {
+        emission = surface_emission<has_textures(kKnown)>(
+            scene.lights, instance.material,
+            texture_coordinate(mesh, material.emission_texture, triangle.i, hit.u, hit.v));
+    }
+    // In one expression, so that the BSDF is made where it stays.
+    return {.position = triangle.position,
+            .error = triangle.error,
+            .geometric_normal = geometric_normal,
+            .frame = frame,
+            .bsdf = make_bsdf<kKnown>(scene, material, mesh, triangle.i, hit.u, hit.v, albedo),
+            .emission = emission,
+            .albedo = albedo,
+            .triangle = {hit.instance, hit.primitive},
+            .material = instance.material,
+            .is_unlit = is_unlit,
+            .tilt = tilt};
+}
+
+} // namespace pertev

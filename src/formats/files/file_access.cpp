@@ -1,0 +1,144 @@
+#include "formats/files/file_access.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/message_text.h"
+
+namespace fs = std::filesystem;
+
+namespace pertev {
+namespace {
+
+fs::path canonical_folder(const fs::path& folder, const std::string& what) {
+    std::error_code ec;
+    const fs::path canonical = fs::canonical(folder.empty() ? fs::path(".") : folder, ec);
+    if (ec) throw Error(ErrorCode::BadInput, fmt::format("{}: {}: {}", folder.string(), what, ec.message()));
+    return canonical;
+}
+
+/// By whole components: /scenes/a does not contain /scenes/ab.
+bool is_within(const fs::path& path, const fs::path& root) {
+    return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
+}
+
+Error refusal(const fs::path& from, const std::string& reference, const std::string& why) {
+    return Error(ErrorCode::BadInput,
+                 fmt::format("{}: refers to \"{}\", {}", from.string(), shortened(reference), why));
+}
+
+void check_is_name(const fs::path& from, const std::string& reference) {
+    if (reference.empty()) throw refusal(from, reference, "which is no file name");
+    // The system would cut the name there, after the checks have seen all of it.
+    if (reference.find('\0') != std::string::npos) throw refusal(from, reference, "a name that holds a zero byte");
+}
+
+fs::path portable(std::string reference) {
+    std::replace(reference.begin(), reference.end(), '\\', '/');
+    return reference;
+}
+
+fs::path folder_of(const fs::path& from) { return from.has_parent_path() ? from.parent_path() : fs::path("."); }
+
+} // namespace
+
+FileAccess::FileAccess(const fs::path& scene_file, const std::vector<fs::path>& allowed) {
+    roots_.push_back(canonical_folder(scene_file.parent_path(), "the scene's folder cannot be opened"));
+    for (const fs::path& folder : allowed) {
+        roots_.push_back(canonical_folder(folder, "the folder of --allow-path cannot be opened"));
+    }
+    listing_ = std::make_shared<FolderListing>(roots_);
+}
+
+bool FileAccess::is_allowed(const fs::path& canonical) const {
+    return std::any_of(roots_.begin(), roots_.end(), [&](const fs::path& root) { return is_within(canonical, root); });
+}
+
+fs::path FileAccess::resolve(const fs::path& from, const std::string& reference) const {
+    check_is_name(from, reference);
+    std::error_code ec;
+    const fs::path path = fs::weakly_canonical(folder_of(from) / portable(reference), ec);
+    if (ec) throw refusal(from, reference, fmt::format("which cannot be opened: {}", ec.message()));
+    // What is left of a symbolic link after resolving leads nowhere yet; where it will lead is not known.
+    if (fs::is_symlink(fs::symlink_status(path, ec))) {
+        throw refusal(from, reference, "a symbolic link that leads nowhere");
+    }
+    if (!is_allowed(path)) {
+        throw refusal(from, reference,
+                      fmt::format("which is outside the scene's folder; if it is meant, allow it with --allow-path {}",
+                                  path.parent_path().string()));
+    }
+    return path;
+}
+
+/// A name longer than the system takes, for one, has no path: there is no such file.
+FileAccess::Located FileAccess::locate(const fs::path& name) const {
+    std::error_code ec;
+    const fs::path path = fs::weakly_canonical(name, ec);
+    return {.is_there = !ec && fs::exists(path, ec), .is_allowed = is_allowed(path), .path = path};
+}
+
+/// The file whose path ends like `name`. Nothing after a warning where several fit.
+std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const fs::path& from, Messages& messages) const {
+    const std::vector<std::string> components = components_below(name);
+    if (components.empty()) return std::nullopt;
+    // Names in the same case below the folder itself are found without a look around.
+    for (std::size_t first = 0; first < components.size(); ++first) {
+        fs::path end = folder_of(from);
+        for (std::size_t i = first; i < components.size(); ++i) end /= components[i];
+        const Located there = locate(end);
+        if (there.is_there && there.is_allowed) return there.path;
+    }
+    const Located folder = locate(folder_of(from));
+    for (const fs::path& below : {folder.is_allowed ? folder.path : fs::path(), fs::path()}) {
+        std::vector<fs::path> fits;
+        for (const fs::path& file : listing_->best_fits(name, below)) {
+            const Located there = locate(file);
+            if (there.is_there && there.is_allowed) fits.push_back(there.path);
+        }
+        if (fits.size() == 1) return fits.front();
+        if (fits.empty()) continue;
+        messages.warn(fmt::format("{}: \"{}\" is not there, and {} files could be meant, {} and {} for example: none "
+                                  "is read",
+                                  from.string(), shortened(name.string()), fits.size(), fits[0].string(),
+                                  fits[1].string()));
+        return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+std::optional<fs::path> FileAccess::find(const fs::path& from, const std::string& reference, Messages& messages) const {
+    check_is_name(from, reference);
+    const fs::path name = portable(reference);
+    const Located wanted = locate(folder_of(from) / name);
+    if (wanted.is_there && wanted.is_allowed) return wanted.path;
+    const std::optional<fs::path> found = find_end_of(name, from, messages);
+    if (!found) {
+        if (wanted.is_there) (void)resolve(from, reference); // throws
+        return std::nullopt;
+    }
+    const std::string folder = folder_of(from).string();
+    const bool is_same_name = found->filename() == name.filename();
+    if (is_same_name && name.has_parent_path()) {
+        const fs::path there = found->parent_path().lexically_relative(locate(folder_of(from)).path);
+        messages.warn(fmt::format("{}: files named as in \"{}\", {}: those of the same name in {} are read", folder,
+                                  shortened(name.parent_path().string()),
+                                  wanted.is_allowed ? "which are not there" : "outside the scene's folder",
+                                  there == "." ? "the folder itself" : "\"" + there.string() + "\""));
+    } else if (listing_->may_name_another()) {
+        messages.warn(fmt::format("{}: \"{}\" is not there: {} is read, the only file of that name{}", from.string(),
+                                  shortened(reference), found->string(),
+                                  is_same_name ? "" : " but for upper and lower case"));
+    } else {
+        messages.warn(
+            fmt::format("{}: further files that are not there are read from the only file of that name but for "
+                        "upper and lower case",
+                        folder));
+    }
+    return found;
+}
+
+} // namespace pertev

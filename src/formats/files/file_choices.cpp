@@ -1,0 +1,106 @@
+#include "formats/files/file_choices.h"
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/message_text.h"
+#include "formats/files/parse_number.h"
+
+namespace pertev {
+namespace {
+
+constexpr std::string_view kAll = "all"; // of clips
+
+/// This is the part of a file that is chosen.
+struct Kind {
+    const char* name;
+    bool has_all; // "all" is no name of one of them
+};
+constexpr Kind kClip = {"animation", true}, kFileScene = {"scene", false};
+
+bool is_name(const Kind& kind, const std::string& text) { return !text.empty() && !(kind.has_all && text == kAll); }
+
+/// The choice that stands for one of them: its name where no other has it, else its number.
+std::string choice_of(const Kind& kind, std::span<const std::string> names, std::size_t i) {
+    const bool is_one = is_name(kind, names[i]) && std::ranges::count(names, names[i]) == 1;
+    return is_one ? names[i] : fmt::format("{}", i);
+}
+
+std::vector<std::string> list_of(const Kind& kind, std::span<const std::string> names) {
+    std::vector<std::string> list;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        std::string choice = choice_of(kind, names, i);
+        list.push_back(choice == names[i] || names[i].empty() ? choice : fmt::format("{} ({})", choice, names[i]));
+    }
+    return list;
+}
+
+/// As a message repeats it.
+std::string text_of(const Kind& kind, std::span<const std::string> names) {
+    constexpr std::size_t kMost = 20;
+    std::string text;
+    const std::vector<std::string> list = list_of(kind, names.first(std::min(names.size(), kMost)));
+    for (const std::string& one : list) text += "\n  " + shortened(one);
+    if (names.size() > kMost) text += fmt::format("\n  and {} more (pertev info)", names.size() - kMost);
+    return text;
+}
+
+std::size_t choose(const Kind& kind, const std::string& file, std::span<const std::string> names,
+                   const std::string& choice) {
+    const auto same = is_name(kind, choice) ? std::ranges::count(names, choice) : 0;
+    if (same == 1) return static_cast<std::size_t>(std::ranges::find(names, choice) - names.begin());
+    const auto number = parse_whole_number<std::size_t>(choice);
+    if (number && *number < names.size()) return *number;
+    const std::string wanted = fmt::format("{} \"{}\"", kind.name, shortened(choice));
+    if (names.empty()) {
+        throw Error(ErrorCode::BadInput, fmt::format("{}: no {}; the file has no {}s", file, wanted, kind.name));
+    }
+    if (same > 1) {
+        throw Error(ErrorCode::BadInput, fmt::format("{}: {} {}s are called \"{}\"; choose one by its number:{}", file,
+                                                     same, kind.name, shortened(choice), text_of(kind, names)));
+    }
+    throw Error(ErrorCode::BadInput, fmt::format("{}: no {}; the file has:{}", file, wanted, text_of(kind, names)));
+}
+
+std::vector<std::string> names_of(std::span<const Clip> clips) {
+    std::vector<std::string> names;
+    for (const Clip& clip : clips) names.push_back(clip.name);
+    return names;
+}
+
+} // namespace
+
+std::vector<bool> choose_clips(const std::string& file, std::span<const std::string> names, const std::string& choice) {
+    std::vector<bool> plays(names.size(), choice == kAll);
+    if (choice == kAll && !names.empty()) return plays;
+    if (choice.empty() && names.empty()) return plays;
+    plays[choice.empty() ? 0 : choose(kClip, file, names, choice)] = true;
+    return plays;
+}
+
+uint32_t choose_file_scene(const std::string& file, std::span<const std::string> names, const std::string& choice) {
+    return static_cast<uint32_t>(choose(kFileScene, file, names, choice));
+}
+
+std::string clip_choice(std::span<const Clip> clips) {
+    if (clips.size() < 2) return {};
+    if (std::ranges::count(clips, true, &Clip::plays) > 1) return std::string(kAll);
+    const auto playing = std::ranges::find(clips, true, &Clip::plays);
+    if (playing == clips.end()) return {};
+    return choice_of(kClip, names_of(clips), static_cast<std::size_t>(playing - clips.begin()));
+}
+
+std::string file_scene_choice(const Scene& scene) {
+    return scene.file_scenes.size() < 2 ? "" : choice_of(kFileScene, scene.file_scenes, scene.file_scene);
+}
+
+std::vector<std::string> list_clips(std::span<const Clip> clips) { return list_of(kClip, names_of(clips)); }
+
+std::vector<std::string> list_file_scenes(const Scene& scene) { return list_of(kFileScene, scene.file_scenes); }
+
+} // namespace pertev

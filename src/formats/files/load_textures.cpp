@@ -1,0 +1,208 @@
+#include "formats/files/load_textures.h"
+
+#include <atomic>
+#include <optional>
+#include <system_error>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "base/message_text.h"
+#include "base/parallel_for.h"
+#include "base/read_file.h"
+#include "image/decode_image.h"
+#include "image/image_format.h"
+#include "image/picture_primaries.h"
+#include "image/srgb.h"
+
+namespace fs = std::filesystem;
+
+namespace pertev {
+namespace {
+
+constexpr std::size_t kMissingNamed = 20;
+
+/// 4 linear channels, as TextureImage wants them.
+Image to_rgba(const Image& image) {
+    if (image.channels == 4) return image;
+    const std::size_t pixels = std::size_t(image.width) * image.height;
+    Image rgba{.width = image.width, .height = image.height, .channels = 4, .pixels = std::vector<float>(pixels * 4)};
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const float* from = image.pixels.data() + i * image.channels;
+        float* to = rgba.pixels.data() + i * 4;
+        const bool is_grey = image.channels < 3;
+        to[0] = from[0];
+        to[1] = is_grey ? from[0] : from[1];
+        to[2] = is_grey ? from[0] : from[2];
+        to[3] = image.channels == 2 ? from[1] : 1.0f;
+    }
+    return rgba;
+}
+
+/// What an image is read as: values as stored, or colours that are still sRGB-encoded. Colours are converted to Rec.
+/// 709.
+struct Uses {
+    bool as_srgb = false, as_data = false, as_color = false;
+};
+
+std::vector<Uses> uses_of(const Scene& scene, std::size_t images) {
+    std::vector<Uses> uses(images);
+    for (const Material& material : scene.materials) {
+        for (const TextureRef* ref : material.textures()) {
+            if (!ref->has_image()) continue;
+            Uses& use = uses.at(static_cast<std::size_t>(ref->image));
+            (ref->is_srgb ? use.as_srgb : use.as_data) = true;
+            use.as_color |= ref == &material.base_color_texture || ref == &material.emission_texture;
+        }
+    }
+    return uses;
+}
+
+/// A picture of 16 bits a channel: TextureImage has it in float, decoded to linear; one that is read both ways is kept
+/// as stored, in 8 bits.
+void put_png16(const Image& image, Uses use, TextureImage& to) {
+    Image rgba = to_rgba(image);
+    const std::size_t count = rgba.pixels.size();
+    if (use.as_srgb && use.as_data) {
+        to.rgba8 = {.width = rgba.width, .height = rgba.height, .pixels = std::vector<uint8_t>(count)};
+        for (std::size_t i = 0; i < count; ++i) to.rgba8.pixels[i] = to_byte(rgba.pixels[i]);
+        return;
+    }
+    if (use.as_srgb) {
+        for (std::size_t i = 0; i < count; ++i) {
+            if (i % 4 != 3) rgba.pixels[i] = srgb_decode(rgba.pixels[i]);
+        }
+    }
+    to.rgba_float = std::move(rgba);
+}
+
+/// What the picture takes as a TextureImage.
+uint64_t texture_bytes(const ImageHeader& header) {
+    return uint64_t(header.width) * header.height * 4 * (header.is_float ? sizeof(float) : 1);
+}
+
+TextureImage texture_of(std::variant<Rgba8Image, Image> image, bool is_png, Uses use, const std::string& name) {
+    TextureImage to;
+    to.name = name;
+    if (auto* rgba8 = std::get_if<Rgba8Image>(&image)) {
+        to.rgba8 = std::move(*rgba8);
+    } else if (is_png) {
+        put_png16(std::get<Image>(image), use, to);
+    } else {
+        to.rgba_float = to_rgba(std::get<Image>(image));
+    }
+    return to;
+}
+
+} // namespace
+
+int32_t TextureLoader::add_file(const fs::path& from, const std::string& reference, const std::string& place) {
+    const std::optional<fs::path> path = access_.find(from, reference, *messages_);
+    if (!path) {
+        if (missing_++ < kMissingNamed) {
+            messages_->leave_out(fmt::format("{}: there is no texture {}; its factor alone is used",
+                                             place.empty() ? from.string() : place, shortened(reference)));
+        }
+        return kNoImage;
+    }
+    const auto [known, is_new] = by_path_.try_emplace(*path, static_cast<int32_t>(sources_.size()));
+    if (is_new) sources_.push_back({.name = reference, .path = *path, .bytes = {}});
+    return known->second;
+}
+
+int32_t TextureLoader::add_bytes(std::string name, std::span<const std::byte> bytes) {
+    sources_.push_back({.name = std::move(name), .path = {}, .bytes = bytes});
+    return static_cast<int32_t>(sources_.size() - 1);
+}
+
+uint64_t TextureLoader::budget(uint64_t scene_bytes) const {
+    uint64_t bytes = scene_bytes;
+    for (const Source& source : sources_) {
+        std::error_code ec;
+        const uint64_t size = source.path.empty() ? 0 : fs::file_size(source.path, ec);
+        if (!ec) bytes += size;
+    }
+    return justified_bytes(kFreeImageBytes, bytes);
+}
+
+void TextureLoader::check_budget(uint64_t limit) const {
+    uint64_t sum = 0;
+    for (const Source& source : sources_) {
+        sum += source.texture_bytes;
+        if (sum <= limit) continue;
+        throw Error(
+            ErrorCode::OverLimit,
+            fmt::format("{}: with this picture the scene's images take {} MiB in memory; the limit for files of "
+                        "this size is {} MiB; use one image many times instead of copies, or smaller ones",
+                        source.path.empty() ? source.name : source.path.string(), sum >> 20, limit >> 20));
+    }
+}
+
+/// Decodes it, unless it and all pictures seen before, which take `all_bytes`, would take more than `limit`.
+void TextureLoader::read(Source& source, uint64_t limit, std::atomic<uint64_t>& all_bytes) const {
+    try {
+        const bool is_embedded = source.path.empty();
+        const std::vector<std::byte> file = is_embedded ? std::vector<std::byte>() : read_file(source.path);
+        const std::span<const std::byte> bytes = is_embedded ? source.bytes : file;
+        const std::string name = is_embedded ? source.name : source.path.string();
+        source.texture_bytes = texture_bytes(read_image_header(bytes, name));
+        if ((all_bytes += source.texture_bytes) > limit) return;
+        source.is_png = recognise_image(bytes) == ImageFormat::Png;
+        source.color_matrix = color_matrix_of(bytes, name, &source.said);
+        source.image = decode_image(bytes, name, &source.said);
+    } catch (const Error& error) {
+        source.fault = error.what();
+    }
+}
+
+void TextureLoader::decode() { decode_within(budget(0)); }
+
+void TextureLoader::decode_within(uint64_t limit) {
+    const auto is_done = [](const Source& source) { return source.image || !source.fault.empty(); };
+    std::atomic<uint64_t> all_bytes = 0;
+    for (const Source& source : sources_) {
+        if (is_done(source)) all_bytes += source.texture_bytes;
+    }
+    parallel_for(sources_.size(), 1, [&](uint64_t i) {
+        if (!is_done(sources_[i])) read(sources_[i], limit, all_bytes);
+    });
+}
+
+void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
+    if (missing_ > kMissingNamed) {
+        messages_->leave_out(fmt::format("not there: {}", counted(missing_ - kMissingNamed, "further texture")));
+    }
+    const uint64_t limit = budget(scene_bytes);
+    decode_within(limit);
+    check_budget(limit);
+
+    const std::vector<Uses> uses = uses_of(scene, sources_.size());
+    std::vector<TextureImage> textures(sources_.size());
+    parallel_for(sources_.size(), 1, [&](uint64_t i) {
+        Source& source = sources_[i];
+        if (!source.image) return;
+        textures[i] = texture_of(*std::move(source.image), source.is_png, uses[i], source.name);
+        if (source.color_matrix && uses[i].as_color) convert_colors(*source.color_matrix, textures[i].rgba_float);
+    });
+    std::vector<int32_t> renumbered(sources_.size(), kNoImage);
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+        messages_->add_all(sources_[i].said);
+        if (!sources_[i].fault.empty()) {
+            messages_->leave_out(fmt::format("{}; its factor alone is used", sources_[i].fault));
+            continue;
+        }
+        PERTEV_CHECK(sources_[i].image);
+        renumbered[i] = static_cast<int32_t>(scene.images.size());
+        scene.images.push_back(std::move(textures[i]));
+    }
+    for (Material& material : scene.materials) {
+        for (TextureRef* ref : {&material.base_color_texture, &material.alpha_texture, &material.metallic_texture,
+                                &material.roughness_texture, &material.emission_texture, &material.normal_texture}) {
+            if (ref->has_image()) ref->image = renumbered.at(static_cast<std::size_t>(ref->image));
+        }
+    }
+}
+
+} // namespace pertev

@@ -1,0 +1,28 @@
+#pragma once
+
+// A small JSON file of ours, whose values know their place in it (formats/json/json_value.h).
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "formats/json/json_value.h"
+
+namespace pertev {
+
+class JsonFile {
+public:
+    /// Throws Error(BadInput) for a file that cannot be read or is not JSON, with the place of the first fault.
+    explicit JsonFile(const std::filesystem::path& path);
+    JsonFile(const JsonFile&) = delete; // its values point into it
+    JsonFile& operator=(const JsonFile&) = delete;
+
+    const gltf::JsonValue& root() const { return *root_; }
+
+private:
+    std::string name_; // the path, for messages
+    simdjson::dom::parser parser_;
+    std::optional<gltf::JsonValue> root_;
+};
+
+} // namespace pertev

@@ -1,0 +1,214 @@
+#include "formats/obj/read_mtl.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/read_file.h"
+#include "formats/obj/parse_mtl.h"
+#include "math/vec3.h"
+
+namespace fs = std::filesystem;
+
+namespace pertev {
+namespace {
+
+/// GGX roughness (perceptual: alpha is its square) of a Phong exponent.
+float roughness_of(float exponent) { return sqrt(sqrt(2.0f / (max(exponent, 0.0f) + 2.0f))); }
+
+class Converter {
+public:
+    Converter(const fs::path& path, TextureLoader& loader, Messages& messages)
+        : path_(path), loader_(loader), messages_(messages) {}
+
+    MtlMaterial convert(const MtlStatements& from) {
+        MtlMaterial result;
+        Material& to = result.material;
+        to.name = from.name;
+        to.origin = fmt::format("{}:{}", path_.string(), from.line);
+        to.base_color = from.kd.value_or(to.base_color);
+        to.base_color_texture = texture(from.map_kd, true);
+        if (to.base_color_texture.has_image() && is_black(from.kd.value_or(Rgb{}))) {
+            to.base_color = grey(1); // 3ds Max writes Kd 0 0 0 beside a map; a map times nothing is not meant
+        }
+        to.emission = from.ke;
+        to.emission_texture = texture(from.map_ke, true);
+        if (to.emission_texture.has_image() && is_black(to.emission)) to.emission = grey(1);
+        surface(from, to);
+        alpha(from, result);
+        bumps(from, result);
+        return result;
+    }
+
+private:
+    TextureRef texture(const MtlTexture& from, bool is_colour) {
+        TextureRef ref;
+        if (from.name.empty()) return ref;
+        try {
+            ref.image = loader_.add_file(fmt::format("{}:{}", path_.string(), from.line), from.name);
+        } catch (const Error& error) { // it may not be read
+            if (error.code() != ErrorCode::BadInput) throw;
+            messages_.leave_out(fmt::format("{}; its factor alone is used", error.what()));
+        }
+        ref.is_srgb = is_colour && !from.is_linear;
+        if (from.clamp) ref.wrap_s = ref.wrap_t = Wrap::ClampToEdge;
+        // uv' = scale uv + offset with v upwards; ours points down: v_down = 1 - v_up, on both sides.
+        ref.m00 = from.scale.x;
+        ref.m02 = from.offset.x;
+        ref.m11 = from.scale.y;
+        ref.m12 = 1 - from.scale.y - from.offset.y;
+        return ref;
+    }
+
+    void surface(const MtlStatements& from, Material& to) {
+        const float kd = max_component(from.kd.value_or(Rgb{}));
+        const float diffuse = to.base_color_texture.has_image() ? max(kd, 0.5f) : kd;
+        const float specular = max_component(from.ks);
+        const bool is_dark = diffuse <= 0.1f * max(specular, 0.2f);
+        const bool is_ray_traced = from.illum == 3 || from.illum == 5 || from.illum == 8;
+        const bool has_map_d = !from.map_d.name.empty();
+
+        if (from.pr > 0 || from.pm > 0 || !from.map_pr.name.empty() || !from.map_pm.name.empty()) {
+            to.kind = MaterialKind::MetallicRoughness;
+            to.roughness_texture = texture(from.map_pr, false);
+            to.metallic_texture = texture(from.map_pm, false);
+            // A map without its number, or with 0, which exporters write unasked.
+            to.roughness = to.roughness_texture.has_image() && from.pr == 0 ? 1 : from.pr;
+            to.metallic = to.metallic_texture.has_image() && from.pm == 0 ? 1 : from.pm;
+            if (from.ni > 1) to.ior = from.ni;
+            return;
+        }
+        const bool is_glass = from.illum == 6 || from.illum == 7 || ((from.illum == 4 || from.illum == 9) && is_dark) ||
+                              (from.d < 1 && from.ni > 1 && !is_black(from.tf));
+        if (is_glass && !has_map_d) {
+            to.kind = MaterialKind::Dielectric;
+            to.roughness = 0;
+            to.ior = from.ni > 1 ? from.ni : 1.5f;
+            to.base_color_texture = {};
+            const Rgb tf = from.tf;
+            to.base_color = is_black(tf) ? grey(1) : Rgb{safe_sqrt(tf.r), safe_sqrt(tf.g), safe_sqrt(tf.b)};
+            return;
+        }
+        if ((specular > 0.1f && is_dark) || (is_ray_traced && specular > max(0.1f, diffuse))) {
+            to.kind = MaterialKind::MetallicRoughness;
+            to.metallic = 1;
+            to.roughness = is_ray_traced ? 0.0f : roughness_of(from.ns);
+            to.base_color = from.ks;
+            to.base_color_texture = {};
+            return;
+        }
+        if (specular > 0.02f && !(from.ks == grey(0.5f)) && from.ns > 1 && from.illum != 1) {
+            const float f0 = min(specular / max(1.0f, specular + diffuse), 0.64f);
+            to.kind = MaterialKind::MetallicRoughness;
+            to.metallic = 0;
+            to.roughness = roughness_of(from.ns);
+            to.ior = (1 + sqrt(f0)) / (1 - sqrt(f0));
+        }
+    }
+
+    void alpha(const MtlStatements& from, MtlMaterial& to) {
+        if (to.material.kind == MaterialKind::Dielectric) return;
+        to.material.alpha = clamp(from.d, 0.0f, 1.0f);
+        if (to.material.alpha < 1) to.material.alpha_mode = AlphaMode::Blend;
+        to.material.alpha_texture = texture(from.map_d, false);
+        to.has_alpha_map = to.material.alpha_texture.has_image();
+        to.alpha_channel = from.map_d.channel;
+    }
+
+    void bumps(const MtlStatements& from, MtlMaterial& to) {
+        to.material.normal_texture = texture(from.norm, false);
+        to.material.normal_scale = from.norm.bump_multiplier;
+        if (from.norm.name.empty() && !from.bump.name.empty()) {
+            to.material.normal_texture = texture(from.bump, false);
+            to.material.normal_scale = 1; // -bm is a height
+            to.normal_may_be_height = to.material.normal_texture.has_image();
+        }
+    }
+
+    const fs::path& path_;
+    TextureLoader& loader_;
+    Messages& messages_;
+};
+
+std::size_t pixel_count(const TextureImage& image) {
+    return max(image.rgba8.pixels.size(), image.rgba_float.pixels.size()) / 4;
+}
+
+/// In [0, 1]; of 8-bit images as stored.
+float value(const TextureImage& image, std::size_t pixel, int channel) {
+    const std::size_t at = 4 * pixel + static_cast<std::size_t>(channel);
+    return image.rgba8.pixels.empty() ? image.rgba_float.pixels[at] : static_cast<float>(image.rgba8.pixels[at]) / 255;
+}
+
+/// A tangent-space normal map is bluish, and its texels are unit vectors; a height map is grey.
+bool looks_like_normals(const TextureImage& image) {
+    std::size_t good = 0, seen = 0;
+    for (std::size_t i = 0; i < pixel_count(image); i += 7, ++seen) {
+        const float r = value(image, i, 0), b = value(image, i, 2);
+        const float square = length_squared(Vec3{2 * r - 1, 2 * value(image, i, 1) - 1, 2 * b - 1});
+        good += b > 0.5f && b > r + 0.03f && square > 0.7f && square < 1.3f;
+    }
+    return seen > 0 && good > seen * 3 / 4;
+}
+
+struct AlphaStatistics {
+    bool varies = false;    // some alpha below 1
+    bool is_binary = false; // nearly all texels clear or solid: an outline, softened at most at its edge
+};
+
+AlphaStatistics look_at_channel(const TextureImage& image, int channel) {
+    std::size_t between = 0, below = 0;
+    for (std::size_t i = 0; i < pixel_count(image); ++i) {
+        const float alpha = value(image, i, channel);
+        between += alpha >= 0.125f && alpha < 0.875f;
+        below += alpha < 1;
+    }
+    return {below > 0, between * 3 < pixel_count(image)};
+}
+
+} // namespace
+
+std::map<std::string, MtlMaterial> read_mtl(const fs::path& path, TextureLoader& loader, Messages& messages) {
+    return read_mtl(read_file(path), path, loader, messages);
+}
+
+std::map<std::string, MtlMaterial> read_mtl(std::span<const std::byte> bytes, const fs::path& path,
+                                            TextureLoader& loader, Messages& messages) {
+    std::map<std::string, MtlMaterial> materials;
+    Converter converter(path, loader, messages);
+    for (const MtlStatements& said : parse_mtl(bytes, path.string(), messages)) {
+        if (said.name.empty() || materials.contains(said.name)) continue;
+        materials.emplace(said.name, converter.convert(said));
+    }
+    if (materials.empty()) messages.warn(fmt::format("{}: no material (newmtl) in it", path.string()));
+    return materials;
+}
+
+void finish_mtl_material(MtlMaterial& material, const std::vector<TextureImage>& images, const std::string& file,
+                         Messages& messages) {
+    Material& to = material.material;
+    if (material.normal_may_be_height && to.normal_texture.has_image()) {
+        if (!looks_like_normals(images[static_cast<std::size_t>(to.normal_texture.image)])) {
+            messages.leave_out(
+                fmt::format("{}: a map_bump that is a height map is left out; normal maps are read", file));
+            to.normal_texture = {};
+        }
+    }
+    if (!material.has_alpha_map || !to.alpha_texture.has_image()) return;
+    const TextureImage& image = images[static_cast<std::size_t>(to.alpha_texture.image)];
+    // `m` (matte) is the alpha channel; a grey picture without one is meant by its brightness.
+    int channel = material.alpha_channel == 'g' ? 1 : (material.alpha_channel == 'b' ? 2 : 0);
+    if (material.alpha_channel == 'm' && look_at_channel(image, 3).varies) channel = 3;
+    to.alpha_texture.channel = static_cast<uint8_t>(channel);
+    const AlphaStatistics statistics = look_at_channel(image, channel);
+    if (to.alpha_texture.image == to.base_color_texture.image) {
+        // Its alpha counts by itself: the same again would be its square. Without one, an exporter wrote the name
+        // twice.
+        to.alpha_texture = {};
+        if (channel != 3 && material.alpha_channel == 'm') return;
+    }
+    if (to.alpha < 1) return; // Blend already
+    to.alpha_mode =
+        !statistics.varies ? AlphaMode::Opaque : (statistics.is_binary ? AlphaMode::Mask : AlphaMode::Blend);
+}
+
+} // namespace pertev

@@ -1,0 +1,289 @@
+#include "formats/obj/read_obj.h"
+
+#include <algorithm>
+#include <future>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/key_numbers.h"
+#include "base/message_text.h"
+#include "base/parallel_for.h"
+#include "base/read_file.h"
+#include "formats/files/load_textures.h"
+#include "formats/obj/parse_obj.h"
+#include "formats/obj/read_mtl.h"
+#include "scene/scene_origin.h"
+
+namespace fs = std::filesystem;
+
+namespace pertev {
+namespace {
+
+bool has_texture(const Material& m) {
+    return std::ranges::any_of(m.textures(), [](const TextureRef* texture) { return texture->has_image(); });
+}
+
+void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& data, const std::string& file,
+                                          Messages& messages) {
+    std::set<uint32_t> materials;
+    std::string first;
+    for (std::size_t i = 0; i < data.groups.size(); ++i) {
+        const uint32_t material = scene.instances[i].material;
+        const std::vector<ObjCorner>& corners = data.groups[i].corners;
+        if (!has_texture(scene.materials[material]) || materials.contains(material) ||
+            std::none_of(corners.begin(), corners.end(), [](const ObjCorner& c) { return c.uv == kNoIndex; })) {
+            continue;
+        }
+        if (materials.empty()) first = data.groups[i].material;
+        materials.insert(material);
+    }
+    if (materials.empty()) return;
+    messages.warn(fmt::format("{}: {} with a texture, but on faces without texture coordinates ({} is the first): "
+                              "its corner is seen there",
+                              file, counted(materials.size(), "material"), shortened(first)));
+}
+
+/// A texture tells the colour where there is one: scanners write the same colours to the vertices as well.
+void drop_colors_beside_textures(Scene& scene, const std::string& file, Messages& messages) {
+    std::size_t dropped = 0;
+    for (const Instance& instance : scene.instances) {
+        std::vector<Vec4>& colors = scene.meshes[instance.mesh].colors;
+        if (colors.empty() || !scene.materials[instance.material].base_color_texture.has_image()) continue;
+        colors.clear();
+        ++dropped;
+    }
+    if (dropped == 0) return;
+    messages.leave_out(
+        fmt::format("{}: vertex colours beside a texture are left out: the texture tells the colour", file));
+}
+
+Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
+    Mesh mesh;
+    mesh.name = group.name.empty() ? group.material : group.name;
+    mesh.origin = fmt::format("line {}", group.line);
+    KeyNumbers<ObjCorner> table(group.corners.size());
+    mesh.indices.reserve(group.corners.size());
+    bool has_uv = false, has_normal = false;
+    for (const ObjCorner& corner : group.corners) {
+        mesh.indices.push_back(table.number_of(corner));
+        has_uv |= corner.uv != kNoIndex;
+        has_normal |= corner.normal != kNoIndex;
+    }
+    const std::vector<ObjCorner>& vertices = table.keys();
+    mesh.positions.reserve(vertices.size());
+    for (const ObjCorner& v : vertices) mesh.positions.push_back(data.positions[v.position]);
+    if (!data.colors.empty()) {
+        mesh.colors.reserve(vertices.size());
+        for (const ObjCorner& v : vertices) mesh.colors.push_back(data.colors[v.position]);
+    }
+    if (has_normal) { // zero where there is none: validate() puts the geometric one
+        mesh.normals.reserve(vertices.size());
+        for (const ObjCorner& v : vertices) {
+            mesh.normals.push_back(v.normal == kNoIndex ? Vec3{} : data.normals[v.normal]);
+        }
+    }
+    if (has_uv) {
+        mesh.uv[0].reserve(vertices.size());
+        for (const ObjCorner& v : vertices) {
+            const Vec2 uv = v.uv == kNoIndex ? Vec2{0, 1} : data.uvs[v.uv];
+            mesh.uv[0].push_back({uv.x, 1 - uv.y});
+        }
+    }
+    return mesh;
+}
+
+/// Turns those triangles round whose vertex normals point behind them: the front of a lamp is where its winding says.
+void wind_after_normals(Mesh& mesh) {
+    if (mesh.normals.empty()) return;
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+        uint32_t* corner = mesh.indices.data() + i;
+        const Vec3 a = mesh.positions[corner[0]];
+        const Vec3 across = cross(mesh.positions[corner[1]] - a, mesh.positions[corner[2]] - a);
+        const Vec3 sum = mesh.normals[corner[0]] + mesh.normals[corner[1]] + mesh.normals[corner[2]];
+        if (dot(across, sum) < 0) std::swap(corner[1], corner[2]);
+    }
+}
+
+std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs::path& obj, const FileAccess& access,
+                                          Messages& messages) {
+    const std::string place = fmt::format("{}:{}", obj.string(), line.line);
+    bool is_refused = false; // where a file may not be read, that has been told
+    const auto find = [&](const std::string& name) -> std::optional<fs::path> {
+        try {
+            return access.find(place, name, messages);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::BadInput) throw;
+            messages.leave_out(fmt::format("{}; what it describes is grey", error.what()));
+            is_refused = true;
+            return std::nullopt;
+        }
+    };
+    if (const std::optional<fs::path> whole = find(line.names)) return {*whole};
+    if (is_refused) return {};
+    std::vector<fs::path> found;
+    std::istringstream names(line.names);
+    for (std::string name; names >> name;) {
+        is_refused = false;
+        if (const std::optional<fs::path> path = find(name)) {
+            found.push_back(*path);
+        } else if (!is_refused) {
+            messages.leave_out(
+                fmt::format("{}: there is no material file {}; what it describes is grey", place, shortened(name)));
+        }
+    }
+    return found;
+}
+
+/// The materials that an OBJ file names, and their textures. Those of its first mtllib, which is the only one of most
+/// files and stands at their top, are read while the geometry is, where there is a thread for them; a fault of the
+/// geometry is then told once they are.
+class MaterialsBeside {
+public:
+    /// All of these outlive it.
+    MaterialsBeside(const fs::path& obj, const FileAccess& access, TextureLoader& loader, Messages& messages)
+        : obj_(obj), access_(access), loader_(loader), messages_(messages) {}
+
+    /// With the first line of all; once, if at all. Throws nothing.
+    void start(const ObjMaterialFiles& line) {
+        if (thread_count() == 1) return;
+        try {
+            first_ = std::async(std::launch::async, [this, line] {
+                read(line);
+                loader_.decode();
+            });
+        } catch (const std::system_error&) { // no thread can be had
+        }
+    }
+    /// Waits for what is under way, and reads the others of `lines`.
+    std::map<std::string, MtlMaterial> finish(const std::vector<ObjMaterialFiles>& lines) {
+        const bool is_first_read = first_.valid();
+        if (is_first_read) first_.get();
+        for (std::size_t i = is_first_read ? 1 : 0; i < lines.size(); ++i) read(lines[i]);
+        return std::move(materials_);
+    }
+
+private:
+    void read(const ObjMaterialFiles& line) {
+        if (line.names.empty()) return;
+        for (const fs::path& path : find_material_files(line, obj_, access_, messages_)) {
+            if (seen_.insert(path).second) materials_.merge(read_mtl(path, loader_, messages_));
+        }
+    }
+
+    const fs::path& obj_;
+    const FileAccess& access_;
+    TextureLoader& loader_;
+    Messages& messages_;
+    std::map<std::string, MtlMaterial> materials_;
+    std::set<fs::path> seen_;
+    std::future<void> first_; // the last member: it is waited for before the others go
+};
+
+Material grey_material(const std::string& name, const ObjData& data) {
+    Material material;
+    material.name = name;
+    if (!data.colors.empty()) material.base_color = grey(1); // the vertex colours tell
+    return material;
+}
+
+/// `loader` knows the textures of `materials`.
+Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& materials, TextureLoader& loader,
+                 const std::string& file, const ReadOptions& options, Messages& messages) {
+    Scene scene;
+    set_origin(data.box, scene);
+    scene.meshes.resize(data.groups.size());
+    std::unordered_map<std::string_view, uint32_t> numbers; // of materials
+    std::size_t unknown = 0;
+    std::string first_unknown;
+    for (uint32_t i = 0; i < data.groups.size(); ++i) {
+        const std::string& name = data.groups[i].material;
+        const auto [number, is_new] = numbers.try_emplace(name, static_cast<uint32_t>(scene.materials.size()));
+        if (is_new) {
+            const auto known = materials.find(name);
+            if (known != materials.end()) {
+                scene.materials.push_back(known->second.material);
+            } else {
+                scene.materials.push_back(grey_material(name, data));
+                if (!name.empty() && unknown++ == 0) first_unknown = name;
+            }
+        }
+        scene.instances.push_back({.name = data.groups[i].name.empty() ? name : data.groups[i].name,
+                                   .mesh = i,
+                                   .material = number->second,
+                                   .world_from_local = {}});
+    }
+
+    if (data.groups.empty()) {
+        scene.no_instances =
+            fmt::format("{} and no face; expected a line such as f 1 2 3", counted(data.positions.size(), "position"));
+        const std::vector<std::string> left_out = messages.left_out();
+        if (!left_out.empty()) scene.no_instances += fmt::format("; left out: {}", left_out.front());
+    }
+
+    if (unknown > 0 && !options.geometry_only) {
+        messages.leave_out(fmt::format("{}: {} that {} in no .mtl file ({} is the first) {} shown grey", file,
+                                       counted(unknown, "material"), is_or_are(unknown), shortened(first_unknown),
+                                       is_or_are(unknown)));
+    }
+
+    parallel_invoke([&] { loader.load_into(scene); },
+                    [&] {
+                        parallel_for(data.groups.size(), 1, [&](uint64_t i) {
+                            scene.meshes[i] = make_mesh(data.groups[i], data);
+                            const Material& material = scene.materials[scene.instances[i].material];
+                            if (material.is_emissive()) wind_after_normals(scene.meshes[i]);
+                        });
+                    });
+
+    for (Material& material : scene.materials) {
+        const auto known = materials.find(material.name);
+        if (known == materials.end()) continue;
+        MtlMaterial finished = known->second;
+        finished.material = material;
+        finish_mtl_material(finished, scene.images, file, messages);
+        material = finished.material;
+    }
+    warn_of_textures_without_coordinates(scene, data, file, messages);
+    drop_colors_beside_textures(scene, file, messages);
+    return scene;
+}
+
+} // namespace
+
+Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions& options, Messages& messages) {
+    Messages of_materials; // to be said after those of the geometry
+    TextureLoader loader(access, of_materials);
+    MaterialsBeside beside(path, access, loader, of_materials);
+    const ObjData data = parse_obj(read_file(path), path.string(), messages, [&](const ObjMaterialFiles& line) {
+        if (!options.geometry_only) beside.start(line);
+    });
+    std::map<std::string, MtlMaterial> materials;
+    try {
+        if (!options.geometry_only) materials = beside.finish(data.material_files);
+    } catch (...) {
+        messages.add_all(of_materials);
+        throw;
+    }
+    messages.add_all(of_materials);
+    loader.say_to(messages);
+    return make_scene(data, materials, loader, path.string(), options, messages);
+}
+
+Scene read_obj(const fs::path& path, const ObjTexts& texts, const FileAccess& access, const ReadOptions& options,
+               Messages& messages) {
+    const ObjData data = parse_obj(texts.geometry, path.string(), messages);
+    TextureLoader loader(access, messages);
+    std::map<std::string, MtlMaterial> materials;
+    if (!options.geometry_only) materials = read_mtl(texts.materials, path, loader, messages);
+    return make_scene(data, materials, loader, path.string(), options, messages);
+}
+
+} // namespace pertev

@@ -1,0 +1,29 @@
+#pragma once
+
+// Wavefront OBJ with its .mtl files. One mesh and one instance for each object, group and material, in the order of
+// first use. See parse_obj.h and read_mtl.h for what is read and how it is converted.
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+#include "base/messages.h"
+#include "formats/files/file_access.h"
+#include "formats/files/read_options.h"
+#include "scene/scene.h"
+
+namespace pertev {
+
+/// Not yet validated. Throws Error(BadInput) that names the file and the line. A missing .mtl or texture is a warning.
+Scene read_obj(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
+               Messages& messages);
+
+struct ObjTexts {
+    std::span<const std::byte> geometry,
+        materials; // of an .obj file, and of the .mtl file that stands for all it names
+};
+/// The same from memory; `path` starts every message.
+Scene read_obj(const std::filesystem::path& path, const ObjTexts& texts, const FileAccess& access,
+               const ReadOptions& options, Messages& messages);
+
+} // namespace pertev

@@ -1,0 +1,200 @@
+#pragma once
+
+// What follows the header of a PLY file, as a row of values of any type. All of it is inline, because a value is a few
+// instructions and files have millions.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/message_text.h"
+#include "base/messages.h"
+#include "formats/files/parse_number.h"
+#include "formats/ply/ply_header.h"
+
+namespace pertev {
+
+/// The place of the value that is next is known for messages.
+class PlyBody {
+public:
+    PlyBody(std::span<const std::byte> bytes, const PlyHeader& header, const std::string& file)
+        : begin_(reinterpret_cast<const char*>(bytes.data())), at_(begin_ + header.size), end_(begin_ + bytes.size()),
+          format_(header.format), file_(file) {
+        find_lines(header);
+    }
+
+    Error fault(const std::string& what) const {
+        return Error(ErrorCode::BadInput, fmt::format("{}:{}: {} {}: {}", file_, place(), element_, number_, what));
+    }
+    void set_place(const std::string& element, uint64_t number) {
+        element_ = element;
+        number_ = number;
+    }
+    bool is_binary() const { return format_ != PlyFormat::Ascii; }
+    void set_number(uint64_t number) { number_ = number; }
+
+    /// The fewest bytes that a value takes: in text a digit and a space.
+    std::size_t least_size(PlyType type) const { return format_ == PlyFormat::Ascii ? 2 : size_of(type); }
+
+    /// Throws unless `count` things of `least` bytes each may still follow.
+    void expect(uint64_t count, std::size_t least, const char* what) const {
+        // The last value of a text may stand without a space after it.
+        const uint64_t left = static_cast<uint64_t>(end_ - at_) + (format_ == PlyFormat::Ascii ? 1 : 0);
+        if (count > left / least) {
+            throw fault(fmt::format("{} {} do not fit into the {} bytes that are left", count, what, end_ - at_));
+        }
+    }
+
+    double value(PlyType type) {
+        switch (format_) {
+        case PlyFormat::Ascii:
+            return text_value(type);
+        case PlyFormat::LittleEndian:
+            return binary_value<false>(type);
+        case PlyFormat::BigEndian:
+            return binary_value<true>(type);
+        }
+        return 0;
+    }
+
+    /// Count of a list, checked against what is left.
+    uint64_t list_count(const PlyProperty& property) {
+        const double count = value(property.count_type);
+        if (!(count >= 0 && count < 0x1p32)) throw fault("a list's count is not within 0 and 2^32 - 1");
+        const auto whole = static_cast<uint64_t>(count);
+        expect(whole, least_size(property.type), "entries of a list");
+        return whole;
+    }
+
+    void skip(const PlyProperty& property) {
+        uint64_t values = property.is_list ? list_count(property) : 1;
+        if (format_ != PlyFormat::Ascii) {
+            if (!property.is_list) expect(1, size_of(property.type), "values");
+            at_ += values * size_of(property.type);
+            return;
+        }
+        for (; values > 0; --values) word();
+    }
+
+    /// Leaves out what is left of an element's line, in a text whose elements have a line each.
+    void end_element() {
+        if (!has_lines_) return;
+        while (at_ != end_ && (*at_ == ' ' || *at_ == '\t')) ++at_;
+        if (at_ == end_ || *at_ == '\n' || *at_ == '\r') return;
+        if (long_lines_++ == 0) first_long_line_ = place();
+        while (at_ != end_ && *at_ != '\n' && *at_ != '\r') ++at_;
+    }
+    void warn_of_long_lines(Messages& messages) const {
+        if (long_lines_ == 0) return;
+        messages.leave_out(fmt::format("{}:{}: {} with more numbers than the header says: the rest left out", file_,
+                                       first_long_line_, counted(long_lines_, "line")));
+    }
+
+private:
+    /// There are as many lines with something on them as there are elements, or more where lists are broken.
+    void find_lines(const PlyHeader& header) {
+        if (format_ != PlyFormat::Ascii) return;
+        uint64_t elements = 0, lines = 0;
+        for (const PlyElement& element : header.elements) {
+            if (!element.properties.empty()) elements += element.count;
+        }
+        bool is_blank = true;
+        for (const char* c = at_; c != end_; ++c) {
+            const bool is_end = *c == '\n' || *c == '\r';
+            if (!is_end && *c != ' ' && *c != '\t' && is_blank) ++lines;
+            is_blank = is_end || (is_blank && (*c == ' ' || *c == '\t'));
+        }
+        has_lines_ = lines >= elements;
+    }
+
+    /// The line in a text, the byte in a binary file.
+    std::string place() const {
+        if (format_ != PlyFormat::Ascii) return fmt::format(" byte {}", at_ - begin_);
+        std::size_t lines = 1;
+        for (const char* c = begin_; c != at_; ++c) {
+            lines += *c == '\n' || (*c == '\r' && c + 1 != end_ && c[1] != '\n');
+        }
+        return std::to_string(lines);
+    }
+
+    std::string_view word() {
+        const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+        while (at_ != end_ && is_space(*at_)) ++at_;
+        const char* begin = at_;
+        while (at_ != end_ && !is_space(*at_)) ++at_;
+        if (begin == at_) throw fault("the file ends here");
+        return {begin, static_cast<std::size_t>(at_ - begin)};
+    }
+
+    double text_value(PlyType type) {
+        const std::string_view text = word();
+        std::string_view rest = text;
+        if (type == PlyType::Float32 || type == PlyType::Float64) {
+            const std::optional<double> number = parse_float<double>(rest);
+            if (number && rest.empty()) return *number;
+        } else {
+            int64_t number = 0;
+            const auto [after, ec] = std::from_chars(text.data(), text.data() + text.size(), number);
+            if (ec == std::errc{} && after == text.data() + text.size()) return static_cast<double>(number);
+        }
+        throw fault(fmt::format("\"{}\" is not a number of the property's type", text.substr(0, 40)));
+    }
+
+    template <class T, bool big_endian>
+    double load() {
+        if (static_cast<std::size_t>(end_ - at_) < sizeof(T)) throw fault("the file ends here");
+        std::array<char, sizeof(T)> bytes;
+        std::memcpy(bytes.data(), at_, sizeof(T));
+        if constexpr (big_endian) std::reverse(bytes.begin(), bytes.end());
+        at_ += sizeof(T);
+        return static_cast<double>(std::bit_cast<T>(bytes));
+    }
+
+    template <bool big_endian>
+    double binary_value(PlyType type) {
+        static_assert(std::endian::native == std::endian::little);
+        switch (type) {
+        case PlyType::Int8:
+            return load<int8_t, big_endian>();
+        case PlyType::UInt8:
+            return load<uint8_t, big_endian>();
+        case PlyType::Int16:
+            return load<int16_t, big_endian>();
+        case PlyType::UInt16:
+            return load<uint16_t, big_endian>();
+        case PlyType::Int32:
+            return load<int32_t, big_endian>();
+        case PlyType::UInt32:
+            return load<uint32_t, big_endian>();
+        case PlyType::Float32:
+            return load<float, big_endian>();
+        case PlyType::Float64:
+            return load<double, big_endian>();
+        }
+        return 0;
+    }
+
+    const char* begin_;
+    const char* at_;
+    const char* end_;
+    PlyFormat format_;
+    const std::string& file_;
+    std::string element_ = "header";
+    uint64_t number_ = 0;
+    bool has_lines_ = false;
+    uint64_t long_lines_ = 0;
+    std::string first_long_line_;
+};
+
+} // namespace pertev

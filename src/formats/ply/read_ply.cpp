@@ -1,0 +1,401 @@
+#include "formats/ply/read_ply.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "base/message_text.h"
+#include "base/read_file.h"
+#include "formats/files/load_textures.h"
+#include "formats/mesh/move_positions.h"
+#include "formats/mesh/triangulate_polygon.h"
+#include "formats/mesh/vertex_colors.h"
+#include "formats/ply/ply_body.h"
+#include "formats/ply/ply_header.h"
+#include "formats/ply/ply_slots.h"
+#include "formats/ply/ply_textures.h"
+#include "image/srgb.h"
+#include "scene/position_bounds.h"
+#include "scene/scene_origin.h"
+
+namespace fs = std::filesystem;
+
+namespace pertev {
+namespace {
+
+bool is_float(PlyType type) { return type == PlyType::Float32 || type == PlyType::Float64; }
+
+/// Colour channel of a file's type to [0, 1], linear; a float one as it stands.
+float colour(double value, PlyType type, bool is_alpha) {
+    if (is_float(type)) return static_cast<float>(value);
+    const double full = type == PlyType::UInt16 ? 65535.0 : 255.0;
+    const float encoded = static_cast<float>(value / full);
+    return is_alpha ? encoded : srgb_decode(encoded);
+}
+
+class Reader {
+public:
+    Reader(std::span<const std::byte> bytes, const PlyHeader& header, const std::string& file)
+        : body_(bytes, header, file), header_(header), file_(file) {
+        for (const PlyElement& element : header.elements) {
+            if (element.name == "vertex") vertex_count_ = std::min<uint64_t>(element.count, 0xffffffffu);
+        }
+    }
+
+    /// Round what the faces name, in the coordinates of the file: origin_for() it has been taken off the mesh.
+    const DoubleBounds3& box() const { return box_; }
+
+    /// The file's mesh. Its faces are those of sizes() and of_faces().
+    Mesh run(Messages& messages) {
+        if (std::none_of(header_.elements.begin(), header_.elements.end(), is_surface)) {
+            throw Error(ErrorCode::BadInput, file_ +
+                                                 ": no faces: a cloud of points, or nothing; a surface has an element "
+                                                 "face with a list vertex_indices");
+        }
+        for (const PlyElement& element : header_.elements) {
+            body_.set_place(element.name, 0);
+            if (element.properties.empty() && element.name != "vertex") continue; // takes no bytes, whatever its count
+            std::size_t least = 0;
+            for (const PlyProperty& p : element.properties)
+                least += body_.least_size(p.is_list ? p.count_type : p.type);
+            try {
+                const bool may_be_cut_off = element.name == "face" || element.name == "tristrips";
+                if (!may_be_cut_off) body_.expect(element.count, std::max<std::size_t>(least, 1), "elements");
+                if (element.name == "vertex") {
+                    vertices(element);
+                } else {
+                    lists(element);
+                }
+            } catch (const Error& error) {
+                const bool has_faces = !mesh_.positions.empty() && !sizes_.empty();
+                if (error.code() != ErrorCode::BadInput || element.name == "vertex" || !has_faces) throw;
+                if (!of_faces_.textures.empty())
+                    sizes_.resize(of_faces_.textures.size()); // the last may lack its texture
+                corners_.resize(std::accumulate(sizes_.begin(), sizes_.end(), std::size_t(0)));
+                messages.leave_out(fmt::format("{}; what follows is left out", error.what()));
+                break;
+            }
+        }
+        move_to_origin();
+        if (has_float_colors_) decode_vertex_colors(mesh_.colors, file_, messages);
+        if (!of_faces_.textures.empty() && of_faces_.textures.size() != sizes_.size()) {
+            messages.leave_out(file_ + ": textures of faces beside triangle strips are left out");
+            of_faces_ = {};
+        }
+        if (!of_faces_.uvs.empty()) split_vertices(of_faces_.uvs, corners_, mesh_);
+        triangulate();
+        warn_of_face_properties(messages);
+        body_.warn_of_long_lines(messages);
+        if (bad_indices_ > 0) {
+            messages.leave_out(fmt::format(
+                "{}; what {} left out", first_bad_index_,
+                bad_indices_ == 1 ? "has that corner is" : fmt::format("has such a corner, of {}, is", bad_indices_)));
+        }
+        if (bad_textures_ > 0) {
+            messages.leave_out(fmt::format("{}: {} of a texture that is not in the header {} without it", file_,
+                                           counted(bad_textures_, "face"), is_or_are(bad_textures_)));
+        }
+        if (strays_ > 0) {
+            messages.leave_out(fmt::format("{}: {} of fewer than three corners {} left out", file_,
+                                           counted(strays_, "face"), is_or_are(strays_)));
+        }
+        return std::move(mesh_);
+    }
+    const std::vector<uint32_t>& sizes() const { return sizes_; }
+    const PlyFaceTextures& of_faces() const { return of_faces_; }
+
+private:
+    static bool is_face_uv(const PlyProperty& p) {
+        return p.is_list && (p.name == "texcoord" || p.name == "texture_uv" || p.name == "texcoords");
+    }
+    static bool is_indices(const PlyProperty& p) {
+        return p.is_list && (p.name == "vertex_indices" || p.name == "vertex_index");
+    }
+    static bool is_surface(const PlyElement& element) {
+        return (element.name == "face" || element.name == "tristrips") && element.count > 0 &&
+               std::any_of(element.properties.begin(), element.properties.end(), is_indices);
+    }
+
+    void warn_of_face_properties(Messages& messages) const {
+        for (const PlyElement& element : header_.elements) {
+            if (element.name != "face" || element.count == 0) continue;
+            bool has_colour = false, has_uv = false;
+            for (const PlyProperty& p : element.properties) {
+                const std::size_t slot = p.is_list ? kSlots : ply_slot_of(p.name);
+                has_colour |= slot == kRed || slot == kGreen || slot == kBlue;
+                has_uv |= is_face_uv(p) && header_.textures.empty();
+            }
+            if (has_colour) messages.leave_out(file_ + ": colours of faces are left out; those of vertices are read");
+            if (has_uv)
+                messages.leave_out(file_ +
+                                   ": texture coordinates of faces are left out: no comment TextureFile has a texture");
+        }
+    }
+
+    using VertexValues = std::array<double, kSlots + 1>; // by slot
+
+    /// What reads the vertices once more.
+    struct VertexReader {
+        PlyBody body; // at the first of them
+        const PlyElement& element;
+        std::vector<std::size_t> slots; // of its properties
+    };
+
+    static void read_values(PlyBody& body, const PlyElement& element, const std::vector<std::size_t>& slots,
+                            VertexValues& values) {
+        for (std::size_t k = 0; k < slots.size(); ++k) {
+            if (slots[k] == kSlots) {
+                body.skip(element.properties[k]);
+            } else {
+                values[slots[k]] = body.value(element.properties[k].type);
+            }
+        }
+    }
+
+    void vertices(const PlyElement& element) {
+        if (element.count > std::numeric_limits<uint32_t>::max()) {
+            throw Error(ErrorCode::OverLimit, fmt::format("{}: more than 2^32 - 1 vertices", file_));
+        }
+        std::vector<std::size_t> slots;
+        std::array<bool, kSlots + 1> has = {};
+        std::array<PlyType, kSlots + 1> types = {};
+        for (const PlyProperty& p : element.properties) {
+            // The first of a name counts: `s` and `u` may both be there.
+            std::size_t slot = p.is_list ? kSlots : ply_slot_of(p.name);
+            if (has[slot]) slot = kSlots;
+            slots.push_back(slot);
+            has[slot] = true;
+            types[slot] = p.type;
+        }
+        if (!has[kX] || !has[kY] || !has[kZ]) throw body_.fault("a vertex needs the properties x, y and z");
+        const bool has_normal = has[kNormalX] && has[kNormalY] && has[kNormalZ];
+        const bool has_colour = has[kRed] && has[kGreen] && has[kBlue], has_uv = has[kU] && has[kV];
+        const auto count = static_cast<std::size_t>(element.count);
+        mesh_.positions.resize(count);
+        vertices_.emplace(VertexReader{body_, element, slots});
+        if (has_normal) mesh_.normals.resize(count);
+        if (has_colour) mesh_.colors.resize(count);
+        if (has_uv) mesh_.uv[0].resize(count);
+        has_float_colors_ = has_colour && is_float(types[kRed]) && is_float(types[kGreen]) && is_float(types[kBlue]);
+
+        VertexValues values = {};
+        values[kAlpha] = 1;
+        const auto number = [&](PlySlot slot) { return static_cast<float>(values[slot]); };
+        const auto channel = [&](PlySlot slot) { return colour(values[slot], types[slot], slot == kAlpha); };
+        for (std::size_t i = 0; i < count; ++i) {
+            body_.set_number(i);
+            read_values(body_, element, slots, values);
+            mesh_.positions[i] = {number(kX), number(kY), number(kZ)};
+            if (has_normal) mesh_.normals[i] = {number(kNormalX), number(kNormalY), number(kNormalZ)};
+            if (has_colour) {
+                mesh_.colors[i] = {channel(kRed), channel(kGreen), channel(kBlue),
+                                   has[kAlpha] ? channel(kAlpha) : 1.0f};
+            }
+            if (has_uv) mesh_.uv[0][i] = {number(kU), 1 - number(kV)};
+            body_.end_element();
+        }
+    }
+
+    /// Faces and triangle strips; every other element is skipped.
+    void lists(const PlyElement& element) {
+        const bool is_face = element.name == "face", is_strip = element.name == "tristrips";
+        const bool has_textures = is_face && !header_.textures.empty();
+        const bool has_uv = has_textures && std::ranges::any_of(element.properties, is_face_uv);
+        const bool has_numbers = has_textures && std::ranges::any_of(element.properties, is_texture_number);
+        for (uint64_t i = 0; i < element.count; ++i) {
+            body_.set_number(i);
+            bool taken = false;
+            uint64_t corners = 0;
+            face_uvs_.clear();
+            double texture = 0;
+            for (const PlyProperty& p : element.properties) {
+                if ((is_face || is_strip) && !taken && is_indices(p)) {
+                    taken = true;
+                    corners = is_face ? face(p) : strip(p);
+                } else if (has_uv && is_face_uv(p)) {
+                    face_uv(p);
+                } else if (has_numbers && is_texture_number(p)) {
+                    texture = body_.value(p.type);
+                } else {
+                    body_.skip(p);
+                }
+            }
+            body_.end_element();
+            if (corners >= 3 && has_uv) add_face_uvs(corners, texture);
+            if (corners >= 3 && (has_uv || has_numbers)) of_faces_.textures.push_back(texture_of(texture));
+        }
+    }
+
+    static bool is_texture_number(const PlyProperty& p) { return !p.is_list && p.name == "texnumber"; }
+
+    void face_uv(const PlyProperty& property) {
+        const uint64_t count = body_.list_count(property);
+        for (uint64_t i = 0; i < count; ++i) face_uvs_.push_back(static_cast<float>(body_.value(property.type)));
+    }
+
+    /// A face without a pair of coordinates for each of its corners has no texture.
+    void add_face_uvs(uint64_t corners, double& texture) {
+        const bool is_whole = face_uvs_.size() == 2 * corners;
+        if (!is_whole) texture = kNoPlyTexture;
+        for (std::size_t k = 0; k < corners; ++k) {
+            of_faces_.uvs.push_back(is_whole ? Vec2{face_uvs_[2 * k], 1 - face_uvs_[2 * k + 1]} : Vec2{});
+        }
+    }
+
+    int32_t texture_of(double number) {
+        if (number == kNoPlyTexture) return kNoPlyTexture;
+        for (std::size_t i = 0; i < header_.textures.size(); ++i) {
+            if (number == static_cast<double>(i)) return static_cast<int32_t>(i);
+        }
+        ++bad_textures_;
+        return kNoPlyTexture;
+    }
+
+    /// Returns nothing, which counts as a fault, for a value that is no vertex.
+    std::optional<uint32_t> vertex_of(double value) {
+        if (value >= 0 && value < static_cast<double>(vertex_count_) && value == static_cast<uint32_t>(value)) {
+            return static_cast<uint32_t>(value);
+        }
+        if (bad_indices_++ == 0) {
+            first_bad_index_ =
+                body_
+                    .fault(fmt::format("vertex index {} is out of range; there are {} vertices, counted from 0", value,
+                                       vertex_count_))
+                    .what();
+        }
+        return std::nullopt;
+    }
+
+    /// Returns the number of corners, 0 of a face that is left out.
+    uint64_t face(const PlyProperty& property) {
+        const uint64_t count = body_.list_count(property);
+        if (count < 3) ++strays_;
+        const std::size_t before = corners_.size();
+        for (uint64_t i = 0; i < count; ++i) {
+            const std::optional<uint32_t> corner = vertex_of(body_.value(property.type));
+            if (corner && count >= 3) corners_.push_back(*corner);
+        }
+        if (count >= 3 && corners_.size() - before == count) {
+            sizes_.push_back(static_cast<uint32_t>(count));
+        } else {
+            corners_.resize(before);
+        }
+        return corners_.size() - before;
+    }
+
+    /// Returns 0: strips have no textures.
+    uint64_t strip(const PlyProperty& property) {
+        const uint64_t count = body_.list_count(property);
+        uint32_t before[2] = {};
+        uint64_t length = 0; // since the strip began; -1 begins a new one
+        for (uint64_t i = 0; i < count; ++i) {
+            const double value = body_.value(property.type);
+            if (value == -1) {
+                length = 0;
+                continue;
+            }
+            const std::optional<uint32_t> vertex = vertex_of(value);
+            if (!vertex) {
+                length = 0;
+                continue;
+            }
+            const uint32_t corner = *vertex;
+            if (length >= 2) {
+                const bool is_odd = length % 2 != 0;
+                corners_.insert(corners_.end(), {before[is_odd ? 1 : 0], before[is_odd ? 0 : 1], corner});
+                sizes_.push_back(3);
+            }
+            before[0] = before[1];
+            before[1] = corner;
+            ++length;
+        }
+        return 0;
+    }
+
+    /// Takes off in double what lies between the file's origin and the faces.
+    void move_to_origin() {
+        Bounds3 sample;
+        for (std::size_t i = 0; i < corners_.size(); i += kCornersApart) sample.extend(mesh_.positions[corners_[i]]);
+        if (surely_stays(sample)) return;
+        box_ = double_box_of(bounds_of(mesh_.positions, corners_));
+        if (origin_for(box_) == DoubleVec3{0, 0, 0}) return;
+        std::vector<DoubleVec3> exact; // they are read once more, so that other files are read no slower
+        exact.reserve(mesh_.positions.size());
+        VertexValues values = {};
+        while (exact.size() < mesh_.positions.size()) {
+            read_values(vertices_->body, vertices_->element, vertices_->slots, values);
+            exact.push_back({values[kX], values[kY], values[kZ]});
+            vertices_->body.end_element();
+        }
+        box_ = move_positions(box_, exact, mesh_.positions, [&] { return bounds_of(mesh_.positions, corners_); });
+    }
+
+    void triangulate() {
+        std::size_t triangles = 0;
+        for (const uint32_t size : sizes_) triangles += size - 2;
+        if (triangles > kMaxTrianglesPerMesh) {
+            throw Error(ErrorCode::OverLimit,
+                        fmt::format("{}: {} triangles; a mesh has at most {}", file_, triangles, kMaxTrianglesPerMesh));
+        }
+        if (triangles == sizes_.size()) {
+            mesh_.indices = std::move(corners_);
+            return;
+        }
+        mesh_.indices.reserve(3 * triangles);
+        std::vector<Vec3> polygon;
+        std::vector<uint32_t> cut;
+        const uint32_t* corners = corners_.data();
+        for (const uint32_t size : sizes_) {
+            polygon.clear();
+            cut.clear();
+            for (uint32_t i = 0; i < size; ++i) polygon.push_back(mesh_.positions[corners[i]]);
+            triangulate_polygon(polygon, cut);
+            for (const uint32_t i : cut) mesh_.indices.push_back(corners[i]);
+            corners += size;
+        }
+    }
+
+    PlyBody body_;
+    const PlyHeader& header_;
+    const std::string& file_;
+    uint64_t vertex_count_ = 0; // as declared: faces may stand before the vertices
+    Mesh mesh_;
+    std::optional<VertexReader> vertices_;
+    DoubleBounds3 box_;
+    std::vector<uint32_t> corners_, sizes_; // of the faces, one after the other
+    PlyFaceTextures of_faces_;
+    std::vector<float> face_uvs_; // of the face that is read
+    bool has_float_colors_ = false;
+    uint64_t strays_ = 0, bad_indices_ = 0, bad_textures_ = 0;
+    std::string first_bad_index_;
+};
+
+} // namespace
+
+Scene read_ply(const fs::path& path, const FileAccess& access, const ReadOptions& options, Messages& messages) {
+    const std::string file = path.string();
+    const std::vector<std::byte> bytes = read_file(path);
+    PlyHeader header = parse_ply_header(bytes, file);
+    if (header.unknown_line > 0) {
+        messages.warn(fmt::format("{}:{}: a header line that is not understood is taken as a comment", file,
+                                  header.unknown_line));
+    }
+    if (options.geometry_only) header.textures.clear();
+    Reader reader(bytes, header, file);
+    Mesh mesh = reader.run(messages);
+    mesh.name = path.stem().string();
+    if (options.geometry_only) mesh.colors.clear();
+    TextureLoader loader(access, messages);
+    Scene scene = make_ply_scene(std::move(mesh), reader.sizes(), reader.of_faces(), header, file, loader, messages);
+    set_origin(reader.box(), scene);
+    return scene;
+}
+
+} // namespace pertev

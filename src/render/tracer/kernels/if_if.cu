@@ -1,8 +1,0 @@
-#include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/binary/if_if_walk.h"
-
-namespace pertev {
-
-void add_if_if_kernels(std::vector<WalkKernel>& rows) { add_all_kernels<IfIfWalk>(WalkKind::IfIf, rows); }
-
-} // namespace pertev

@@ -1,8 +1,0 @@
-#include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/cells/kd_tree_walk.h"
-
-namespace pertev {
-
-void add_kd_tree_kernels(std::vector<WalkKernel>& rows) { add_all_kernels<KdTreeWalk>(WalkKind::Kd, rows); }
-
-} // namespace pertev

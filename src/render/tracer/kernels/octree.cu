@@ -1,8 +1,0 @@
-#include "render/tracer/kernels/walk_kernels_body.h"
-#include "trace/cells/octree_walk.h"
-
-namespace pertev {
-
-void add_octree_kernels(std::vector<WalkKernel>& rows) { add_all_kernels<OctreeWalk>(WalkKind::Octree, rows); }
-
-} // namespace pertev

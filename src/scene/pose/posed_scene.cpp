@@ -1,0 +1,299 @@
+#include "scene/pose/posed_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/message_text.h"
+#include "math/double_vec3.h"
+#include "math/portable_math.h"
+#include "scene/pose/sample_channel.h"
+#include "scene/scene_origin.h"
+#include "scene/shape_mesh.h"
+#include "scene/validate/validate_nodes.h"
+
+namespace pertev {
+namespace {
+
+// Splines may lead out of the range.
+constexpr float kLeastFov = 0x1p-12f;    // radians
+constexpr float kLeastLength = 0x1p-20f; // metres
+
+std::vector<uint32_t> numbers_of(const std::vector<bool>& flags) {
+    std::vector<uint32_t> numbers;
+    for (uint32_t i = 0; i < flags.size(); ++i) {
+        if (flags[i]) numbers.push_back(i);
+    }
+    return numbers;
+}
+
+/// Zeros of two signs are two, as what is computed from them may be.
+template <class T>
+bool same_bits(const T& a, const T& b) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+
+} // namespace
+
+PosedScene::PosedScene(Scene rest, bool leaves_vertices)
+    : scene_(std::move(rest)), cameras_at_rest_(scene_.cameras), lights_at_rest_(scene_.lights),
+      parents_first_(parents_first(scene_.nodes)), node_moves_(moving_nodes(scene_)), instance_moves_(may_move(scene_)),
+      places_(places_of(scene_.nodes, parents_first_)),
+      world_from_node_(world_from_nodes(places_, scene_.origin_in_file)), cameras_(scene_.cameras),
+      lights_(scene_.lights), leaves_vertices_(leaves_vertices), moved_(scene_.instances.size()),
+      deformed_(scene_.meshes.size()), replaced_(scene_.meshes.size()) {
+    for (const Node& node : scene_.nodes) {
+        const NodePose* pose = std::get_if<NodePose>(&node.pose);
+        node_poses_.push_back(pose == nullptr ? NodePose{} : *pose);
+        morph_weights_.push_back(node.morph_weights);
+    }
+    drop_shapes_at_rest();
+    for (std::size_t i = 0; i < scene_.shapes.size(); ++i) at_rest_.push_back(wanted(i));
+    poses_ = on_host_ = at_rest_;
+    find_shapes_to_leave();
+    if (!is_animated()) return;
+    for (const Mesh& mesh : scene_.meshes) bounds_.push_back(bounds_of(mesh));
+}
+
+/// Those of meshes that no animation changes: they have done what they are for.
+void PosedScene::drop_shapes_at_rest() {
+    std::vector<bool> moves(scene_.meshes.size());
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        if (instance_moves_[i]) moves[scene_.instances[i].mesh] = true;
+    }
+    std::erase_if(scene_.shapes, [&](const MeshShape& shape) { return !moves[shape.mesh]; });
+}
+
+/// Meshes that give no light, of which every instance may move: the others are the lights' and the baked tree's too. At
+/// rest their triangles are wound as at the times at which no joint mirrors.
+void PosedScene::find_shapes_to_leave() {
+    std::vector<bool> stays(scene_.meshes.size());
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        const Instance& instance = scene_.instances[i];
+        if (scene_.materials[instance.material].is_emissive() || !instance_moves_[i]) stays[instance.mesh] = true;
+    }
+    for (const MeshShape& shape : scene_.shapes)
+        may_be_left_.push_back(leaves_vertices_ && !stays[shape.mesh] && !shape.is_turned_over);
+}
+
+bool PosedScene::is_animated() const {
+    return std::ranges::any_of(scene_.animations, [](const Animation& a) { return !a.channels.empty(); });
+}
+
+SceneUpdate PosedScene::set_time(double time_s) {
+    if (!std::isfinite(time_s)) {
+        throw Error(ErrorCode::BadInput, fmt::format("time {}: expected seconds, a finite number", time_s));
+    }
+    if (!is_animated()) return {};
+    read_channels(time_s);
+    place_nodes();
+    place_instances();
+    shape_meshes();
+    check_places(time_s);
+    place_cameras();
+    place_lights();
+    return take_changes();
+}
+
+PosedScene::Places PosedScene::places_at(double time_s) {
+    const auto node_poses = node_poses_;
+    const auto morph_weights = morph_weights_;
+    const auto node_places = places_;
+    const auto world_from_node = world_from_node_;
+    const auto cameras = cameras_, placed_cameras = scene_.cameras;
+    const auto lights = lights_;
+    read_channels(time_s);
+    place_nodes();
+    place_cameras();
+    Places places = {std::vector<std::optional<Transform>>(scene_.instances.size()), scene_.cameras};
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        const Instance& instance = scene_.instances[i];
+        if (!instance_moves_[i] || scene_.nodes[instance.node].skin != kNoSkin) continue;
+        const Transform world = placed_in(places_[instance.node], instance.node_from_local, scene_.origin_in_file);
+        if (!is_singular(world)) places.instances[i] = world;
+    }
+    node_poses_ = node_poses;
+    morph_weights_ = morph_weights;
+    places_ = node_places;
+    world_from_node_ = world_from_node;
+    cameras_ = cameras;
+    scene_.cameras = placed_cameras;
+    lights_ = lights;
+    return places;
+}
+
+void PosedScene::read_channels(double time_s) {
+    const bool is_moved = !(scene_.origin_in_file == DoubleVec3{0, 0, 0});
+    for (const Animation& animation : scene_.animations) {
+        for (const AnimationChannel& channel : animation.channels) {
+            value_.resize(numbers_in_value(channel, scene_));
+            sample_channel(channel, time_s, value_);
+            const std::vector<float>& v = value_;
+            switch (channel.part) {
+            case AnimatedPart::Translation:
+                node_poses_[channel.target].translation =
+                    is_moved ? sample_translation(channel, time_s) : to_double(Vec3{v[0], v[1], v[2]});
+                break;
+            case AnimatedPart::Rotation:
+                std::ranges::copy(v, node_poses_[channel.target].rotation.begin());
+                break;
+            case AnimatedPart::Scale:
+                node_poses_[channel.target].scale = to_double(Vec3{v[0], v[1], v[2]});
+                break;
+            case AnimatedPart::Weights:
+                morph_weights_[channel.target] = v;
+                break;
+            case AnimatedPart::CameraFov:
+                cameras_[channel.target].fov_y = clamp(v[0], kLeastFov, kPi - kLeastFov);
+                break;
+            case AnimatedPart::CameraHeight:
+                cameras_[channel.target].ortho_height = max(abs(v[0]), kLeastLength);
+                break;
+            case AnimatedPart::LightIntensity:
+                lights_[channel.target].intensity = {max(0.0f, v[0]), max(0.0f, v[1]), max(0.0f, v[2])};
+                break;
+            case AnimatedPart::LightRange:
+                lights_[channel.target].range = max(v[0], kLeastLength);
+                break;
+            case AnimatedPart::LightInnerCone:
+                lights_[channel.target].cos_inner = cos(clamp(v[0], 0.0f, kPi / 2));
+                break;
+            case AnimatedPart::LightOuterCone:
+                lights_[channel.target].cos_outer = cos(clamp(v[0], 0.0f, kPi / 2));
+                break;
+            }
+        }
+    }
+}
+
+void PosedScene::place_nodes() {
+    for (const uint32_t node : parents_first_) {
+        if (!node_moves_[node]) continue; // stands as at rest
+        const DoubleTransform* matrix = std::get_if<DoubleTransform>(&scene_.nodes[node].pose);
+        const NodePlace local = matrix == nullptr ? place_of(node_poses_[node]) : place_of(*matrix);
+        const uint32_t parent = scene_.nodes[node].parent;
+        places_[node] = parent == kNoNode ? local : compose(places_[parent], local);
+        world_from_node_[node] = world_from_node(places_[node], scene_.origin_in_file);
+    }
+}
+
+MeshPose PosedScene::wanted(std::size_t index) const {
+    const MeshShape& shape = scene_.shapes[index];
+    MeshPose pose;
+    if (shape.node != kNoNode) pose.morph_weights = morph_weights_[shape.node];
+    if (shape.skin != kNoSkin) pose.joints = joint_transforms(scene_.skins[shape.skin], world_from_node_);
+    return pose;
+}
+
+void PosedScene::shape_meshes() {
+    if (scene_.shapes.empty()) return;
+    std::vector<bool> is_baked(scene_.meshes.size());
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        const Instance& instance = scene_.instances[i];
+        if (instance_moves_[i] && !instance.is_hidden && is_skewed(instance.world_from_local))
+            is_baked[instance.mesh] = true;
+    }
+    const auto mirrors = [](const Transform& joint) { return is_mirroring(joint); };
+    for (std::size_t i = 0; i < scene_.shapes.size(); ++i) {
+        MeshPose pose = wanted(i);
+        const bool is_left =
+            may_be_left_[i] && !is_baked[scene_.shapes[i].mesh] && std::ranges::none_of(pose.joints, mirrors);
+        const MeshPose& here = is_left ? at_rest_[i] : pose;
+        if (!same_pose(here, on_host_[i])) {
+            MeshShape& shape = scene_.shapes[i];
+            Mesh& mesh = scene_.meshes[shape.mesh];
+            on_host_[i] = here;
+            const bool is_wound_anew = shape_mesh(shape, here.morph_weights, here.joints, mesh);
+            (is_wound_anew ? replaced_ : deformed_)[shape.mesh] = true;
+            bounds_[shape.mesh] = bounds_of(mesh);
+        }
+        pose.is_on_host = !is_left;
+        if (same_pose(pose, poses_[i])) continue;
+        poses_[i] = std::move(pose);
+        poses_changed_ = true;
+    }
+}
+
+void PosedScene::place_instances() {
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        Instance& instance = scene_.instances[i];
+        if (!instance_moves_[i] || scene_.nodes[instance.node].skin != kNoSkin) continue;
+        const Transform world = placed_in(places_[instance.node], instance.node_from_local, scene_.origin_in_file);
+        const bool is_hidden = is_singular(world);
+        const Transform place = is_hidden ? Transform() : world;
+        if (!same_bits(place, instance.world_from_local) || is_hidden != instance.is_hidden) moved_[i] = true;
+        instance.world_from_local = place;
+        instance.is_hidden = is_hidden;
+    }
+}
+
+void PosedScene::check_places(double time_s) const {
+    std::vector<bool> is_left(scene_.meshes.size());
+    for (std::size_t i = 0; i < poses_.size(); ++i) is_left[scene_.shapes[i].mesh] = !poses_[i].is_on_host;
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        const Instance& instance = scene_.instances[i];
+        if (!instance_moves_[i] || instance.is_hidden || is_left[instance.mesh]) continue;
+        const Bounds3& local = bounds_[instance.mesh];
+        if (local.is_empty() || lies_near(instance.world_from_local, local)) continue;
+        throw Error(ErrorCode::OverLimit,
+                    fmt::format("{} lies further out than 2^40 metres at {} s; scale the scene down",
+                                numbered("instance", i, instance.name, origin_of(instance)), time_s));
+    }
+}
+
+void PosedScene::place_cameras() {
+    for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
+        Camera& camera = scene_.cameras[i];
+        camera.fov_y = cameras_[i].fov_y;
+        camera.ortho_height = cameras_[i].ortho_height;
+        if (camera.node == kNoNode || !node_moves_[camera.node]) continue;
+        const std::optional<Transform> rigid = without_scale(world_from_node_[camera.node]);
+        const bool stands = rigid && lies_near(*rigid, Bounds3{{0, 0, 0}, {0, 0, 0}});
+        camera.world_from_camera = stands ? *rigid : cameras_at_rest_[i].world_from_camera;
+        camera.world_from_camera.translation = told_in_file(scene_, camera.world_from_camera.translation);
+    }
+}
+
+void PosedScene::place_lights() {
+    for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+        const Light& rest = lights_at_rest_[i];
+        Light light = rest;
+        light.intensity = lights_[i].intensity;
+        light.range = lights_[i].range;
+        light.cos_inner = lights_[i].cos_inner;
+        light.cos_outer = min(lights_[i].cos_outer, light.cos_inner - kSharpestEdge);
+        if (light.node != kNoNode && node_moves_[light.node]) {
+            bool stands = place_light(world_from_node_[light.node], light);
+            light.direction = normalize_safely(light.direction);
+            stands = stands && lies_near(make_translation(light.position), Bounds3{{0, 0, 0}, {0, 0, 0}});
+            if (!stands) {
+                light = rest;
+                light.intensity = {0, 0, 0};
+            }
+        }
+        Light& now = scene_.lights[i];
+        const bool stays = same_bits(light.position, now.position) && same_bits(light.direction, now.direction);
+        const bool shines_alike = same_bits(light.intensity, now.intensity) && same_bits(light.range, now.range) &&
+                                  same_bits(light.cos_inner, now.cos_inner) &&
+                                  same_bits(light.cos_outer, now.cos_outer);
+        if (stays && shines_alike) continue;
+        now = std::move(light);
+        lights_changed_ = true;
+    }
+}
+
+SceneUpdate PosedScene::take_changes() {
+    SceneUpdate update = {numbers_of(moved_), numbers_of(deformed_), numbers_of(replaced_), lights_changed_,
+                          poses_changed_};
+    for (std::vector<bool>* flags : {&moved_, &deformed_, &replaced_}) flags->assign(flags->size(), false);
+    lights_changed_ = poses_changed_ = false;
+    return update;
+}
+
+} // namespace pertev

@@ -1,0 +1,269 @@
+#include "scene/validate/validate.h"
+
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "base/message_text.h"
+#include "math/double_vec3.h"
+#include "scene/shape_mesh.h"
+#include "scene/tangents/make_tangents.h"
+#include "scene/validate/validate_materials.h"
+#include "scene/validate/validate_mesh.h"
+#include "scene/validate/validate_nodes.h"
+
+namespace pertev {
+namespace {
+
+constexpr const char* kTooFar = "lies further out than 2^40 metres";
+
+class Validator {
+public:
+    Validator(Scene& scene, const std::string& file, Messages& messages)
+        : scene_(scene), file_(file), messages_(messages) {}
+
+    void run() {
+        references();
+        validate_nodes(scene_, file_);
+        validate_materials(scene_, file_, messages_);
+        moves_ = may_move(scene_);
+        meshes();
+        report();
+        const std::size_t all = scene_.instances.size();
+        drop_empty_meshes();
+        const std::size_t with_triangles = scene_.instances.size();
+        drop_singular_instances();
+        if (scene_.instances.empty()) {
+            if (first_misplaced_.ends_with(kTooFar)) {
+                throw Error(ErrorCode::OverLimit, fmt::format("{}: {}; scale the scene down", file_, first_misplaced_));
+            }
+            if (!first_misplaced_.empty()) throw bad(first_misplaced_);
+            throw no_geometry(all - with_triangles, with_triangles);
+        }
+        for (std::size_t i = 0; i < scene_.cameras.size(); ++i) camera(i);
+        for (std::size_t i = 0; i < scene_.lights.size(); ++i) light(i);
+        make_tangents(scene_);
+    }
+
+private:
+    Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, fmt::format("{}: {}", file_, what)); }
+    Error too_far(const std::string& what) const {
+        return Error(ErrorCode::OverLimit, fmt::format("{}: {} {}; scale the scene down", file_, what, kTooFar));
+    }
+
+    Error no_geometry(std::size_t without_triangles, std::size_t singular) const {
+        std::vector<std::string> reasons;
+        if (without_triangles > 0) {
+            reasons.push_back(fmt::format("{} of meshes that lost all their triangles, the first of them {}; expected "
+                                          "triangles with an area and finite vertices",
+                                          counted(without_triangles, "instance"), first_empty_mesh_));
+        }
+        if (singular > 0) {
+            reasons.push_back(fmt::format("{} with a singular transform, the first of them {}; expected scales other "
+                                          "than 0",
+                                          counted(singular, "instance"), first_singular_));
+        }
+        if (reasons.empty()) reasons.push_back(scene_.no_instances.empty() ? "no mesh is placed" : scene_.no_instances);
+        return bad(fmt::format("no geometry, not one triangle to see: {}", fmt::join(reasons, "; ")));
+    }
+
+    static std::string place_of(std::size_t i, const Mesh& mesh) { return numbered("mesh", i, mesh.name, mesh.origin); }
+
+    static std::string place_of(std::size_t i, const Instance& instance) {
+        return numbered("instance", i, instance.name, origin_of(instance));
+    }
+
+    void references() const {
+        if (scene_.instances.size() > kMaxInstances) {
+            throw Error(ErrorCode::OverLimit, fmt::format("{}: {} instances; the limit is {}", file_,
+                                                          scene_.instances.size(), kMaxInstances));
+        }
+        for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+            const Instance& instance = scene_.instances[i];
+            if (instance.mesh >= scene_.meshes.size()) {
+                throw bad(fmt::format("{}: mesh {} is out of range; there are {}", place_of(i, instance), instance.mesh,
+                                      scene_.meshes.size()));
+            }
+            if (instance.material >= scene_.materials.size()) {
+                throw bad(fmt::format("{}: material {} is out of range; there are {}", place_of(i, instance),
+                                      instance.material, scene_.materials.size()));
+            }
+        }
+    }
+
+    void meshes() {
+        std::vector<bool> moves(scene_.meshes.size());
+        for (std::size_t i = 0; i < moves_.size(); ++i) {
+            if (moves_[i]) moves[scene_.instances[i].mesh] = true;
+        }
+        std::vector<MeshShape*> shapes(scene_.meshes.size());
+        for (MeshShape& shape : scene_.shapes) {
+            if (shape.mesh >= shapes.size() || (shape.node != kNoNode && shape.node >= scene_.nodes.size()) ||
+                (shape.skin != kNoSkin && shape.skin >= scene_.skins.size())) {
+                throw bad(fmt::format("what shapes mesh {}: its mesh, node or skin is out of range", shape.mesh));
+            }
+            shapes[shape.mesh] = &shape;
+        }
+        for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
+            Mesh& mesh = scene_.meshes[i];
+            const std::string of = fmt::format("{}: {}", file_, place_of(i, mesh));
+            MeshShape* shape = shapes[i];
+            repairs_ += repair_mesh(mesh, shape != nullptr && moves[i], of);
+            if (shape == nullptr) continue;
+            const std::size_t joints = shape->skin == kNoSkin ? 0 : scene_.skins[shape->skin].joints.size();
+            const MeshRepairs repairs = repair_shape(*shape, mesh, joints, of);
+            repairs_ += repairs;
+            if (repairs.normals + repairs.tangents > 0) shape_at_rest(scene_, {&shape, 1});
+        }
+    }
+
+    void report() {
+        const auto text = [&](uint64_t count, const char* thing, const char* which, const char* done) {
+            return fmt::format("{}: {} {} {} {}", file_, counted(count, thing), which, is_or_are(count), done);
+        };
+        const auto warn = [&](uint64_t count, const char* thing, const char* which, const char* done) {
+            if (count > 0) messages_.warn(text(count, thing, which, done));
+        };
+        if (repairs_.not_finite > 0) {
+            messages_.leave_out(text(repairs_.not_finite, "triangle", "with a vertex that is not finite", "left out"));
+        }
+        warn(repairs_.without_area, "triangle", "without area", "left out");
+        warn(repairs_.normals, "normal", "of length zero or not finite", "replaced by the surface's own");
+        warn(repairs_.tangents, "tangent", "of length zero or not finite", "replaced");
+        warn(repairs_.texture_coordinates, "texture coordinate", "that is not finite", "set to 0");
+        warn(repairs_.colors, "vertex colour", "outside [0, 1]", "clamped");
+    }
+
+    void drop_empty_meshes() {
+        constexpr uint32_t dropped = 0xffffffffu;
+        std::vector<uint32_t> renumbered(scene_.meshes.size(), dropped);
+        uint32_t kept = 0;
+        for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
+            if (scene_.meshes[i].indices.empty()) {
+                if (first_empty_mesh_.empty()) first_empty_mesh_ = place_of(i, scene_.meshes[i]);
+                continue;
+            }
+            if (kept != i) scene_.meshes[kept] = std::move(scene_.meshes[i]);
+            renumbered[i] = kept++;
+        }
+        scene_.meshes.resize(kept);
+        std::erase_if(scene_.instances, [&](const Instance& i) { return renumbered[i.mesh] == dropped; });
+        for (Instance& instance : scene_.instances) instance.mesh = renumbered[instance.mesh];
+        std::erase_if(scene_.shapes, [&](const MeshShape& shape) { return renumbered[shape.mesh] == dropped; });
+        for (MeshShape& shape : scene_.shapes) shape.mesh = renumbered[shape.mesh];
+        moves_ = may_move(scene_);
+    }
+
+    /// A scale of 0 is how glTF hides a node. What may move stays, hidden: at a time it may be there.
+    void drop_singular_instances() {
+        std::vector<Bounds3> bounds;
+        for (const Mesh& mesh : scene_.meshes) bounds.push_back(bounds_of(mesh));
+        std::size_t i = 0, dropped = 0;
+        std::erase_if(scene_.instances, [&](const Instance& instance) {
+            const std::size_t number = i++;
+            if (const std::string fault = fault_of_place(instance, bounds[instance.mesh]); !fault.empty()) {
+                const std::string what = fmt::format("{} {}", place_of(number, instance), fault);
+                if (first_misplaced_.empty()) first_misplaced_ = what;
+                messages_.leave_out(fmt::format("{}: {}; it is left out", file_, what));
+                return true;
+            }
+            const bool drops = is_singular(instance.world_from_local) && !moves_[number];
+            if (drops && dropped++ == 0) first_singular_ = place_of(number, instance);
+            if (drops && is_flat(instance.world_from_local)) {
+                messages_.leave_out(
+                    fmt::format("{}: {} is squeezed flat by its transform, such as by one scale of 0: it "
+                                "is left out",
+                                file_, place_of(number, instance)));
+            }
+            return drops;
+        });
+        for (Instance& instance : scene_.instances) {
+            if (!is_singular(instance.world_from_local)) continue;
+            instance.is_hidden = true;
+            instance.world_from_local = {};
+        }
+        if (dropped == 0) return;
+        messages_.warn(fmt::format("{}: {} with a singular transform, such as a scale of 0: hidden; the first is {}",
+                                   file_, counted(dropped, "instance"), first_singular_));
+    }
+
+    /// Whether a surface would be left of what is placed so.
+    static bool is_flat(const Transform& m) {
+        const Vec3 a = column(m, 0), b = column(m, 1), c = column(m, 2);
+        return max_component(abs(cross(a, b)) + abs(cross(b, c)) + abs(cross(c, a))) > 0;
+    }
+
+    /// Empty where it can be placed so.
+    static std::string fault_of_place(const Instance& instance, const Bounds3& local) {
+        const Transform& m = instance.world_from_local;
+        if (!is_finite(m)) return "has a transform that is not finite";
+        return local.is_empty() || lies_near(m, local) ? "" : kTooFar;
+    }
+
+    static bool is_near(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
+
+    void camera(std::size_t i) const {
+        const Camera& camera = scene_.cameras[i];
+        const std::string of = numbered("camera", i, camera.name, camera.origin);
+        if (!is_finite(camera.world_from_camera)) throw bad(of + ": its transform is not finite");
+        if (is_singular(camera.world_from_camera)) throw bad(of + ": its transform is singular; no scale may be 0");
+        if (!is_near(camera.world_from_camera.translation)) throw too_far(of);
+        if (camera.projection == Projection::Perspective && !(camera.fov_y > 0 && camera.fov_y < kPi)) {
+            throw bad(fmt::format("{}: its angle of view is {} radians; it lies between 0 and pi", of, camera.fov_y));
+        }
+        if (camera.projection == Projection::Orthographic &&
+            !(camera.ortho_height > 0 && camera.ortho_height <= kMaxCoordinate)) {
+            throw bad(fmt::format("{}: the height of its view is {}; it is above 0", of, camera.ortho_height));
+        }
+        if (!(camera.aspect >= 0 && is_finite(camera.aspect))) {
+            throw bad(fmt::format("{}: its aspect is {}; it is above 0, or 0 for none", of, camera.aspect));
+        }
+        if (!(camera.aperture_radius >= 0 && camera.aperture_radius <= kMaxCoordinate)) {
+            throw bad(fmt::format("{}: its aperture is {}; it is 0 or above", of, camera.aperture_radius));
+        }
+        if (!(camera.focus_distance > 0 && camera.focus_distance <= kMaxCoordinate)) {
+            throw bad(fmt::format("{}: its focus distance is {}; it is above 0", of, camera.focus_distance));
+        }
+    }
+
+    void light(std::size_t i) {
+        Light& light = scene_.lights[i];
+        const std::string of = numbered("light", i, light.name, light.origin);
+        const Rgb e = light.intensity;
+        if (!(is_finite(e) && e.r >= 0 && e.g >= 0 && e.b >= 0)) {
+            throw bad(
+                fmt::format("{}: its intensity is ({}, {}, {}); it is finite and not negative", of, e.r, e.g, e.b));
+        }
+        if (light.kind != LightKind::Directional) {
+            if (!is_near(light.position)) throw too_far(of);
+            if (!(light.range >= 0)) throw bad(fmt::format("{}: its range is {}; it is 0 or above", of, light.range));
+        }
+        if (light.kind == LightKind::Point) return;
+        light.direction = normalize_safely(light.direction);
+        if (!is_finite(light.direction)) throw bad(of + ": its direction is zero or not finite");
+        if (light.kind == LightKind::Directional) return;
+        if (!(light.cos_outer >= -1 && light.cos_inner <= 1 && light.cos_outer < light.cos_inner)) {
+            throw bad(
+                fmt::format("{}: the cosines of its cone are {} (inner) and {} (outer); outer is the smaller, both "
+                            "within -1 and 1",
+                            of, light.cos_inner, light.cos_outer));
+        }
+    }
+
+    Scene& scene_;
+    const std::string& file_;
+    Messages& messages_;
+    MeshRepairs repairs_;
+    std::vector<bool> moves_;                                         // may_move of the instances there are
+    std::string first_empty_mesh_, first_singular_, first_misplaced_; // where they are described
+};
+
+} // namespace
+
+void validate(Scene& scene, const std::string& file, Messages& messages) { Validator(scene, file, messages).run(); }
+
+} // namespace pertev

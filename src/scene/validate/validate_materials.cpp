@@ -1,0 +1,147 @@
+#include "scene/validate/validate_materials.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "base/message_text.h"
+
+namespace pertev {
+namespace {
+
+constexpr float kMaxUvScale = 0x1p40f;
+
+class Checker {
+public:
+    Checker(Scene& scene, const std::string& file, Messages& messages)
+        : scene_(scene), file_(file), messages_(messages) {}
+
+    void run() {
+        for (std::size_t i = 0; i < scene_.images.size(); ++i) image(i);
+        for (std::size_t i = 0; i < scene_.materials.size(); ++i) material(i);
+        if (clamped_ > 0) {
+            messages_.warn(fmt::format("{}: {} of materials outside the range {} clamped; the first is {}", file_,
+                                       counted(clamped_, "number"), is_or_are(clamped_), first_clamped_));
+        }
+        if (scene_.environment) environment(*scene_.environment);
+    }
+
+private:
+    Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, fmt::format("{}: {}", file_, what)); }
+
+    void check_size(uint64_t width, uint64_t height, uint64_t values, uint64_t values_per_pixel,
+                    const std::string& of) const {
+        if (width == 0 || height == 0) throw bad(of + ": it has no pixels");
+        if (width > kMaxImageSide || height > kMaxImageSide || width * height > kMaxImagePixels) {
+            throw Error(ErrorCode::OverLimit, fmt::format("{}: {}: {} x {} pixels; a side has at most {}, an image {}",
+                                                          file_, of, width, height, kMaxImageSide, kMaxImagePixels));
+        }
+        if (values != width * height * values_per_pixel) {
+            throw bad(fmt::format("{}: {} x {} pixels, but {} values", of, width, height, values));
+        }
+    }
+
+    /// Sets what is not finite, and what is below `least`, to 0.
+    void clean(std::vector<float>& pixels, float least, const std::string& of) {
+        std::size_t bad_values = 0;
+        for (float& value : pixels) {
+            if (is_finite(value) && value >= least) continue;
+            value = 0;
+            ++bad_values;
+        }
+        if (bad_values > 0) {
+            messages_.warn(
+                fmt::format("{}: {}: {} negative or not finite: set to 0", file_, of, counted(bad_values, "value")));
+        }
+    }
+
+    void image(std::size_t i) {
+        TextureImage& image = scene_.images[i];
+        const std::string of = numbered("image", i, image.name);
+        if (image.rgba_float.pixels.empty()) {
+            check_size(image.rgba8.width, image.rgba8.height, image.rgba8.pixels.size(), 4, of);
+            return;
+        }
+        if (!image.rgba8.pixels.empty()) throw bad(of + ": it holds pixels twice");
+        check_size(image.rgba_float.width, image.rgba_float.height, image.rgba_float.pixels.size(), 4, of);
+        if (image.rgba_float.channels != 4) throw bad(of + ": a float texture has 4 channels");
+        clean(image.rgba_float.pixels, -kMaxSampleValue, of);
+    }
+
+    void environment(Environment& environment) {
+        if (!environment.image.pixels.empty()) {
+            check_size(environment.image.width, environment.image.height, environment.image.pixels.size(), 3,
+                       "environment");
+            if (environment.image.channels != 3) throw bad("environment: it has 3 channels");
+            clean(environment.image.pixels, 0, "environment");
+        }
+        const Rgb scale = environment.scale;
+        if (!(is_finite(scale) && scale.r >= 0 && scale.g >= 0 && scale.b >= 0 && is_finite(environment.rotation))) {
+            throw bad("environment: its scale and rotation are finite, its scale not negative");
+        }
+    }
+
+    void material(std::size_t i) {
+        Material& m = scene_.materials[i];
+        of_ = numbered("material", i, m.name, m.origin);
+        colour(m.base_color, 0, 1, "base_color");
+        colour(m.emission, 0, kMaxSampleValue, "emission");
+        colour(m.eta, 0x1p-10f, 0x1p10f, "eta");
+        colour(m.k, 0, 0x1p10f, "k");
+        number(m.alpha, 0, 1, "alpha");
+        number(m.alpha_cutoff, 0, 0x1p10f, "alpha_cutoff");
+        number(m.metallic, 0, 1, "metallic");
+        number(m.roughness, 0, 1, "roughness");
+        number(m.ior, 1, 0x1p10f, "ior");
+        number(m.normal_scale, -0x1p10f, 0x1p10f, "normal_scale");
+        texture(m.base_color_texture, "base_color_texture");
+        texture(m.alpha_texture, "alpha_texture");
+        texture(m.metallic_texture, "metallic_texture");
+        texture(m.roughness_texture, "roughness_texture");
+        texture(m.emission_texture, "emission_texture");
+        texture(m.normal_texture, "normal_texture");
+    }
+
+    void number(float& value, float lo, float hi, const char* name) {
+        if (!is_finite(value)) throw bad(fmt::format("{}: {} is {}; it is a finite number", of_, name, value));
+        if (value >= lo && value <= hi) return;
+        if (clamped_++ == 0)
+            first_clamped_ = fmt::format("{} of {}, {}, kept within {} and {}", name, of_, value, lo, hi);
+        value = clamp(value, lo, hi);
+    }
+
+    void colour(Rgb& value, float lo, float hi, const char* name) {
+        number(value.r, lo, hi, name);
+        number(value.g, lo, hi, name);
+        number(value.b, lo, hi, name);
+    }
+
+    void texture(TextureRef& ref, const char* name) {
+        if (ref.image == kNoImage) return;
+        if (ref.image < 0 || static_cast<std::size_t>(ref.image) >= scene_.images.size()) {
+            throw bad(fmt::format("{}: {}: image {} is out of range; there are {}", of_, name, ref.image,
+                                  scene_.images.size()));
+        }
+        if (ref.uv_set > 1)
+            throw bad(fmt::format("{}: {}: set {} of texture coordinates; 0 and 1 are read", of_, name, ref.uv_set));
+        if (ref.channel > 3) throw bad(fmt::format("{}: {}: channel {}; there are 4", of_, name, ref.channel));
+        for (const float m : {ref.m00, ref.m01, ref.m02, ref.m10, ref.m11, ref.m12}) {
+            if (!(abs(m) <= kMaxUvScale)) throw bad(fmt::format("{}: {}: its transform is not finite", of_, name));
+        }
+    }
+
+    Scene& scene_;
+    const std::string& file_;
+    Messages& messages_;
+    std::string of_; // the material being looked at
+    std::size_t clamped_ = 0;
+    std::string first_clamped_;
+};
+
+} // namespace
+
+void validate_materials(Scene& scene, const std::string& file, Messages& messages) {
+    Checker(scene, file, messages).run();
+}
+
+} // namespace pertev

@@ -1,0 +1,186 @@
+#include "scene/validate/validate_nodes.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/message_text.h"
+
+namespace pertev {
+namespace {
+
+/// Numbers that floats cannot hold are not finite either.
+bool is_finite_pose(const NodePose& pose) {
+    return is_finite(to_float(pose.translation)) && is_finite(to_float(pose.scale)) &&
+           std::ranges::all_of(pose.rotation, [](double x) { return is_finite(static_cast<float>(x)); });
+}
+
+bool is_zero(const std::array<double, 4>& rotation) {
+    return std::ranges::all_of(rotation, [](double x) { return static_cast<float>(x) == 0; });
+}
+
+/// Whether entry `first` and the three after it are a quaternion of length 0.
+bool is_zero_quaternion(const std::vector<float>& values, std::size_t first) {
+    return std::all_of(values.begin() + static_cast<std::ptrdiff_t>(first),
+                       values.begin() + static_cast<std::ptrdiff_t>(first + 4), [](float x) { return x == 0; });
+}
+
+/// What a channel's target is an index into, and how many there are.
+std::pair<const char*, std::size_t> targets_of(AnimatedPart part, const Scene& scene) {
+    switch (part) {
+    case AnimatedPart::Translation:
+    case AnimatedPart::Rotation:
+    case AnimatedPart::Scale:
+    case AnimatedPart::Weights:
+        return {"node", scene.nodes.size()};
+    case AnimatedPart::CameraFov:
+    case AnimatedPart::CameraHeight:
+        return {"camera", scene.cameras.size()};
+    case AnimatedPart::LightIntensity:
+    case AnimatedPart::LightRange:
+    case AnimatedPart::LightInnerCone:
+    case AnimatedPart::LightOuterCone:
+        return {"light", scene.lights.size()};
+    }
+    return {"", 0};
+}
+
+bool places_node(AnimatedPart part) {
+    return part == AnimatedPart::Translation || part == AnimatedPart::Rotation || part == AnimatedPart::Scale;
+}
+
+} // namespace
+
+std::size_t numbers_in_value(const AnimationChannel& channel, const Scene& scene) {
+    switch (channel.part) {
+    case AnimatedPart::Translation:
+    case AnimatedPart::Scale:
+    case AnimatedPart::LightIntensity:
+        return 3;
+    case AnimatedPart::Rotation:
+        return 4;
+    case AnimatedPart::Weights:
+        return scene.nodes[channel.target].morph_weights.size();
+    case AnimatedPart::CameraFov:
+    case AnimatedPart::CameraHeight:
+    case AnimatedPart::LightRange:
+    case AnimatedPart::LightInnerCone:
+    case AnimatedPart::LightOuterCone:
+        return 1;
+    }
+    return 0;
+}
+
+std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
+    const std::vector<float>& times = channel.times;
+    const std::vector<float>& values = channel.values;
+    if (channel.part == AnimatedPart::Weights && scene.nodes[channel.target].morph_weights.empty()) {
+        return "its node's mesh has no morph targets; expected one that has";
+    }
+    if (places_node(channel.part) && std::holds_alternative<DoubleTransform>(scene.nodes[channel.target].pose)) {
+        return "its node has a matrix; expected translation, rotation and scale";
+    }
+    if (times.empty()) return "it has no key times; expected at least one";
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        if (!is_finite(times[i]) || (i > 0 && times[i] < times[i - 1])) {
+            return fmt::format("key time {} is {}; expected finite seconds, none below the one before", i, times[i]);
+        }
+    }
+    const std::size_t numbers = numbers_in_value(channel, scene);
+    const std::size_t per_key = channel.interpolation == Interpolation::CubicSpline ? 3 : 1;
+    if (values.size() != times.size() * per_key * numbers) {
+        return fmt::format("{} numbers for {}; expected {}: {} a key of {} each", values.size(),
+                           counted(times.size(), "key time"), times.size() * per_key * numbers,
+                           counted(per_key, "value"), counted(numbers, "number"));
+    }
+    const auto bad = std::ranges::find_if(values, [](float x) { return !is_finite(x); });
+    if (bad != values.end()) return fmt::format("number {} of its values is not finite", bad - values.begin());
+    if (channel.part != AnimatedPart::Rotation) return "";
+    for (std::size_t key = 0; key < times.size(); ++key) { // tangents may be 0
+        if (is_zero_quaternion(values, 4 * (key * per_key + per_key / 2))) {
+            return fmt::format("the rotation of key {} is 0; expected a unit quaternion", key);
+        }
+    }
+    return "";
+}
+
+void validate_nodes(const Scene& scene, const std::string& file) {
+    const auto bad = [&](const std::string& what) {
+        return Error(ErrorCode::BadInput, fmt::format("{}: {}", file, what));
+    };
+    const std::size_t count = scene.nodes.size();
+    const auto place_of = [&](std::size_t i) {
+        return numbered("node", i, scene.nodes[i].name, fmt::format("/nodes/{}", i));
+    };
+    const auto check_node = [&](uint32_t node, const auto& of) {
+        if (node == kNoNode || node < count) return;
+        throw bad(fmt::format("{}: node {} is out of range; there are {}", of(), node, count));
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        const Node& node = scene.nodes[i];
+        check_node(node.parent, [&] { return place_of(i) + ": its parent"; });
+        if (node.skin != kNoSkin && node.skin >= scene.skins.size()) {
+            throw bad(
+                fmt::format("{}: skin {} is out of range; there are {}", place_of(i), node.skin, scene.skins.size()));
+        }
+        const NodePose* pose = std::get_if<NodePose>(&node.pose);
+        if (pose != nullptr ? !is_finite_pose(*pose) : !is_finite(to_float(std::get<DoubleTransform>(node.pose)))) {
+            throw bad(place_of(i) + ": its transform is not finite");
+        }
+        if (pose != nullptr && is_zero(pose->rotation)) {
+            throw bad(place_of(i) + ": its rotation is 0; expected a unit quaternion");
+        }
+        if (!std::ranges::all_of(node.morph_weights, [](float w) { return is_finite(w); })) {
+            throw bad(place_of(i) + ": a morph weight is not finite");
+        }
+    }
+    if (const std::size_t placed = parents_first(scene.nodes).size(); placed != count) {
+        throw bad(
+            fmt::format("{} of {} nodes are their own ancestors or below such; expected trees", count - placed, count));
+    }
+    for (std::size_t i = 0; i < scene.skins.size(); ++i) {
+        const Skin& skin = scene.skins[i];
+        if (!skin.joint_from_mesh.empty() && skin.joint_from_mesh.size() != skin.joints.size()) {
+            throw bad(fmt::format("skin {}: {} inverse bind matrices for {} joints", i, skin.joint_from_mesh.size(),
+                                  skin.joints.size()));
+        }
+        if (!std::ranges::all_of(skin.joint_from_mesh, [](const Transform& m) { return is_finite(m); })) {
+            throw bad(fmt::format("skin {}: an inverse bind matrix is not finite", i));
+        }
+        for (const uint32_t joint : skin.joints) {
+            if (joint >= count) {
+                throw bad(fmt::format("skin {}: joint {} is out of range; there are {} nodes", i, joint, count));
+            }
+        }
+    }
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        check_node(scene.instances[i].node,
+                   [&] { return numbered("instance", i, scene.instances[i].name, std::string()); });
+    }
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+        check_node(scene.cameras[i].node,
+                   [&] { return numbered("camera", i, scene.cameras[i].name, scene.cameras[i].origin); });
+    }
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        check_node(scene.lights[i].node,
+                   [&] { return numbered("light", i, scene.lights[i].name, scene.lights[i].origin); });
+    }
+    for (std::size_t i = 0; i < scene.animations.size(); ++i) {
+        const Animation& animation = scene.animations[i];
+        const std::string of = numbered("animation", i, animation.name, animation.origin);
+        for (std::size_t k = 0; k < animation.channels.size(); ++k) {
+            const AnimationChannel& channel = animation.channels[k];
+            const auto [what, targets] = targets_of(channel.part, scene);
+            if (channel.target >= targets) {
+                throw bad(fmt::format("{}: channel {}: {} {} is out of range; there are {}", of, k, what,
+                                      channel.target, targets));
+            }
+            const std::string fault = fault_of(channel, scene);
+            if (!fault.empty()) throw bad(fmt::format("{}: channel {}: {}", of, k, fault));
+        }
+    }
+}
+
+} // namespace pertev

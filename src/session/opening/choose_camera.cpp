@@ -1,0 +1,163 @@
+#include "session/opening/choose_camera.h"
+
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "formats/files/parse_number.h"
+#include "math/portable_math.h"
+#include "scene/scene_origin.h"
+#include "session/degrees.h"
+#include "session/place_text.h"
+#include "session/survey/aim_camera.h"
+#include "session/survey/default_camera.h"
+
+namespace pertev {
+namespace {
+
+std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+std::string text_of(DoubleVec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+/// `x` as a notice writes it, and no more exactly: the flags that the notice shows make the same picture.
+float rounded(float x, int digits) {
+    const std::string text = fmt::format("{:.{}g}", x, digits);
+    float value = x;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+}
+
+void place_camera(const CameraChoice& choice, const Scene& scene, Camera& camera) {
+    if (!choice.eye && !choice.target && !choice.up) return;
+    const Transform& from = camera.world_from_camera;
+    const Vec3 eye = choice.eye ? in_scene(scene, *choice.eye) : from.translation;
+    const Vec3 target = choice.target ? in_scene(scene, *choice.target) : eye - column(from, 2);
+    const Vec3 up = choice.up.value_or(Vec3{0, 1, 0});
+    Transform placed = look_at(eye, target, up);
+    if (!is_finite(placed.row0) && !choice.up) placed = look_at(eye, target, {0, 0, -1}); // straight down or up
+    if (!is_finite(placed.row0) || !is_finite(placed.row1) || !is_finite(placed.row2)) {
+        const std::string of_up = choice.up ? fmt::format(" and not lie along --up {}", text_of(up)) : "";
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("--eye {} --target {}: the target must differ from the eye{}",
+                                text_of(in_file(scene, eye)), text_of(in_file(scene, target)), of_up));
+    }
+    camera.world_from_camera = placed;
+    if (choice.target) camera.focus_distance = length(target - eye);
+}
+
+/// For a scene without a camera and a choice without an eye.
+Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect, Messages& messages) {
+    if (!choice.target) return make_default_camera(scene, aspect, messages);
+    Messages unsaid; // of a view that is not to be: it looks elsewhere
+    const Camera camera = make_default_camera(scene, aspect, unsaid);
+    const Vec3 eye = camera.world_from_camera.translation;
+    messages.make_up(fmt::format("no camera in the scene: a made-up eye looks at the target (--eye {} --target {})",
+                                 place_text(scene, eye, 4), text_of(*choice.target)));
+    return camera;
+}
+
+/// Turns a perspective camera into an orthographic one that shows as much of what it looks at.
+void flatten(const CameraChoice& choice, const Scene& scene, Camera& camera) {
+    const Vec3 eye = camera.world_from_camera.translation, forward = -column(camera.world_from_camera, 2);
+    const Bounds3 bounds = bounds_of(scene);
+    const float distance = choice.target ? length(in_scene(scene, *choice.target) - eye)
+                                         : dot(0.5f * (bounds.lo + bounds.hi) - eye, forward);
+    camera.projection = Projection::Orthographic;
+    if (distance > 0) camera.ortho_height = min(2 * tan(0.5f * camera.fov_y) * distance, kMaxCoordinate);
+}
+
+/// Where there is an aperture, but neither a focus nor a target that was said: focuses `camera`, which is placed, on
+/// what is in the middle of its picture, or else on the distance of the scene's middle, with a notice.
+void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera& camera, Messages& messages) {
+    const bool has_target = choice.target && !choice.is_aimed;
+    if (!(choice.aperture.value_or(0) > 0) || choice.focus || has_target) return;
+    const std::optional<float> seen = distance_in_the_middle(scene, camera);
+    const Bounds3 bounds = bounds_of(scene);
+    const Vec3 middle = bounds.is_empty() ? Vec3{} : bounds.centre();
+    const float away = length(middle - camera.world_from_camera.translation);
+    const float distance = seen.value_or(max(away, 0x1p-40f));
+    camera.focus_distance = rounded(distance, 4);
+    messages.make_up(fmt::format("--aperture without --focus: sharp at {:.4g} m, {} (--focus {:.4g})", distance,
+                                 seen ? "the distance of what is in the middle of the picture"
+                                      : "the distance of the scene's middle, for nothing is in that of the picture",
+                                 distance));
+}
+
+/// `flattened`: the camera's angle of view has become a height.
+void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, bool flattened, Messages& messages) {
+    const bool is_perspective = camera.projection == Projection::Perspective;
+    if (choice.view_height && is_perspective) {
+        messages.warn("--view-height: the camera is a perspective one; --projection orthographic makes use of it");
+    }
+    if (choice.fov_deg && !is_perspective && (!flattened || choice.view_height)) {
+        messages.warn("--fov: the camera is an orthographic one, whose view has a height; --view-height sets that");
+    }
+    if (choice.focus && camera.aperture_radius == 0) {
+        messages.warn("--focus: the lens has no aperture, so all is sharp; --aperture gives it one");
+    }
+}
+
+} // namespace
+
+void check_camera_choice(const CameraChoice& choice) {
+    if (choice.view_height && choice.projection == Projection::Perspective) {
+        throw Error(ErrorCode::BadInput, "--view-height: a perspective view has none; say --fov, or "
+                                         "--projection orthographic");
+    }
+    if (choice.focus && choice.aperture == 0.0f) {
+        throw Error(ErrorCode::BadInput, "--focus: with --aperture 0 all is sharp; give the lens a radius");
+    }
+}
+
+const Camera* scene_camera(const std::string& name, const Scene& scene) {
+    if (name.empty()) return scene.cameras.empty() ? nullptr : &scene.cameras.front();
+    for (const Camera& camera : scene.cameras) {
+        if (camera.name == name) return &camera;
+    }
+    if (const auto number = parse_whole_number(name); number && *number < scene.cameras.size()) {
+        return &scene.cameras[*number];
+    }
+    std::string known;
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+        known += fmt::format("\n  {}  {}", i, scene.cameras[i].name.empty() ? "(no name)" : scene.cameras[i].name);
+    }
+    throw Error(ErrorCode::BadInput, fmt::format("--camera {}: the scene has no such camera; it has:{}", name,
+                                                 known.empty() ? "\n  none" : known));
+}
+
+void aim_eye(CameraChoice& choice, const Scene& scene, Messages& messages) {
+    if (!choice.eye || choice.target) return;
+    const Target target = target_from(scene, in_scene(scene, *choice.eye));
+    choice.target = told_place(scene, target.position, 6);
+    choice.is_aimed = true;
+    messages.make_up(fmt::format("--eye without --target: it looks {} (--eye {} --target {})",
+                                 target.is_middle ? "at the middle of the scene" : "along the scene from its middle",
+                                 text_of(*choice.eye), place_text(scene, target.position, 6)));
+}
+
+Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Messages& messages) {
+    aim_eye(choice, scene, messages);
+    Camera camera;
+    if (const Camera* given = scene_camera(choice.camera, scene)) {
+        camera = *given;
+    } else if (!choice.eye) {
+        camera = make_camera(choice, scene, aspect, messages);
+    }
+    Vec3& place = camera.world_from_camera.translation;
+    place = told_in_file(scene, place); // so that numbers in the coordinates of the file say it to the bit
+    place_camera(choice, scene, camera);
+    if (choice.fov_deg) camera.fov_y = *choice.fov_deg * kRadiansPerDegree;
+    if (choice.aperture) camera.aperture_radius = *choice.aperture;
+    if (choice.focus) camera.focus_distance = *choice.focus;
+    if (choice.projection == Projection::Perspective) camera.projection = Projection::Perspective;
+    const bool flattened =
+        choice.projection == Projection::Orthographic && camera.projection == Projection::Perspective;
+    if (flattened) flatten(choice, scene, camera);
+    if (choice.view_height) camera.ortho_height = *choice.view_height;
+    focus_in_the_middle(choice, scene, camera, messages);
+    warn_of_useless_parts(choice, camera, flattened, messages);
+    return camera;
+}
+
+} // namespace pertev

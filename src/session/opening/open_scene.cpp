@@ -1,0 +1,168 @@
+#include "session/opening/open_scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/message_text.h"
+#include "formats/files/file_choices.h"
+#include "formats/read_environment.h"
+#include "math/scalar.h"
+#include "session/degrees.h"
+#include "session/photometry.h"
+#include "session/survey/default_light.h"
+#include "session/survey/ground.h"
+#include "session/survey/lamp_fronts.h"
+
+namespace pertev {
+namespace {
+
+/// Nothing where the options give none.
+std::optional<Environment> environment_of(const OpenOptions& options, Messages& messages) {
+    Environment environment;
+    if (options.environment_radiance) {
+        const Rgb color = *options.environment_radiance;
+        if (!(is_finite(color) && color.r >= 0 && color.g >= 0 && color.b >= 0)) {
+            throw Error(ErrorCode::BadInput,
+                        fmt::format("--environment {},{},{}: radiance cannot be negative", color.r, color.g, color.b));
+        }
+        environment.scale = color;
+        return environment;
+    }
+    if (options.environment.empty()) return std::nullopt;
+    if (std::error_code fault; !std::filesystem::exists(options.environment, fault)) {
+        throw Error(ErrorCode::BadInput, fmt::format("--environment {}: neither a file nor a radiance R,G,B such as "
+                                                     "0.5,0.5,0.5",
+                                                     options.environment.string()));
+    }
+    environment.image = read_environment_image(options.environment, messages);
+    return environment;
+}
+
+void turn_and_scale(const OpenOptions& options, Scene& scene, Messages& messages) {
+    if (scene.environment) {
+        scene.environment->rotation += options.environment_rotation_deg * kRadiansPerDegree;
+        scene.environment->scale = options.environment_scale * scene.environment->scale;
+        return;
+    }
+    const auto warn = [&](const char* flag) {
+        messages.warn(fmt::format("{}: the scene has no environment; --environment gives it one", flag));
+    };
+    if (options.environment_rotation_deg != 0) warn("--environment-rotation");
+    if (options.environment_scale != 1) warn("--environment-scale");
+}
+
+void show_back_faces(Scene& scene, Messages& messages) {
+    bool any_hidden = false;
+    for (Material& material : scene.materials) any_hidden |= !std::exchange(material.double_sided, true);
+    if (!any_hidden) messages.warn("--show-back-faces: no surface of the scene hides its back");
+}
+
+/// `light`: what was made up. `around`: of the scene, where that is a sky.
+bool wants_ground(const OpenOptions& options, const Scene& scene, DefaultLight light, const Surroundings& around) {
+    switch (options.ground) {
+    case Ground::Off:
+        return false;
+    case Ground::On:
+        return true;
+    case Ground::Auto:
+        return light == DefaultLight::Sky && scene.cameras.empty() && around.kind == SurroundingsKind::Object;
+    }
+    return false;
+}
+
+/// Texts of a list as a message repeats them, one after the other.
+std::string in_a_row(const std::vector<std::string>& list) {
+    constexpr std::size_t kMost = 8;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(list.size(), kMost); ++i) text += (i > 0 ? ", " : "") + shortened(list[i]);
+    return list.size() > kMost ? fmt::format("{} and {} more (pertev info)", text, list.size() - kMost) : text;
+}
+
+/// Says which animation plays where the file has several and nobody has chosen one.
+void say_which_clip(const Scene& scene, const std::string& file, Messages& messages) {
+    if (scene.clips.size() < 2) return;
+    const std::vector<std::string> clips = list_clips(scene.clips);
+    messages.note(
+        fmt::format("{}: the file has {} animations, of which the first plays, {}; --animation NAME|N|all plays "
+                    "another or all of {}",
+                    file, clips.size(), shortened(clips.front()), in_a_row(clips)));
+}
+
+void say_which_scene(const Scene& scene, const std::string& file, Messages& messages) {
+    if (scene.file_scenes.size() < 2) return;
+    const std::vector<std::string> scenes = list_file_scenes(scene);
+    messages.note(
+        fmt::format("{}: the file has {} scenes, of which {} is shown; --file-scene NAME|N shows another of {}", file,
+                    scenes.size(), shortened(scenes[scene.file_scene]), in_a_row(scenes)));
+}
+
+} // namespace
+
+FileSpace file_space(const std::string& up_axis, const std::string& unit) {
+    FileSpace space;
+    if (!up_axis.empty()) {
+        const std::optional<UpAxis> read = parse_up_axis(up_axis);
+        if (!read) throw Error(ErrorCode::BadInput, fmt::format("--up-axis {}: expected x, y or z", up_axis));
+        space.up_axis = *read;
+    }
+    if (!unit.empty()) {
+        const std::optional<double> read = parse_unit(unit);
+        if (!read) {
+            throw Error(ErrorCode::BadInput,
+                        fmt::format("--unit {}: expected {} or a number of metres above 0", unit, kUnitNames));
+        }
+        space.unit_m = *read;
+    }
+    return space;
+}
+
+ReadOptions read_options(const OpenOptions& options) {
+    ReadOptions read;
+    read.allowed_paths = options.allowed_paths;
+    read.two_sided_lights = options.two_sided_lights;
+    read.space = file_space(options.up_axis, options.unit);
+    read.animation = options.animation;
+    read.file_scene = options.file_scene;
+    return read;
+}
+
+std::string environment_text(const OpenOptions& options) {
+    if (!options.environment_radiance) return options.environment.string();
+    const Rgb radiance = *options.environment_radiance;
+    return fmt::format("{},{},{}", radiance.r, radiance.g, radiance.b);
+}
+
+Scene read_scene_and_lamps(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
+    Scene scene = read_scene(path, options, messages);
+    if (options.file_scene.empty()) say_which_scene(scene, path.string(), messages);
+    if (!(options.space == FileSpace()) && tells_space(path)) {
+        messages.warn(fmt::format("--up-axis, --unit: {} is in metres with y up; these flags are for .obj and .ply",
+                                  path.string()));
+    }
+    if (!options.two_sided_lights && !tells_lamp_sides(path)) say_lamp_fronts(scene, path.string(), messages);
+    return scene;
+}
+
+Scene open_scene(const OpenOptions& options, Messages& messages) {
+    Scene scene = read_scene_and_lamps(options.scene, read_options(options), messages);
+    if (options.animation.empty()) say_which_clip(scene, options.scene, messages);
+    if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
+        messages.warn("--two-sided-lights: no surface of the scene gives light");
+    }
+    if (options.show_back_faces) show_back_faces(scene, messages);
+    if (auto environment = environment_of(options, messages)) scene.environment = *std::move(environment);
+    Surroundings around;
+    const DefaultLight light = add_default_light(scene, options.use, messages, &around);
+    if (wants_ground(options, scene, light, around)) {
+        add_ground(scene);
+        messages.make_up("a made-up ground catches the shadow; --ground off leaves it out");
+    }
+    turn_and_scale(options, scene, messages);
+    set_lamps(scene, options.lamps, lumens_per_watt(options.scene, options.efficacy));
+    return scene;
+}
+
+} // namespace pertev

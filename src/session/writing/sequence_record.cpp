@@ -1,0 +1,105 @@
+#include "session/writing/sequence_record.h"
+
+#include <optional>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/json_text.h"
+#include "base/read_file.h"
+#include "base/write_file_atomically.h"
+#include "formats/json/json_file.h"
+#include "session/frame_sequence.h"
+
+namespace pertev {
+namespace {
+
+std::string hash_of(const std::filesystem::path& file) {
+    Hasher hasher;
+    hasher.add(read_file(file));
+    return hasher.result().hex();
+}
+
+/// Texts by name, as they stand in the record: what a string of JSON gives back.
+std::string json_object(const auto& entries) {
+    std::string text = "{";
+    for (const auto& [name, value] : entries) {
+        text += fmt::format("{}\n    {}: {}", text.size() > 1 ? "," : "", json_string(name), json_string(value));
+    }
+    return text + "\n  }";
+}
+
+} // namespace
+
+SequenceRecord::SequenceRecord(std::vector<std::string> outputs, Settings settings)
+    : outputs_(std::move(outputs)), settings_(std::move(settings)),
+      path_(std::filesystem::path(outputs_.front()).replace_extension(".json")) {
+    for (auto& [name, value] : settings_) value = utf8_text(value);
+}
+
+bool SequenceRecord::load() {
+    if (std::error_code fault; !std::filesystem::exists(path_, fault)) return false;
+    const JsonFile file(path_);
+    const gltf::JsonValue before = file.root().at("settings");
+    for (const auto& [name, value] : settings_) {
+        const std::string then = before.string_or(name, "");
+        if (then == value) continue;
+        throw before.error(fmt::format("--continue: the frames there were made with {} \"{}\", not \"{}\"; make them "
+                                       "anew without --continue, or elsewhere",
+                                       name, then, value));
+    }
+    for (const gltf::JsonValue& frame : file.root().elements_of("files")) {
+        hashes_[std::string(frame.at("name").to_string())] = frame.at("hash").to_string();
+    }
+    for (const gltf::JsonValue& frame : file.root().elements_of("pictures")) {
+        pictures_[static_cast<uint32_t>(frame.at("frame").to_unsigned())] = frame.at("hash").to_string();
+    }
+    return true;
+}
+
+bool SequenceRecord::has(uint32_t frame) const {
+    for (const std::string& output : outputs_) {
+        const std::filesystem::path file = frame_file(output, frame);
+        const auto known = hashes_.find(file.string());
+        std::error_code fault;
+        if (known == hashes_.end() || !std::filesystem::is_regular_file(file, fault)) return false;
+        if (hash_of(file) != known->second) return false;
+    }
+    return true;
+}
+
+void SequenceRecord::check_picture(uint32_t frame, const std::string& picture) const {
+    const auto known = pictures_.find(frame);
+    if (known == pictures_.end() || known->second == picture) return;
+    throw Error(
+        ErrorCode::BadInput,
+        fmt::format("{}: frame {} is another picture now ({}) than when it was written ({}), so that those after "
+                    "it would not follow; make them anew without --continue, or elsewhere",
+                    path_.string(), frame, picture, known->second));
+}
+
+void SequenceRecord::add(uint32_t frame, const std::string& picture) {
+    pictures_[frame] = picture;
+    for (const std::string& output : outputs_) {
+        const std::string file = frame_file(output, frame);
+        hashes_[file] = hash_of(file);
+    }
+    std::string text = fmt::format("{{\n  \"settings\": {},\n  \"files\": [", json_object(settings_));
+    const char* comma = "";
+    for (const auto& [file, hash] : hashes_) {
+        text += fmt::format("{}\n    {{\"name\": {}, \"hash\": \"{}\"}}", comma, json_string(file), hash);
+        comma = ",";
+    }
+    text += "\n  ],\n  \"pictures\": [";
+    comma = "";
+    for (const auto& [number, hash] : pictures_) {
+        text += fmt::format("{}\n    {{\"frame\": {}, \"hash\": \"{}\"}}", comma, number, hash);
+        comma = ",";
+    }
+    text += "\n  ]\n}\n";
+    write_file_atomically(path_, std::as_bytes(std::span(text)));
+}
+
+} // namespace pertev

@@ -1,0 +1,117 @@
+#include "session/writing/write_picture.h"
+
+#include "base/error.h"
+#include "image/false_color.h"
+#include "image/picture_hash.h"
+#include "image/tone_map_image.h"
+#include "image/write_image.h"
+#include "image/write_jpeg.h"
+#include "image/write_png.h"
+
+namespace pertev {
+namespace {
+
+/// Bytes of PNG and JPEG that show numbers.
+Rgba8Image draw(const Image& picture, const FalseColors& colors) {
+    FalseColorScale scale = {colors.least, colors.most, colors.unit};
+    if (!(scale.most > 0)) scale = fitting_scale(picture, colors.factor, colors.unit);
+    return draw_false_colors(picture, colors.factor, scale);
+}
+
+/// False where the format shows no colours.
+bool write_false_colors(const std::string& path, const Image& picture, const FalseColors& colors) {
+    const ImageFormat format = image_format_for(path);
+    if (format == ImageFormat::Png) write_png(path, draw(picture, colors));
+    if (format == ImageFormat::Jpeg) write_jpeg(path, draw(picture, colors));
+    return format == ImageFormat::Png || format == ImageFormat::Jpeg;
+}
+
+/// What is shown of a result: reconstructed where that was asked for.
+const Image& beauty_of(const RenderResult& result) { return result.denoised ? *result.denoised : result.picture; }
+
+std::vector<ExrLayer> take_layers(RenderResult& result) {
+    std::vector<ExrLayer> layers;
+    if (result.denoised) {
+        const bool has_alpha = result.picture.channels == 4;
+        layers.push_back(
+            {"noisy",
+             has_alpha ? std::vector<std::string>{"R", "G", "B", "A"} : std::vector<std::string>{"R", "G", "B"},
+             result.picture.pixels});
+    }
+    for (FilmLayer& layer : result.layers) {
+        layers.push_back({layer.name, layer.channels, std::move(layer.image.pixels)});
+    }
+    if (!result.ids.empty()) {
+        std::vector<uint32_t> ids;
+        for (const PixelIds& id : result.ids) ids.insert(ids.end(), {id.instance, id.primitive, id.material});
+        const AovGroup& group = aov_group(kAovIds);
+        layers.push_back({group.layer, channel_names(group), std::move(ids)});
+    }
+    return layers;
+}
+
+/// Hash of the layers, one after the other: of name, channels' names and the bits of all values. Empty where there are
+/// none.
+std::string hash_of_layers(const std::vector<ExrLayer>& layers) {
+    if (layers.empty()) return {};
+    Hasher hasher;
+    const auto add_name = [&](const std::string& name) {
+        hasher.add_value(static_cast<uint64_t>(name.size()));
+        hasher.add_values(std::span<const char>(name));
+    };
+    for (const ExrLayer& layer : layers) {
+        add_name(layer.name);
+        hasher.add_value(static_cast<uint64_t>(layer.channels.size()));
+        for (const std::string& channel : layer.channels) add_name(channel);
+        std::visit([&](const auto& values) { hasher.add_values(std::span(values)); }, layer.values);
+    }
+    return hasher.result().hex();
+}
+
+ExrMetadata metadata_of(const PictureRecord& record, const RenderResult& result, const std::string& hash) {
+    ExrMetadata metadata = picture_metadata(record, result, hash);
+    const ExrMetadata names = id_metadata(record.scene, result.ids);
+    metadata.insert(metadata.end(), names.begin(), names.end());
+    return metadata;
+}
+
+} // namespace
+
+std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& record, RenderResult& result) {
+    const Display display = record.display.value_or(Display{});
+    if (format == ImageFormat::Png) {
+        const bool with_alpha = record.settings.transparent;
+        return encode_png(tone_map_image(beauty_of(result), display.tone_map, display.exposure_stops, with_alpha),
+                          with_alpha);
+    }
+    PERTEV_CHECK(format == ImageFormat::Exr);
+    return encode_exr(beauty_of(result), take_layers(result),
+                      metadata_of(record, result, picture_hash(result.picture).hex()));
+}
+
+WrittenPicture write_picture(std::span<const std::string> paths, const PictureRecord& record, RenderResult& result) {
+    const Display display = record.display.value_or(Display{});
+    const std::vector<ExrLayer> layers = take_layers(result);
+    WrittenPicture written = {.hash = picture_hash(result.picture).hex(),
+                              .layers_hash = hash_of_layers(layers),
+                              .denoised_hash = result.denoised ? picture_hash(*result.denoised).hex() : "",
+                              .files = {}};
+    const WriteImageOptions options = {.tone_map = display.tone_map,
+                                       .exposure_stops = display.exposure_stops,
+                                       .transparent = record.settings.transparent,
+                                       .layers = layers,
+                                       .metadata = metadata_of(record, result, written.hash)};
+    for (const std::string& path : paths) {
+        WrittenFile& file = written.files.emplace_back(WrittenFile{path, ""});
+        try {
+            const bool is_written =
+                display.false_colors && write_false_colors(path, beauty_of(result), *display.false_colors);
+            if (!is_written) write_image(path, beauty_of(result), options);
+        } catch (const Error& error) {
+            file.failure = error.what();
+        }
+    }
+    return written;
+}
+
+} // namespace pertev

@@ -1,0 +1,125 @@
+#pragma once
+
+// Energy that GGX microfacets lose because light meets them once only, tabulated; and the lobes that give it back.
+//
+// Source: Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH course 2017.
+// With e(mu) the lost share seen from a direction of cosine mu, and its average e_avg = 2 int e(mu) mu dmu, the lobe
+// e(o) e(i) / (pi e_avg) is reciprocal and carries e(o), exactly what is missing, whatever e is, as long as e_avg
+// belongs to the interpolated e. Linear interpolation; the tables err, where they must, towards too little light.
+// Axes: x = a / (a + b), a^2 = mu, b^2 = alpha (1 - mu), since e is a function of mu / alpha where both are small;
+// roughness sqrt(alpha) from alpha = 1e-3 to 1; sqrt((ior - 1) / (ior + 1)) for ior from 1.1 to 3.
+
+#include "base/host_device.h"
+#include "math/rgb.h"
+#include "math/scalar.h"
+#include "shading/lobes/energy_table_data.h"
+#include "shading/lobes/fresnel.h"
+
+namespace pertev {
+
+namespace energy_table {
+
+struct Cell {
+    int node;       // lower node
+    float fraction; // [0, 1] towards the next
+};
+
+/// `x` in [0, 1] along an axis of `nodes` nodes; clamped.
+HD inline Cell make_cell(float x, int nodes) {
+    const float p = clamp(x, 0.0f, 1.0f) * static_cast<float>(nodes - 1);
+    const int node = to_int(p, 0, nodes - 2);
+    return {node, p - static_cast<float>(node)};
+}
+
+HD inline Cell mu_cell(float mu, float alpha) {
+    const float root = sqrt(mu);
+    Cell cell = make_cell(root / (root + safe_sqrt(alpha * (1.0f - mu))), kMuNodes);
+    if (cell.node == 0) cell.fraction *= cell.fraction; // there the curves are linear in mu
+    return cell;
+}
+/// Share of the way from the least roughness to 1.
+HD inline float roughness_position(float alpha) {
+    constexpr float lowest = 0.031622776f; // sqrt(kAlphaMin)
+    return (sqrt(alpha) - lowest) * (1.0f / (1.0f - lowest));
+}
+HD inline Cell roughness_cell(float alpha) { return make_cell(roughness_position(alpha), kRoughnessNodes); }
+/// Of the averages, which change the fastest where roughness is least.
+HD inline Cell average_cell(float alpha) { return make_cell(safe_sqrt(roughness_position(alpha)), kAverageNodes); }
+HD inline Cell ior_cell(float ior) {
+    constexpr float lowest = 0.21821789f, highest = 0.70710678f; // of kIorMin and kIorMax
+    return make_cell((safe_sqrt((ior - 1.0f) / (ior + 1.0f)) - lowest) * (1.0f / (highest - lowest)), kIorNodes);
+}
+
+inline constexpr float kUnit = 1.0f / 65535.0f;
+
+/// Linear along the last axis, from node `i` of the flattened table.
+template <class Table>
+HD inline float along(Table table, int i, float fraction) {
+    return lerp(static_cast<float>(table(i)), static_cast<float>(table(i + 1)), fraction);
+}
+/// Linear along the last two axes.
+template <class Table>
+HD inline float along(Table table, int first, Cell row, Cell column, int columns) {
+    const int i = first + row.node * columns + column.node;
+    return lerp(along(table, i, column.fraction), along(table, i + columns, column.fraction), row.fraction);
+}
+
+} // namespace energy_table
+
+/// Share lost by a reflector with F = 1, seen at cosine `mu` in [0, 1]. alpha in [kSmoothAlpha, 1] here and below.
+HD inline float metal_lost(float mu, float alpha) {
+    using namespace energy_table;
+    return kUnit *
+           along([](int i) { return metal_lost_at(i); }, 0, roughness_cell(alpha), mu_cell(mu, alpha), kMuNodes);
+}
+/// 2 int metal_lost(mu) mu dmu
+HD inline float metal_average_lost(float alpha) {
+    using namespace energy_table;
+    const Cell c = average_cell(alpha);
+    return alpha * along([](int i) { return metal_average_lost_at(i); }, c.node, c.fraction);
+}
+
+/// Average of (1 - cos)^5, Schlick's weight, over what a reflector with F = 1 reflects at cosine `mu`.
+HD inline float metal_schlick(float mu, float alpha) {
+    using namespace energy_table;
+    const float beyond =
+        along([](int i) { return metal_schlick_at(i); }, 0, roughness_cell(alpha), mu_cell(mu, alpha), kMuNodes);
+    return max(schlick_weight(mu) + (2.0f * kUnit * beyond - 1.0f), 0.0f);
+}
+/// 2 int (1 - metal_lost(mu)) metal_schlick(mu) mu dmu
+HD inline float metal_average_schlick(float alpha) {
+    using namespace energy_table;
+    const Cell c = average_cell(alpha);
+    return along([](int i) { return metal_average_schlick_at(i); }, c.node, c.fraction);
+}
+
+/// Share lost by a dielectric, reflection and refraction together, seen at cosine `mu` from the side whose index is 1
+/// when the other's is `eta`: in [kIorMin, kIorMax] from outside, in [1 / kIorMax, 1 / kIorMin] from inside.
+HD inline float glass_lost(float mu, float alpha, float eta) {
+    using namespace energy_table;
+    const Cell ior = ior_cell(eta > 1 ? eta : 1.0f / eta), row = roughness_cell(alpha), column = mu_cell(mu, alpha);
+    constexpr int stride = kRoughnessNodes * kMuNodes;
+    const int first = ((eta > 1 ? 0 : kIorNodes) + ior.node) * stride;
+    const auto table = [](int i) { return glass_lost_at(i); };
+    return kUnit * lerp(along(table, first, row, column, kMuNodes), along(table, first + stride, row, column, kMuNodes),
+                        ior.fraction);
+}
+/// 2 int glass_lost(mu) mu dmu
+HD inline float glass_average_lost(float alpha, float eta) {
+    using namespace energy_table;
+    const int first = (eta > 1 ? 0 : kIorNodes) * kAverageNodes;
+    return alpha * along([](int i) { return glass_average_lost_at(i); }, first, ior_cell(eta > 1 ? eta : 1.0f / eta),
+                         average_cell(alpha), kAverageNodes);
+}
+
+/// Colour of the light that comes back after more than one bounce off facets of average reflectance `f_average`, when
+/// a bounce loses `average_lost` of it to the next.
+HD inline float multiple_scattering_tint(float f_average, float average_lost) {
+    return f_average * f_average * (1.0f - average_lost) / (1.0f - f_average * average_lost);
+}
+HD inline Rgb multiple_scattering_tint(Rgb f_average, float average_lost) {
+    return {multiple_scattering_tint(f_average.r, average_lost), multiple_scattering_tint(f_average.g, average_lost),
+            multiple_scattering_tint(f_average.b, average_lost)};
+}
+
+} // namespace pertev

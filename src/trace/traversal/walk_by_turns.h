@@ -1,0 +1,27 @@
+#pragma once
+
+// A walk that can be left between two turns (trace/dynamic_fetch.h says what it offers), walked from root to end.
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "trace/intersect/ray.h"
+#include "trace/warps/warp_vote.h"
+
+namespace pertev {
+
+/// True when the visitor ended it.
+template <class Walk, class Visitor, class Counter>
+HD inline bool walk_by_turns(const typename Walk::Tree& tree, const Ray& ray, uint32_t instance, Visitor& visitor,
+                             const Counter& counter) {
+    typename Walk::Place::Slot slots[Walk::Place::kSlots];
+    typename Walk::Place place(slots);
+    Walk::start(tree, ray, visitor, place);
+    while (!place.is_done()) {
+        const LaneMask lanes = lanes_here();
+        if (Walk::turn(tree, ray, instance, place, visitor, counter, lanes, count_lanes(lanes))) return true;
+    }
+    return false;
+}
+
+} // namespace pertev

@@ -1,0 +1,239 @@
+#include "tracer/built_structure.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "accel/bvh/parent_links.h"
+#include "accel/kd_tree/build_kd_tree.h"
+#include "accel/octree/build_octree.h"
+#include "base/error.h"
+#include "base/huge_pages.h"
+#include "base/stopwatch.h"
+#include "tracer/hploc/device_builder.h"
+
+namespace pertev {
+namespace {
+
+const char* suffix_of(TreeLayout layout) {
+    switch (layout) {
+    case TreeLayout::Woop:
+        return " woop";
+    case TreeLayout::Skip:
+        return " skip links";
+    case TreeLayout::Wide4:
+        return " wide4";
+    case TreeLayout::Wide8:
+        return " wide8";
+    case TreeLayout::Wide8Simd:
+        return " wide8 simd";
+    case TreeLayout::Compressed:
+        return " compressed";
+    case TreeLayout::Triangles:
+        return " triangles";
+    case TreeLayout::Linked:
+        return " parent links";
+    case TreeLayout::Binary:
+    case TreeLayout::Kd:
+    case TreeLayout::Octree:
+        break;
+    }
+    return "";
+}
+
+} // namespace
+
+TreeLayout layout_of(const Combination& combination) {
+    switch (combination.walk) {
+    case WalkKind::BruteForce:
+        return TreeLayout::Triangles;
+    case WalkKind::WhileWhile:
+    case WalkKind::Speculative:
+    case WalkKind::Octants:
+        return combination.options.tests == TestKind::Woop ? TreeLayout::Woop : TreeLayout::Binary;
+    case WalkKind::IfIf:
+    case WalkKind::RestartTrail:
+    case WalkKind::ShortStack:
+    case WalkKind::Packet:
+        return TreeLayout::Binary;
+    case WalkKind::ParentLinks:
+        return TreeLayout::Linked;
+    case WalkKind::SkipLinks:
+        return TreeLayout::Skip;
+    case WalkKind::Wide4:
+        return TreeLayout::Wide4;
+    case WalkKind::Wide8:
+        return TreeLayout::Wide8;
+    case WalkKind::Wide8Simd:
+        return TreeLayout::Wide8Simd;
+    case WalkKind::Compressed:
+        return TreeLayout::Compressed;
+    case WalkKind::Kd:
+        return TreeLayout::Kd;
+    case WalkKind::Octree:
+        return TreeLayout::Octree;
+    }
+    return TreeLayout::Binary;
+}
+
+void BuiltStructure::list_bytes(std::span<const std::byte> bytes) {
+    if (bytes.empty()) return;
+    arrays_.push_back({bytes, device_bytes_});
+    offsets_.emplace(bytes.data(), device_bytes_);
+    constexpr std::size_t kAlignment = 256;
+    device_bytes_ += (bytes.size() + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+template <class T>
+void BuiltStructure::list(const std::vector<T>& values) {
+    list_bytes(std::as_bytes(std::span(values)));
+    figures_.bytes += values.size() * sizeof(T);
+}
+
+template <class Tree, class ViewOf>
+void BuiltStructure::take(const TopLevelBvh& top_level, const std::vector<std::shared_ptr<const Tree>>& parts,
+                          const ViewOf& view_of_part) {
+    using View = decltype(view_of_part(*parts.front()));
+    std::size_t largest = 0; // the tree whose cost and depth stand for all
+    const auto meshes = std::make_shared<std::vector<View>>();
+    SceneTrees<View> scene;
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        const Tree& tree = *parts[part];
+        const View view = view_of_part(tree);
+        if constexpr (requires { view.nodes; }) {
+            figures_.nodes += tree.nodes.size();
+            list(tree.nodes);
+        }
+        figures_.triangles += tree.triangles.size();
+        list(tree.triangles);
+        if constexpr (requires { tree.references; }) {
+            figures_.triangles += tree.references.size() - tree.triangles.size();
+            list(tree.references);
+        }
+        if constexpr (requires { tree.transforms; }) list(tree.transforms);
+        if constexpr (requires { tree.sah_cost, tree.depth; }) {
+            if (part == 0 || tree.triangles.size() > largest) {
+                largest = tree.triangles.size();
+                figures_.sah_cost = static_cast<double>(tree.sah_cost);
+                figures_.depth = tree.depth;
+            }
+        }
+        if (part == 0) {
+            scene.baked = view;
+        } else {
+            meshes->push_back(view);
+        }
+    }
+    const auto top = std::make_shared<const TopLevelBvh>(top_level);
+    list_bytes(std::as_bytes(std::span(*meshes)));
+    list_bytes(std::as_bytes(std::span(top->nodes)));
+    list_bytes(std::as_bytes(std::span(top->instances)));
+    scene.meshes = meshes->data();
+    scene.top_nodes = top->nodes.data();
+    scene.instances = top->instances.data();
+    scene.top_root = top->root;
+    scene.top_reach = top->reach;
+    scene.top_growth = top->growth;
+    has_instances_ = !top->instances.empty();
+    trees_ = scene;
+    parts_.assign(parts.begin(), parts.end());
+    memory_ = {meshes, top};
+}
+
+/// Makes each part's tree, timed, but for those that are the same as before.
+template <class Make>
+void BuiltStructure::build(const TopLevelBvh& top_level, std::size_t count, const Before* before, const Make& make) {
+    using Tree = std::remove_cvref_t<decltype(make(std::size_t(0)))>;
+    std::vector<std::shared_ptr<const Tree>> parts;
+    const Stopwatch watch;
+    for (std::size_t part = 0; part < count; ++part) {
+        if (before != nullptr && before->changes[part] == PartChange::None) {
+            parts.push_back(std::static_pointer_cast<const Tree>(before->structure.parts_[part]));
+        } else {
+            parts.push_back(std::make_shared<const Tree>(make(part)));
+        }
+    }
+    figures_.build_s += watch.seconds();
+    take<Tree>(top_level, parts, [](const Tree& tree) { return view_of(tree); });
+}
+
+BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, TreeLayout layout,
+                               const BinaryTrees& trees, const Before* before) {
+    figures_.name = std::string(name_of(kind)) + suffix_of(layout);
+    figures_.build_s = trees.build_s;
+    const std::vector<std::shared_ptr<const Bvh>>& parts = trees.parts;
+    const auto convert = [&](const auto& make) {
+        build(top_level, parts.size(), before, [&](std::size_t part) { return make(*parts[part]); });
+    };
+    switch (layout) {
+    case TreeLayout::Triangles:
+        take<Bvh>(top_level, parts, triangle_array_of);
+        figures_.sah_cost.reset(), figures_.depth.reset(); // are the tree's, which is not walked
+        break;
+    case TreeLayout::Binary:
+        take<Bvh>(top_level, parts, [](const Bvh& bvh) { return view_of(bvh); });
+        break;
+    case TreeLayout::Linked:
+        convert([](Bvh bvh) {
+            add_parent_links(bvh);
+            return bvh;
+        });
+        break;
+    case TreeLayout::Skip: {
+        convert([](const Bvh& bvh) { return make_skip_bvh(bvh); });
+        const Bvh& largest =
+            **std::ranges::max_element(parts, {}, [](const auto& bvh) { return bvh->triangles.size(); });
+        figures_.sah_cost = static_cast<double>(largest.sah_cost), figures_.depth = largest.depth; // the same tree
+        break;
+    }
+    case TreeLayout::Woop:
+        convert([](const Bvh& bvh) { return make_woop_bvh(bvh); });
+        break;
+    case TreeLayout::Wide4:
+        convert([](const Bvh& bvh) { return make_wide_bvh<4>(bvh); });
+        break;
+    case TreeLayout::Wide8:
+        convert([](const Bvh& bvh) { return make_wide_bvh<8>(bvh); });
+        break;
+    case TreeLayout::Wide8Simd:
+        convert([](const Bvh& bvh) {
+            WideBvh<kWideChildren> wide = make_wide_bvh<kWideChildren>(bvh, kSimdCollapse);
+            use_huge_pages(std::as_bytes(std::span(wide.nodes)));
+            use_huge_pages(std::as_bytes(std::span(wide.triangles)));
+            return wide;
+        });
+        break;
+    case TreeLayout::Compressed:
+        if (kind == StructureKind::Hploc) { // by the builder itself, as on a GPU, and not of its binary tree
+            Queue queue = Queue::make_cpu();
+            figures_.build_s = 0;
+            convert([&](const Bvh& bvh) { return build_compressed_bvh(queue, bvh.triangles); });
+            break;
+        }
+        convert([](const Bvh& bvh) { return make_compressed_bvh(bvh); });
+        break;
+    case TreeLayout::Kd:
+    case TreeLayout::Octree:
+        PERTEV_CHECK(false); // are not made of binary trees
+    }
+}
+
+BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, const SceneTriangles& triangles,
+                               const Before* before) {
+    figures_.name = name_of(kind);
+    if (kind == StructureKind::Octree) {
+        build(top_level, triangles.parts(), before,
+              [&](std::size_t part) { return build_octree(triangles.part(part)); });
+    } else {
+        const KdTreeSettings settings = {.split = kind == StructureKind::KdSah ? KdSplit::Sah : KdSplit::SpatialMedian};
+        build(top_level, triangles.parts(), before,
+              [&](std::size_t part) { return build_kd_tree(triangles.part(part), settings); });
+    }
+}
+
+std::optional<std::size_t> BuiltStructure::offset_of(const void* on_host) const {
+    const auto at = offsets_.find(on_host);
+    return at != offsets_.end() ? std::optional(at->second) : std::nullopt;
+}
+
+} // namespace pertev

@@ -1,0 +1,189 @@
+#include "tracer/hploc/device_builder.h"
+
+#include <utility>
+
+#include "accel/builders/binary_tree.h"
+#include "base/error.h"
+#include "base/limits.h"
+#include "device/launch.h"
+#include "tracer/hploc/hploc_kernels.h"
+#include "tracer/hploc/sort_codes.h"
+
+namespace pertev {
+namespace {
+
+/// Wide nodes of n triangles, at most. The plan leaves no node beside an empty place that its children fit in: where a
+/// node has c children, the one above it has at least 10 - c. So there are the most where nodes of two triangles hang
+/// eight to a node. Counts are compared with it all the same.
+std::size_t most_nodes(uint32_t triangles) { return static_cast<std::size_t>(triangles) * 4 / 7 + 8; }
+
+} // namespace
+
+DeviceBuilder::DeviceBuilder(Queue& queue, uint32_t most, const CollapseSettings& costs)
+    : queue_(queue), costs_(costs), centres_(queue, 1, "bounds of triangles' centres"),
+      codes_(queue, most, "Morton codes"), sorted_codes_(queue, most, "Morton codes in order"),
+      order_(queue, most, "order of triangles"), sorted_order_(queue, most, "order of triangles along the curve"),
+      ends_(queue, most, "ends of ranges of leaves"), root_(queue, 1, "root of clusters"),
+      sort_scratch_(queue, sort_scratch_bytes(queue, most), "scratch of the sort"),
+      nodes_(queue, std::size_t(most) * 2, "nodes of clusters"), plans_(queue, most, "plans of wide nodes"),
+      sizes_(queue, most, "sizes of subtrees"), clusters_(queue, most, "clusters"),
+      items_(queue, most_nodes(most), "places of wide nodes"),
+      item_nodes_(queue, most_nodes(most), "numbers of wide nodes that are placed"),
+      counts_(queue, 1, "counts of wide nodes"), wide_(queue, most_nodes(most), "nodes of the built tree"),
+      placed_(queue, most, "triangles of the built tree"), sources_(queue, most, "sources of triangles") {
+    PERTEV_CHECK(costs.max_leaf >= 1 && costs.max_leaf <= kCompressedLeaf && costs.triangles_at_once == 1);
+    check_reference_count(uint64_t(most) * 2); // nodes of clusters
+    if (queue.is_cuda()) return;
+    level_ = Buffer<uint32_t>(queue, most_nodes(most), "a level of wide nodes");
+    next_ = Buffer<uint32_t>(queue, most_nodes(most), "the next level of wide nodes");
+    next_count_ = Buffer<uint32_t>(queue, 1, "size of the next level");
+}
+
+void DeviceBuilder::start(const BvhTriangle* triangles, uint32_t count) {
+    PERTEV_CHECK(count <= codes_.size());
+    triangles_ = triangles;
+    count_ = count;
+    are_linked_ = is_refitted_ = false;
+    if (count == 0) return;
+    make_codes();
+    climb();
+    emit();
+}
+
+void DeviceBuilder::make_codes() {
+    centres_.fill(hploc::kNothing);
+    const uint32_t threads = (count_ + hploc::kTrianglesAtOnce - 1) / hploc::kTrianglesAtOnce;
+    launch(queue_, "find bounds of centres", threads, hploc::FindBounds{triangles_, count_, threads, centres_.data()});
+    launch(queue_, "make Morton codes", count_,
+           hploc::MakeCodes{triangles_, centres_.data(), codes_.data(), order_.data()});
+    sort_codes(queue_, sort_scratch_, codes_.data(), order_.data(), sorted_codes_.data(), sorted_order_.data(), count_);
+}
+
+hploc::Climb DeviceBuilder::prepare_climb() const {
+    const hploc::ClusterTree tree = {nodes_.data(), plans_.data(), sizes_.data(), count_, costs_};
+    return {tree, balanced_ ? nullptr : sorted_codes_.data(), clusters_.data(), ends_.data(), root_.data()};
+}
+
+void DeviceBuilder::climb() {
+    const hploc::Climb climb = prepare_climb();
+    launch(queue_, "place leaves", count_, hploc::PlaceLeaves{triangles_, sorted_order_.data(), climb});
+    launch_climb(queue_, climb);
+}
+
+hploc::EmitWide DeviceBuilder::prepare_emit() {
+    items_.fill(0xff);
+    item_nodes_.fill(0xff);
+    counts_.fill(0xff);
+    hploc::EmitWide emit;
+    emit.tree = prepare_climb().tree;
+    emit.root = root_.data();
+    emit.triangles = triangles_;
+    emit.items = items_.data();
+    emit.item_nodes = item_nodes_.data();
+    emit.nodes = wide_.data();
+    emit.placed = placed_.data();
+    emit.sources = sources_.data();
+    emit.counts = counts_.data();
+    emit.room = static_cast<uint32_t>(most_nodes(count_));
+    return emit;
+}
+
+void DeviceBuilder::emit() {
+    const hploc::EmitWide emit = prepare_emit();
+    if (launch_emit(queue_, emit)) return;
+    *level_.data() = 0;
+    for (uint32_t size = 1; size > 0; size = *next_count_.data()) {
+        *next_count_.data() = 0;
+        launch(queue_, "make wide nodes", size,
+               hploc::EmitLevel{emit, level_.data(), next_.data(), next_count_.data()});
+        std::swap(level_, next_);
+    }
+}
+
+void DeviceBuilder::start_refit(const BvhTriangle* moved) {
+    PERTEV_CHECK(count_ == figures_.triangles);
+    if (count_ == 0) return;
+    const uint32_t nodes = figures_.nodes;
+    if (boxes_.size() < nodes) {
+        parents_ = Buffer<uint32_t>(queue_, wide_.size(), "parents of wide nodes");
+        children_ = Buffer<uint32_t>(queue_, wide_.size(), "counts of wide nodes' children");
+        arrived_ = Buffer<uint32_t>(queue_, wide_.size(), "counts of children that are refitted");
+        boxes_ = Buffer<NodeBox>(queue_, wide_.size(), "boxes of wide nodes");
+        refitted_ = Buffer<RefitResult>(queue_, 1, "bounds and cost of a refitted tree");
+    }
+    if (!are_linked_) {
+        launch(queue_, "link parents", nodes, hploc::LinkParents{wide_.data(), parents_.data(), children_.data()});
+        are_linked_ = true;
+    }
+    arrived_.zero();
+    launch(queue_, "move triangles", count_, hploc::MoveTriangles{moved, sources_.data(), placed_.data()});
+    launch(queue_, "refit nodes", nodes,
+           hploc::RefitNodes{
+               wide_.data(), placed_.data(),
+               UpwardLinks{parents_.data(), children_.data(), arrived_.data(), boxes_.data(), refitted_.data()},
+               costs_.node_cost, costs_.triangle_cost});
+    is_refitted_ = true;
+}
+
+std::size_t DeviceBuilder::predicted_bytes(uint32_t most, bool on_cuda) {
+    const std::size_t a_triangle = sizeof(uint64_t) * 2 + sizeof(uint32_t) * 4 + sizeof(hploc::ClusterNode) * 2 +
+                                   sizeof(hploc::CollapsePlan) + sizeof(hploc::CollapseSize) + sizeof(hploc::Cluster) +
+                                   sizeof(BvhTriangle);
+    const std::size_t a_node = sizeof(hploc::WideItem) + sizeof(uint32_t) + sizeof(CompressedBvhNode) +
+                               3 * sizeof(uint32_t) + sizeof(NodeBox) + (on_cuda ? 0 : 2 * sizeof(uint32_t));
+    const std::size_t a_sort = on_cuda ? sizeof(uint64_t) + sizeof(uint32_t) : 0; // a copy of what is sorted, about
+    return most * (a_triangle + a_sort) + most_nodes(most) * a_node + sizeof(hploc::OrderedBounds) +
+           sizeof(hploc::WideCounts) + sizeof(RefitResult) + (on_cuda ? 1 : 2) * sizeof(uint32_t);
+}
+
+DeviceBuilder::Figures DeviceBuilder::finish() {
+    figures_ = {};
+    if (count_ == 0) return figures_;
+    std::vector<hploc::WideCounts> copy;
+    hploc::WideCounts counts = counts_.read(copy).front();
+    if (counts.nodes <= most_nodes(count_) && counts.depth > kMaxBvhDepth) {
+        const bool was_balanced = std::exchange(balanced_, true);
+        PERTEV_CHECK(!was_balanced);
+        start(triangles_, count_);
+        balanced_ = was_balanced;
+        counts = counts_.read(copy).front();
+    }
+    PERTEV_CHECK(counts.nodes <= most_nodes(count_) && counts.depth <= kMaxBvhDepth);
+    figures_ = {counts.nodes, count_, counts.depth, counts.cost, 0, counts.bounds};
+    if (is_refitted_) {
+        std::vector<RefitResult> of_refit;
+        const RefitResult now = refitted_.read(of_refit).front();
+        figures_.refit_cost = now.cost;
+        figures_.bounds = now.bounds;
+    }
+    return figures_;
+}
+
+CompressedBvh build_compressed_bvh(Queue& queue, std::span<const BvhTriangle> triangles) {
+    const auto count = static_cast<uint32_t>(triangles.size());
+    const Buffer<BvhTriangle> there(queue, triangles, "triangles to build of");
+    DeviceBuilder builder(queue, count);
+    builder.start(there.data(), count);
+    builder.finish();
+    return builder.download();
+}
+
+CompressedBvhView DeviceBuilder::view() const {
+    if (figures_.nodes == 0) return {};
+    return {wide_.data(), placed_.data(), figures_.bounds.max_abs()};
+}
+
+CompressedBvh DeviceBuilder::download() const {
+    CompressedBvh bvh;
+    if (figures_.nodes == 0) return bvh;
+    bvh.nodes.resize(figures_.nodes);
+    bvh.triangles.resize(figures_.triangles);
+    queue_.copy_to_host(bvh.nodes.data(), wide_.data(), bvh.nodes.size() * sizeof(CompressedBvhNode));
+    queue_.copy_to_host(bvh.triangles.data(), placed_.data(), bvh.triangles.size() * sizeof(BvhTriangle));
+    bvh.bounds = figures_.bounds;
+    bvh.depth = figures_.depth;
+    bvh.sah_cost = figures_.sah_cost;
+    return bvh;
+}
+
+} // namespace pertev

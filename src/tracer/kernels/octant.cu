@@ -1,0 +1,12 @@
+#include "trace/binary/octant_walk.h"
+#include "tracer/kernels/walk_kernels_body.h"
+
+namespace pertev {
+
+/// Rays of the camera go by it.
+template <>
+inline constexpr bool kOfPictures<OctantWalk<WalkOptions{}>> = true;
+
+void add_octant_kernels(std::vector<WalkKernel>& rows) { add_all_kernels<OctantWalk>(WalkKind::Octants, rows); }
+
+} // namespace pertev

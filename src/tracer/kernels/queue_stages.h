@@ -1,0 +1,84 @@
+#pragma once
+
+// One walk over a queue of rays, as stages: every tracer runs as these, for pictures and for the laboratory alike. A
+// walk's .cu file instantiates launch() of the stages that it is run with.
+
+#include <cstdint>
+
+#include "device_scene/accept_queued.h"
+#include "trace/trace_any.h"
+#include "trace/trace_closest.h"
+
+namespace pertev {
+
+/// What ray i meets, told to `counter`: of an any-hit search instance 0 where there is anything.
+template <class Walk, bool kAny, class Accept, class Scene, class Counter>
+HD inline Hit trace_queued(const Scene& scene, const TraceQuery& query, uint32_t i, const Counter& counter) {
+    const Accept accept{query, i};
+    const Ray ray = query.rays.load(i);
+    Hit hit;
+    if constexpr (kAny) {
+        hit.instance = trace_any<Walk>(scene, ray, accept, counter) ? 0 : kNoHit;
+    } else {
+        trace_closest<Walk>(scene, ray, accept, hit, counter);
+    }
+    return hit;
+}
+
+template <bool kAny>
+HD inline void store_hit(const HitQueueView& hits, uint32_t i, const Hit& hit) {
+    if constexpr (kAny) {
+        hits.store_any(i, hit.instance != kNoHit);
+    } else {
+        hits.store(i, hit);
+    }
+}
+
+/// `Scene` is SceneTrees or SingleTree of what the walk walks; `Accept` AcceptOpaque or AcceptQueued.
+template <class Walk, bool kAny, class Accept, class Scene>
+struct TraceQueue {
+    Scene scene;
+    TraceQuery query;
+    HitQueueView hits;
+
+    HD void operator()(uint32_t i) const {
+        store_hit<kAny>(hits, i, trace_queued<Walk, kAny, Accept>(scene, query, i, NoWalkCounter{}));
+    }
+};
+
+/// For launch_dynamic_fetch (trace/dynamic_fetch.h).
+template <bool kAny, class Accept>
+struct QueueInOut {
+    TraceQuery query;
+    HitQueueView hits;
+
+    HD Ray load(uint32_t i) const { return query.rays.load(i); }
+    HD Accept accept(uint32_t i) const { return {query, i}; }
+    HD void store(uint32_t i, const Hit& hit) const { store_hit<kAny>(hits, i, hit); }
+};
+
+/// The same where hits are not wanted.
+template <class Accept>
+struct QueueIn {
+    TraceQuery query;
+
+    HD Ray load(uint32_t i) const { return query.rays.load(i); }
+    HD Accept accept(uint32_t i) const { return {query, i}; }
+    HD void store(uint32_t, const Hit&) const {}
+};
+
+/// The same walk, counted. Stages of their own, so that the counting costs the timed one nothing.
+template <class Walk, bool kAny>
+struct CountQueue {
+    SceneTrees<typename Walk::Tree> scene;
+    TraceQuery query;
+    RayWork* work;
+
+    HD void operator()(uint32_t i) const {
+        uint64_t nodes = 0, triangles = 0;
+        trace_queued<Walk, kAny, AcceptQueued<true>>(scene, query, i, WalkCounter{&nodes, &triangles});
+        work[i] = {static_cast<uint32_t>(nodes), static_cast<uint32_t>(triangles)};
+    }
+};
+
+} // namespace pertev

@@ -1,0 +1,132 @@
+#include "tracer/scene_structures.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "scene/scene.h"
+#include "tracer/deforming_tree.h"
+
+namespace pertev {
+
+namespace {
+
+/// In the order of the scene, as whoever prepared it gave them to the builder; each once, though it may be cut.
+SceneTriangles triangles_of(const BinaryTrees& trees) {
+    SceneTriangles triangles;
+    for (std::size_t part = 0; part < trees.parts.size(); ++part) {
+        std::vector<BvhTriangle> list = trees.parts[part]->triangles;
+        for (BvhTriangle& triangle : list) triangle.flags = 0;
+        const auto place = [](const BvhTriangle& t) { return std::pair(t.instance, t.primitive); };
+        std::ranges::sort(list, {}, place);
+        const auto copies = std::ranges::unique(list, {}, place);
+        list.erase(copies.begin(), copies.end());
+        if (part == 0) {
+            triangles.baked = std::move(list);
+        } else {
+            triangles.meshes.push_back(std::move(list));
+        }
+    }
+    return triangles;
+}
+
+} // namespace
+
+TopLevelBvh top_level_over(std::span<const PlacedBvh> placed, const std::map<uint32_t, Bounds3>& bounds_of_trees) {
+    std::vector<PlacedBvh> now(placed.begin(), placed.end());
+    for (PlacedBvh& tree : now) {
+        const auto bounds = bounds_of_trees.find(tree.mesh_bvh);
+        if (bounds == bounds_of_trees.end()) continue;
+        tree.local_bounds = bounds->second;
+        if (tree.local_bounds.is_empty() || lies_near(tree.world_from_local, tree.local_bounds)) continue;
+        throw Error(ErrorCode::OverLimit,
+                    fmt::format("instance {} lies further out than 2^40 metres, as its vertices are moved; scale the "
+                                "scene down",
+                                tree.instance));
+    }
+    return build_top_level_bvh(now);
+}
+
+SceneStructures::SceneStructures(BvhBuilder builder, BinaryTrees trees, TopLevelBvh top_level)
+    : builder_(builder), top_level_(std::move(top_level)) {
+    triangle_count_ = trees.triangle_count();
+    baked_bounds_ = trees.baked().bounds;
+    binary_.emplace(builder, std::move(trees));
+}
+
+std::shared_ptr<SceneStructures> SceneStructures::updated(BinaryTrees trees, TopLevelBvh top_level,
+                                                          const std::vector<PartChange>& changes,
+                                                          const SceneTriangles& triangles) {
+    const std::lock_guard lock(mutex_);
+    const auto after = std::make_shared<SceneStructures>(builder_, std::move(trees), std::move(top_level));
+    for (const auto& [builder, before] : binary_) {
+        if (builder == builder_) continue;
+        after->binary_.emplace(builder, update_binary_trees(before, builder, changes, triangles));
+    }
+    for (const auto& [what, structure] : built_) {
+        const auto& [kind, layout] = what;
+        const BuiltStructure::Before before = {*structure, changes};
+        auto& built = after->built_[what];
+        if (const auto builder = builder_of(kind)) {
+            built = std::make_shared<const BuiltStructure>(after->top_level_, kind, layout, after->binary_.at(*builder),
+                                                           &before);
+        } else {
+            built = std::make_shared<const BuiltStructure>(after->top_level_, kind, triangles, &before);
+        }
+    }
+    return after;
+}
+
+std::shared_ptr<SceneStructures> SceneStructures::fitted(Queue& queue, std::span<const DeformedMesh> meshes,
+                                                         std::span<const PlacedBvh> placed) {
+    const BinaryTrees before = [&] {
+        const std::lock_guard lock(mutex_);
+        return binary_.at(builder_);
+    }();
+    std::vector<PartChange> changes(before.parts.size(), PartChange::None);
+    SceneTriangles triangles;
+    triangles.meshes.resize(before.parts.size() - 1);
+    for (const DeformedMesh& mesh : meshes) {
+        changes[1 + mesh.tree] = PartChange::Deformed;
+        triangles.meshes[mesh.tree] = read_triangles(queue, mesh);
+    }
+    BinaryTrees trees = update_binary_trees(before, builder_, changes, triangles);
+    std::map<uint32_t, Bounds3> bounds;
+    for (const DeformedMesh& mesh : meshes) bounds.emplace(mesh.tree, trees.parts[1 + mesh.tree]->bounds);
+    TopLevelBvh top_level = top_level_over(placed, bounds);
+    return updated(std::move(trees), std::move(top_level), changes, triangles);
+}
+
+const BinaryTrees& SceneStructures::binary_trees(BvhBuilder builder) {
+    const auto at = binary_.find(builder);
+    if (at != binary_.end()) return at->second;
+    const SceneTriangles triangles = triangles_of(binary_.at(builder_));
+    return binary_.emplace(builder, build_binary_trees(triangles, builder)).first->second;
+}
+
+std::shared_ptr<const BuiltStructure> SceneStructures::get(const Combination& combination) {
+    const std::lock_guard lock(mutex_);
+    const StructureKind kind = combination.structure;
+    const TreeLayout layout = layout_of(combination);
+    auto& built = built_[{kind, layout}];
+    if (built != nullptr) return built;
+    if (const auto builder = builder_of(kind)) {
+        built = std::make_shared<const BuiltStructure>(top_level_, kind, layout, binary_trees(*builder));
+    } else {
+        const SceneTriangles triangles = triangles_of(binary_.at(builder_));
+        built = std::make_shared<const BuiltStructure>(top_level_, kind, triangles);
+    }
+    return built;
+}
+
+std::size_t SceneStructures::device_bytes(const TracerChoice& choice) {
+    std::set<std::shared_ptr<const BuiltStructure>> structures;
+    for (const RayKind kind : kRayKinds) structures.insert(get(choice[kind]));
+    std::size_t bytes = 0;
+    for (const auto& structure : structures) bytes += structure->device_bytes();
+    return bytes;
+}
+
+} // namespace pertev

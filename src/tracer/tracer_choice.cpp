@@ -1,0 +1,114 @@
+#include "tracer/tracer_choice.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "tracer/walk_kernels.h"
+
+namespace pertev {
+
+const char* name_of(RayKind kind) {
+    switch (kind) {
+    case RayKind::Camera:
+        return "camera";
+    case RayKind::Bounce:
+        return "bounce";
+    case RayKind::Shadow:
+        break;
+    }
+    return "shadow";
+}
+
+Combination& TracerChoice::operator[](RayKind kind) {
+    switch (kind) {
+    case RayKind::Camera:
+        return camera;
+    case RayKind::Bounce:
+        return bounce;
+    case RayKind::Shadow:
+        break;
+    }
+    return shadow;
+}
+
+TracerChoice same_for_all(const Combination& combination) { return {combination, combination, combination}; }
+
+const char* name_of(TreeBuild build) {
+    switch (build) {
+    case TreeBuild::Fast:
+        return "fast";
+    case TreeBuild::Balanced:
+        return "balanced";
+    case TreeBuild::Best:
+        break;
+    }
+    return "best";
+}
+
+std::optional<TreeBuild> tree_build_named(const std::string& name) {
+    for (const TreeBuild build : kTreeBuilds) {
+        if (name == name_of(build)) return build;
+    }
+    return std::nullopt;
+}
+
+StructureKind structure_of(TreeBuild build) {
+    switch (build) {
+    case TreeBuild::Fast:
+        return StructureKind::Binned;
+    case TreeBuild::Balanced:
+        return StructureKind::SpatialSplits;
+    case TreeBuild::Best:
+        break;
+    }
+    return StructureKind::SpatialReinsertion;
+}
+
+TracerChoice default_tracers(bool on_cuda, TreeBuild build) {
+    const StructureKind structure = structure_of(build);
+    if (on_cuda) { // rays from the camera go together, by binary nodes; scattered ones go alone, by compressed ones
+        const Combination together = {.structure = structure, .walk = WalkKind::Octants};
+        const Combination alone = {.structure = structure,
+                                   .walk = WalkKind::Compressed,
+                                   .options = {.rta_at_pops = false},
+                                   .distribution = Distribution::DynamicFetch};
+        return {together, alone, alone};
+    }
+    TracerChoice choice = same_for_all({.structure = structure, .walk = WalkKind::Wide8Simd});
+    // Of several children, the first is where any-hit searches end sooner (of rays without an end: trace/trace_any.h).
+    choice.shadow.options.near_first = false;
+    return choice;
+}
+
+BvhBuilder builder_of(const TracerChoice& choice) {
+    for (const RayKind kind : {RayKind::Bounce, RayKind::Shadow, RayKind::Camera}) {
+        if (const auto builder = builder_of(choice[kind].structure)) return *builder;
+    }
+    return *builder_of(structure_of(kDefaultBuild));
+}
+
+bool can_walk_on_host(const TracerChoice& choice, bool on_cuda) {
+    if (on_cuda) return false;
+    for (const RayKind kind : kRayKinds) {
+        Combination c = choice[kind];
+        if (kind == RayKind::Shadow) c.options.near_first = true; // either way it finds the same
+        if (!(c == Combination{.structure = choice.camera.structure, .walk = WalkKind::Wide8Simd})) return false;
+    }
+    return true;
+}
+
+void check_choice(const TracerChoice& choice, bool on_cuda) {
+    for (const RayKind kind : kRayKinds) {
+        const Combination& c = choice[kind];
+        if (const auto reason = why_no_tracer(c, on_cuda)) {
+            throw Error(ErrorCode::BadInput, fmt::format("{}: {}", name_of(c), *reason));
+        }
+        if (!c.options.is_exact()) {
+            throw Error(ErrorCode::BadInput, fmt::format("{}: {} tests let rays slip through edges; pictures are made "
+                                                         "with exact ones",
+                                                         name_of(c), name_of(c.options.tests)));
+        }
+    }
+}
+
+} // namespace pertev
