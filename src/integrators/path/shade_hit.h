@@ -64,12 +64,7 @@ HD INLINE_ON_DEVICE bool ask_for_light(const SceneView& scene, const PathSetting
     LightSample light;
     const SampleBits u = numbers.light(settings, path);
     const bool moves = is_moving<kMotion>(scene);
-    if (moves) {
-        const LampsAt lamps = {scene.motions, path.time};
-        if (!sample_light<has_textures(kKnown)>(scene.lights, surface.position, u, light, lamps)) return false;
-    } else if (!sample_light<has_textures(kKnown)>(scene.lights, surface.position, u, light)) {
-        return false;
-    }
+    if (!draw_direct<has_textures(kKnown)>(scene, moves, surface.light_context(path.time), u, light)) return false;
     const BsdfValue scattered = surface.evaluate(wo, light.wi);
     if (is_black(scattered.f)) return false;
     if (kKnown != MaterialsKnown::PlainDiffuse && light.instance != kNoLight && scene.any_alpha != 0 &&
@@ -195,7 +190,7 @@ HD INLINE_ON_DEVICE bool shade_hit(const PictureView& picture, const PathSetting
         if (is_frame && path.depth == 0) store_no_hit(film.frame, path.pixel);
         const bool is_hidden = picture.hide_background && path.depth == 0;
         if (scene.lights.has_environment() && !is_hidden) {
-            const EnvironmentHit seen = find_environment(scene.lights, path.direction, path.bsdf_pdf > 0);
+            const EnvironmentHit seen = find_environment(scene.lights, path.origin, path.direction, path.bsdf_pdf > 0);
             if (leaves_light && path.depth == 1 && seen.pdf > 0) {
                 left.light[path.pixel] = place_in_environment(path.direction);
             } else {
@@ -222,11 +217,7 @@ HD INLINE_ON_DEVICE bool shade_hit(const PictureView& picture, const PathSetting
         add_first_hit(film, path.pixel, path.sample, {path.origin, path.direction}, hit, surface, picture, path.time);
     }
     if (!is_black(surface.emission)) {
-        const uint32_t light = path.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
-        const float light_pdf =
-            light == kNoLight ? 0.0f
-            : moves           ? pdf_light_hit_at(scene, light, hit.instance, path.origin, surface.position, path.time)
-                              : pdf_light_hit(scene.lights, light, path.origin, surface.position);
+        const float light_pdf = path.bsdf_pdf > 0 ? pdf_direct(scene, moves, {path.origin, path.time}, surface) : 0.0f;
         if (leaves_light && path.depth == 1 && light_pdf > 0) {
             left.light[path.pixel] = {hit.instance, hit.primitive, hit.u, hit.v};
         } else {
