@@ -223,7 +223,7 @@ void PathIntegrator::render(uint32_t first, uint32_t count, const FilmView& film
     } else {
         render_wavefront(first, count, film);
     }
-    if (picture_.camera.view.projection == Projection::Cosine) {
+    if (is_light_meter(picture_.camera.view.projection)) {
         rays_.shadow += add_meter_lights(queue_, *tracer_, picture_, settings_, first, count, film);
     }
 }
