@@ -360,7 +360,7 @@ MUTATIONS = TRANSPORT_MUTATIONS + [
                    "sample_bits<Word>(kind, key, vertex_group(depth, kGroupScatter), Pair::Last)")],
              ["unit/vertex_numbers"]),
     Mutation("choices that are not drawn where a path may end by chance",
-             [edit("src/integrators/path/path_loop.cpp", "has_choices || may_end_by_chance(settings_, path.depth + 1)", "has_choices")],
+             [edit("src/integrators/path/path_loop.cpp", "has_choices || may_end_by_chance(job_.settings, path.depth + 1)", "has_choices")],
              ["consistency/one_picture"]),
     Mutation("a piece of an OBJ file that does not know the material before it",
              [edit("src/formats/obj/obj_pieces.cpp", "found[i].material.value_or(before.key.material)", "before.key.material")],
