@@ -221,7 +221,7 @@ PathJob PathIntegrator::job_for(const FilmView& film) const {
 }
 
 void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees) {
-    const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;
+    const uint64_t pixels = uint64_t(film.width) * film.height;
     const PathJob job = job_for(film);
     const TileRasterView* const raster = raster_ ? &raster_->view() : nullptr;
     std::atomic<uint64_t> bounces{0}, shadows{0};
@@ -241,7 +241,7 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
     take_wavefronts(
         count, {.splits_light = film.frame.splits_light(), .tells_bounce = film.frame.first_bounce.tells_bounce()});
-    const uint32_t pixels = picture_.camera.width * picture_.camera.height;
+    const uint32_t pixels = film.width * film.height;
     const Work work = {{0, pixels, first, count}, job_for(film)};
     // Kinds of rays can be timed only one after the other.
     const bool in_turns = tracer_->times_kinds();
@@ -313,7 +313,7 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
         if (w.known.all_begun == 0) {
             const WorkCount fresh = {most, &counts->fresh};
             launch(queue_, "generate_paths", fresh,
-                   GeneratePaths{picture_.camera, work.job.settings, work.samples, counts, last, any_alpha, paths});
+                   GeneratePaths{work.job, work.samples, counts, last, any_alpha, paths});
             const HitQueueView camera_hits = {hits.places + last, hits.instances + last, -1};
             if (raster_) {
                 tracer_->timed(RayKind::Camera,

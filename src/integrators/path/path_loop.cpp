@@ -164,14 +164,14 @@ private:
 template <class Listener>
 void render_group(const PathJob& job, const LoopTrees& trees, const BeginOrder& work, RayCounts& counts) {
     PathGroup<Listener> group(job, trees);
-    const CameraRays& camera = job.picture.camera;
-    EightSamples samples(camera, job.settings);
+    const FilmView& film = job.film;
+    EightSamples samples(job.picture.camera, job.settings);
     const auto trace = [&](const PathState& path) {
         group.add(path);
         while (group.is_full()) group.advance(counts);
     };
     for (uint32_t i = 0; i < work.pixels; ++i) {
-        const uint32_t pixel = ordered_pixel(work.first_place + i, camera.width, camera.height);
+        const uint32_t pixel = film.window.pixel_at(ordered_pixel(work.first_place + i, film.width, film.height));
         for (uint32_t k = 0; k < work.samples; ++k) {
             samples.add(pixel, work.first_sample + k);
             if (samples.is_full()) samples.begin(trace);

@@ -41,8 +41,7 @@ struct PlanRound {
 };
 
 struct GeneratePaths {
-    CameraRays camera;
-    PathSettings settings;
+    PathJob job;
     BeginOrder samples;
     const RoundCounts* round;
     uint32_t last; // place of the first one
@@ -50,9 +49,11 @@ struct GeneratePaths {
     PathQueueView paths;
 
     HD void operator()(uint32_t i) const {
-        const PixelSample begun = samples.at(round->first + i, camera.width, camera.height);
-        const PathState path = generate_path(camera, settings, begun.pixel, begun.sample);
-        paths.store(last - i, path, settings.seed, any_alpha);
+        const FilmView& film = job.film;
+        const PixelSample begun = samples.at(round->first + i, film.width, film.height);
+        const PathState path =
+            generate_path(job.picture.camera, job.settings, film.window.pixel_at(begun.pixel), begun.sample);
+        paths.store(last - i, path, job.settings.seed, any_alpha);
         if (paths.times != nullptr) paths.times[last - i] = path.time;
     }
 };
