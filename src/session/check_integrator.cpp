@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "render/raster/pinhole.h"
 #include "session/settings_text.h"
 
 namespace pertev {
