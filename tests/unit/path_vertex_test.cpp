@@ -113,15 +113,18 @@ Features chosen(CompiledFor<kMasks...>, Features wanted) {
 
 TEST_CASE("unit/path_vertex: a listener is told of a vertex in its order, and changes nothing of the light") {
     const Place place;
-    PathState alone = path_down(), heard = path_down();
+    PathState alone, heard = path_down();
     ShadowRay shadow_alone, shadow_heard;
     bool asks_alone = false, asks_heard = false;
     Listeners<> nobody(place.job);
     Listeners<Witness> witness(place.job);
+    while (!asks_alone && heard.sample < 100) { // until the sky is drawn, not the floor itself
+        ++heard.sample;
+        alone = heard;
+        REQUIRE(
+            shade_vertex<kAllMaterials>(place.job, alone, kFloor, DrawWhenAsked(), shadow_alone, asks_alone, nobody));
+    }
     witness.begins(heard);
-    const bool goes_on =
-        shade_vertex<kAllMaterials>(place.job, alone, kFloor, DrawWhenAsked(), shadow_alone, asks_alone, nobody);
-    REQUIRE(goes_on);
     CHECK(shade_vertex<kPlainDiffuse>(place.job, heard, kFloor, DrawWhenAsked(), shadow_heard, asks_heard, witness));
     REQUIRE(asks_alone);
     CHECK(asks_heard);
