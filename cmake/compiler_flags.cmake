@@ -22,6 +22,7 @@ add_compile_options(
 # Where device code is compiled to see that it compiles (.ci/run), files of kernels are built as fast as may be on the
 # host's side too: there -O2 takes three quarters of the time of -O3, and on the mean of all walks the same to run.
 if(CMAKE_CUDA_FLAGS MATCHES "-Ofc=max")
+  set(PERTEV_CUDA_IS_CHECKED_ALONE ON)
   add_compile_options("$<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<CONFIG:Release>>:-Xcompiler=-O2>")
 endif()
 if(PERTEV_WERROR)

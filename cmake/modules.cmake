@@ -31,11 +31,15 @@ endfunction()
 
 # The same for .cu files, which CMake's own gathers in newer versions only: most of such a file's time goes into headers.
 # Those of shading and of walks stay alone: optimised, each takes a minute. So do those that every picture needs: a GPU
-# is given all kernels of a file with the first of them.
+# is given all kernels of a file with the first of them. Where device code is compiled to see that it compiles, nothing is
+# optimised or run, and all are gathered.
 function(pertev_gather_cuda name list)
   set(files ${${list}})
   list(FILTER files INCLUDE REGEX "\\.cu$")
-  list(FILTER files EXCLUDE REGEX "/shade_|/kernels/|/hploc/|/cuda/|/(path|film)_stages")
+  if(NOT PERTEV_CUDA_IS_CHECKED_ALONE)
+    list(FILTER files EXCLUDE REGEX "/shade_|/kernels/|/hploc/|/(path|film)_stages")
+  endif()
+  list(FILTER files EXCLUDE REGEX "/cuda/")
   list(LENGTH files count)
   if(NOT PERTEV_UNITY OR NOT PERTEV_HAS_CUDA OR count LESS 2)
     return()

@@ -1,11 +1,15 @@
 #include "formats/obj/parse_obj.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <charconv>
+#include <cmath>
 #include <deque>
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -17,7 +21,6 @@
 #include "formats/mesh/triangulate_polygon.h"
 #include "formats/mesh/vertex_colors.h"
 #include "formats/obj/obj_pieces.h"
-#include "formats/obj/obj_positions.h"
 #include "formats/obj/obj_text.h"
 #include "scene/position_bounds.h"
 #include "scene/scene_origin.h"
@@ -46,10 +49,11 @@ Error fault_at(const std::string& file, uint32_t line, const std::string& what) 
 /// Reads one piece: its vertices to their places in arrays that are as long as all will be.
 class PieceParser {
 public:
+    /// `exact`: of all positions, as `data` has them.
     PieceParser(const ObjPiece& piece, char end_of_line, const std::string& file, ObjData& data,
-                const FoundMaterials* found_materials)
+                std::span<DoubleVec3> exact, const FoundMaterials* found_materials)
         : lines_(piece.text, end_of_line, piece.line), file_(file), before_(piece.counts), so_far_(piece.counts),
-          data_(data), found_materials_(found_materials), key_(piece.key) {}
+          data_(data), exact_(exact), found_materials_(found_materials), key_(piece.key) {}
 
     void run() {
         for (std::string_view line; lines_.next(line);) statement(line);
@@ -107,30 +111,53 @@ private:
         unknown.add(lines_.number());
     }
 
-    std::optional<float> next_number(std::string_view& line) {
+    template <class Float = float>
+    std::optional<Float> next_number(std::string_view& line) {
         skip_space(line);
         if (line.empty() || line[0] == '#') return std::nullopt;
-        const std::optional<float> value = parse_float(line);
+        const std::optional<Float> value = parse_float<Float>(line);
         if (value && (line.empty() || is_obj_space(line[0]))) return value;
         bad_numbers.add(lines_.number());
         take_word(line);
-        return kNan;
+        return Float(kNan);
+    }
+
+    template <class Float>
+    Float wanted_number(std::string_view& line) {
+        const std::optional<Float> number = next_number<Float>(line);
+        if (!number) bad_numbers.add(lines_.number());
+        return number.value_or(Float(kNan));
     }
 
     template <std::size_t count>
     std::array<float, count> numbers(std::string_view& line) {
         std::array<float, count> values;
-        for (float& value : values) {
-            const std::optional<float> number = next_number(line);
-            if (!number) bad_numbers.add(lines_.number());
-            value = number.value_or(kNan);
-        }
+        for (float& value : values) value = wanted_number<float>(line);
         return values;
     }
 
+    /// Returns the float that is nearest to the decimals that `number` was read from, which `text` begins with.
+    static float nearest_float(double number, std::string_view text) {
+        // A number halfway between two floats may be the decimals rounded to there, and then be rounded the wrong way.
+        const bool may_be_halfway = (std::bit_cast<uint64_t>(number) & 0x1fffffffu) == 0x10000000u;
+        using Limits = std::numeric_limits<float>;
+        const double size = std::abs(number);
+        const bool is_plain = size == 0 || (size >= double(Limits::min()) && size <= double(Limits::max()));
+        if (is_plain && !may_be_halfway) return static_cast<float>(number);
+        skip_space(text);
+        return parse_float(text).value_or(kNan);
+    }
+
     void vertex(std::string_view line) {
-        const auto p = numbers<3>(line);
-        data_.positions.at(so_far_.positions++) = {p[0], p[1], p[2]};
+        std::array<double, 3> exact;
+        std::array<float, 3> rounded;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::string_view text = line;
+            exact[axis] = wanted_number<double>(line);
+            rounded[axis] = nearest_float(exact[axis], text);
+        }
+        data_.positions.at(so_far_.positions) = {rounded[0], rounded[1], rounded[2]};
+        exact_[so_far_.positions++] = {exact[0], exact[1], exact[2]};
         std::array<float, 3> rgb;
         std::size_t found = 0;
         while (found < 3) {
@@ -213,6 +240,7 @@ private:
     const ObjCounts before_;
     ObjCounts so_far_;
     ObjData& data_;
+    std::span<DoubleVec3> exact_;
     const FoundMaterials* found_materials_; // null: nobody asks
     ObjGroupNumbers numbers_;
     ObjGroupKey key_;
@@ -294,10 +322,11 @@ private:
             throw Error(ErrorCode::OverLimit, Place{file_}, "more than 2^32 - 1 vertices");
         }
         data_.positions.resize(all.positions); // pieces write to places of their own
+        exact_.resize(all.positions);
         data_.uvs.resize(all.uvs);
         data_.normals.resize(all.normals);
         for (std::size_t i = 0; i < pieces_.size(); ++i)
-            parsers_.emplace_back(pieces_[i], end_of_line_, file_, data_,
+            parsers_.emplace_back(pieces_[i], end_of_line_, file_, data_, exact_,
                                   i == 0 && found_materials ? &found_materials : nullptr);
         parallel_for(parsers_.size(), 1, [&](uint64_t i) { parsers_[i].run(); });
     }
@@ -321,17 +350,12 @@ private:
         return box;
     }
 
-    /// Where the faces lie away from 0, reads the positions in double and takes off what lies between.
+    /// Where the faces lie away from 0, takes off in double what lies between.
     void move_to_origin() {
+        const std::vector<DoubleVec3> exact = std::exchange(exact_, {}); // of no use behind this
         if (surely_stays(bounds_of_faces(kCornersApart))) return;
         data_.box = double_box_of(bounds_of_faces());
         if (origin_for(data_.box) == DoubleVec3{0, 0, 0}) return;
-        std::vector<DoubleVec3> exact(data_.positions.size());
-        parallel_for(pieces_.size(), 1, [&](uint64_t i) {
-            const std::size_t begin = pieces_[i].counts.positions;
-            const std::size_t end = i + 1 < pieces_.size() ? pieces_[i + 1].counts.positions : exact.size();
-            read_obj_positions(pieces_[i].text, end_of_line_, std::span(exact).subspan(begin, end - begin));
-        });
         data_.box = move_positions(data_.box, exact, data_.positions, [&] { return bounds_of_faces(); });
     }
 
@@ -419,7 +443,8 @@ private:
     std::vector<ObjPiece> pieces_;
     std::deque<PieceParser> parsers_; // of the pieces
     ObjData data_;
-    std::vector<Parts> groups_; // in the order of first use
+    std::vector<DoubleVec3> exact_; // positions as the text says them
+    std::vector<Parts> groups_;     // in the order of first use
 };
 
 } // namespace

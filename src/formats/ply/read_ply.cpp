@@ -142,13 +142,6 @@ private:
 
     using VertexValues = std::array<double, kSlots + 1>; // by slot
 
-    /// What reads the vertices once more.
-    struct VertexReader {
-        PlyBody body; // at the first of them
-        const PlyElement& element;
-        std::vector<std::size_t> slots; // of its properties
-    };
-
     static void read_values(PlyBody& body, const PlyElement& element, const std::vector<std::size_t>& slots,
                             VertexValues& values) {
         for (std::size_t k = 0; k < slots.size(); ++k) {
@@ -180,7 +173,10 @@ private:
         const bool has_colour = has[kRed] && has[kGreen] && has[kBlue], has_uv = has[kU] && has[kV];
         const auto count = static_cast<std::size_t>(element.count);
         mesh_.positions.resize(count);
-        vertices_.emplace(VertexReader{body_, element, slots});
+        // What the file says of a place is more than a float holds.
+        const bool is_text = header_.format == PlyFormat::Ascii;
+        const auto is_float_there = [&](PlySlot slot) { return types[slot] == PlyType::Float32; };
+        if (is_text || !(is_float_there(kX) && is_float_there(kY) && is_float_there(kZ))) exact_.resize(count);
         if (has_normal) mesh_.normals.resize(count);
         if (has_colour) mesh_.colors.resize(count);
         if (has_uv) mesh_.uv[0].resize(count);
@@ -194,6 +190,7 @@ private:
             body_.set_number(i);
             read_values(body_, element, slots, values);
             mesh_.positions[i] = {number(kX), number(kY), number(kZ)};
+            if (!exact_.empty()) exact_[i] = {values[kX], values[kY], values[kZ]};
             if (has_normal) mesh_.normals[i] = {number(kNormalX), number(kNormalY), number(kNormalZ)};
             if (has_colour) {
                 mesh_.colors[i] = {channel(kRed), channel(kGreen), channel(kBlue),
@@ -327,15 +324,10 @@ private:
         if (surely_stays(sample)) return;
         box_ = double_box_of(bounds_of(mesh_.positions, corners_));
         if (origin_for(box_) == DoubleVec3{0, 0, 0}) return;
-        std::vector<DoubleVec3> exact; // they are read once more, so that other files are read no slower
-        exact.reserve(mesh_.positions.size());
-        VertexValues values = {};
-        while (exact.size() < mesh_.positions.size()) {
-            read_values(vertices_->body, vertices_->element, vertices_->slots, values);
-            exact.push_back({values[kX], values[kY], values[kZ]});
-            vertices_->body.end_element();
+        if (exact_.empty()) {
+            for (const Vec3& p : mesh_.positions) exact_.push_back(to_double(p));
         }
-        box_ = move_positions(box_, exact, mesh_.positions, [&] { return bounds_of(mesh_.positions, corners_); });
+        box_ = move_positions(box_, exact_, mesh_.positions, [&] { return bounds_of(mesh_.positions, corners_); });
     }
 
     void triangulate() {
@@ -368,7 +360,7 @@ private:
     const std::string& file_;
     uint64_t vertex_count_ = 0; // as declared: faces may stand before the vertices
     Mesh mesh_;
-    std::optional<VertexReader> vertices_;
+    std::vector<DoubleVec3> exact_; // positions, where they are not floats in the file
     DoubleBounds3 box_;
     std::vector<uint32_t> corners_, sizes_; // of the faces, one after the other
     PlyFaceTextures of_faces_;
