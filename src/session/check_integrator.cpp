@@ -73,7 +73,7 @@ void check_integrator(const RenderSettings& settings) {
     const std::string_view name = integrator_name(settings);
     const bool is_denoised = settings.denoise != Denoise::None;
     refuse(is_denoised && !makes_frames(settings.integrator), "denoise", name_of(settings.denoise),
-           fmt::format("it reconstructs pictures of `integrator=path` and hybrid, not of {}", name));
+           fmt::format("reconstructs pictures of `integrator=path` and hybrid, not of {}", name));
     if (settings.light_paths) {
         refuse(!has_light_path_layers(settings.integrator), "lpe", "",
                fmt::format("light paths are told apart by `integrator=path`, direct, indirect and hybrid, not by {}",

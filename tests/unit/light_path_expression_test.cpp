@@ -186,7 +186,7 @@ TEST_CASE("a bad expression points at its character") {
     points_at("L(D|G)<'x'>E", 6, "in brackets too");
     points_at("LD<R><'x'>E", 5, "behind one letter");
     points_at("L'lamp'E", 1, "names stand between < and >");
-    points_at("LE,b=LDE", 2, "an `lpe` NAME=EXPRESSION of its own");
+    points_at("LE,b=LDE", 2, "`lpe` NAME=EXPRESSION of its own");
     points_at("CD*L", 0, "from the light to the eye");
     points_at("lde", 0, "capitals");
     points_at("LdE", 1, "capitals");

@@ -105,8 +105,8 @@ struct HostMesh {
     }
 };
 
-using Place = std::array<double, 3>;
-using Edge = std::pair<Place, Place>;
+using ScreenPoint = std::array<double, 3>;
+using Edge = std::pair<ScreenPoint, ScreenPoint>;
 
 struct Diced {
     std::map<Edge, int> edges; // of micropolygons, how many have them
@@ -143,7 +143,7 @@ Diced dice(const HostMesh& host, const Camera& camera, uint32_t width, uint32_t 
             const double dx = pass.camera.column_of(a.x / a.w) - pass.camera.column_of(b.x / b.w);
             const double dy = pass.camera.row_of(a.y / a.w) - pass.camera.row_of(b.y / b.w);
             diced.longest = std::max(diced.longest, std::sqrt(dx * dx + dy * dy));
-            const Place from = {a.x, a.y, a.depth}, to = {b.x, b.y, b.depth};
+            const ScreenPoint from = {a.x, a.y, a.depth}, to = {b.x, b.y, b.depth};
             ++diced.edges[from < to ? Edge(from, to) : Edge(to, from)];
         }
     }

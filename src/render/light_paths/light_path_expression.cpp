@@ -29,7 +29,7 @@ std::string_view why_no_atom(char letter) {
     case '"':
         return "names stand between < and >: L<'lamp'>";
     case ',':
-        return "each expression has an `lpe` NAME=EXPRESSION of its own";
+        return "each expression has a `lpe` NAME=EXPRESSION of its own";
     case 'C':
         return "from the light to the eye: LD*E is what is CD*L elsewhere";
     case 'l':
