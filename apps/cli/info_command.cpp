@@ -10,6 +10,7 @@
 
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
+#include "apps/cli/flag_phrases.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
 #include "base/error.h"
@@ -57,7 +58,7 @@ public:
     }
     void add(const ExrMetadata::value_type& entry) {
         const auto text = [](const auto& value) { return fmt::format("{}", value); };
-        facts_.push_back({entry.first, std::visit(text, entry.second), metadata_json(entry)});
+        facts_.push_back({entry.first, phrase(std::visit(text, entry.second)), metadata_json(entry)});
     }
     void report(Reporter& reporter) const {
         std::string json = R"({"event":"info")", lines;

@@ -9,6 +9,7 @@
 #include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
+#include "apps/cli/flag_phrases.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/lab_files.h"
 #include "apps/cli/lab_scene.h"
@@ -20,6 +21,7 @@
 #include "apps/cli/transport_command.h"
 #include "base/error.h"
 #include "formats/files/parse_number.h"
+#include "lab/describe_camera.h"
 #include "lab/list_combinations.h"
 #include "lab/ray_sets.h"
 #include "lab/record_scenes.h"
@@ -159,6 +161,7 @@ int run(const LabFlags& flags) {
     if (!flags.output.empty()) check_lab_folder(flags.output);
     reporter.say_messages();
     settings.scene = lab_scene_title(flags.scene.scene);
+    settings.camera = phrase(describe_camera(camera, scene.origin_in_file));
     listen_for_interrupt();
     const LabReport report = run_lab(*queue, scene, camera, settings, show_lab_progress(reporter, flags.output));
     reporter.end_progress();

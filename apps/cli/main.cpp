@@ -87,7 +87,7 @@ int run(int argc, char** argv, bool json) {
         const UsageError usage = describe_usage_error(app, error);
         return report_error(json, ErrorCode::BadInput, usage.text, usage.help);
     } catch (const Error& error) {
-        return report_error(json, error.code(), error.what());
+        return report_error(json, error.code(), error.remark());
     } catch (const std::bad_alloc&) {
         return report_error(json, ErrorCode::OutOfMemory, "out of memory on this machine");
     } catch (const std::filesystem::filesystem_error& error) {

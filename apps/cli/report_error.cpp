@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/cli/flag_phrases.h"
 #include "base/json_text.h"
 
 namespace pertev {
@@ -34,16 +35,16 @@ bool write(std::FILE* file, const std::string& text) {
 
 } // namespace
 
-std::string error_object(ErrorCode code, const std::string& text, const std::string& help) {
-    return fmt::format(R"({{"event":"error","code":"{}","status":{},"interrupted":{},"text":{}{}}})", name_of(code),
-                       exit_status(code), code == ErrorCode::Interrupted, json_string(text),
-                       help.empty() ? "" : fmt::format(R"(,"help":{})", json_string(help)));
+std::string error_object(ErrorCode code, const Remark& remark, const std::string& help) {
+    return fmt::format(R"({{"event":"error","code":"{}","status":{},"interrupted":{},"text":{}{}{}}})", name_of(code),
+                       exit_status(code), code == ErrorCode::Interrupted, json_string(phrase(remark)),
+                       json_parts(remark), help.empty() ? "" : fmt::format(R"(,"help":{})", json_string(help)));
 }
 
-int report_error(bool json, ErrorCode code, const std::string& text, const std::string& help) {
-    if (!json || !write(stdout, error_object(code, text, help) + '\n')) {
-        write(stderr,
-              fmt::format("pertev: {}\n{}", text, help.empty() ? "" : fmt::format("({} lists what there is)\n", help)));
+int report_error(bool json, ErrorCode code, const Remark& remark, const std::string& help) {
+    if (!json || !write(stdout, error_object(code, remark, help) + '\n')) {
+        write(stderr, fmt::format("pertev: {}\n{}", phrase(remark),
+                                  help.empty() ? "" : fmt::format("({} lists what there is)\n", help)));
     }
     return exit_status(code);
 }

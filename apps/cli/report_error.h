@@ -8,11 +8,11 @@
 
 namespace pertev {
 
-/// {"event":"error","code":"bad_input","status":2,"interrupted":false,"text":...}, and "help":... where `help` is not
-/// empty: the command line that lists what there is.
-std::string error_object(ErrorCode code, const std::string& text, const std::string& help = "");
+/// {"event":"error","code":"bad_input","status":2,"interrupted":false,"text":...,"reason":...} with the remark's other
+/// parts, and "help":... where `help` is not empty: the command line that lists what there is.
+std::string error_object(ErrorCode code, const Remark& remark, const std::string& help = "");
 
 /// Says it; with `json` on stdout, or on stderr where stdout takes nothing. Gives the exit status.
-int report_error(bool json, ErrorCode code, const std::string& text, const std::string& help = "");
+int report_error(bool json, ErrorCode code, const Remark& remark, const std::string& help = "");
 
 } // namespace pertev

@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/flag_phrases.h"
 #include "base/error.h"
 
 namespace pertev {
@@ -54,10 +55,10 @@ void Reporter::say_messages() {
     for (; said_ < messages_.all().size(); ++said_) {
         const Message& message = messages_.all()[said_];
         if (flags_.json && !flags_.quiet) {
-            event(fmt::format(R"({{"event":"{}","text":{},"times":{}}})", message.is_warning ? "warning" : "notice",
-                              json_string(message.text), message.times));
+            event(fmt::format(R"({{"event":"{}","text":{},"times":{}{}}})", message.is_warning ? "warning" : "notice",
+                              json_string(phrase(message.remark)), message.times, json_parts(message.remark)));
         } else {
-            say(fmt::format("{}: {}{}", message.is_warning ? "warning" : "note", message.text,
+            say(fmt::format("{}: {}{}", message.is_warning ? "warning" : "note", phrase(message.remark),
                             message.times > 1 ? fmt::format(" ({} times)", message.times) : ""));
         }
     }
@@ -70,17 +71,17 @@ void Reporter::say(const std::string& line) {
 }
 
 void Reporter::progress(double share, const std::string& detail) {
-    if (!redraws_) set_work(fmt::format("{:.0f} %  {}", 100 * share, detail));
+    if (!redraws_) set_work(fmt::format("{:.0f} %  {}", 100 * share, detail)); // it is phrased there
     if (is_silent() || !redraws_) return;
     constexpr int width = 24;
     const int full = std::clamp(static_cast<int>(share * width), 0, width);
-    write_now(stderr,
-              fmt::format("\r[{:=<{}}{: <{}}] {:3.0f} %  {}\x1b[K", "", full, "", width - full, 100 * share, detail));
+    write_now(stderr, fmt::format("\r[{:=<{}}{: <{}}] {:3.0f} %  {}\x1b[K", "", full, "", width - full, 100 * share,
+                                  phrase(detail)));
     drawn_ = true;
 }
 
 void Reporter::set_work(const std::string& work) {
-    if (heartbeat_) heartbeat_->set_work(work);
+    if (heartbeat_) heartbeat_->set_work(phrase(work));
 }
 
 void Reporter::event(const std::string& object) {
@@ -88,8 +89,13 @@ void Reporter::event(const std::string& object) {
 }
 
 void Reporter::result(const std::string& object) {
+    std::vector<std::string> made_up, left_out;
+    for (const Message& message : messages_.all()) {
+        if (message.is_made_up) made_up.push_back(phrase(message.remark));
+        if (message.is_left_out) left_out.push_back(phrase(message.remark));
+    }
     event(fmt::format(R"({},"made_up":{},"left_out":{}}})", std::string_view(object).substr(0, object.size() - 1),
-                      json_strings(messages_.made_up()), json_strings(messages_.left_out())));
+                      json_strings(made_up), json_strings(left_out)));
 }
 
 void Reporter::answer(const std::string& lines) {
@@ -105,7 +111,7 @@ void Reporter::write_output(const std::string& path, const std::function<void()>
     try {
         write();
     } catch (const Error& error) {
-        output(path, error.what());
+        output(path, phrase(error.remark()));
         throw;
     }
     output(path);

@@ -16,8 +16,8 @@ void refuse_what_is_left_out(const Messages& messages, const char* outcome) {
     const std::vector<std::string> left_out = messages.left_out();
     if (left_out.empty()) return;
     const std::size_t others = left_out.size() - 1;
-    throw Error(ErrorCode::BadInput,
-                fmt::format("--strict: {}{}; {}", left_out.front(),
+    throw Error(ErrorCode::BadInput, "strict", "",
+                fmt::format("{}{}; {}", left_out.front(),
                             others > 0 ? fmt::format(" (and {} like it)", counted(others, "warning")) : "", outcome));
 }
 

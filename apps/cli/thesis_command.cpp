@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/cli/flag_phrases.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/lab_files.h"
 #include "apps/cli/lab_scene.h"
@@ -19,6 +20,7 @@
 #include "image/auto_exposure.h"
 #include "image/tone_map_image.h"
 #include "image/write_png.h"
+#include "lab/describe_camera.h"
 #include "lab/thesis.h"
 #include "lab/write_tables.h"
 #include "lab/write_thesis_pictures.h"
@@ -113,7 +115,7 @@ public:
 
 private:
     void lack(const std::string& what, const Error& error) {
-        thesis_.lacking.push_back(fmt::format("{}: {}", what, error.what()));
+        thesis_.lacking.push_back(fmt::format("{}: {}", what, phrase(error.remark())));
         is_dead_ = is_dead_ || error.code() == ErrorCode::DeviceFault;
         if (!first_) first_ = error;
     }
@@ -147,6 +149,7 @@ void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, const st
                 const double all = (static_cast<double>(i) + share) / static_cast<double>(names.size());
                 return show({all, fmt::format("{}: {}", names[i], doing), share, watch.seconds(), nullptr, nullptr});
             });
+            made.command = phrase(made.command);
             write_file(folder, made);
             thesis.pictures.push_back(std::move(made));
         });
@@ -222,6 +225,7 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
     for (const MeasuredScene& scene : scenes) {
         if (!attempts.may_go_on()) break;
         settings.scene = scene.name;
+        settings.camera = phrase(describe_camera(scene.camera, scene.scene.origin_in_file));
         reporter.say(fmt::format("{}: {}x{}, depths {} to {}", scene.name, settings.width, settings.height,
                                  settings.first_depth, settings.depth));
         attempts.attempt(scene.name, [&] {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "apps/cli/flag_checks.h"
+#include "apps/cli/flag_phrases.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/lab_files.h"
 #include "apps/cli/lab_scene.h"
@@ -17,6 +18,7 @@
 #include "base/version.h"
 #include "image/image_format.h"
 #include "image/read_image.h"
+#include "lab/describe_camera.h"
 #include "lab/run_transport.h"
 #include "lab/transport_light.h"
 #include "lab/transport_presets.h"
@@ -66,6 +68,12 @@ std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const 
            "--preset: it has a camera of its own; name a SCENE to see it by another");
     refuse(presets.size() > 1 && !flags.reference.empty(), "--reference: is of one scene; name one preset");
     return presets;
+}
+
+/// What the laboratory has written with settings, with flags.
+void phrase_all(TransportScene& measured) {
+    for (std::string& note : measured.notes) note = phrase(note);
+    for (TransportRow& row : measured.rows) row.refused = phrase(row.refused);
 }
 
 /// Errors are of radiance: what was made for a display has lost it.
@@ -139,6 +147,7 @@ int run_transport_command(Queue& queue, const SceneOptions& scene, const Transpo
         const Subject& subject = subjects[i];
         settings.reference_integrator =
             flags.reference_integrator.empty() ? subject.reference_integrator : flags.reference_integrator;
+        settings.camera = phrase(describe_camera(subject.camera, subject.scene.origin_in_file));
         double seconds = 0;
         TransportScene measured =
             run_transport(queue, subject.scene, subject.camera, settings, [&](const LabProgress& now) {
@@ -151,6 +160,7 @@ int run_transport_command(Queue& queue, const SceneOptions& scene, const Transpo
             });
         before_s += seconds;
         measured.name = subject.name, measured.shows = subject.shows;
+        phrase_all(measured);
         report.interrupted = measured.interrupted;
         if (has_findings(measured) || !measured.interrupted) report.scenes.push_back(std::move(measured));
         if (!output.empty() && has_findings(report)) write_files(output, report);

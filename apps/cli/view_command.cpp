@@ -20,6 +20,7 @@
 #include "apps/cli/ready_scene.h"
 #include "apps/cli/render_frames.h"
 #include "apps/cli/strictness.h"
+#include "apps/viewer/panel_phrases.h"
 #include "apps/viewer/session_frames.h"
 #include "apps/viewer/viewer.h"
 #include "base/error.h"
@@ -183,7 +184,8 @@ std::vector<std::pair<IntegratorKind, std::string>> dark_integrators(RenderSetti
     std::vector<std::pair<IntegratorKind, std::string>> dark;
     for (const std::string& name : integrator_names()) {
         set_integrator(settings, name);
-        std::string why = why_dark(settings, scene);
+        const std::optional<Remark> is_dark = why_dark(settings, scene);
+        std::string why = is_dark ? panel_phrase(*is_dark) : "";
         if (why.empty() && settings.integrator == IntegratorKind::Radiosity && !settings.radiosity.solution) {
             why = "radiosity: it is solved before anything is shown: pertev view --integrator radiosity";
         }

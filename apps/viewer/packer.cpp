@@ -4,6 +4,7 @@
 #include <chrono>
 #include <exception>
 
+#include "apps/viewer/panel_phrases.h"
 #include "apps/viewer/panel_text.h"
 #include "base/stopwatch.h"
 #include "image/write_png.h"
@@ -61,7 +62,7 @@ void Packer::run() {
             try {
                 send_picture(*job, encoder);
             } catch (const std::exception& error) { // above all no memory: the next one may fit again
-                audience_.tell(0, notice_text("error", error.what()));
+                audience_.tell(0, notice_text("error", panel_phrase(error.what())));
                 std::this_thread::sleep_for(std::chrono::seconds(1));
             }
         }

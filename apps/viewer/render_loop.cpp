@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "apps/viewer/file_name.h"
+#include "apps/viewer/panel_phrases.h"
 #include "apps/viewer/panel_text.h"
 #include "base/error.h"
 #include "scene/scene_origin.h"
@@ -194,7 +195,8 @@ void RenderLoop::let_time_pass() {
 
 /// `client`: who asked for it; 0: all are told.
 void RenderLoop::tell_error(uint32_t client, const Error& error) {
-    audience_.tell(client, notice_text("error", without_folder(error.what(), start_.record.scene.scene)));
+    audience_.tell(client,
+                   notice_text("error", without_folder(panel_phrase(error.remark()), start_.record.scene.scene)));
 }
 
 /// Scene and camera to the clock's time, as far as it moves them. Throws as FrameSource::set_time.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/viewer/panel_phrases.h"
 #include "apps/viewer/steering.h"
 #include "apps/viewer/window_shape.h"
 #include "base/error.h"
@@ -49,7 +50,7 @@ std::string set_combination(ViewState& state, const Combination& combination) {
     try {
         check_choice(choice, state.on_cuda);
     } catch (const Error& error) {
-        return error.what();
+        return panel_phrase(error.remark());
     }
     state.picture.tracers = choice;
     return {};

@@ -1,16 +1,21 @@
 #pragma once
 
-// The three kinds of error. A programmer's mistake: CHECK. Bad input or a bad world: throw Error; the message names
-// file, line or JSON pointer, key and what would be right. Expected absence: std::optional. Libraries never exit or
-// print; the command line turns codes into exit statuses.
+// The three kinds of error. A programmer's mistake: CHECK. Bad input or a bad world: throw Error, whose parts are the
+// place, the setting and its value, and the reason, which says what would be right. Expected absence: std::optional.
+// Libraries never exit or print; the command line turns codes into exit statuses.
 
+#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
+
+#include "base/remark.h"
 
 namespace pertev {
 
 enum class ErrorCode {
-    BadInput = 2,     // the file, flag or value is wrong; the message names where
+    BadInput = 2,     // a file or a setting is wrong; the parts name which
     OverLimit = 3,    // valid, but larger than a limit in base/limits.h
     OutOfMemory = 4,  // host or device; the message lists the largest buffers and what would fit
     DeviceFault = 5,  // the GPU failed; the context is dead, the last checkpoint is good
@@ -23,11 +28,23 @@ constexpr int exit_status(ErrorCode code) { return static_cast<int>(code); }
 
 class Error : public std::runtime_error {
 public:
-    Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    Error(ErrorCode code, Remark remark)
+        : std::runtime_error(remark.text()), code_(code), remark_(std::make_shared<const Remark>(std::move(remark))) {}
+    Error(ErrorCode code, Place place, std::string reason) : Error(code, Remark(std::move(place), std::move(reason))) {}
+    Error(ErrorCode code, std::string setting, std::string value, std::string reason)
+        : Error(code, Remark(std::move(setting), std::move(value), std::move(reason))) {}
+
     ErrorCode code() const noexcept { return code_; }
+    const Remark& remark() const noexcept { return *remark_; }
+    // The parts of the remark; what() is all of them as a text.
+    const std::optional<Place>& place() const noexcept { return remark_->place; }
+    const std::string& setting() const noexcept { return remark_->setting; }
+    const std::string& value() const noexcept { return remark_->value; }
+    const std::string& reason() const noexcept { return remark_->reason; }
 
 private:
     ErrorCode code_;
+    std::shared_ptr<const Remark> remark_; // shared, so that copies of an exception throw nothing
 };
 
 /// Throws std::logic_error that names the place: a programmer's mistake, never bad input.

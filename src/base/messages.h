@@ -13,11 +13,14 @@
 #include <utility>
 #include <vector>
 
+#include "base/remark.h"
+
 namespace pertev {
 
 struct Message {
     bool is_warning = false;
-    std::string text;
+    Remark remark;
+    std::string text; // of the remark: all of its parts
     std::size_t times = 1;
     bool is_left_out = false; // a warning: the picture lacks something that the input has
     bool is_made_up = false;  // a notice: the picture has something that the input lacks
@@ -26,23 +29,23 @@ struct Message {
 class Messages {
 public:
     /// Something was repaired, or what was asked for has no effect.
-    void warn(std::string text) { add(true, std::move(text)); }
+    void warn(Remark remark) { add(true, std::move(remark)); }
     /// The picture lacks something that the input has. A file of many faults names the first of them only.
-    void leave_out(std::string text) {
-        const bool is_one_too_many = left_out_ >= kMostLeftOut && !places_[1].contains(text);
-        Message& message = all_[add(true, is_one_too_many ? kMoreLeftOut : std::move(text))];
+    void leave_out(Remark remark) {
+        const bool is_one_too_many = left_out_ >= kMostLeftOut && !places_[1].contains(remark.text());
+        Message& message = all_[add(true, is_one_too_many ? Remark(kMoreLeftOut) : std::move(remark))];
         if (!message.is_left_out) ++left_out_;
         message.is_left_out = true;
     }
     /// A default was taken, or there is something else to know.
-    void note(std::string text) { add(false, std::move(text)); }
+    void note(Remark remark) { add(false, std::move(remark)); }
     /// The picture has something that the input lacks.
-    void make_up(std::string text) { all_[add(false, std::move(text))].is_made_up = true; }
+    void make_up(Remark remark) { all_[add(false, std::move(remark))].is_made_up = true; }
 
     /// Appends all messages of `other`.
     void add_all(const Messages& other) {
         for (const Message& message : other.all_) {
-            Message& here = all_[add(message.is_warning, message.text)];
+            Message& here = all_[add(message.is_warning, message.remark)];
             here.times += message.times - 1;
             if (message.is_left_out && !here.is_left_out) ++left_out_;
             here.is_left_out = here.is_left_out || message.is_left_out;
@@ -60,10 +63,11 @@ private:
     static constexpr const char* kMoreLeftOut = "more is left out than these warnings name";
 
     /// Returns its place in all_.
-    std::size_t add(bool is_warning, std::string text) {
+    std::size_t add(bool is_warning, Remark remark) {
+        std::string text = remark.text();
         const auto [place, is_new] = places_[is_warning ? 1 : 0].try_emplace(text, all_.size());
         if (is_new) {
-            all_.push_back({.is_warning = is_warning, .text = std::move(text)});
+            all_.push_back({.is_warning = is_warning, .remark = std::move(remark), .text = std::move(text)});
         } else {
             ++all_[place->second].times;
         }

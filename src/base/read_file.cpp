@@ -13,7 +13,7 @@ namespace pertev {
 
 std::vector<std::byte> read_file(const std::filesystem::path& path) {
     const auto fail = [&](const std::string& why) -> Error {
-        return Error(ErrorCode::BadInput, fmt::format("{}: cannot read: {}", path.string(), why));
+        return Error(ErrorCode::BadInput, Place{path.string()}, fmt::format("cannot read: {}", why));
     };
     std::error_code ec;
     const auto status = std::filesystem::status(path, ec);

@@ -117,7 +117,9 @@ void Queue::free(void* memory) noexcept {
 
 #if !defined(PERTEV_HAS_CUDA)
 
-std::string why_no_cuda(int) { return "this binary was built without CUDA (./setup.sh --cuda builds with it)"; }
+std::string why_no_cuda(int) {
+    return "this binary was built without CUDA (./setup.sh builds with it where it is asked for CUDA)";
+}
 bool may_have_cuda() { return false; }
 int cuda_device_count() { return 0; }
 std::unique_ptr<DeviceBackend> make_cuda_backend(int index) { throw Error(ErrorCode::BadInput, why_no_cuda(index)); }

@@ -12,8 +12,9 @@ namespace pertev {
 Image read_environment_image(const std::filesystem::path& path, Messages& messages) {
     Image image = read_image(path, &messages);
     if (image.width != 2 * image.height) {
-        messages.warn(fmt::format("{}: {}x{} is not twice as wide as high; it is taken as a full panorama all the same",
-                                  path.string(), image.width, image.height));
+        messages.warn({Place{path.string()},
+                       fmt::format("{}x{} is not twice as wide as high; it is taken as a full panorama all the same",
+                                   image.width, image.height)});
     }
     if (image.channels == 4) { // alpha means nothing here
         const std::size_t count = image.pixels.size() / 4;
@@ -23,8 +24,8 @@ Image read_environment_image(const std::filesystem::path& path, Messages& messag
     }
     const std::string extension = lower_case_extension(path);
     if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") {
-        messages.warn(fmt::format("{}: 8-bit pictures cut bright light off; an .hdr or .exr gives its full range",
-                                  path.string()));
+        messages.warn(
+            {Place{path.string()}, "8-bit pictures cut bright light off; an .hdr or .exr gives its full range"});
     }
     return image;
 }

@@ -51,7 +51,7 @@ Scene read_file_or_builtin(const std::filesystem::path& path, const ReadOptions&
         return read_gltf(path, {bytes->begin(), bytes->end()}, access, options, messages);
     }
     if (const FormatReader* reader = find_reader(path)) return reader->read(path, access, options, messages);
-    throw Error(ErrorCode::BadInput, fmt::format("{}: neither {}", path.string(), scene_kinds()));
+    throw Error(ErrorCode::BadInput, Place{path.string()}, fmt::format("neither {}", scene_kinds()));
 }
 
 } // namespace

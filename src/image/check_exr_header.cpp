@@ -73,8 +73,8 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("{}: not a readable EXR (header, byte {}: {})", name_, offset_, what));
+        throw Error(ErrorCode::BadInput, Place{name_},
+                    fmt::format("not a readable EXR (header, byte {}: {})", offset_, what));
     }
     void need(uint64_t count) const {
         if (count > bytes_.size() - offset_) fail("the header is cut short");

@@ -54,8 +54,8 @@ Image decode_exr(std::span<const std::byte> bytes, const std::string& name) {
         }
         return image;
     }
-    throw Error(ErrorCode::BadInput,
-                fmt::format("{}: no part of this EXR has the channels R, G, B or Y; it has {}", name, seen));
+    throw Error(ErrorCode::BadInput, Place{name},
+                fmt::format("no part of this EXR has the channels R, G, B or Y; it has {}", seen));
 }
 
 } // namespace pertev

@@ -56,8 +56,8 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("{}: not a readable Radiance HDR (at byte {}: {})", name_, offset_, what));
+        throw Error(ErrorCode::BadInput, Place{name_},
+                    fmt::format("not a readable Radiance HDR (at byte {}: {})", offset_, what));
     }
 
     std::string_view next_line() {

@@ -16,8 +16,8 @@ namespace {
 
 ImageFormat format_of(std::span<const std::byte> bytes, const std::string& name) {
     if (const std::optional<ImageFormat> format = recognise_image(bytes)) return *format;
-    throw Error(ErrorCode::BadInput,
-                fmt::format("{}: {}; a picture must be PNG, JPEG, Radiance HDR or OpenEXR", name,
+    throw Error(ErrorCode::BadInput, Place{name},
+                fmt::format("{}; a picture must be PNG, JPEG, Radiance HDR or OpenEXR",
                             bytes.empty() ? "the file is empty" : "its first bytes are of no known picture format"));
 }
 

@@ -99,8 +99,9 @@ bool read_pixels(PngReader& reader, png_bytepp rows, std::size_t row_bytes) {
 }
 
 [[noreturn]] void fail(const PngReader& reader, const std::string& name) {
-    throw Error(ErrorCode::BadInput, fmt::format("{}: not a readable PNG (at byte {}: {})", name, reader.offset,
-                                                 reader.error[0] != '\0' ? reader.error : "out of memory"));
+    throw Error(ErrorCode::BadInput, Place{name},
+                fmt::format("not a readable PNG (at byte {}: {})", reader.offset,
+                            reader.error[0] != '\0' ? reader.error : "out of memory"));
 }
 
 void start(PngReader& reader, std::span<const std::byte> bytes, const std::string& name) {

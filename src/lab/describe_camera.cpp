@@ -26,12 +26,12 @@ std::string describe_camera(const Camera& camera, DoubleVec3 origin) {
     // As far away as the eye is from the origin: nearer, their difference would lose digits of the direction.
     float distance = 1;
     while (distance < max_component(abs(eye))) distance *= 2;
-    const std::string place = fmt::format("--eye {} --target {} --up {}", text_of(eye, origin),
+    const std::string place = fmt::format("`eye={}` `target={}` `up={}`", text_of(eye, origin),
                                           text_of(eye + distance * forward, origin), text_of(column(m, 1)));
     if (camera.projection == Projection::Orthographic) {
-        return fmt::format("{} --projection orthographic --view-height {} (metres)", place, camera.ortho_height);
+        return fmt::format("{} `projection=orthographic` `view_height={}` (metres)", place, camera.ortho_height);
     }
-    return fmt::format("{} --projection perspective --fov {} (vertical field of view, degrees)", place,
+    return fmt::format("{} `projection=perspective` `fov={}` (vertical field of view, degrees)", place,
                        camera.fov_y * 180 / kPi);
 }
 

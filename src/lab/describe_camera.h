@@ -1,6 +1,6 @@
 #pragma once
 
-// A camera in the words of the command line: given back to it, they place the camera where it was.
+// A camera as settings with their values: given back, they place the camera where it was.
 
 #include <string>
 
@@ -9,7 +9,7 @@
 
 namespace pertev {
 
-/// "--eye 0,1,3 --target 0,1,2 --up 0,1,0 --projection perspective --fov 39.3 (vertical field of view, degrees)". The
+/// "`eye=0,1,3` `target=0,1,2` `up=0,1,0` `projection=perspective` `fov=39.3` (vertical field of view, degrees)". The
 /// lens is left out: rays of the laboratory go through its middle.
 std::string describe_camera(const Camera& camera, DoubleVec3 origin = {0, 0, 0});
 

@@ -64,7 +64,7 @@ inline constexpr const char* kCameraSet = "primary";
 struct LabReport {
     std::string scene, device, commit;
     uint32_t threads = 0; // of the CPU
-    std::string camera;   // in flags of the command line
+    std::string camera;   // describe_camera in the words of the front end
     uint64_t triangles = 0, instances = 0;
     uint32_t width = 0, height = 0;
     int first_depth = 1; // of the frames to show

@@ -17,7 +17,6 @@
 #include "base/version.h"
 #include "device/device_timer.h"
 #include "device_scene/place_meshes.h"
-#include "lab/describe_camera.h"
 #include "lab/in_pieces.h"
 #include "lab/list_combinations.h"
 #include "lab/measure_rays.h"
@@ -52,7 +51,7 @@ public:
                    .device = queue.device_name(),
                    .commit = fmt::format("{} {}", version(), git_commit()),
                    .threads = static_cast<uint32_t>(thread_count()),
-                   .camera = describe_camera(camera, scene.origin_in_file),
+                   .camera = settings.camera,
                    .triangles = triangles_.parts.count(),
                    .instances = scene.instances.size(),
                    .width = settings.width,
@@ -185,7 +184,7 @@ private:
                          fmt::format("out of memory{}: {} rays and what they meet take {:.1f} GiB a set, for up to {} "
                                      "sets, and this machine has {:.1f} GiB; {} gives fewer",
                                      what, rays, gibibytes(bytes), sets, gibibytes(host_memory_bytes()),
-                                     record ? "a smaller --count" : "a smaller --size"));
+                                     record ? "a smaller `count`" : "a smaller `size`"));
         };
         if (bytes > host_memory_bytes()) throw complain("");
         try {

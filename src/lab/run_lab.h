@@ -16,7 +16,8 @@
 namespace pertev {
 
 struct LabSettings {
-    std::string scene; // its name in the report
+    std::string scene;  // its name in the report
+    std::string camera; // describe_camera in the words of the front end, for the report
     std::vector<StructureKind> structures;
     std::vector<WalkKind> walks;
     std::vector<WalkOptions> options; // each is tried with every structure and walk

@@ -14,7 +14,6 @@
 #include "image/metrics.h"
 #include "image/tone_map_image.h"
 #include "integrators/kinds/make_integrator.h"
-#include "lab/describe_camera.h"
 #include "lab/transport_light.h"
 #include "lab/transport_solutions.h"
 #include "session/check_integrator.h"
@@ -28,8 +27,8 @@ struct TransportStopped {};
 RenderSettings settings_of(const TransportSettings& settings, const std::string& integrator, uint32_t seed) {
     RenderSettings picture = settings.picture;
     if (!set_integrator(picture, integrator)) {
-        throw Error(ErrorCode::BadInput, fmt::format("{}: no such integrator; there are {}", integrator,
-                                                     fmt::join(integrator_names(), ", ")));
+        throw Error(ErrorCode::BadInput, "integrator", integrator,
+                    fmt::format("there is none of this name; there are {}", fmt::join(integrator_names(), ", ")));
     }
     picture.path.seed = seed;
     return picture;
@@ -55,7 +54,7 @@ public:
     TransportRunner(Queue& queue, const Scene& scene, const Camera& camera, const TransportSettings& settings,
                     const std::function<bool(const LabProgress&)>& keep_going)
         : queue_(queue), scene_(scene), camera_(camera), settings_(settings), keep_going_(keep_going) {
-        report_.camera = describe_camera(camera, scene.origin_in_file);
+        report_.camera = settings.camera;
         for (const std::string& name : settings.integrators) {
             settings_of(settings, name, 0);
             report_.rows.push_back({.name = name, .light = light_of(name, scene)});
@@ -99,8 +98,7 @@ private:
             check_light(picture, scene_, notes);
             if (picture.integrator == IntegratorKind::Radiosity) return why_no_solution(scene_);
         } catch (const Error& error) {
-            const std::string why = error.what(), flag = fmt::format("--integrator {}: ", integrator);
-            return why.starts_with(flag) ? why.substr(flag.size()) : why;
+            return error.setting() == "integrator" ? error.reason() : error.what();
         }
         return {};
     }
@@ -120,14 +118,12 @@ private:
         const Image& given = *settings_.reference;
         const RenderSettings& picture = settings_.picture;
         if (given.width != picture.width || given.height != picture.height) {
-            throw Error(ErrorCode::BadInput,
-                        fmt::format("--reference {}: it is {}x{}, the pictures {}x{}; --size {}x{} makes them alike",
-                                    reference.file, given.width, given.height, picture.width, picture.height,
-                                    given.width, given.height));
+            throw Error(ErrorCode::BadInput, "reference", reference.file,
+                        fmt::format("it is {0}x{1}, the pictures {2}x{3}; `size={0}x{1}` makes them alike", given.width,
+                                    given.height, picture.width, picture.height));
         }
         if (!std::ranges::all_of(given.pixels, [](float value) { return std::isfinite(value); })) {
-            throw Error(ErrorCode::BadInput,
-                        fmt::format("--reference {}: it has values that are not finite", reference.file));
+            throw Error(ErrorCode::BadInput, "reference", reference.file, "it has values that are not finite");
         }
     }
 
@@ -342,7 +338,7 @@ private:
             if (points.empty() || !reference.rel_mse || !row.finds_all) continue;
             if (points.back().rel_mse.mean < 10 * *reference.rel_mse) {
                 report_.notes.push_back(fmt::format(
-                    "{}: the reference's own noise is {:.0f} % of its last relMSE; --reference-spp makes it less",
+                    "{}: the reference's own noise is {:.0f} % of its last relMSE; `reference_spp` makes it less",
                     row.name, 100 * *reference.rel_mse / points.back().rel_mse.mean));
             }
         }

@@ -22,6 +22,7 @@ namespace pertev {
 inline constexpr uint32_t kMostRepetitions = 1024;
 
 struct TransportSettings {
+    std::string camera;                   // describe_camera in the words of the front end, for the report
     std::vector<std::string> integrators; // names (session/settings_text.h)
     uint32_t repetitions = 4;             // [1, kMostRepetitions]
     double seconds = 10;                  // of rendering for each integrator, all repetitions together

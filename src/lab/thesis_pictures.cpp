@@ -58,11 +58,11 @@ RadiositySettings solution_of(const RadiosityPanel& panel, const RenderSettings&
     return asked;
 }
 
-/// The flags that say so.
-std::string flags_of(const RadiosityPanel& panel, const RadiositySettings& asked) {
-    return fmt::format(" --patch-size {} --subdivisions {}{}{}", asked.patch_size, asked.subdivisions,
-                       panel.is_early ? fmt::format(" --solver southwell --steps {}", asked.steps) : "",
-                       panel.is_flat ? " --flat-patches" : "");
+/// The settings that say so.
+std::string settings_of(const RadiosityPanel& panel, const RadiositySettings& asked) {
+    return fmt::format(" `patch_size={}` `subdivisions={}`{}{}", asked.patch_size, asked.subdivisions,
+                       panel.is_early ? fmt::format(" `solver=southwell` `steps={}`", asked.steps) : "",
+                       panel.is_flat ? " `flat_patches`" : "");
 }
 
 std::string command_text(const ThesisRecipe& recipe, const RenderSettings& settings) {
@@ -70,14 +70,14 @@ std::string command_text(const ThesisRecipe& recipe, const RenderSettings& setti
     const bool is_whole =
         recipe.way == ThesisWay::Render || (recipe.way == ThesisWay::Radiosity && recipe.panel.has_ambient);
     if (scene.empty() || !is_whole) return {};
-    std::string flags = *recipe.flags != 0 ? fmt::format(" {}", recipe.flags) : "";
-    if (recipe.way == ThesisWay::Radiosity) flags += flags_of(recipe.panel, solution_of(recipe.panel, settings));
+    std::string others = *recipe.settings != 0 ? fmt::format(" {}", recipe.settings) : "";
+    if (recipe.way == ThesisWay::Radiosity) others += settings_of(recipe.panel, solution_of(recipe.panel, settings));
     if (settings.photon_map.photons != RenderSettings().photon_map.photons) {
-        flags += fmt::format(" --photons {}", settings.photon_map.photons);
+        others += fmt::format(" `photons={}`", settings.photon_map.photons);
     }
     return fmt::format(
-        "pertev render {} --integrator {}{} --size {}x{} --spp {} --max-depth {} --exposure {:g} -o {}.png", scene,
-        recipe.integrator, flags, settings.width, settings.height, settings.samples, settings.path.max_depth,
+        "pertev render {} `integrator={}`{} `size={}x{}` `spp={}` `max_depth={}` `exposure={:g}` `output={}.png`",
+        scene, recipe.integrator, others, settings.width, settings.height, settings.samples, settings.path.max_depth,
         recipe.stops, recipe.name);
 }
 

@@ -21,10 +21,11 @@ struct ThesisPicture {
     std::string place;      // in the thesis: "Figure 3.7"; pictures of one place and title stand side by side
     std::string title;      // "radiosity"
     std::string shows;      // what is seen, and by which algorithm
-    std::string integrator; // its name on the command line; empty: it is not rendered
-    std::string command;    // that makes its very bytes on this device; empty: the laboratory alone does
-    Rgba8Image image;       // of a picture without `svg`
-    std::string svg;        // a file by itself
+    std::string integrator; // its name; empty: it is not rendered
+    std::string
+        command; // that makes its very bytes on this device, with settings to phrase; empty: the laboratory alone does
+    Rgba8Image image; // of a picture without `svg`
+    std::string svg;  // a file by itself
     RenderStats stats;
     double solve_seconds = 0; // that came before stats.render_seconds
     bool interrupted = false; // it has fewer samples than were asked for

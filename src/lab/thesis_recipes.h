@@ -44,8 +44,8 @@ struct ThesisRecipe {
     ThesisScene scene = ThesisScene::Box;
     const char* integrator = "";
     bool is_panel = false;                  // one of several: half the width and height
-    const char* flags = "";                 // of the command, beside scene, integrator, patches and photons
-    void (*set)(RenderSettings&) = nullptr; // does what `flags` say, and chooses photons; null: nothing
+    const char* settings = "";              // of the command, beside scene, integrator, patches and photons
+    void (*set)(RenderSettings&) = nullptr; // does what `settings` say, and chooses photons; null: nothing
     RadiosityPanel panel = {};              // of Radiosity
     StructureKind structure = {};           // of Work
     WalkKind walk = {};                     // likewise

@@ -154,7 +154,7 @@ const char* command_of(ThesisScene which) {
     case ThesisScene::Box:
         return "cornell-box";
     case ThesisScene::Caustic:
-        return "caustic --eye 0.5,1.6,2.6 --target 0,0.5,0 --fov 50";
+        return "caustic `eye=0.5,1.6,2.6` `target=0,0.5,0` `fov=50`";
     case ThesisScene::PointLight:
     case ThesisScene::MirrorBall:
     case ThesisScene::PlasticBall:

@@ -59,7 +59,7 @@ struct TransportReference {
 /// One scene.
 struct TransportScene {
     std::string name, shows; // what it is there for; empty: it is the caller's
-    std::string camera;      // in flags of the command line
+    std::string camera;      // describe_camera in the words of the front end
     uint64_t triangles = 0;
     TransportReference reference;
     std::vector<TransportRow> rows;

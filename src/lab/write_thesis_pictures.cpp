@@ -27,11 +27,11 @@ std::string caption_of(const ThesisPicture& picture) {
         const char* plural = picture.stats.samples == 1 ? "" : "s";
         const std::string solved =
             picture.solve_seconds > 0 ? fmt::format("solved in {} s, ", fixed_text(picture.solve_seconds, 2)) : "";
-        text += fmt::format(" --integrator {}, {}{} sample{} a pixel in {} s{}.", picture.integrator, solved,
+        text += fmt::format(" Integrator {}, {}{} sample{} a pixel in {} s{}.", picture.integrator, solved,
                             picture.stats.samples, plural, fixed_text(picture.stats.render_seconds, 2),
                             picture.interrupted ? " (interrupted)" : "");
     }
-    return text + (picture.command.empty() ? " Made by: pertev lab --thesis" : " Made by: " + picture.command);
+    return text + (picture.command.empty() ? " Made by the laboratory alone." : " Made by: " + picture.command);
 }
 
 std::string html_of(const ThesisPicture& picture) {

@@ -29,7 +29,7 @@ TransportTable equal_time_table(const TransportScene& scene);
 TransportTable equal_samples_table(const TransportScene& scene);
 /// "path, 1024 samples, 12.3 s; its noise: relMSE 1e-05"
 std::string describe_reference(const TransportReference& reference);
-/// "cast: --integrator cast: point, spot and ... lights alone", a line for each integrator without figures.
+/// "cast: point, spot and ... lights alone", a line for each integrator without figures.
 std::vector<std::string> rows_without_figures(const TransportScene& scene);
 
 } // namespace pertev

@@ -241,12 +241,12 @@ HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree co
             return solve_by_links(scene, coarse, patch_size, tried, watch, most_links);
         } catch (const TooManyLinks&) {
             if (tried.link_error > kLargestLinkError / 2) break;
-            watch.set_note(fmt::format(", anew by --link-error {}", 2 * tried.link_error));
+            watch.set_note(fmt::format(", anew by `link_error={}`", 2 * tried.link_error));
         }
     }
-    throw Error(ErrorCode::OverLimit, fmt::format("--solver hierarchical: more than {} links by any --link-error (a "
-                                                  "larger --patch-size, or another --solver)",
-                                                  most_links));
+    throw Error(
+        ErrorCode::OverLimit, "solver", "hierarchical",
+        fmt::format("more than {} links by any `link_error` (a larger `patch_size`, or another `solver`)", most_links));
 }
 
 } // namespace pertev

@@ -58,7 +58,7 @@ void check_light_ends(const RadiositySystem& system) {
         if (endless == 0) continue;
         throw Error(ErrorCode::BadInput,
                     fmt::format("radiosity: light has no end: {} of {} patches reflect all of it, to each other alone "
-                                "(reflectances below 1 let it end; --integrator path follows it as far as --max-depth)",
+                                "(reflectances below 1 let it end; `integrator=path` follows it as far as `max_depth`)",
                                 endless, system.patches.size()));
     }
 }

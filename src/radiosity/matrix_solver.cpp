@@ -64,10 +64,11 @@ SolvedSystem solve_direct_light(const RadiositySystem& system) {
 void check_matrix_size(std::size_t patches) {
     if (patches <= kMostMatrixPatches) return;
     throw Error(
-        ErrorCode::OverLimit,
-        fmt::format("--solver matrix: {} patches; at most {} (--solver gauss-seidel or southwell solves more, a "
-                    "larger --patch-size makes fewer)",
-                    patches, kMostMatrixPatches));
+        ErrorCode::OverLimit, "solver", "matrix",
+        fmt::format(
+            "{} patches; at most {} (`solver=gauss-seidel` or southwell solves more, a larger `patch_size` makes "
+            "fewer)",
+            patches, kMostMatrixPatches));
 }
 
 SolvedSystem solve_by_matrix(const RadiositySystem& system, const KeepSolving& keep_going) {

@@ -149,8 +149,8 @@ uint64_t count_patches(const SceneView& scene, float patch_size) {
 
 void check_patch_count(uint64_t patches, float patch_size) {
     if (patches <= kMostPatches) return;
-    throw Error(ErrorCode::OverLimit, fmt::format("--patch-size {}: divides this scene into {} patches; at most {}",
-                                                  patch_size, patches, kMostPatches));
+    throw Error(ErrorCode::OverLimit, "patch_size", fmt::format("{}", patch_size),
+                fmt::format("it divides this scene into {} patches; at most {}", patches, kMostPatches));
 }
 
 PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watch) {
@@ -187,7 +187,7 @@ PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watc
     if (!any_reflects) {
         throw Error(ErrorCode::BadInput,
                     "radiosity: no surface of this scene reflects diffusely, so that there is "
-                    "nothing to solve (--integrator path knows mirrors, glass and unlit surfaces)");
+                    "nothing to solve (`integrator=path` knows mirrors, glass and unlit surfaces)");
     }
     return tree;
 }

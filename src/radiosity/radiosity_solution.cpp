@@ -53,7 +53,7 @@ Hash128 content_hash(const RadiositySolution& solution) {
 }
 
 [[noreturn]] void refuse_file(const std::filesystem::path& path, const std::string& why) {
-    throw Error(ErrorCode::BadInput, fmt::format("{}: {}", path.string(), why));
+    throw Error(ErrorCode::BadInput, Place{path.string()}, why);
 }
 
 /// Copies the next of `bytes` and leaves the rest.
@@ -139,20 +139,20 @@ void check_scene(const std::filesystem::path& path, const RadiositySolution& sol
     for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
     if (solution.geometry != geometry_hash(scene) || solution.roots.size() != 2 * triangles) {
         refuse_file(path, "a radiosity solution of another scene, of this one before its surfaces were changed, or of "
-                          "another --time (pertev solve radiosity makes a new one)");
+                          "another `time` (pertev solve radiosity makes a new one)");
     }
     if (!solution.light) return;
     const SolvedLight light = solved_light(scene);
     if (solution.light->surfaces != light.surfaces) {
         refuse_file(path, "a radiosity solution of this scene with other materials: what surfaces reflect, let through "
-                          "or emit has changed since, or by --lamp, --efficacy or --two-sided-lights (pertev solve "
-                          "radiosity, with the same flags, makes a new one)");
+                          "or emit has changed since, or by `lamp`, `efficacy` or `two_sided_lights` (pertev solve "
+                          "radiosity, with the same settings, makes a new one)");
     }
     if (solution.light->lights != light.lights) {
         refuse_file(path,
                     "a radiosity solution of this scene under other lights: a point, spot or directional light or "
-                    "the environment has changed since, or by --lamp, --environment and the like, or --time "
-                    "(pertev solve radiosity, with the same flags, makes a new one)");
+                    "the environment has changed since, or by `lamp`, `environment` and the like, or `time` "
+                    "(pertev solve radiosity, with the same settings, makes a new one)");
     }
 }
 
@@ -235,15 +235,17 @@ RadiositySolution read_solution(const std::filesystem::path& path, const Scene& 
     RadiositySolution solution = read_any_solution(path);
     check_scene(path, solution, scene);
     if (!solution.light) {
-        messages.warn(fmt::format("{}: made by an earlier version, which did not write down what light it was solved "
-                                  "for: where lights or materials have changed since, it shows those of then (pertev "
-                                  "solve radiosity makes a new one)",
-                                  path.string()));
+        messages.warn(
+            {Place{path.string()},
+             "made by an earlier version, which did not write down what light it was solved for: where lights "
+             "or materials have changed since, it shows those of then (pertev solve radiosity makes a new "
+             "one)"});
     }
     if (solution.extent.part != SolvedPart::All) {
-        messages.warn(fmt::format("{}: was ended while it was solved, and holds {} (pertev solve radiosity makes a "
-                                  "whole one)",
-                                  path.string(), describe(solution.extent)));
+        messages.warn({Place{path.string()},
+                       fmt::format("was ended while it was solved, and holds {} (pertev solve radiosity makes a whole "
+                                   "one)",
+                                   describe(solution.extent))});
     }
     return solution;
 }

@@ -304,18 +304,20 @@ SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySe
 
 void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, Messages& messages) {
     if (stats.link_error > settings.link_error) {
-        messages.warn(fmt::format("radiosity: --link-error {} has more than {} links, which is the most there may be; "
-                                  "{} by --link-error {} (which, given at once, takes less time)",
-                                  settings.link_error, kMostLinks,
-                                  stats.was_interrupted ? "ended while it was solved" : "solved", stats.link_error));
+        messages.warn(
+            {"link_error", fmt::format("{}", settings.link_error),
+             fmt::format("radiosity has more than {} links, which is the most there may be; {} by "
+                         "`link_error={}` (which, given at once, takes less time)",
+                         kMostLinks, stats.was_interrupted ? "it was ended while it was solved" : "it is solved",
+                         stats.link_error)});
     }
     if (!stats.reached_limit) return;
     const bool is_ambient = settings.solver == RadiositySolver::Southwell;
-    messages.warn(fmt::format(
-        "radiosity: after {} steps, which is where it ends, {:.2g} of the light {}: more than --tolerance {} (next to "
-        "nothing absorbs it; lower reflectances, or a larger tolerance)",
-        stats.steps, stats.left, is_ambient ? "is unsent, and shown as ambient light" : "still changes",
-        settings.tolerance));
+    messages.warn(
+        {"tolerance", fmt::format("{}", settings.tolerance),
+         fmt::format("radiosity: after {} steps, which is where it ends, {:.2g} of the light {}, which is more "
+                     "(next to nothing absorbs it; lower reflectances, or a larger tolerance)",
+                     stats.steps, stats.left, is_ambient ? "is unsent, and shown as ambient light" : "still changes")});
 }
 
 std::string json_of(const RadiositySettings& s) {

@@ -11,7 +11,7 @@ SolvedScene::SolvedScene(const PreparedScene& prepared) : queue_(Queue::make_cpu
         throw Error(
             ErrorCode::BadInput,
             fmt::format("radiosity: skins or morph targets move the vertices of this scene's meshes ({} of them), "
-                        "and patches stay where they are; --integrator path knows such scenes",
+                        "and patches stay where they are; `integrator=path` knows such scenes",
                         prepared.poses.size()));
     }
     scene_.emplace(queue_, prepared);

@@ -6,7 +6,7 @@
 namespace pertev {
 namespace {
 
-constexpr float kLeastFovDeg = 0.01f, kMostFovDeg = 179; // as --fov
+constexpr float kLeastFovDeg = 0.01f, kMostFovDeg = 179; // as `fov`
 
 /// One number of the keys, over time.
 template <class Number>

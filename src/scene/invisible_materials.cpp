@@ -65,15 +65,17 @@ void warn_of_invisible_materials(const Scene& scene, const std::string& file, Me
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         if (unseen[i] == 0 || seen[i] > 0 || invisible++ >= kMostNamed) continue;
         const Material& material = scene.materials[i];
-        messages.warn(fmt::format(
-            "{}: the material {} is invisible{}: it lets all light through, by an alpha of 0 or below its "
-            "cutoff (in MTL d 0 or Tr 1); {} with it cannot be seen",
-            file, material.name.empty() ? fmt::format("{}", i) : material.name,
-            material.origin.empty() ? "" : fmt::format(" ({})", material.origin), counted(unseen[i], "surface")));
+        messages.warn(
+            {Place{file},
+             fmt::format("the material {} is invisible{}: it lets all light through, by an alpha of 0 or below its "
+                         "cutoff (in MTL d 0 or Tr 1); {} with it cannot be seen",
+                         material.name.empty() ? fmt::format("{}", i) : material.name,
+                         material.origin.empty() ? "" : fmt::format(" ({})", material.origin),
+                         counted(unseen[i], "surface"))});
     }
     if (invisible > kMostNamed) {
-        messages.warn(fmt::format("{}: {} {} invisible", file, counted(invisible - kMostNamed, "further material"),
-                                  is_or_are(invisible - kMostNamed)));
+        messages.warn({Place{file}, fmt::format("{} {} invisible", counted(invisible - kMostNamed, "further material"),
+                                                is_or_are(invisible - kMostNamed))});
     }
 }
 

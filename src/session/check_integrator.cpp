@@ -44,8 +44,8 @@ std::string no_lights_of(const Scene& scene) {
                        scene.environment ? "and the environment is black" : "no environment");
 }
 
-void refuse_layers(bool is_wrong, const std::string& why) {
-    if (is_wrong) throw Error(ErrorCode::BadInput, "--lpe: " + why);
+void refuse(bool is_wrong, const char* setting, std::string_view value, std::string why) {
+    if (is_wrong) throw Error(ErrorCode::BadInput, setting, std::string(value), std::move(why));
 }
 
 /// Surfaces are to be lit, by lights that are not there.
@@ -71,92 +71,83 @@ std::string lights_of(const Scene& scene) {
 
 void check_integrator(const RenderSettings& settings) {
     const std::string_view name = integrator_name(settings);
-    if (!makes_frames(settings.integrator) && settings.denoise != Denoise::None) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--denoise {}: reconstructs pictures of --integrator path and hybrid, not of {}",
-                                name_of(settings.denoise), name));
-    }
+    const bool is_denoised = settings.denoise != Denoise::None;
+    refuse(is_denoised && !makes_frames(settings.integrator), "denoise", name_of(settings.denoise),
+           fmt::format("reconstructs pictures of `integrator=path` and hybrid, not of {}", name));
     if (settings.light_paths) {
-        refuse_layers(
-            !has_light_path_layers(settings.integrator),
-            fmt::format("light paths are told apart by --integrator path, direct, indirect and hybrid, not by {}",
-                        name));
-        refuse_layers(settings.denoise != Denoise::None,
-                      fmt::format("layers are means of samples, and --denoise {} makes one picture of them; leave out "
-                                  "one of them",
-                                  name_of(settings.denoise)));
+        refuse(!has_light_path_layers(settings.integrator), "lpe", "",
+               fmt::format("light paths are told apart by `integrator=path`, direct, indirect and hybrid, not by {}",
+                           name));
+        refuse(is_denoised, "lpe", "",
+               fmt::format("layers are means of samples, and `denoise={}` makes one picture of them; leave out one of "
+                           "them",
+                           name_of(settings.denoise)));
     }
-    if (settings.irradiance && (!has_light_path_layers(settings.integrator) || settings.denoise != Denoise::None)) {
-        throw Error(
-            ErrorCode::BadInput,
-            fmt::format("--false-color illuminance: is found by --integrator path, direct, indirect and hybrid, "
-                        "undenoised; not by {}{}",
-                        name, settings.denoise != Denoise::None ? ", denoised" : ""));
-    }
+    refuse(settings.irradiance && (is_denoised || !has_light_path_layers(settings.integrator)), "false_color",
+           "illuminance",
+           fmt::format("it is found by `integrator=path`, direct, indirect and hybrid, undenoised; not by {}{}", name,
+                       is_denoised ? ", denoised" : ""));
     if (settings.path.max_depth > most_depth(settings.integrator)) {
-        throw Error(ErrorCode::OverLimit, fmt::format("--max-depth {}: with --integrator {} at most {}",
-                                                      settings.path.max_depth, name, most_depth(settings.integrator)));
+        throw Error(ErrorCode::OverLimit, "max_depth", fmt::format("{}", settings.path.max_depth),
+                    fmt::format("with `integrator={}` at most {}", name, most_depth(settings.integrator)));
     }
     const PhotonMapSettings& photons = settings.photon_map;
     if (settings.integrator == IntegratorKind::PhotonMap &&
         !has_room_for_photons(photons.photons, settings.path.max_depth)) {
-        throw Error(ErrorCode::OverLimit,
-                    fmt::format("--photons {}: with --max-depth {} a pass may leave more than {} photons; at most {}",
-                                photons.photons, settings.path.max_depth, kMostStored,
+        throw Error(ErrorCode::OverLimit, "photons", fmt::format("{}", photons.photons),
+                    fmt::format("with `max_depth={}` a pass may leave more than {} photons; at most {}",
+                                settings.path.max_depth, kMostStored,
                                 kMostStored / (2 * uint64_t(settings.path.max_depth - 1))));
     }
 }
 
 void check_shutter(const RenderSettings& settings) {
-    if (!has_shutter(settings.integrator)) {
-        throw Error(
-            ErrorCode::BadInput,
-            fmt::format("--shutter: rays have a time in --integrator path, direct, indirect, distributed, whitted "
-                        "and cast, not in {}",
-                        integrator_name(settings)));
-    }
-    if (settings.denoise == Denoise::None) return;
-    throw Error(ErrorCode::BadInput,
-                fmt::format("--shutter: --denoise {} takes what a pixel sees for one surface, which "
-                            "it is not where something moves; leave out one of them",
-                            name_of(settings.denoise)));
+    refuse(!has_shutter(settings.integrator), "shutter", "",
+           fmt::format("rays have a time in `integrator=path`, direct, indirect, distributed, whitted and cast, not in "
+                       "{}",
+                       integrator_name(settings)));
+    refuse(settings.denoise != Denoise::None, "shutter", "",
+           fmt::format("`denoise={}` takes what a pixel sees for one surface, which it is not where something moves; "
+                       "leave out one of them",
+                       name_of(settings.denoise)));
 }
 
 void check_camera(const RenderSettings& settings, const Camera& camera) {
     if (!rasterises_camera(settings.integrator)) return;
     const std::string why = why_no_raster(camera);
-    if (why.empty()) return;
-    throw Error(ErrorCode::BadInput, fmt::format("--integrator {}: {}", integrator_name(settings), why));
+    refuse(!why.empty(), "integrator", integrator_name(settings), why);
 }
 
-std::string why_dark(const RenderSettings& settings, const Scene& scene) {
+std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scene) {
+    const auto why = [&](std::string text) {
+        return Remark("integrator", std::string(integrator_name(settings)), std::move(text));
+    };
     if (settings.integrator == IntegratorKind::PhotonMap && settings.path.max_depth > 0 && !has_any_light(scene)) {
-        return fmt::format("--integrator {}: photons leave lights, and this scene has none: {}",
-                           integrator_name(settings), no_lights_of(scene));
+        return why("photons leave lights, and this scene has none: " + no_lights_of(scene));
     }
     if (settings.integrator == IntegratorKind::Radiosity && !has_any_light(scene)) {
-        return "radiosity: surfaces pass light on, and this scene has none: " + no_lights_of(scene);
+        return Remark("radiosity: surfaces pass light on, and this scene has none: " + no_lights_of(scene));
     }
     if (!lacks_lights(settings, scene) || has_own_ambient(settings, scene)) return {};
-    return fmt::format("--integrator {}: point, spot and directional lights alone light its surfaces, and {}: "
-                       "--integrator distributed or path knows all lights, --ambient 0.5 lights all surfaces alike",
-                       integrator_name(settings), lights_of(scene));
+    return why(fmt::format("point, spot and directional lights alone light its surfaces, and {}: "
+                           "`integrator=distributed` or path knows all lights, `ambient=0.5` lights all surfaces alike",
+                           lights_of(scene)));
 }
 
 void check_light(const RenderSettings& settings, const Scene& scene, Messages& messages) {
-    if (const std::string why = why_dark(settings, scene); !why.empty()) throw Error(ErrorCode::BadInput, why);
+    if (const auto why = why_dark(settings, scene)) throw Error(ErrorCode::BadInput, *why);
     const bool is_ambient = needs_punctual_lights(settings.integrator) && settings.ambient;
     if (!is_ambient && !has_any_light(scene) && !has_unlit(scene)) {
         messages.warn("nothing in this scene gives light: " + no_lights_of(scene) +
-                      "; what light would have to show is black (--environment 1,1,1 gives some)");
+                      "; what light would have to show is black (`environment=1,1,1` gives some)");
         return;
     }
     if (!lacks_lights(settings, scene)) return;
-    messages.note(
-        fmt::format("--integrator {}: point, spot and directional lights light its surfaces, and {}; surfaces "
-                    "show the environment's mean as ambient light (--integrator distributed casts shadows "
-                    "of all lights)",
-                    integrator_name(settings), lights_of(scene)));
+    messages.note({"integrator", std::string(integrator_name(settings)),
+                   fmt::format("point, spot and directional lights light its surfaces, and {}; surfaces show the "
+                               "environment's mean as ambient light (`integrator=distributed` casts shadows of all "
+                               "lights)",
+                               lights_of(scene))});
 }
 
 } // namespace pertev

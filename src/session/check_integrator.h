@@ -2,7 +2,7 @@
 
 // What an integrator cannot do, told in one line before anything is rendered.
 
-#include <string>
+#include <optional>
 
 #include "base/messages.h"
 #include "scene/scene.h"
@@ -20,8 +20,8 @@ void check_shutter(const RenderSettings& settings);
 void check_camera(const RenderSettings& settings, const Camera& camera);
 
 /// Why nothing would be lit, for want of lights that the integrator knows, though mirrors may show lamps; or why no
-/// photon leaves a light. Empty where something may be lit.
-std::string why_dark(const RenderSettings& settings, const Scene& scene);
+/// photon leaves a light. None where something may be lit.
+std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scene);
 
 /// Throws Error(BadInput) that says why_dark; a note tells what whitted leaves out, a warning that nothing in the scene
 /// gives light, its environment neither.

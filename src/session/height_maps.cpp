@@ -20,7 +20,7 @@ namespace {
 constexpr float kMostScale = 0x1p20f; // of heights, either way
 
 [[noreturn]] void refuse(const HeightMapText& map, const std::string& why) {
-    throw Error(ErrorCode::BadInput, fmt::format("--displacement {}: {}", map.text, why));
+    throw Error(ErrorCode::BadInput, "displacement", map.text, why);
 }
 
 std::optional<float> number_of(std::string_view text) {

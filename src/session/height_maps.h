@@ -1,6 +1,6 @@
 #pragma once
 
-// Height maps that the user gives to materials: what displaces surfaces for --integrator reyes.
+// Height maps that the user gives to materials: what displaces surfaces for `integrator=reyes`.
 
 #include <memory>
 #include <span>

@@ -9,7 +9,7 @@
 
 namespace pertev {
 
-/// "X,Y,Z" as flags take them. `digits`: of the numbers of a scene that lies at the file's origin; one that lies
+/// "X,Y,Z" as settings take it. `digits`: of the numbers of a scene that lies at the file's origin; one that lies
 /// elsewhere has as many behind the point as its own size leaves of these.
 std::string place_text(const Scene& scene, Vec3 p, int digits);
 

@@ -42,12 +42,11 @@ NoisyFrame& Session::fit(std::optional<NoisyFrame>& frame, uint32_t width, uint3
 
 bool Session::render_frame(uint32_t number, const ReconstructionSettings& settings, const RestirSettings& restir) {
     if (!makes_frames(settings_.integrator)) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--integrator {}: frames are reconstructed of path's samples alone",
-                                integrator_name(settings_)));
+        throw Error(ErrorCode::BadInput, "integrator", std::string(integrator_name(settings_)),
+                    "frames are reconstructed of path's samples alone");
     }
     if (!camera_.motion.empty() || scene_.value().view().motions.is_there()) {
-        throw Error(ErrorCode::BadInput, "--shutter: frames that are reconstructed are of one moment each");
+        throw Error(ErrorCode::BadInput, "shutter", "", "frames that are reconstructed are of one moment each");
     }
     RenderSettings of_light = settings_of_frames(settings_);
     of_light.width = scaled_side(settings_.width, settings);

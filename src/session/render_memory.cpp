@@ -28,32 +28,32 @@ std::string amount(std::size_t bytes, std::size_t other = 0) {
 }
 
 std::string limit_text(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit) {
-    if (limit.is_asked) return fmt::format("--max-memory allows {}", amount(limit.bytes, bytes));
+    if (limit.is_asked) return fmt::format("`max_memory` allows {}", amount(limit.bytes, bytes));
     return fmt::format("{} has {}, and the finished picture takes {}",
                        is_memory_of_group() ? "the container or service that this runs in" : "this machine",
                        amount(machine_memory_bytes(), bytes), amount(result_bytes(settings)));
 }
 
-/// What weighs, and the flags that make it less.
+/// What weighs, and the settings that make it less.
 std::string advice(const RenderSettings& settings, bool is_cuda) {
     const uint32_t layers = light_layers_of(settings);
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
     const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs, layers);
     const std::size_t own = predicted_bytes(settings, pixels, settings.samples, is_cuda, !is_cuda);
     if (settings.integrator == IntegratorKind::PhotonMap && own > film) {
-        return fmt::format("Photons take {} (--photons {}, --max-depth {}): a smaller one of either takes less",
+        return fmt::format("Photons take {} (`photons={}`, `max_depth={}`): a smaller one of either takes less",
                            amount(own), settings.photon_map.photons, settings.path.max_depth);
     }
     if (settings.integrator == IntegratorKind::IrradianceCache && own > film) {
         const bool has_walks = is_cuda || settings.body == PathBody::Wavefront;
-        return fmt::format("Records of {}x{} pixels{} take {}: a smaller --size{} takes less", settings.width,
+        return fmt::format("Records of {}x{} pixels{} take {}: a smaller `size`{} takes less", settings.width,
                            settings.height, has_walks ? " and their rays" : "", amount(own),
-                           has_walks ? ", or fewer --hemisphere-rays," : "");
+                           has_walks ? ", or fewer `hemisphere_rays`," : "");
     }
-    return fmt::format("{}x{} pixels{} take {} in a film: {} smaller --size{} takes less", settings.width,
-                       settings.height, layers > 0 ? " and " + counted(layers, "layer") + " of --lpe" : "",
+    return fmt::format("{}x{} pixels{} take {} in a film: {} smaller `size`{} takes less", settings.width,
+                       settings.height, layers > 0 ? " and " + counted(layers, "layer") + " of `lpe`" : "",
                        amount(film), layers > 0 ? "fewer of them or a" : "a",
-                       settings.aovs != 0 ? ", or fewer --aov," : "");
+                       settings.aovs != 0 ? ", or fewer `aov`," : "");
 }
 
 } // namespace

@@ -13,7 +13,7 @@ namespace pertev {
 /// What a render may take of a device.
 struct MemoryLimit {
     std::size_t bytes;
-    bool is_asked; // by --max-memory; else it is what the machine has beside the finished picture
+    bool is_asked; // by `max_memory`; else it is what the machine has beside the finished picture
     bool is_cuda;  // the device's own memory; else the machine's
 };
 
@@ -22,7 +22,7 @@ struct MemoryLimit {
 MemoryLimit memory_to_render_in(const Queue& queue, const RenderSettings& settings, std::optional<std::size_t> asked);
 
 /// Throws Error(OutOfMemory) where a render takes more: `bytes`, as predicted_bytes says. It says which limit that is,
-/// and which flags would take less.
+/// and which settings would take less.
 void check_render_memory(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit);
 
 } // namespace pertev

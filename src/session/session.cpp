@@ -247,7 +247,7 @@ Integrator& Session::begin(const Camera& camera, const RenderSettings& settings,
     if (picture.camera.is_open) {
         check_shutter(settings);
         if (is_light_meter(camera.projection)) {
-            throw Error(ErrorCode::BadInput, "--shutter: light is measured at one moment");
+            throw Error(ErrorCode::BadInput, "shutter", "", "light is measured at one moment");
         }
     }
     const IntegratorSettings& wanted = settings;

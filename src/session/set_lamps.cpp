@@ -23,7 +23,7 @@ constexpr std::pair<std::string_view, LampUnit> kUnits[] = {{"nits", LampUnit::N
                                                             {"W", LampUnit::Watt}};
 
 [[noreturn]] void refuse(const LampStrength& lamp, const std::string& why) {
-    throw Error(ErrorCode::BadInput, fmt::format("--lamp {}: {}", lamp.text, why));
+    throw Error(ErrorCode::BadInput, "lamp", lamp.text, why);
 }
 
 double luminance_of(double r, double g, double b) { return 0.2126 * r + 0.7152 * g + 0.0722 * b; }
@@ -116,7 +116,7 @@ void set_surface(const LampStrength& lamp, double lumens_per_watt, Scene& scene,
 void set_environment(const LampStrength& lamp, double lumens_per_watt, Environment& environment) {
     if (lamp.unit != LampUnit::Nit) refuse(lamp, "an environment has nits");
     if (!environment.image.pixels.empty()) {
-        refuse(lamp, "the environment is a panorama, with another luminance everywhere; --environment-scale multiplies "
+        refuse(lamp, "the environment is a panorama, with another luminance everywhere; `environment_scale` multiplies "
                      "it");
     }
     environment.scale = with_luminance(lamp, environment.scale, lamp.value / lumens_per_watt);

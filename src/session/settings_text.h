@@ -23,12 +23,12 @@ std::string_view integrator_name(const RenderSettings& settings);
 bool set_integrator(RenderSettings& settings, std::string_view name);
 std::vector<std::string> integrator_names();
 
-/// Of --integrator raster: "flat", "gouraud" or "phong".
+/// Of `integrator=raster`: "flat", "gouraud" or "phong".
 std::string_view name_of(RasterShading shading);
 std::optional<RasterShading> shading_named(std::string_view name);
 std::vector<std::string> shading_names();
 
-/// Of --integrator photon_map: "direct" or "final"; "grid", "kd-tree" or "octree".
+/// Of `integrator=photon_map`: "direct" or "final"; "grid", "kd-tree" or "octree".
 std::string_view name_of(PhotonGather gather);
 std::optional<PhotonGather> gather_named(std::string_view name);
 std::vector<std::string> gather_names();

@@ -279,13 +279,14 @@ TEST_CASE("hybrid refuses a lens") {
     Camera camera;
     Queue queue = Queue::make_cpu();
     camera.aperture_radius = 0.01f;
-    const std::string said = "--integrator hybrid: a rasteriser sees through a pinhole, and this camera has a lens "
-                             "(--aperture 0 takes it away; --integrator path has it)";
-    CHECK(test::bad_input_message([&] { test::render(queue, scene, camera, hybrid_settings()); }) == said);
+    const auto is_refused = [](const auto& body) {
+        return test::is_about(test::thrown_error(body), ErrorCode::BadInput, "integrator", "hybrid");
+    };
+    CHECK(is_refused([&] { test::render(queue, scene, camera, hybrid_settings()); }));
     Messages messages;
     Session session(queue, prepare_scene(scene, {}, messages), {}, hybrid_settings());
     session.set_camera(camera);
-    CHECK(test::bad_input_message([&] { session.render(1); }) == said);
+    CHECK(is_refused([&] { session.render(1); }));
     session.set_camera({});
     CHECK(session.render(1) == 1);
 }

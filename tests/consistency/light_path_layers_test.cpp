@@ -232,8 +232,7 @@ TEST_CASE("what layers take is said beforehand, by either body") {
         check_render_memory(said, settings, {said, true, false});
         const auto error = test::thrown_error([&] { check_render_memory(said, settings, {said - 1, true, false}); });
         REQUIRE((error && error->code() == ErrorCode::OutOfMemory));
-        CHECK(std::string(error->what()).find(fmt::format(" and {} layers of --lpe take ", layers_asked->count())) !=
-              std::string::npos);
+        CHECK(test::says(error, fmt::format("{} layers of `lpe`", layers_asked->count())));
         CHECK(memory_to_render_in(queue, settings, said).bytes == said);
         const std::size_t of_machine = memory_to_render_in(queue, settings, {}).bytes;
         const std::size_t channels = 4 + 3 + 1 + 3 * layers_asked->count(); // with albedo and depth

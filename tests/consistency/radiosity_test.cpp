@@ -87,8 +87,8 @@ TEST_CASE("a session goes to radiosity, another solution and back, ends early an
     Session session(queue, prepared, test::camera_with_lens(), settings);
     settings.radiosity.solution.reset();
     session.set_settings(settings);
-    CHECK(test::bad_input_message([&] { session.render(1); }) ==
-          "--integrator radiosity: there is no solution to show");
+    CHECK(
+        test::is_about(test::thrown_error([&] { session.render(1); }), ErrorCode::BadInput, "integrator", "radiosity"));
     RadiositySolution other = *looks[0].solution;
     other.roots.pop_back();
     settings.radiosity.solution = std::make_shared<const RadiositySolution>(std::move(other));

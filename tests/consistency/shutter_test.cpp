@@ -295,7 +295,7 @@ TEST_CASE("integrators whose rays have no time refuse an open shutter by name") 
           IntegratorKind::Bidirectional, IntegratorKind::PhotonMap, IntegratorKind::IrradianceCache}) {
         const RenderSettings settings = blurred_settings(integrator);
         Session session(queue, moving.prepared(), test::mixed_scene_camera(), settings);
-        CHECK(test::bad_input_message([&] { session.render(1); }).find("--shutter") == 0);
+        CHECK(test::is_about(test::thrown_error([&] { session.render(1); }), ErrorCode::BadInput, "shutter"));
     }
 }
 

@@ -49,6 +49,26 @@ class Errors(CliTest):
         self.fail_in_json(3, "render", "--json", "cornell-box", "-o", "x.png", "--size", "70000x70000")
         self.fail_in_json(6, "render", "cornell-box", "-o", "nowhere/x.png", "--json", "-q")
 
+    def test_what_is_said_stands_in_parts_with_settings_by_their_names_and_in_a_text_with_flags(self):
+        last = self.fail_in_json(3, *"render cornell-box -o x.png --integrator whitted --max-depth 256 --json".split())
+        self.assertEqual((last["setting"], last["value"], last["settings"]), ("max_depth", "256", {"integrator": "whitted"}))
+        self.assertTrue(last["text"].startswith("--max-depth 256: "), last)
+        self.assertIn("--integrator whitted", last["text"])
+        write(self.path("bad.ply"), "ply\nformat ascii 1.0\nelement vertex\nend_header\n")
+        last = self.fail_in_json(2, *"info bad.ply --json".split())
+        self.assertEqual(last["place"], {"file": "bad.ply", "line": 3})
+        self.assertEqual(last["text"], f"bad.ply:3: {last['reason']}")
+        write(self.path("bad.gltf"), '{"asset":{"version":"2.0"},"extensionsRequired":["X"]}')
+        said = self.run_pertev("info", "bad.gltf", "--json").events("warning")[0]
+        self.assertEqual(said["place"], {"file": "bad.gltf", "pointer": "/extensionsRequired/0"})
+        view = "render cornell-box -o x.png --size 8x8 --spp 1 --eye 0,1,3 --json".split()
+        told = [notice for notice in self.run_pertev(*view).events("notice") if notice.get("setting") == "eye"]
+        self.assertEqual(told[0]["settings"]["eye"], "0,1,3")
+        self.assertIn(f"--eye 0,1,3 --target {told[0]['settings']['target']}", told[0]["text"])
+        last = self.fail_in_json(2, *"render cornell-box -o x.png --camera".split(), "it's no camera", "--json")
+        self.assertEqual((last["setting"], last["value"]), ("camera", "it's no camera"))
+        self.assertIn("--camera 'it'\\''s no camera': ", last["text"]) # as a shell takes it
+
     def test_a_value_or_a_name_is_not_the_flag(self):
         for arguments in [["info", "--", "--json"], ["render", "cornell-box", "-o", "x.png", "--camera=--json"]]:
             outcome = self.refuse_in_words(*arguments)

@@ -67,7 +67,7 @@ class Meshes(CliTest):
         self.refuse(2, *frames, "--unit", "cm", "--continue", says=["--unit"])
         self.refuse(2, *frames, "--continue", says=["--unit"])
         said = self.said("cornell-box", "--unit", "mm")
-        self.assertIn("cornell-box is in metres with y up", said)
+        self.assertIn("cornell-box: the file is in metres with y up", said)
 
     def test_files_are_found_in_another_case_and_by_the_end_of_their_path(self):
         write_png(self.path("Plain.PNG"), (255, 0, 0))

@@ -63,7 +63,7 @@ class Radiosity(CliTest):
         show = ["render", "cornell-box", *SMALL, "-o", "x.png", "--solution", "box.rad"]
         for light, says in [(["--lamp", "light=100lm"], "with other materials"),
                             (["--environment", "1,1,1"], "under other lights")]:
-            self.refuse(2, *show, *light, says=["box.rad: ", says, "pertev solve radiosity, with the same flags"])
+            self.refuse(2, *show, *light, says=["box.rad: ", says, "pertev solve radiosity, with the same settings"])
             self.solve(*COARSE, *light, output="other.rad")
             self.assertEqual(self.picture("--solution", "other.rad", *light), self.picture(*COARSE, *light), light)
             self.refuse(2, *show[:-1], "other.rad", says=["other.rad: ", says])
@@ -240,7 +240,7 @@ class Radiosity(CliTest):
                 ("solve radiosity nowhere.obj -o m.rad --solver matrix --tolerance 0.1", 2, "--tolerance: --solver matrix"),
                 ("solve radiosity nowhere.obj -o m.rad --patch-size 0", 2, "--patch-size"),
                 ("solve radiosity nowhere.obj -o nowhere/m.rad", 6, "nowhere/m.rad"),
-                ("solve radiosity cornell-box -o m.rad --patch-size 1e-5", 3, "--patch-size 1e-05: divides this scene into"),
+                ("solve radiosity cornell-box -o m.rad --patch-size 1e-5", 3, "--patch-size 1e-05: it divides"),
                 ("solve radiosity cornell-box -o m.rad --patch-size 0.01 --patch-rays 16 --solver matrix", 3, "--solver matrix: "),
                 ("solve nothing", 2, "nothing"),
                 ("render nowhere.obj -o x.png --solution box.rad", 2, "--solution: of --integrator radiosity; path has none"),

@@ -26,7 +26,7 @@ enum class Placing {
 };
 constexpr Placing kPlacings[] = {Placing::Vertices, Placing::Node, Placing::Instances, Placing::FarMesh};
 
-struct Place {
+struct Placement {
     float size_m;
     Vec3 at;
     Transform turn; // about its middle
@@ -70,12 +70,12 @@ Mesh mesh_of(const Shape& shape, const Transform& place) {
     return mesh;
 }
 
-Transform transform_of(const Place& place) {
+Transform transform_of(const Placement& place) {
     const Transform sized = make_scale({place.size_m, place.size_m, place.size_m});
     return compose(make_translation(place.at), compose(place.turn, sized));
 }
 
-Scene scene_of(const Shape& shape, const Place& place) {
+Scene scene_of(const Shape& shape, const Placement& place) {
     Scene scene;
     scene.materials.push_back({.name = "grey", .base_color = grey(0.8f)});
     const Transform m = transform_of(place);
@@ -106,8 +106,8 @@ PreparedScene prepared_of(const Scene& scene) {
     return prepare_scene(scene, {}, messages);
 }
 
-uint64_t lit_pixels(const PreparedScene& scene, const Place& place, const View& view, uint32_t side, uint32_t samples,
-                    uint32_t max_depth) {
+uint64_t lit_pixels(const PreparedScene& scene, const Placement& place, const View& view, uint32_t side,
+                    uint32_t samples, uint32_t max_depth) {
     const Transform m = transform_of(place);
     Camera camera;
     camera.world_from_camera =
@@ -126,10 +126,12 @@ uint64_t lit_pixels(const PreparedScene& scene, const Place& place, const View& 
 
 /// So narrow a view of an edge that one sample of thousands starts within rounding of it, where in a picture of the
 /// whole it is one of millions; but as wide as the file's own coordinates let a camera aim.
-float narrow(const Place& place) { return min(0.3f, max(2e-4f, 2e-6f * max_component(abs(place.at)) / place.size_m)); }
+float narrow(const Placement& place) {
+    return min(0.3f, max(2e-4f, 2e-6f * max_component(abs(place.at)) / place.size_m));
+}
 
 /// The whole box, two edges and a corner.
-uint64_t lit_pixels_of_box(const Place& place) {
+uint64_t lit_pixels_of_box(const Placement& place) {
     const Scene box = scene_of(cube(), place);
     const PreparedScene scene = prepared_of(box);
     const Vec3 eye = {0.11f, -0.07f, 0.13f};
@@ -143,7 +145,7 @@ uint64_t lit_pixels_of_box(const Place& place) {
 
 /// All placings and turns of it.
 template <class LitPixels>
-void check_black(Place place, const LitPixels& lit_pixels_there) {
+void check_black(Placement place, const LitPixels& lit_pixels_there) {
     CAPTURE(place.size_m);
     CAPTURE(place.at.x);
     for (const Placing placing : kPlacings) {
@@ -183,7 +185,7 @@ TEST_CASE("no light leaks into a box beside something far away") {
 TEST_CASE("pictures of whole boxes, small or far away, have no lit pixel") {
     for (const auto& [size_m, at] : {std::pair{2.0f, Vec3{1300, 0, 0}}, {0.002f, Vec3{10, 0, 0}}}) {
         for (const Transform& turn : kTurns) {
-            const Place place = {size_m, at, turn};
+            const Placement place = {size_m, at, turn};
             const View view = {{0.11f, -0.07f, 0.13f}, {0.5f, 0.5f, -0.5f}, 1.5f};
             CHECK(lit_pixels(prepared_of(scene_of(cube(), place)), place, view, 128,
                              static_cast<uint32_t>(effort(2, 256)), 16) == 0);
@@ -195,7 +197,7 @@ TEST_CASE("no light leaks in at the sharp edge of a wedge") {
     for (const float slope : {0.9f, 0.36f}) { // 42 and 20 degrees
         CAPTURE(slope);
         const Shape shape = wedge(slope);
-        check_black({2, {3, 4, 5}, {}}, [&](const Place& place) {
+        check_black({2, {3, 4, 5}, {}}, [&](const Placement& place) {
             const Vec3 eye = {0.2f, 0.3f * slope - 0.5f, 0.13f};
             const Scene closed = scene_of(shape, place);
             const PreparedScene scene = prepared_of(closed);
@@ -208,7 +210,7 @@ TEST_CASE("no light leaks in at the sharp edge of a wedge") {
 TEST_CASE("no light leaks into a bumpy tube of very uneven triangles") {
     const TriangleMesh torus = make_torus(400, 200);
     const Shape shape = {torus.positions, torus.indices};
-    check_black({1, {1300, 0, 0}, {}}, [&](const Place& place) {
+    check_black({1, {1300, 0, 0}, {}}, [&](const Placement& place) {
         return lit_pixels(prepared_of(scene_of(shape, place)), place, {{1, 0, 0}, {1.3f, 0.2f, 0.5f}, 1.5f}, 64,
                           static_cast<uint32_t>(effort(4, 64)), 6);
     });

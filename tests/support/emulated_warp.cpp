@@ -29,7 +29,7 @@ Index thread_index, block_index, block_size;
 
 namespace {
 
-using lane::Place;
+using lane::CodePlace;
 
 constexpr std::size_t kStackBytes = 128 << 10, kGuardBytes = 4 << 10;
 constexpr uint32_t kMostWarps = 8; // at once
@@ -314,7 +314,7 @@ void Machine::answer_active_mask(EmulatedWarp& warp) {
     warp.ready |= together;
 }
 
-uint64_t meet(MeetingKind kind, uint32_t mask, uint64_t value, int source, const Place& at, void* frame) {
+uint64_t meet(MeetingKind kind, uint32_t mask, uint64_t value, int source, const CodePlace& at, void* frame) {
     if (!machine().is_running()) std::abort(); // no lane calls
     const Meeting meeting = {kind, mask, value, source, at, static_cast<void* const*>(frame)};
     return kind == MeetingKind::ActiveMask ? machine().wait_for_active_mask(meeting) : machine().meet(meeting);
@@ -329,22 +329,22 @@ std::string run_warps(const EmulatedLaunch& launch, const std::function<void()>&
 namespace lane {
 
 // Each is a call of its own, whose frame says where it was called from.
-[[gnu::noinline]] uint32_t active_mask(Place at) {
+[[gnu::noinline]] uint32_t active_mask(CodePlace at) {
     return static_cast<uint32_t>(meet(MeetingKind::ActiveMask, 0, 0, 0, at, __builtin_frame_address(0)));
 }
-[[gnu::noinline]] uint32_t ballot(uint32_t mask, bool mine, Place at) {
+[[gnu::noinline]] uint32_t ballot(uint32_t mask, bool mine, CodePlace at) {
     return static_cast<uint32_t>(meet(MeetingKind::Ballot, mask, mine ? 1 : 0, 0, at, __builtin_frame_address(0)));
 }
-[[gnu::noinline]] bool all(uint32_t mask, bool mine, Place at) {
+[[gnu::noinline]] bool all(uint32_t mask, bool mine, CodePlace at) {
     return meet(MeetingKind::All, mask, mine ? 1 : 0, 0, at, __builtin_frame_address(0)) != 0;
 }
-[[gnu::noinline]] uint32_t match_any(uint32_t mask, uint64_t key, Place at) {
+[[gnu::noinline]] uint32_t match_any(uint32_t mask, uint64_t key, CodePlace at) {
     return static_cast<uint32_t>(meet(MeetingKind::MatchAny, mask, key, 0, at, __builtin_frame_address(0)));
 }
-[[gnu::noinline]] uint32_t shuffle(uint32_t mask, uint32_t value, int source, Place at) {
+[[gnu::noinline]] uint32_t shuffle(uint32_t mask, uint32_t value, int source, CodePlace at) {
     return static_cast<uint32_t>(meet(MeetingKind::Shuffle, mask, value, source & 31, at, __builtin_frame_address(0)));
 }
-[[gnu::noinline]] void sync(uint32_t mask, Place at) {
+[[gnu::noinline]] void sync(uint32_t mask, CodePlace at) {
     meet(MeetingKind::Sync, mask, 0, 0, at, __builtin_frame_address(0));
 }
 void step() { machine().step(); }

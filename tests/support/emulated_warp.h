@@ -30,20 +30,20 @@ std::string run_warps(const EmulatedLaunch& launch, const std::function<void()>&
 /// What a kernel calls. Those with a mask wait until each lane of it has come to the same with the same mask.
 namespace lane {
 
-using Place = std::source_location;
+using CodePlace = std::source_location;
 
 struct Index {
     uint32_t x;
 };
 extern Index thread_index, block_index, block_size; // of the lane that runs
 
-uint32_t active_mask(Place at = Place::current());
-uint32_t ballot(uint32_t mask, bool mine, Place at = Place::current());
-bool all(uint32_t mask, bool mine, Place at = Place::current());
-uint32_t match_any(uint32_t mask, uint64_t key, Place at = Place::current());
+uint32_t active_mask(CodePlace at = CodePlace::current());
+uint32_t ballot(uint32_t mask, bool mine, CodePlace at = CodePlace::current());
+bool all(uint32_t mask, bool mine, CodePlace at = CodePlace::current());
+uint32_t match_any(uint32_t mask, uint64_t key, CodePlace at = CodePlace::current());
 /// The value of lane `source`, one of the mask.
-uint32_t shuffle(uint32_t mask, uint32_t value, int source, Place at = Place::current());
-void sync(uint32_t mask, Place at = Place::current());
+uint32_t shuffle(uint32_t mask, uint32_t value, int source, CodePlace at = CodePlace::current());
+void sync(uint32_t mask, CodePlace at = CodePlace::current());
 /// Others may run before this lane goes on, as around an atomic operation.
 void step();
 

@@ -1,11 +1,12 @@
 #pragma once
 
-// The Error that something throws, so that its code and text can both be looked at.
+// The Error that something throws, so that its code and its parts can be looked at.
 
 #include <doctest/doctest.h>
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "base/error.h"
 
@@ -19,6 +20,12 @@ std::optional<Error> thrown_error(const Body& body) {
         return error;
     }
     return std::nullopt;
+}
+
+/// Whether it has this code and is about this setting, with this value unless that is empty.
+inline bool is_about(const std::optional<Error>& error, ErrorCode code, std::string_view setting,
+                     std::string_view value = {}) {
+    return error && error->code() == code && error->setting() == setting && (value.empty() || error->value() == value);
 }
 
 inline bool says(const std::optional<Error>& error, const std::string& text) {

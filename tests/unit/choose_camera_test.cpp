@@ -7,6 +7,7 @@
 #include "session/opening/choose_camera.h"
 #include "session/opening/open_scene.h"
 #include "tests/support/options.h"
+#include "tests/support/thrown_error.h"
 #include "tests/support/write_text.h"
 
 using namespace pertev;
@@ -38,8 +39,9 @@ TEST_CASE("the scene's first camera is taken, or the one that is named by name o
     CHECK(choose({}).name == "first");
     CHECK(choose({.camera = "second"}).name == "second");
     CHECK(choose({.camera = "1"}).name == "second");
-    CHECK_THROWS_WITH_AS(choose({.camera = "third"}),
-                         "--camera third: the scene has no such camera; it has:\n  0  first\n  1  second", Error);
+    const auto error = test::thrown_error([] { choose({.camera = "third"}); });
+    CHECK(test::is_about(error, ErrorCode::BadInput, "camera", "third"));
+    CHECK(test::says(error, "\n  0  first\n  1  second"));
 }
 
 TEST_CASE("an eye without a target looks at the middle of the scene, as the notice says it") {
@@ -48,8 +50,8 @@ TEST_CASE("an eye without a target looks at the middle of the scene, as the noti
     CHECK(camera.world_from_camera == look_at({0, 0, -3}, {0, 0, 0}, {0, 1, 0}));
     CHECK(camera.focus_distance == 3);
     REQUIRE(messages.all().size() == 1);
-    CHECK(messages.all()[0].text ==
-          "--eye without --target: it looks at the middle of the scene (--eye 0,0,-3 --target 0,0,0)");
+    CHECK(messages.all()[0].remark.setting == "eye");
+    CHECK(messages.all()[0].text.ends_with("(`eye=0,0,-3` `target=0,0,0`)"));
 }
 
 TEST_CASE("a lens without a focus is sharp at what is in the middle of the picture, unless a target is said") {
@@ -95,7 +97,8 @@ TEST_CASE("open_scene gives a scene without light a sky, or the environment it i
     CHECK(even.environment->rotation == doctest::Approx(kPi));
 
     options.environment_radiance = Rgb{-1, 0, 0};
-    CHECK_THROWS_WITH_AS(open_scene(options, messages), "--environment -1,0,0: radiance cannot be negative", Error);
+    const auto negative = test::thrown_error([&] { open_scene(options, messages); });
+    CHECK(test::is_about(negative, ErrorCode::BadInput, "environment", "-1,0,0"));
     options.environment_radiance.reset();
     options.environment = "nowhere.exr";
     CHECK_THROWS_AS(open_scene(options, messages), Error);

@@ -24,20 +24,22 @@ struct Folders {
     }
 };
 
+Place at(const fs::path& file) { return {file.string()}; }
+
 } // namespace
 
 TEST_CASE("files in the scene's folder and below are resolved, also with backslashes, dots and spaces") {
     const Folders f;
     const FileAccess access(f.file, {});
-    CHECK(access.resolve(f.file, "textures/t.png") == f.scene / "textures/t.png");
-    CHECK(access.resolve(f.file, "textures\\t.png") == f.scene / "textures/t.png");
-    CHECK(access.resolve(f.file, "./textures/../textures/t.png") == f.scene / "textures/t.png");
-    CHECK(access.resolve(f.scene / "textures" / "b.mtl", "t.png") == f.scene / "textures/t.png");
-    CHECK(access.resolve(f.file, "no such file.png") == f.scene / "no such file.png");
-    CHECK(access.resolve(f.file, (f.scene / "a.obj").string()) == f.file);
+    CHECK(access.resolve(at(f.file), "textures/t.png") == f.scene / "textures/t.png");
+    CHECK(access.resolve(at(f.file), "textures\\t.png") == f.scene / "textures/t.png");
+    CHECK(access.resolve(at(f.file), "./textures/../textures/t.png") == f.scene / "textures/t.png");
+    CHECK(access.resolve(at(f.scene / "textures" / "b.mtl"), "t.png") == f.scene / "textures/t.png");
+    CHECK(access.resolve(at(f.file), "no such file.png") == f.scene / "no such file.png");
+    CHECK(access.resolve(at(f.file), (f.scene / "a.obj").string()) == f.file);
 }
 
-TEST_CASE("a file outside the scene's folder is refused, with a message that names the file and --allow-path") {
+TEST_CASE("a file outside the scene's folder is refused, with a message that names the file and `allow_path`") {
     const Folders f;
     const FileAccess access(f.file, {});
     fs::create_symlink(f.other, f.scene / "link");
@@ -48,24 +50,24 @@ TEST_CASE("a file outside the scene's folder is refused, with a message that nam
           (f.other / "t.png").string(), std::string("link/t.png"), std::string("link.png"),
           std::string("textures/../../scene2/t.png")}) {
         CAPTURE(reference);
-        const auto error = test::thrown_error([&] { (void)access.resolve(f.file, reference); });
+        const auto error = test::thrown_error([&] { (void)access.resolve(at(f.file), reference); });
         REQUIRE(error);
         CHECK(error->code() == ErrorCode::BadInput);
         CHECK(test::says(error, f.file.string()));
-        CHECK(test::says(error, "--allow-path"));
+        CHECK(test::says(error, "`allow_path="));
     }
-    CHECK_THROWS_AS((void)access.resolve(f.file, "dangling"), Error);
-    CHECK_THROWS_AS((void)access.resolve(f.file, ""), Error);
-    CHECK_THROWS_AS((void)access.resolve(f.file, std::string("textures/t.png\0.txt", 18)), Error);
-    CHECK_THROWS_AS((void)access.resolve(f.file, std::string(10000, 'x') + "/a"), Error);
+    CHECK_THROWS_AS((void)access.resolve(at(f.file), "dangling"), Error);
+    CHECK_THROWS_AS((void)access.resolve(at(f.file), ""), Error);
+    CHECK_THROWS_AS((void)access.resolve(at(f.file), std::string("textures/t.png\0.txt", 18)), Error);
+    CHECK_THROWS_AS((void)access.resolve(at(f.file), std::string(10000, 'x') + "/a"), Error);
 }
 
 TEST_CASE("an allowed folder may be read, one beside it that begins alike may not") {
     const Folders f;
     const FileAccess access(f.file, {f.other});
-    CHECK(access.resolve(f.file, "../scene2/t.png") == f.other / "t.png");
+    CHECK(access.resolve(at(f.file), "../scene2/t.png") == f.other / "t.png");
     fs::create_directories(f.top / "scene22");
-    CHECK_THROWS_AS((void)access.resolve(f.file, "../scene22/t.png"), Error);
+    CHECK_THROWS_AS((void)access.resolve(at(f.file), "../scene22/t.png"), Error);
     CHECK_THROWS_AS(FileAccess(f.file, {f.top / "missing"}), Error);
 }
 
@@ -73,15 +75,15 @@ TEST_CASE("a file named with a path of another machine is found beside the file 
     const Folders f;
     const FileAccess access(f.file, {});
     Messages messages;
-    CHECK(access.find(f.file, "textures/t.png", messages) == f.scene / "textures/t.png");
-    CHECK(!access.find(f.file, "nothing.png", messages));
-    CHECK(!access.find(f.file, std::string(5000, 'x') + ".png", messages)); // longer than a name may be
+    CHECK(access.find(at(f.file), "textures/t.png", messages) == f.scene / "textures/t.png");
+    CHECK(!access.find(at(f.file), "nothing.png", messages));
+    CHECK(!access.find(at(f.file), std::string(5000, 'x') + ".png", messages)); // longer than a name may be
     CHECK(messages.all().empty());
-    CHECK(access.find(f.file, "C:\\models\\a.obj", messages) == f.file);
-    CHECK(access.find(f.file, "maps/elsewhere/a.obj", messages) == f.file);
-    CHECK(access.find(f.file, "C:\\models\\textures\\t.png", messages) == f.scene / "textures/t.png");
-    CHECK(access.find(f.file, "D:/t.png", messages) == f.scene / "textures/t.png");
-    CHECK(access.find(f.file, "t.png", messages) == f.scene / "textures/t.png");
+    CHECK(access.find(at(f.file), "C:\\models\\a.obj", messages) == f.file);
+    CHECK(access.find(at(f.file), "maps/elsewhere/a.obj", messages) == f.file);
+    CHECK(access.find(at(f.file), "C:\\models\\textures\\t.png", messages) == f.scene / "textures/t.png");
+    CHECK(access.find(at(f.file), "D:/t.png", messages) == f.scene / "textures/t.png");
+    CHECK(access.find(at(f.file), "t.png", messages) == f.scene / "textures/t.png");
     REQUIRE(messages.all().size() == 5);
     CHECK(messages.all()[2].text.find("\"C:/models/textures\", which are not there") != std::string::npos);
     CHECK(messages.all()[2].text.find("in \"textures\" are read") != std::string::npos);
@@ -99,12 +101,12 @@ TEST_CASE(
     }
     const FileAccess access(f.file, {});
     Messages messages;
-    CHECK(access.find(f.file, "C:/p/stone/x.png", messages) == f.scene / "b/stone/x.png");
-    CHECK(access.find(f.scene / "a" / "m.mtl", "C:/p/wood/x.png", messages) == f.scene / "a/wood/x.png");
-    CHECK(access.find(f.scene / "c" / "m.mtl", "C:/p/stone/x.png", messages) == f.scene / "b/stone/x.png");
-    CHECK(access.find(f.file, "C:/p/y.png", messages) == f.scene / "y.png"); // the others lie deeper
+    CHECK(access.find(at(f.file), "C:/p/stone/x.png", messages) == f.scene / "b/stone/x.png");
+    CHECK(access.find(at(f.scene / "a" / "m.mtl"), "C:/p/wood/x.png", messages) == f.scene / "a/wood/x.png");
+    CHECK(access.find(at(f.scene / "c" / "m.mtl"), "C:/p/stone/x.png", messages) == f.scene / "b/stone/x.png");
+    CHECK(access.find(at(f.file), "C:/p/y.png", messages) == f.scene / "y.png"); // the others lie deeper
     const std::size_t before = messages.all().size();
-    CHECK(!access.find(f.file, "C:/p/wood/x.png", messages)); // a's or b's
+    CHECK(!access.find(at(f.file), "C:/p/wood/x.png", messages)); // a's or b's
     REQUIRE(messages.all().size() == before + 1);
     CHECK(messages.all().back().text.find("2 files could be meant") != std::string::npos);
 }
@@ -116,16 +118,16 @@ TEST_CASE("a name in another case is found where one file alone has it, and the 
     test::write_text(f.scene / "Maps" / "Leaf.png", "");
     const FileAccess access(f.file, {});
     Messages messages;
-    CHECK(access.find(f.file, "wood.png", messages) == f.scene / "Wood.PNG");
+    CHECK(access.find(at(f.file), "wood.png", messages) == f.scene / "Wood.PNG");
     CHECK(messages.all().back().text.find((f.scene / "Wood.PNG").string()) != std::string::npos);
-    CHECK(access.find(f.file, "DEEP NAME.PNG", messages) == f.scene / "deep name.Png");
-    CHECK(access.find(f.file, "maps\\leaf.png", messages) == f.scene / "Maps/Leaf.png");
-    CHECK(access.find(f.file, "C:\\MAPS\\LEAF.PNG", messages) == f.scene / "Maps/Leaf.png");
-    CHECK(access.find(f.file, "maps/Leaf.png", messages) == f.scene / "Maps/Leaf.png");
-    CHECK(access.find(f.file, "one.png", messages) == f.scene / "one.png");
+    CHECK(access.find(at(f.file), "DEEP NAME.PNG", messages) == f.scene / "deep name.Png");
+    CHECK(access.find(at(f.file), "maps\\leaf.png", messages) == f.scene / "Maps/Leaf.png");
+    CHECK(access.find(at(f.file), "C:\\MAPS\\LEAF.PNG", messages) == f.scene / "Maps/Leaf.png");
+    CHECK(access.find(at(f.file), "maps/Leaf.png", messages) == f.scene / "Maps/Leaf.png");
+    CHECK(access.find(at(f.file), "one.png", messages) == f.scene / "one.png");
     CHECK(messages.all().size() == 5); // the last is exact
-    CHECK(!access.find(f.file, "One.png", messages));
-    CHECK(!access.find(f.file, "W\xc3\xb6od.png", messages));
+    CHECK(!access.find(at(f.file), "One.png", messages));
+    CHECK(!access.find(at(f.file), "W\xc3\xb6od.png", messages));
 }
 
 TEST_CASE("a file that is looked for is never found outside, through links or in hidden folders") {
@@ -137,13 +139,13 @@ TEST_CASE("a file that is looked for is never found outside, through links or in
     fs::create_symlink(f.other / "outside.png", f.scene / "Link.png");
     Messages messages;
     const FileAccess access(f.file, {});
-    CHECK(!access.find(f.file, "C:/h.png", messages));
-    CHECK(!access.find(f.file, "C:/outside.png", messages));
-    CHECK(!access.find(f.file, "link.png", messages));
+    CHECK(!access.find(at(f.file), "C:/h.png", messages));
+    CHECK(!access.find(at(f.file), "C:/outside.png", messages));
+    CHECK(!access.find(at(f.file), "link.png", messages));
     CHECK(messages.all().empty());
     const FileAccess allowed(f.file, {f.other});
-    CHECK(allowed.find(f.file, "C:/OUTSIDE.png", messages) == f.other / "outside.png");
-    CHECK(allowed.find(f.file, "link.png", messages) == f.other / "outside.png");
+    CHECK(allowed.find(at(f.file), "C:/OUTSIDE.png", messages) == f.other / "outside.png");
+    CHECK(allowed.find(at(f.file), "link.png", messages) == f.other / "outside.png");
 }
 
 TEST_CASE("a file outside is replaced by one of that name below, with a warning, and refused where there is none") {
@@ -151,18 +153,19 @@ TEST_CASE("a file outside is replaced by one of that name below, with a warning,
     test::write_text(f.other / "u.png", "");
     const FileAccess access(f.file, {});
     Messages messages;
-    CHECK(access.find(f.file, "/no such home/artist/a.obj", messages) == f.file);
-    CHECK(!access.find(f.file, "/no such home/artist/u.png", messages)); // nothing that could be allowed
-    CHECK(access.find(f.scene / "textures" / "b.mtl", (f.other / "t.png").string(), messages) ==
+    CHECK(access.find(at(f.file), "/no such home/artist/a.obj", messages) == f.file);
+    CHECK(!access.find(at(f.file), "/no such home/artist/u.png", messages)); // nothing that could be allowed
+    CHECK(access.find(at(f.scene / "textures" / "b.mtl"), (f.other / "t.png").string(), messages) ==
           f.scene / "textures/t.png");
     REQUIRE(messages.all().size() == 2);
     CHECK(messages.all()[0].text.find("\"/no such home/artist\", outside") != std::string::npos);
-    const auto error =
-        test::thrown_error([&] { (void)access.find(f.file.string() + ":7", "../scene2/u.png", messages); });
+    const auto error = test::thrown_error([&] {
+        (void)access.find(Place{f.file.string(), 7}, "../scene2/u.png", messages);
+    });
     CHECK(test::says(error, "a.obj:7: refers to"));
-    CHECK(test::says(error, "--allow-path " + f.other.string()));
+    CHECK(test::says(error, "`allow_path=" + f.other.string() + "`"));
 
     fs::create_symlink(f.other / "u.png", f.scene / "u.png"); // what lies beside may lead outside, too
-    CHECK_THROWS_AS((void)access.find(f.file, "../scene2/u.png", messages), Error);
-    CHECK(!access.find(f.file, "/no such home/artist/u.png", messages));
+    CHECK_THROWS_AS((void)access.find(at(f.file), "../scene2/u.png", messages), Error);
+    CHECK(!access.find(at(f.file), "/no such home/artist/u.png", messages));
 }

@@ -8,21 +8,21 @@
 
 using namespace pertev;
 
-TEST_CASE("a camera is told in flags that place it again") {
+TEST_CASE("a camera is told in settings that place it again") {
     Camera camera;
     camera.world_from_camera = look_at({0, 1, 3}, {0, 1, 0}, {0, 1, 0});
     camera.fov_y = kPi / 4;
-    CHECK(describe_camera(camera) == "--eye 0,1,3 --target 0,1,-1 --up 0,1,0 --projection perspective --fov 45 "
+    CHECK(describe_camera(camera) == "`eye=0,1,3` `target=0,1,-1` `up=0,1,0` `projection=perspective` `fov=45` "
                                      "(vertical field of view, degrees)");
     camera.projection = Projection::Orthographic, camera.ortho_height = 2.5f;
-    CHECK(describe_camera(camera) == "--eye 0,1,3 --target 0,1,-1 --up 0,1,0 --projection orthographic --view-height "
-                                     "2.5 (metres)");
+    CHECK(describe_camera(camera) == "`eye=0,1,3` `target=0,1,-1` `up=0,1,0` `projection=orthographic` "
+                                     "`view_height=2.5` (metres)");
     // Far from the origin the target keeps the direction.
     const Vec3 eye = {1e6f, -2e6f, 3e5f}, way = normalize(Vec3{1, 2, -3});
     camera.world_from_camera = look_at(eye, eye + 1e6f * way, {0, 1, 0});
     const std::string text = describe_camera(camera);
     Vec3 target;
-    REQUIRE(std::sscanf(text.c_str() + text.find("--target") + 9, "%f,%f,%f", &target.x, &target.y, &target.z) == 3);
+    REQUIRE(std::sscanf(text.c_str() + text.find("`target=") + 8, "%f,%f,%f", &target.x, &target.y, &target.z) == 3);
     CHECK(length(normalize(target - eye) - way) < 1e-6f);
 }
 

@@ -43,11 +43,11 @@ bool says(const Messages& messages, bool is_warning, const std::string& text) {
 
 } // namespace
 
-TEST_CASE("lamps of an OBJ file are named once, with the flag that lights their backs") {
+TEST_CASE("lamps of an OBJ file are named once, with the setting that lights their backs") {
     const Messages one = read(room(1.99f, kDown));
     REQUIRE(one.all().size() == 1);
     CHECK(says(one, false, "1 lamp with light on the front alone: bulb;"));
-    CHECK(says(one, false, "--two-sided-lights"));
+    CHECK(says(one, false, "`two_sided_lights`"));
     CHECK(says(read(room(1.99f, kDown) + "usemtl second\nf 12 11 10\n"), false,
                "2 lamps with light on the front alone: bulb, second;"));
     CHECK(read(room(1.99f, kDown), true).all().empty());
@@ -57,7 +57,7 @@ TEST_CASE("lamps of an OBJ file are named once, with the flag that lights their 
 TEST_CASE("a lamp whose front faces a wall, with room behind it, is a warning that says what to do") {
     const Messages turned = read(room(1.99f, kUp));
     CHECK(says(turned, true, "the lamp bulb shines at a surface 0.01 m before its front and has 1.99 m behind it"));
-    CHECK(says(turned, true, "turn its faces round, or say --two-sided-lights"));
+    CHECK(says(turned, true, "`two_sided_lights`"));
     for (const Messages& fine : {read(room(1.99f, kDown)), read(room(1, kUp)), read(room(0.01f, kUp))}) {
         CHECK_FALSE(says(fine, true, "behind it"));
     }

@@ -99,7 +99,7 @@ TEST_CASE("a name that nothing has is refused at its letter, with names that the
     const auto message = [](const char* text) {
         return test::bad_input_message([&] { put_layers({"a=LE", text}, make_named_scene()); });
     };
-    CHECK(message("b=LD<'wal'>E").find("--lpe b: character 5: no object, mesh, material or node") == 0);
+    CHECK(message("b=LD<'wal'>E").find("`lpe=b`: character 5: no object, mesh, material or node") == 0);
     CHECK(message("b=LD<'wal'>E").find("\n      ^") != std::string::npos);
     CHECK(message("b=LD<'wall' 'x*'>E").find("character 12") != std::string::npos);
     CHECK(message("b=L<'wall'>E").find("no light of the scene is called so; there are 'bulb', 'disc'") !=
@@ -128,6 +128,7 @@ TEST_CASE("two layers of one name are told with what each is, wherever among man
     for (int i = 0; i < 100; ++i) expressions.push_back(parse_light_path(fmt::format("n{}=LE", i)));
     check_layers(expressions);
     expressions[97] = parse_light_path("n35=LDE");
-    const std::string message = test::bad_input_message([&] { check_layers(expressions); });
-    CHECK(message == "--lpe n35: two expressions have this name\n  n35=LE\n  n35=LDE");
+    const auto error = test::thrown_error([&] { check_layers(expressions); });
+    CHECK(test::is_about(error, ErrorCode::BadInput, "lpe", "n35"));
+    CHECK(test::says(error, "\n  n35=LE\n  n35=LDE"));
 }

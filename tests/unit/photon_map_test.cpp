@@ -422,8 +422,7 @@ TEST_CASE("a scene without a light for photons, and more photons than there is r
     settings.integrator = IntegratorKind::PhotonMap;
     Messages messages;
     const auto said = [&] { return test::bad_input_message([&] { check_light(settings, scene, messages); }); };
-    CHECK(said() == "--integrator photon_map: photons leave lights, and this scene has none: no lamp, no point, spot "
-                    "or directional light, no environment");
+    CHECK(said().starts_with("`integrator=photon_map`: "));
     scene.lights.push_back(test::point_light({0, 2, 0}, {1, 1, 1}));
     CHECK(said() == "no error");
     scene.lights.clear();
@@ -433,10 +432,9 @@ TEST_CASE("a scene without a light for photons, and more photons than there is r
     settings.path.max_depth = 64;
     settings.photon_map.photons = kMostPhotons;
     const auto error = test::thrown_error([&] { check_integrator(settings); });
-    CHECK(test::says(error, "--photons 16777216: with --max-depth 64 a pass may leave more than 1073741823 photons; at "
-                            "most 8521760"));
-    CHECK(error->code() == ErrorCode::OverLimit);
+    CHECK(test::is_about(error, ErrorCode::OverLimit, "photons", "16777216"));
+    CHECK(test::says(error, "at most 8521760"));
     settings.path.max_depth = 65;
-    CHECK(
-        test::says(test::thrown_error([&] { check_integrator(settings); }), "with --integrator photon_map at most 64"));
+    const auto too_deep = test::thrown_error([&] { check_integrator(settings); });
+    CHECK(test::is_about(too_deep, ErrorCode::OverLimit, "max_depth", "65"));
 }

@@ -369,7 +369,7 @@ TEST_CASE("a scene that cannot be solved is refused in a line") {
     CHECK(why(mirrors, quick_settings()).find("no surface of this scene reflects diffusely") != std::string::npos);
     RadiositySettings tiny = quick_settings();
     tiny.patch_size = 1e-4f;
-    CHECK(why(lit_box(), tiny).find("--patch-size 0.0001: divides this scene into") != std::string::npos);
+    CHECK(why(lit_box(), tiny).find("`patch_size=0.0001`: it divides this scene into") != std::string::npos);
     const auto stop = [](const char*, double) { return false; };
     Messages messages;
     const Scene scene = lit_box();

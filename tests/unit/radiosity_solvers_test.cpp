@@ -149,8 +149,7 @@ TEST_CASE("a solution ends when it is asked to, or is close enough") {
     RadiositySystem large;
     large.patches.resize(kMostMatrixPatches + 1);
     const auto error = test::thrown_error([&] { solve_by_matrix(large); });
-    CHECK(test::says(error, "--solver matrix: 6001 patches; at most 6000"));
-    CHECK(error->code() == ErrorCode::OverLimit);
+    CHECK(test::is_about(error, ErrorCode::OverLimit, "solver", "matrix"));
 }
 
 TEST_CASE("what next to nothing absorbs ends after a stated number of steps, and what is left is said") {

@@ -459,7 +459,7 @@ TEST_CASE("mtl: a texture or material file outside the scene's folder is left ou
     const fs::path path =
         test::write_text(folder / "in" / "a.obj", "mtllib ../out.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
     const Loaded without = load(path);
-    CHECK(without.said("--allow-path"));
+    CHECK(without.said("`allow_path="));
     CHECK(without.said("a.obj:1: refers to \"../out.mtl\""));
     CHECK(without.messages.left_out().size() == 2); // the file, and the material
     CHECK(load(path, {.allowed_paths = {folder}}).scene.materials[0].base_color == Rgb{1, 0, 0});
@@ -467,7 +467,7 @@ TEST_CASE("mtl: a texture or material file outside the scene's folder is left ou
     test::write_text(folder / "in" / "b.mtl", "newmtl x\nmap_Kd /etc/passwd\n");
     const fs::path b = test::write_text(folder / "in" / "b.obj", "mtllib b.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
     const Loaded outside = load(b);
-    CHECK(outside.said("--allow-path"));
+    CHECK(outside.said("`allow_path="));
     CHECK(outside.said("b.mtl:2: refers to"));
     CHECK(outside.messages.left_out().size() == 1);
     CHECK(outside.scene.images.empty());

@@ -294,7 +294,7 @@ TEST_CASE("the metadata of a camera far from the origin says it again to the bit
     const Camera aimed = choose_camera({.eye = eye}, scene, 1, messages); // at the middle, as the notice says it
     CHECK(off(scene, aimed.world_from_camera.translation - column(aimed.world_from_camera, 2) * 5.0f,
               {kEast + 0.5, kNorth + 0.5, 0}) < 0.1);
-    CHECK(messages.all().back().text.find("--eye 448262.757,5411933.5625,5 --target 448262.757") != std::string::npos);
+    CHECK(messages.all().back().text.find("`eye=448262.757,5411933.5625,5` `target=448262.757") != std::string::npos);
 }
 
 TEST_CASE("a camera's path and a meter are in the coordinates of the file, in double") {

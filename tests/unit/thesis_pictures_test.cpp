@@ -156,15 +156,14 @@ TEST_CASE("patches are as many pixels high in small pictures as in full ones, wh
         const auto& all = pictures_in_loop();
         return std::ranges::find(all, name, &ThesisPicture::name)->command;
     };
-    const auto has = [&](const char* name, const char* flags) {
-        return command(name).find(flags) != std::string::npos;
+    const auto has = [&](const char* name, const char* settings) {
+        return command(name).find(settings) != std::string::npos;
     };
-    CHECK(
-        has("figure-3.7b", " --patch-size 0.32 --subdivisions 0 --solver southwell --steps 12 --flat-patches --size"));
-    CHECK(has("figure-3.7c", " --patch-size 0.32 --subdivisions 0 --flat-patches --size"));
-    CHECK(has("figure-3.7d", " --patch-size 0.32 --subdivisions 1 --size"));
-    CHECK(has("figure-3.9b", " --gather direct --photons 16384 --size"));
-    CHECK(has("figure-3.10b", " --gather direct --photons 4096 --size"));
+    CHECK(has("figure-3.7b", " `patch_size=0.32` `subdivisions=0` `solver=southwell` `steps=12` `flat_patches` `size"));
+    CHECK(has("figure-3.7c", " `patch_size=0.32` `subdivisions=0` `flat_patches` `size"));
+    CHECK(has("figure-3.7d", " `patch_size=0.32` `subdivisions=1` `size"));
+    CHECK(has("figure-3.9b", " `gather=direct` `photons=16384` `size"));
+    CHECK(has("figure-3.10b", " `gather=direct` `photons=4096` `size"));
 }
 
 TEST_CASE("figure 3.7's panels come ever nearer to the solution that is smooth") {

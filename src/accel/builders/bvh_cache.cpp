@@ -204,9 +204,9 @@ std::optional<Bvh> load_cached_bvh(const Hash128& key, const fs::path& folder,
         fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
         return bvh;
     } catch (const Unusable& unusable) {
-        messages.warn(fmt::format("{}: ignored and built anew: {}", path.string(), unusable.why));
+        messages.warn({Place{path.string()}, fmt::format("ignored and built anew: {}", unusable.why)});
     } catch (const fs::filesystem_error& error) {
-        messages.warn(fmt::format("{}: ignored and built anew: {}", path.string(), error.code().message()));
+        messages.warn({Place{path.string()}, fmt::format("ignored and built anew: {}", error.code().message())});
     }
     return std::nullopt;
 }
@@ -243,9 +243,9 @@ void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTre
         remove_oldest(folder, max_bytes);
     } catch (const fs::filesystem_error& error) {
         messages.warn(
-            fmt::format("{}: the structure cache cannot be written: {}", folder.string(), error.code().message()));
+            {Place{folder.string()}, fmt::format("the structure cache cannot be written: {}", error.code().message())});
     } catch (const Error& error) {
-        messages.warn(fmt::format("{}: the structure cache cannot be written: {}", folder.string(), error.what()));
+        messages.warn({Place{folder.string()}, fmt::format("the structure cache cannot be written: {}", error.what())});
     }
 }
 

@@ -13,11 +13,11 @@ namespace fs = std::filesystem;
 namespace pertev {
 namespace {
 
-fs::path canonical_folder(const fs::path& folder, const std::string& what) {
+fs::path canonical_folder(const fs::path& folder, const char* setting) {
     std::error_code ec;
     const fs::path canonical = fs::canonical(folder.empty() ? fs::path(".") : folder, ec);
-    if (ec) throw Error(ErrorCode::BadInput, fmt::format("{}: {}: {}", folder.string(), what, ec.message()));
-    return canonical;
+    if (!ec) return canonical;
+    throw Error(ErrorCode::BadInput, setting, folder.string(), "the folder cannot be opened: " + ec.message());
 }
 
 /// By whole components: /scenes/a does not contain /scenes/ab.
@@ -25,12 +25,11 @@ bool is_within(const fs::path& path, const fs::path& root) {
     return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
 }
 
-Error refusal(const fs::path& from, const std::string& reference, const std::string& why) {
-    return Error(ErrorCode::BadInput,
-                 fmt::format("{}: refers to \"{}\", {}", from.string(), shortened(reference), why));
+Error refusal(const Place& from, const std::string& reference, const std::string& why) {
+    return Error(ErrorCode::BadInput, from, fmt::format("refers to \"{}\", {}", shortened(reference), why));
 }
 
-void check_is_name(const fs::path& from, const std::string& reference) {
+void check_is_name(const Place& from, const std::string& reference) {
     if (reference.empty()) throw refusal(from, reference, "which is no file name");
     // The system would cut the name there, after the checks have seen all of it.
     if (reference.find('\0') != std::string::npos) throw refusal(from, reference, "a name that holds a zero byte");
@@ -41,14 +40,17 @@ fs::path portable(std::string reference) {
     return reference;
 }
 
-fs::path folder_of(const fs::path& from) { return from.has_parent_path() ? from.parent_path() : fs::path("."); }
+fs::path folder_of(const Place& from) {
+    const fs::path folder = fs::path(from.file).parent_path();
+    return folder.empty() ? fs::path(".") : folder;
+}
 
 } // namespace
 
 FileAccess::FileAccess(const fs::path& scene_file, const std::vector<fs::path>& allowed) {
-    roots_.push_back(canonical_folder(scene_file.parent_path(), "the scene's folder cannot be opened"));
+    roots_.push_back(canonical_folder(scene_file.parent_path(), "scene"));
     for (const fs::path& folder : allowed) {
-        roots_.push_back(canonical_folder(folder, "the folder of --allow-path cannot be opened"));
+        roots_.push_back(canonical_folder(folder, "allow_path"));
     }
     listing_ = std::make_shared<FolderListing>(roots_);
 }
@@ -57,7 +59,7 @@ bool FileAccess::is_allowed(const fs::path& canonical) const {
     return std::any_of(roots_.begin(), roots_.end(), [&](const fs::path& root) { return is_within(canonical, root); });
 }
 
-fs::path FileAccess::resolve(const fs::path& from, const std::string& reference) const {
+fs::path FileAccess::resolve(const Place& from, const std::string& reference) const {
     check_is_name(from, reference);
     std::error_code ec;
     const fs::path path = fs::weakly_canonical(folder_of(from) / portable(reference), ec);
@@ -68,7 +70,7 @@ fs::path FileAccess::resolve(const fs::path& from, const std::string& reference)
     }
     if (!is_allowed(path)) {
         throw refusal(from, reference,
-                      fmt::format("which is outside the scene's folder; if it is meant, allow it with --allow-path {}",
+                      fmt::format("which is outside the scene's folder; if it is meant, allow it with `allow_path={}`",
                                   path.parent_path().string()));
     }
     return path;
@@ -82,7 +84,7 @@ FileAccess::Located FileAccess::locate(const fs::path& name) const {
 }
 
 /// The file whose path ends like `name`. Nothing after a warning where several fit.
-std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const fs::path& from, Messages& messages) const {
+std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const Place& from, Messages& messages) const {
     const std::vector<std::string> components = components_below(name);
     if (components.empty()) return std::nullopt;
     // Names in the same case below the folder itself are found without a look around.
@@ -101,16 +103,16 @@ std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const fs::
         }
         if (fits.size() == 1) return fits.front();
         if (fits.empty()) continue;
-        messages.warn(fmt::format("{}: \"{}\" is not there, and {} files could be meant, {} and {} for example: none "
-                                  "is read",
-                                  from.string(), shortened(name.string()), fits.size(), fits[0].string(),
-                                  fits[1].string()));
+        messages.warn(
+            {from, fmt::format("\"{}\" is not there, and {} files could be meant, {} and {} for example: none "
+                               "is read",
+                               shortened(name.string()), fits.size(), fits[0].string(), fits[1].string())});
         return std::nullopt;
     }
     return std::nullopt;
 }
 
-std::optional<fs::path> FileAccess::find(const fs::path& from, const std::string& reference, Messages& messages) const {
+std::optional<fs::path> FileAccess::find(const Place& from, const std::string& reference, Messages& messages) const {
     check_is_name(from, reference);
     const fs::path name = portable(reference);
     const Located wanted = locate(folder_of(from) / name);
@@ -124,19 +126,19 @@ std::optional<fs::path> FileAccess::find(const fs::path& from, const std::string
     const bool is_same_name = found->filename() == name.filename();
     if (is_same_name && name.has_parent_path()) {
         const fs::path there = found->parent_path().lexically_relative(locate(folder_of(from)).path);
-        messages.warn(fmt::format("{}: files named as in \"{}\", {}: those of the same name in {} are read", folder,
-                                  shortened(name.parent_path().string()),
-                                  wanted.is_allowed ? "which are not there" : "outside the scene's folder",
-                                  there == "." ? "the folder itself" : "\"" + there.string() + "\""));
-    } else if (listing_->may_name_another()) {
-        messages.warn(fmt::format("{}: \"{}\" is not there: {} is read, the only file of that name{}", from.string(),
-                                  shortened(reference), found->string(),
-                                  is_same_name ? "" : " but for upper and lower case"));
-    } else {
         messages.warn(
-            fmt::format("{}: further files that are not there are read from the only file of that name but for "
-                        "upper and lower case",
-                        folder));
+            {Place{folder}, fmt::format("files named as in \"{}\", {}: those of the same name in {} are read",
+                                        shortened(name.parent_path().string()),
+                                        wanted.is_allowed ? "which are not there" : "outside the scene's folder",
+                                        there == "." ? "the folder itself" : "\"" + there.string() + "\"")});
+    } else if (listing_->may_name_another()) {
+        messages.warn(
+            {from, fmt::format("\"{}\" is not there: {} is read, the only file of that name{}", shortened(reference),
+                               found->string(), is_same_name ? "" : " but for upper and lower case")});
+    } else {
+        messages.warn({Place{folder},
+                       "further files that are not there are read from the only file of that name but for "
+                       "upper and lower case"});
     }
     return found;
 }

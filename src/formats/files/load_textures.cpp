@@ -98,12 +98,12 @@ TextureImage texture_of(std::variant<Rgba8Image, Image> image, bool is_png, Uses
 
 } // namespace
 
-int32_t TextureLoader::add_file(const fs::path& from, const std::string& reference, const std::string& place) {
+int32_t TextureLoader::add_file(const Place& from, const std::string& reference) {
     const std::optional<fs::path> path = access_.find(from, reference, *messages_);
     if (!path) {
         if (missing_++ < kMissingNamed) {
-            messages_->leave_out(fmt::format("{}: there is no texture {}; its factor alone is used",
-                                             place.empty() ? from.string() : place, shortened(reference)));
+            messages_->leave_out(
+                {from, fmt::format("there is no texture {}; its factor alone is used", shortened(reference))});
         }
         return kNoImage;
     }
@@ -132,11 +132,10 @@ void TextureLoader::check_budget(uint64_t limit) const {
     for (const Source& source : sources_) {
         sum += source.texture_bytes;
         if (sum <= limit) continue;
-        throw Error(
-            ErrorCode::OverLimit,
-            fmt::format("{}: with this picture the scene's images take {} MiB in memory; the limit for files of "
-                        "this size is {} MiB; use one image many times instead of copies, or smaller ones",
-                        source.path.empty() ? source.name : source.path.string(), sum >> 20, limit >> 20));
+        throw Error(ErrorCode::OverLimit, Place{source.path.empty() ? source.name : source.path.string()},
+                    fmt::format("with this picture the scene's images take {} MiB in memory; the limit for files of "
+                                "this size is {} MiB; use one image many times instead of copies, or smaller ones",
+                                sum >> 20, limit >> 20));
     }
 }
 
@@ -153,14 +152,14 @@ void TextureLoader::read(Source& source, uint64_t limit, std::atomic<uint64_t>& 
         source.color_matrix = color_matrix_of(bytes, name, &source.said);
         source.image = decode_image(bytes, name, &source.said);
     } catch (const Error& error) {
-        source.fault = error.what();
+        source.fault = error.remark();
     }
 }
 
 void TextureLoader::decode() { decode_within(budget(0)); }
 
 void TextureLoader::decode_within(uint64_t limit) {
-    const auto is_done = [](const Source& source) { return source.image || !source.fault.empty(); };
+    const auto is_done = [](const Source& source) { return source.image || source.fault; };
     std::atomic<uint64_t> all_bytes = 0;
     for (const Source& source : sources_) {
         if (is_done(source)) all_bytes += source.texture_bytes;
@@ -189,8 +188,8 @@ void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     std::vector<int32_t> renumbered(sources_.size(), kNoImage);
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         messages_->add_all(sources_[i].said);
-        if (!sources_[i].fault.empty()) {
-            messages_->leave_out(fmt::format("{}; its factor alone is used", sources_[i].fault));
+        if (sources_[i].fault) {
+            messages_->leave_out(sources_[i].fault->and_then("; its factor alone is used"));
             continue;
         }
         PERTEV_CHECK(sources_[i].image);

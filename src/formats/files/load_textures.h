@@ -29,10 +29,10 @@ public:
     /// From now on to others, which outlive it.
     void say_to(Messages& messages) { messages_ = &messages; }
 
-    /// Image index of the file `reference`, as written in `from` (see FileAccess::resolve); the same file, however
-    /// spelled, is one image. kNoImage after a warning, which names `place` or else `from`, where there is no such
-    /// file. Throws Error(BadInput) when access is refused.
-    int32_t add_file(const std::filesystem::path& from, const std::string& reference, const std::string& place = "");
+    /// Image index of the file `reference`, as written at `from` (see FileAccess::resolve); the same file, however
+    /// spelled, is one image. kNoImage after a warning where there is no such file. Throws Error(BadInput) when access
+    /// is refused.
+    int32_t add_file(const Place& from, const std::string& reference);
 
     /// Image index of an encoded image in memory, which stays alive until load_into returns. `name` is for messages.
     int32_t add_bytes(std::string name, std::span<const std::byte> bytes);
@@ -60,7 +60,7 @@ private:
         std::optional<std::variant<Rgba8Image, Image>> image; // once it is decoded
         std::optional<ColorMatrix> color_matrix;              // to Rec. 709, where its colours are others
         bool is_png = false;
-        std::string fault; // why it never will be
+        std::optional<Remark> fault; // why it never will be
         Messages said = {};
     };
     void decode_within(uint64_t limit);

@@ -11,7 +11,7 @@
 namespace pertev {
 
 struct ReadOptions {
-    std::vector<std::filesystem::path> allowed_paths; // --allow-path
+    std::vector<std::filesystem::path> allowed_paths; // `allow_path`
     bool geometry_only = false;                       // skip textures and materials: every surface grey
     bool two_sided_lights = false;                    // surfaces emit from both faces, whatever the file says
     FileSpace space;                                  // of files that do not tell theirs; others are as they say

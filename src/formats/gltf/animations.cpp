@@ -163,16 +163,17 @@ std::optional<Target> read_target(const Document& document, const JsonValue& tar
         std::optional<Target> found = pointed_at(document, pointer, scene);
         if (!found) {
             messages.leave_out(
-                fmt::format("{}: \"{}\" is not animated; expected a node's translation, rotation, scale or "
-                            "weights, a camera's /perspective/yfov or /orthographic/ymag, or a light's color, "
-                            "intensity, range, /spot/innerConeAngle or /spot/outerConeAngle",
-                            pointer.place(), shortened(pointer.to_string())));
+                {pointer.place(),
+                 fmt::format("\"{}\" is not animated; expected a node's translation, rotation, scale or "
+                             "weights, a camera's /perspective/yfov or /orthographic/ymag, or a light's color, "
+                             "intensity, range, /spot/innerConeAngle or /spot/outerConeAngle",
+                             shortened(pointer.to_string()))});
         }
         return found;
     }
     const std::optional<JsonValue> node = target.find("node");
     if (!node) { // the format leaves such to extensions
-        messages.leave_out(fmt::format("{}: the channel names no node and is left out", target.place()));
+        messages.leave_out({target.place(), "the channel names no node and is left out"});
         return std::nullopt;
     }
     const uint32_t index = document.index_into("nodes", *node);
@@ -277,19 +278,20 @@ void read_animations(const Document& document, Buffers& buffers, Scene& scene, M
             channel.target = target->indices[0];
             if (const std::string mended = mend_keys(channel, channel.values.size() / channel.times.size());
                 !mended.empty()) {
-                messages.warn(fmt::format("{}: {}", entry.place(), mended));
+                messages.warn({entry.place(), mended});
             }
             if (const std::string fault = fault_of(channel, scene); !fault.empty()) {
-                messages.leave_out(fmt::format("{}: {}; the channel is left out", entry.place(), fault));
+                messages.leave_out({entry.place(), fmt::format("{}; the channel is left out", fault)});
                 return;
             }
             if (!taken.emplace(target->indices[0], target->part).second) {
-                messages.leave_out(fmt::format("{}: {}; the channel is left out", place.place(),
-                                               target->factor
-                                                   ? "colour and intensity of one light are animated together, "
-                                                     "of which the first alone is played"
-                                                   : "an earlier channel of the animation has this node and "
-                                                     "path, and is played"));
+                messages.leave_out(
+                    {place.place(),
+                     fmt::format("{}; the channel is left out",
+                                 target->factor ? "colour and intensity of one light are animated together, "
+                                                  "of which the first alone is played"
+                                                : "an earlier channel of the animation has this node and "
+                                                  "path, and is played")});
                 return;
             }
             buffers.charge(channel.values.size() * target->indices.size() * sizeof(float), entry);

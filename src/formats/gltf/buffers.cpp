@@ -31,8 +31,8 @@ Buffers::Buffers(const Document& document, const FileAccess& access, Messages& m
         if (!buffers_[i] || !length) return;
         const uint64_t bytes = length->to_unsigned();
         if (buffers_[i]->size() < bytes) {
-            messages.warn(fmt::format("{}: byteLength is {}, but there are only {} bytes", buffers[i].place(), bytes,
-                                      buffers_[i]->size()));
+            messages.warn({buffers[i].place(),
+                           fmt::format("byteLength is {}, but there are only {} bytes", bytes, buffers_[i]->size())});
         } else {
             buffers_[i] = buffers_[i]->first(bytes);
         }
@@ -64,7 +64,7 @@ std::span<const std::byte> Buffers::read_uri(const JsonValue& uri, const FileAcc
     if (!name) throw uri.error(fmt::format("\"{}\"; expected a relative path or a data URI", shortened(text)));
     std::optional<std::filesystem::path> path;
     try {
-        path = access.find(document_.path(), *name, messages);
+        path = access.find(uri.place(), *name, messages);
         if (path) {
             const auto [entry, is_new] = by_path_.try_emplace(*path);
             if (is_new) entry->second = own(read_file(*path));
@@ -144,10 +144,10 @@ void Buffers::charge(uint64_t bytes, const JsonValue& place) {
     const uint64_t limit = justified_bytes(kFreeMeshBytes, file_bytes_);
     charged_bytes_ += bytes;
     if (bytes > limit || charged_bytes_ > limit) {
-        throw Error(ErrorCode::OverLimit,
-                    fmt::format("{}: the scene takes more than {} MB in memory, {} times the size of its files; use "
+        throw Error(ErrorCode::OverLimit, place.place(),
+                    fmt::format("the scene takes more than {} MB in memory, {} times the size of its files; use "
                                 "one mesh many times instead of many meshes with the same data",
-                                place.place(), limit >> 20, kMaxExpansion));
+                                limit >> 20, kMaxExpansion));
     }
 }
 

@@ -39,13 +39,13 @@ uint32_t read_u32(std::span<const std::byte> bytes, std::size_t at) {
 Document::Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Messages& messages)
     : path_(path), file_(path.string()), bytes_(std::move(bytes)), json_chunk_(bytes_) {
     if (bytes_.empty()) {
-        throw Error(ErrorCode::BadInput, fmt::format("{}: the file is empty; expected a glTF 2.0 document", file_));
+        throw Error(ErrorCode::BadInput, Place{file_}, "the file is empty; expected a glTF 2.0 document");
     }
     if (bytes_.size() >= sizeof kGlbMagic && read_u32(bytes_, 0) == kGlbMagic) {
         split_glb(messages);
     } else if (lower_case_extension(path) == ".glb") {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("{}: byte 0: expected the letters glTF, with which a GLB file starts", file_));
+        throw Error(ErrorCode::BadInput, Place{file_},
+                    "byte 0: expected the letters glTF, with which a GLB file starts");
     }
     parse(json_chunk_);
     check_version(messages);
@@ -66,14 +66,14 @@ void Document::read_table(std::string_view name, const JsonValue& holder, Messag
 std::size_t Document::glb_end(Messages& messages) const {
     const uint32_t length = read_u32(bytes_, 8);
     if (length >= kHeaderBytes && length <= bytes_.size()) return length;
-    messages.warn(fmt::format("{}: byte 8: the header says {} bytes, but the file has {}; these are read", file_,
-                              length, bytes_.size()));
+    messages.warn({Place{file_}, fmt::format("byte 8: the header says {} bytes, but the file has {}; these are read",
+                                             length, bytes_.size())});
     return bytes_.size();
 }
 
 void Document::split_glb(Messages& messages) {
     const auto fail = [&](std::size_t at, const std::string& what) {
-        return Error(ErrorCode::BadInput, fmt::format("{}: byte {}: {}", file_, at, what));
+        return Error(ErrorCode::BadInput, Place{file_}, fmt::format("byte {}: {}", at, what));
     };
     if (bytes_.size() < kHeaderBytes) throw fail(bytes_.size(), "the file ends within the GLB header of 12 bytes");
     const uint32_t version = read_u32(bytes_, 4);
@@ -88,9 +88,10 @@ void Document::split_glb(Messages& messages) {
         const std::size_t begin = at + kChunkHeaderBytes, available = glb.size() - begin;
         if (!has_json && type != kJsonChunk) throw fail(at, "the first chunk of a GLB file must be JSON");
         if (size > available) {
-            messages.leave_out(fmt::format("{}: byte {}: the chunk says {} bytes, but {} are left; the file is cut off "
+            messages.leave_out(
+                {Place{file_}, fmt::format("byte {}: the chunk says {} bytes, but {} are left; the file is cut off "
                                            "or damaged, and what is missing is left out",
-                                           file_, at, size, available));
+                                           at, size, available)});
         }
         const std::span<const std::byte> chunk = glb.subspan(begin, std::min<std::size_t>(size, available));
         if (!has_json)
@@ -130,7 +131,7 @@ Error Document::bad_json(std::string_view text, simdjson::error_code failure) co
         what = fmt::format("not valid JSON: {} (byte {} of the file): expected {}", line_and_column(text, fault->byte),
                            start + fault->byte, fault->expected);
     }
-    return Error(ErrorCode::BadInput, fmt::format("{}: {}", file_, what));
+    return Error(ErrorCode::BadInput, Place{file_}, what);
 }
 
 void Document::check_version(Messages& messages) const {
@@ -146,7 +147,7 @@ void Document::check_version(Messages& messages) const {
         }
         if (!good) {
             messages.warn(
-                fmt::format("{}: \"{}\" is not a version; it is read as \"2.0\"", value.place(), shortened(text)));
+                {value.place(), fmt::format("\"{}\" is not a version; it is read as \"2.0\"", shortened(text))});
             numbers = {2, 0};
         }
         return numbers;
@@ -154,8 +155,7 @@ void Document::check_version(Messages& messages) const {
     const std::optional<JsonValue> asset = root().find("asset");
     const std::optional<JsonValue> version = asset ? asset->find("version") : std::nullopt;
     if (!version) {
-        messages.warn(
-            fmt::format("{}: \"asset\" with a \"version\" is missing; it is read as glTF 2.0", root().place()));
+        messages.warn({root().place(), "\"asset\" with a \"version\" is missing; it is read as glTF 2.0"});
         return;
     }
     if (parts(*version)[0] != 2) {
@@ -163,8 +163,8 @@ void Document::check_version(Messages& messages) const {
     }
     const std::optional<JsonValue> least = asset->find("minVersion");
     if (least && parts(*least) > std::array<unsigned, 2>{2, 0}) {
-        messages.leave_out(fmt::format("{}: the file needs glTF {}; what 2.0 does not have is left out", least->place(),
-                                       least->to_string()));
+        messages.leave_out({least->place(), fmt::format("the file needs glTF {}; what 2.0 does not have is left out",
+                                                        least->to_string())});
     }
 }
 
@@ -180,8 +180,8 @@ void Document::check_extensions(Messages& messages) const {
                 const std::string_view extension = name.to_string();
                 if (is_known_extension(extension) || !told.emplace(extension).second) return;
                 messages.leave_out(
-                    fmt::format("{}: the file {} the extension {}, which is not supported: it is left out",
-                                name.place(), verb, shortened(extension)));
+                    {name.place(), fmt::format("the file {} the extension {}, which is not supported: it is left out",
+                                               verb, shortened(extension))});
             });
         }
     };

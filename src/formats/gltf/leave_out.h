@@ -21,7 +21,7 @@ template <class Read>
         return true;
     } catch (const Error& error) {
         if (error.code() != ErrorCode::BadInput) throw;
-        messages.leave_out(fmt::format("{}; {} is left out", error.what(), what));
+        messages.leave_out(error.remark().and_then(fmt::format("; {} is left out", what)));
         return false;
     }
 }

@@ -25,12 +25,12 @@ void read_cone(const JsonValue& spot, Light& light, Messages& messages) {
     const float inner = clamp(asked_inner, 0.0f, outer);
     if (asked_inner == asked_outer && inner == asked_inner && outer == asked_outer) {
         messages.warn(
-            fmt::format("{}: inner and outer cone angle are both {}; expected inner < outer, the edge is sharp",
-                        spot.place(), inner));
+            {spot.place(),
+             fmt::format("inner and outer cone angle are both {}; expected inner < outer, the edge is sharp", inner)});
     } else if (inner != asked_inner || outer != asked_outer) {
-        messages.warn(
-            fmt::format("{}: cone angles {} and {}; expected 0 <= inner < outer <= pi / 2, {} and {} are taken",
-                        spot.place(), asked_inner, asked_outer, inner, outer));
+        messages.warn({spot.place(),
+                       fmt::format("cone angles {} and {}; expected 0 <= inner < outer <= pi / 2, {} and {} are taken",
+                                   asked_inner, asked_outer, inner, outer)});
     }
     set_cone(inner, outer, light);
 }

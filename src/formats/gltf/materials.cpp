@@ -115,11 +115,10 @@ void Materials::read_specular_glossiness(const JsonValue& source, Material& mate
         is_exact = false;
     }
     if (is_exact) return;
-    messages_.leave_out(
-        fmt::format("{}: the material is converted to metal and roughness: what of its specular colour "
-                    "such a surface does not have, as coloured reflections of what is no metal, is left "
-                    "out",
-                    extension->place()));
+    messages_.leave_out({extension->place(),
+                         "the material is converted to metal and roughness: what of its specular colour "
+                         "such a surface does not have, as coloured reflections of what is no metal, is left "
+                         "out"});
 }
 
 void Materials::convert_textures(uint64_t limit) { gltf::convert_textures(pending_, limit, scene_, messages_); }
@@ -157,9 +156,8 @@ void Materials::read_specular(const JsonValue& material, Material& result) const
         result.kind = MaterialKind::Diffuse;
         return;
     }
-    messages_.leave_out(fmt::format("{}: KHR_materials_specular is left out, but for a specularFactor of 0 with a "
-                                    "metallicFactor of 0",
-                                    extension->place()));
+    messages_.leave_out({extension->place(), "KHR_materials_specular is left out, but for a specularFactor of 0 with a "
+                                             "metallicFactor of 0"});
 }
 
 void Materials::read_transmission(const JsonValue& material, Material& result) const {
@@ -169,17 +167,16 @@ void Materials::read_transmission(const JsonValue& material, Material& result) c
     const std::optional<JsonValue> volume = material.extension("KHR_materials_volume");
     const bool is_solid = volume && volume->float_or("thicknessFactor", 0) > 0;
     if (factor != 1 || transmission->find("transmissionTexture") || !is_solid || result.metallic != 0) {
-        messages_.leave_out(
-            fmt::format("{}: KHR_materials_transmission is left out, and the material opaque, but for solid "
-                        "glass: a transmissionFactor of 1 without texture, a thicknessFactor above 0 and a "
-                        "metallicFactor of 0",
-                        transmission->place()));
+        messages_.leave_out({transmission->place(),
+                             "KHR_materials_transmission is left out, and the material opaque, but for solid "
+                             "glass: a transmissionFactor of 1 without texture, a thicknessFactor above 0 and a "
+                             "metallicFactor of 0"});
         return;
     }
     result.kind = MaterialKind::Dielectric;
     if (volume->find("attenuationDistance")) {
-        messages_.leave_out(fmt::format(
-            "{}: glass does not absorb: the attenuation of KHR_materials_volume is left out", volume->place()));
+        messages_.leave_out(
+            {volume->place(), "glass does not absorb: the attenuation of KHR_materials_volume is left out"});
     }
 }
 
@@ -189,7 +186,7 @@ float Materials::read_ior(const JsonValue& material) const {
     const float ior = extension ? extension->float_or("ior", usual) : usual;
     if (ior >= 1) return ior;
     messages_.warn(
-        fmt::format("{}: ior {} is not supported; expected at least 1, {} is used", extension->place(), ior, usual));
+        {extension->place(), fmt::format("ior {} is not supported; expected at least 1, {} is used", ior, usual)});
     return usual;
 }
 

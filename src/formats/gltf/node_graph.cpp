@@ -72,10 +72,10 @@ void NodeGraph::cut_cycles(const Document& document, Messages& messages) {
             const uint32_t parent = nodes_[node].parent;
             std::erase(children_[parent], node);
             nodes_[node].parent = kNoNode;
-            messages.leave_out(
-                fmt::format("{}: the node is its own ancestor; expected a tree; its place below node {} is "
-                            "left out",
-                            document.table("nodes")[node].place(), parent));
+            messages.leave_out({document.table("nodes")[node].place(),
+                                fmt::format("the node is its own ancestor; expected a tree; its place below node {} is "
+                                            "left out",
+                                            parent)});
         }
         for (const uint32_t seen : path) states[seen] = State::Seen;
     }
@@ -123,9 +123,10 @@ std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, uint32_t 
     }
     std::erase_if(roots, [&](uint32_t node) {
         if (!is_below[node]) return false;
-        messages.warn(fmt::format("{}: node {}, which the scene lists, is below another one that it lists; it is shown "
-                                  "once",
-                                  scenes[shown].place(), node));
+        messages.warn({scenes[shown].place(),
+                       fmt::format("node {}, which the scene lists, is below another one that it lists; it is shown "
+                                   "once",
+                                   node)});
         return true;
     });
     return roots;

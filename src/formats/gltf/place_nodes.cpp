@@ -87,8 +87,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         for (const Transform& m : node_from_local) {
             const Transform world_from_local = has_skin ? Transform() : placed_in(nodes.place(index), m, {0, 0, 0});
             if (!is_near(world_from_local)) {
-                messages.leave_out(
-                    fmt::format("{}: the mesh lies further out than 2^40 metres; it is left out", node.place()));
+                messages.leave_out({node.place(), "the mesh lies further out than 2^40 metres; it is left out"});
                 continue;
             }
             for (const Meshes::Part& part : parts) {
@@ -101,7 +100,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             }
         }
         if (scene.instances.size() > kMaxInstances) {
-            throw Error(ErrorCode::OverLimit, fmt::format("{}: more than {} instances", node.place(), kMaxInstances));
+            throw Error(ErrorCode::OverLimit, node.place(), fmt::format("more than {} instances", kMaxInstances));
         }
     };
 
@@ -117,7 +116,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             camera.world_from_camera = *rigid;
             scene.cameras.push_back(std::move(camera));
         } else {
-            messages.leave_out(fmt::format("{}: the camera is squashed to nothing and left out", node.place()));
+            messages.leave_out({node.place(), "the camera is squashed to nothing and left out"});
         }
     };
     const auto place_lamp = [&](const JsonValue& node, uint32_t index, const Transform& world_from_node) {
@@ -133,7 +132,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         if (place_light(world_from_node, light)) {
             scene.lights.push_back(std::move(light));
         } else {
-            messages.leave_out(fmt::format("{}: the light is squashed to nothing and left out", node.place()));
+            messages.leave_out({node.place(), "the light is squashed to nothing and left out"});
         }
     };
     for (const uint32_t index : nodes.scene_nodes()) {

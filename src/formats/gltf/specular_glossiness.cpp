@@ -148,7 +148,7 @@ void convert_textures(const std::vector<PendingConversion>& pending, uint64_t li
         TextureRef& specular = material.roughness_texture;
         const TextureRef where = diffuse.has_image() ? diffuse : specular;
         const auto use_factors = [&](const char* why) {
-            messages.leave_out(fmt::format("{}: {}; the specular-glossiness texture is left out", place, why));
+            messages.leave_out({place, fmt::format("{}; the specular-glossiness texture is left out", why)});
             specular = material.metallic_texture = {};
         };
         if (!diffuse.has_image() && !specular.has_image()) continue; // the loader has told why

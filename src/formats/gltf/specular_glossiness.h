@@ -36,7 +36,7 @@ MetallicRoughness metallic_roughness_of(const SpecularGlossiness& from, bool& is
 struct PendingConversion {
     uint32_t material; // index into Scene::materials
     SpecularGlossiness factors;
-    std::string place; // for messages
+    Place place;
 };
 
 /// Gives each material of `pending` textures of its own, two images that are appended to the scene's. `limit`: bytes

@@ -21,7 +21,7 @@ JsonFile::JsonFile(const std::filesystem::path& path) : name_(path.string()) {
         if (const auto fault = gltf::find_json_fault(text)) {
             what = fmt::format("{}: expected {}", gltf::line_and_column(text, fault->byte), fault->expected);
         }
-        throw Error(ErrorCode::BadInput, fmt::format("{}: not valid JSON: {}", name_, what));
+        throw Error(ErrorCode::BadInput, Place{name_}, fmt::format("not valid JSON: {}", what));
     }
     root_.emplace(name_, "", element);
 }

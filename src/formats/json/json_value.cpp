@@ -48,14 +48,10 @@ std::string escape(std::string_view key) {
 
 } // namespace
 
-std::string JsonValue::place() const { return fmt::format("{}: {}", *file_, pointer_.empty() ? "/" : pointer_); }
-
-Error JsonValue::error(const std::string& what) const {
-    return Error(ErrorCode::BadInput, fmt::format("{}: {}", place(), what));
-}
+Error JsonValue::error(const std::string& what) const { return Error(ErrorCode::BadInput, place(), what); }
 
 Error JsonValue::error(const Error& cause) const {
-    return Error(cause.code(), fmt::format("{}: {}", place(), cause.what()));
+    return cause.place() == place() ? cause : Error(cause.code(), place(), cause.what());
 }
 
 JsonValue JsonValue::child(std::string_view key, simdjson::dom::element element) const {

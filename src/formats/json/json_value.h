@@ -27,11 +27,10 @@ public:
 
     /// RFC 6901: where in the document it stands; "" is all of it.
     const std::string& pointer() const { return pointer_; }
-    /// "file: /pointer", for messages.
-    std::string place() const;
-    /// Error(BadInput) "file: /pointer: what".
+    Place place() const { return {.file = *file_, .pointer = pointer_}; }
+    /// Error(BadInput) of this place.
     Error error(const std::string& what) const;
-    /// `cause` with this place before it.
+    /// `cause` of a file that this value names, at this place.
     Error error(const Error& cause) const;
 
     /// Member of an object; nothing when it has none of that name, or null.

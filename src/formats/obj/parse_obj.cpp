@@ -43,7 +43,7 @@ struct RawGroup {
 };
 
 Error fault_at(const std::string& file, uint32_t line, const std::string& what) {
-    return Error(ErrorCode::BadInput, fmt::format("{}:{}: {}", file, line, what));
+    return Error(ErrorCode::BadInput, Place{file, line}, what);
 }
 
 /// Reads one piece: its vertices to their places in arrays that are as long as all will be.
@@ -62,7 +62,7 @@ public:
     std::vector<Vec4> colors; // of its positions, as written; or none
     std::vector<RawGroup> groups;
     std::vector<ObjMaterialFiles> material_files;
-    std::string first_bad_face; // why its first face was left out
+    std::optional<Remark> first_bad_face; // why its first face was left out
     CountedLines bad_faces, bad_numbers, short_faces, points_and_lines, free_form, unknown;
 
 private:
@@ -222,7 +222,7 @@ private:
             }
         } catch (const Error& error) {
             current_->corners.resize(before);
-            if (bad_faces.times == 0) first_bad_face = error.what();
+            if (bad_faces.times == 0) first_bad_face = error.remark();
             bad_faces.add(lines_.number());
             return;
         }
@@ -257,8 +257,9 @@ public:
         parse_pieces(found_materials);
         move_to_origin();
         if (!join_groups(false)) {
-            messages_.note(fmt::format("{}: more than {} objects and groups: faces are put together by material alone",
-                                       file_, kMostObjGroups));
+            messages_.note(
+                {Place{file_}, fmt::format("more than {} objects and groups: faces are put together by material alone",
+                                           kMostObjGroups)});
             join_groups(true);
         }
         join_colors();
@@ -298,17 +299,17 @@ private:
         if (bad.times == 0) return;
         const auto first =
             std::ranges::find_if(parsers_, [](const PieceParser& parser) { return parser.bad_faces.times > 0; });
-        messages_.leave_out(fmt::format("{}; {} {} left out", first->first_bad_face, counted(bad.times, "such face"),
-                                        is_or_are(bad.times)));
+        messages_.leave_out(first->first_bad_face->and_then(
+            fmt::format("; {} {} left out", counted(bad.times, "such face"), is_or_are(bad.times))));
     }
 
-    std::string told(const CountedLines& what, const char* thing, const char* text) const {
-        return fmt::format("{}:{}: {} {}", file_, what.first_line, counted(what.times, thing), text);
+    Remark told(const CountedLines& what, const char* thing, const char* text) const {
+        return {Place{file_, what.first_line}, fmt::format("{} {}", counted(what.times, thing), text)};
     }
 
     void leave_out(const CountedLines& what, const char* thing, const char* text) const {
         if (what.times == 0) return;
-        messages_.leave_out(fmt::format("{} {} left out", told(what, thing, text), is_or_are(what.times)));
+        messages_.leave_out(told(what, thing, text).and_then(fmt::format(" {} left out", is_or_are(what.times))));
     }
 
     void warn(const CountedLines& what, const char* thing, const char* text) const {
@@ -318,7 +319,7 @@ private:
     void parse_pieces(const FoundMaterials& found_materials) {
         const ObjCounts all = count_before(pieces_, end_of_line_);
         if (std::max({all.positions, all.uvs, all.normals}) >= kNoIndex) {
-            throw Error(ErrorCode::OverLimit, fmt::format("{}: more than 2^32 - 1 vertices", file_));
+            throw Error(ErrorCode::OverLimit, Place{file_}, "more than 2^32 - 1 vertices");
         }
         data_.positions.resize(all.positions); // pieces write to places of their own
         exact_.resize(all.positions);

@@ -44,10 +44,10 @@ private:
         TextureRef ref;
         if (from.name.empty()) return ref;
         try {
-            ref.image = loader_.add_file(fmt::format("{}:{}", path_.string(), from.line), from.name);
+            ref.image = loader_.add_file(Place{path_.string(), from.line}, from.name);
         } catch (const Error& error) { // it may not be read
             if (error.code() != ErrorCode::BadInput) throw;
-            messages_.leave_out(fmt::format("{}; its factor alone is used", error.what()));
+            messages_.leave_out(error.remark().and_then("; its factor alone is used"));
         }
         ref.is_srgb = is_colour && !from.is_linear;
         if (from.clamp) ref.wrap_s = ref.wrap_t = Wrap::ClampToEdge;
@@ -179,7 +179,7 @@ std::map<std::string, MtlMaterial> read_mtl(std::span<const std::byte> bytes, co
         if (said.name.empty() || materials.contains(said.name)) continue;
         materials.emplace(said.name, converter.convert(said));
     }
-    if (materials.empty()) messages.warn(fmt::format("{}: no material (newmtl) in it", path.string()));
+    if (materials.empty()) messages.warn({Place{path.string()}, "no material (newmtl) in it"});
     return materials;
 }
 
@@ -188,8 +188,7 @@ void finish_mtl_material(MtlMaterial& material, const std::vector<TextureImage>&
     Material& to = material.material;
     if (material.normal_may_be_height && to.normal_texture.has_image()) {
         if (!looks_like_normals(images[static_cast<std::size_t>(to.normal_texture.image)])) {
-            messages.leave_out(
-                fmt::format("{}: a map_bump that is a height map is left out; normal maps are read", file));
+            messages.leave_out({Place{file}, "a map_bump that is a height map is left out; normal maps are read"});
             to.normal_texture = {};
         }
     }

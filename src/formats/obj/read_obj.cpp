@@ -46,9 +46,10 @@ void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& dat
         materials.insert(material);
     }
     if (materials.empty()) return;
-    messages.warn(fmt::format("{}: {} with a texture, but on faces without texture coordinates ({} is the first): "
-                              "its corner is seen there",
-                              file, counted(materials.size(), "material"), shortened(first)));
+    messages.warn(
+        {Place{file}, fmt::format("{} with a texture, but on faces without texture coordinates ({} is the first): "
+                                  "its corner is seen there",
+                                  counted(materials.size(), "material"), shortened(first))});
 }
 
 /// A texture tells the colour where there is one: scanners write the same colours to the vertices as well.
@@ -61,8 +62,7 @@ void drop_colors_beside_textures(Scene& scene, const std::string& file, Messages
         ++dropped;
     }
     if (dropped == 0) return;
-    messages.leave_out(
-        fmt::format("{}: vertex colours beside a texture are left out: the texture tells the colour", file));
+    messages.leave_out({Place{file}, "vertex colours beside a texture are left out: the texture tells the colour"});
 }
 
 Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
@@ -114,14 +114,14 @@ void wind_after_normals(Mesh& mesh) {
 
 std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs::path& obj, const FileAccess& access,
                                           Messages& messages) {
-    const std::string place = fmt::format("{}:{}", obj.string(), line.line);
+    const Place place = {obj.string(), line.line};
     bool is_refused = false; // where a file may not be read, that has been told
     const auto find = [&](const std::string& name) -> std::optional<fs::path> {
         try {
             return access.find(place, name, messages);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::BadInput) throw;
-            messages.leave_out(fmt::format("{}; what it describes is grey", error.what()));
+            messages.leave_out(error.remark().and_then("; what it describes is grey"));
             is_refused = true;
             return std::nullopt;
         }
@@ -136,7 +136,7 @@ std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs
             found.push_back(*path);
         } else if (!is_refused) {
             messages.leave_out(
-                fmt::format("{}: there is no material file {}; what it describes is grey", place, shortened(name)));
+                {place, fmt::format("there is no material file {}; what it describes is grey", shortened(name))});
         }
     }
     return found;
@@ -229,9 +229,9 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
     }
 
     if (unknown > 0 && !options.geometry_only) {
-        messages.leave_out(fmt::format("{}: {} that {} in no .mtl file ({} is the first) {} shown grey", file,
-                                       counted(unknown, "material"), is_or_are(unknown), shortened(first_unknown),
-                                       is_or_are(unknown)));
+        messages.leave_out({Place{file}, fmt::format("{} that {} in no .mtl file ({} is the first) {} shown grey",
+                                                     counted(unknown, "material"), is_or_are(unknown),
+                                                     shortened(first_unknown), is_or_are(unknown))});
     }
 
     parallel_invoke([&] { loader.load_into(scene); },

@@ -35,7 +35,9 @@ public:
     }
 
     Error fault(const std::string& what) const {
-        return Error(ErrorCode::BadInput, fmt::format("{}:{}: {} {}: {}", file_, place(), element_, number_, what));
+        const std::string value = fmt::format("{} {}: {}", element_, number_, what);
+        if (format_ == PlyFormat::Ascii) return Error(ErrorCode::BadInput, Place{file_, line()}, value);
+        return Error(ErrorCode::BadInput, Place{file_}, fmt::format("byte {}: {}", at_ - begin_, value));
     }
     void set_place(const std::string& element, uint64_t number) {
         element_ = element;
@@ -92,13 +94,14 @@ public:
         if (!has_lines_) return;
         while (at_ != end_ && (*at_ == ' ' || *at_ == '\t')) ++at_;
         if (at_ == end_ || *at_ == '\n' || *at_ == '\r') return;
-        if (long_lines_++ == 0) first_long_line_ = place();
+        if (long_lines_++ == 0) first_long_line_ = line();
         while (at_ != end_ && *at_ != '\n' && *at_ != '\r') ++at_;
     }
     void warn_of_long_lines(Messages& messages) const {
         if (long_lines_ == 0) return;
-        messages.leave_out(fmt::format("{}:{}: {} with more numbers than the header says: the rest left out", file_,
-                                       first_long_line_, counted(long_lines_, "line")));
+        messages.leave_out(
+            {Place{file_, first_long_line_}, fmt::format("{} with more numbers than the header says: the rest left out",
+                                                         counted(long_lines_, "line"))});
     }
 
 private:
@@ -118,14 +121,13 @@ private:
         has_lines_ = lines >= elements;
     }
 
-    /// The line in a text, the byte in a binary file.
-    std::string place() const {
-        if (format_ != PlyFormat::Ascii) return fmt::format(" byte {}", at_ - begin_);
+    /// In a text.
+    std::size_t line() const {
         std::size_t lines = 1;
         for (const char* c = begin_; c != at_; ++c) {
             lines += *c == '\n' || (*c == '\r' && c + 1 != end_ && c[1] != '\n');
         }
-        return std::to_string(lines);
+        return lines;
     }
 
     std::string_view word() {
@@ -194,7 +196,7 @@ private:
     uint64_t number_ = 0;
     bool has_lines_ = false;
     uint64_t long_lines_ = 0;
-    std::string first_long_line_;
+    std::size_t first_long_line_ = 0;
 };
 
 } // namespace pertev

@@ -49,11 +49,11 @@ public:
     PlyHeader run() {
         if (text_.starts_with("\xef\xbb\xbf")) at_ = 3; // byte order mark
         if (words_of(next_line()) != std::vector<std::string_view>{"ply"}) {
-            throw fault("a PLY file starts with the line `ply`");
+            throw fault("a PLY file starts with the line 'ply'");
         }
         const auto format = next_words();
         if (format.size() != 3 || format[0] != "format" || format[2] != "1.0") {
-            throw fault("after `ply` comes the line `format ascii|binary_little_endian|binary_big_endian 1.0`");
+            throw fault("after 'ply' comes the line 'format ascii|binary_little_endian|binary_big_endian 1.0'");
         }
         header_.format = format_of(format[1]);
         for (;;) {
@@ -75,9 +75,7 @@ public:
     }
 
 private:
-    Error fault(const std::string& what) const {
-        return Error(ErrorCode::BadInput, fmt::format("{}:{}: {}", file_, line_number_, what));
-    }
+    Error fault(const std::string& what) const { return Error(ErrorCode::BadInput, Place{file_, line_number_}, what); }
 
     std::string_view next_line() {
         ++line_number_;
@@ -119,7 +117,7 @@ private:
 
     void element(const std::vector<std::string_view>& words) {
         PlyElement element;
-        if (words.size() != 3) throw fault("an element line is `element NAME COUNT`");
+        if (words.size() != 3) throw fault("an element line is 'element NAME COUNT'");
         const char* end = words[2].data() + words[2].size();
         const auto [after, ec] = std::from_chars(words[2].data(), end, element.count);
         if (ec != std::errc{} || after != end) {
@@ -145,7 +143,7 @@ private:
         } else if (words.size() == 3) {
             property.type = type_of(words[1]);
         } else {
-            throw fault("a property line is `property TYPE NAME` or `property list COUNT_TYPE TYPE NAME`");
+            throw fault("a property line is 'property TYPE NAME' or 'property list COUNT_TYPE TYPE NAME'");
         }
         property.name = words.back();
         header_.elements.back().properties.push_back(std::move(property));

@@ -99,8 +99,9 @@ Scene make_ply_scene(Mesh mesh, const std::vector<uint32_t>& sizes, const PlyFac
     const std::string name = mesh.name;
     const bool has_uv = !mesh.uv[0].empty();
     if (!header.textures.empty() && !has_uv) {
-        messages.leave_out(fmt::format("{}:{}: {} left out: neither vertices nor faces have texture coordinates", file,
-                                       header.textures.front().line, counted(header.textures.size(), "texture")));
+        messages.leave_out({Place{file, header.textures.front().line},
+                            fmt::format("{} left out: neither vertices nor faces have texture coordinates",
+                                        counted(header.textures.size(), "texture"))});
     }
     for (Part& part : split_by_texture(std::move(mesh), sizes, of_faces.textures, header.textures.size())) {
         Material& material = scene.materials.emplace_back();
@@ -108,7 +109,7 @@ Scene make_ply_scene(Mesh mesh, const std::vector<uint32_t>& sizes, const PlyFac
         if (has_uv && part.texture != kNoPlyTexture && !header.textures.empty()) {
             const PlyTexture& texture = header.textures[static_cast<std::size_t>(part.texture)];
             if (header.textures.size() > 1) material.name = fmt::format("{} {}", name, texture.name);
-            material.base_color_texture.image = loader.add_file(fmt::format("{}:{}", file, texture.line), texture.name);
+            material.base_color_texture.image = loader.add_file(Place{file, texture.line}, texture.name);
             material.base_color_texture.is_srgb = true;
         }
         const auto number = static_cast<uint32_t>(scene.meshes.size());
@@ -126,8 +127,7 @@ Scene make_ply_scene(Mesh mesh, const std::vector<uint32_t>& sizes, const PlyFac
         has_colors_beside = true;
     }
     if (has_colors_beside) {
-        messages.leave_out(
-            fmt::format("{}: vertex colours beside a texture are left out: the texture tells the colour", file));
+        messages.leave_out({Place{file}, "vertex colours beside a texture are left out: the texture tells the colour"});
     }
     return scene;
 }

@@ -79,14 +79,14 @@ public:
                 if (!of_faces_.textures.empty())
                     sizes_.resize(of_faces_.textures.size()); // the last may lack its texture
                 corners_.resize(std::accumulate(sizes_.begin(), sizes_.end(), std::size_t(0)));
-                messages.leave_out(fmt::format("{}; what follows is left out", error.what()));
+                messages.leave_out(error.remark().and_then("; what follows is left out"));
                 break;
             }
         }
         move_to_origin();
         if (has_float_colors_) decode_vertex_colors(mesh_.colors, file_, messages);
         if (!of_faces_.textures.empty() && of_faces_.textures.size() != sizes_.size()) {
-            messages.leave_out(file_ + ": textures of faces beside triangle strips are left out");
+            messages.leave_out({Place{file_}, "textures of faces beside triangle strips are left out"});
             of_faces_ = {};
         }
         if (!of_faces_.uvs.empty()) split_vertices(of_faces_.uvs, corners_, mesh_);
@@ -94,17 +94,17 @@ public:
         warn_of_face_properties(messages);
         body_.warn_of_long_lines(messages);
         if (bad_indices_ > 0) {
-            messages.leave_out(fmt::format(
-                "{}; what {} left out", first_bad_index_,
-                bad_indices_ == 1 ? "has that corner is" : fmt::format("has such a corner, of {}, is", bad_indices_)));
+            messages.leave_out(first_bad_index_->and_then(fmt::format(
+                "; what {} left out",
+                bad_indices_ == 1 ? "has that corner is" : fmt::format("has such a corner, of {}, is", bad_indices_))));
         }
         if (bad_textures_ > 0) {
-            messages.leave_out(fmt::format("{}: {} of a texture that is not in the header {} without it", file_,
-                                           counted(bad_textures_, "face"), is_or_are(bad_textures_)));
+            messages.leave_out({Place{file_}, fmt::format("{} of a texture that is not in the header {} without it",
+                                                          counted(bad_textures_, "face"), is_or_are(bad_textures_))});
         }
         if (strays_ > 0) {
-            messages.leave_out(fmt::format("{}: {} of fewer than three corners {} left out", file_,
-                                           counted(strays_, "face"), is_or_are(strays_)));
+            messages.leave_out({Place{file_}, fmt::format("{} of fewer than three corners {} left out",
+                                                          counted(strays_, "face"), is_or_are(strays_))});
         }
         return std::move(mesh_);
     }
@@ -132,10 +132,11 @@ private:
                 has_colour |= slot == kRed || slot == kGreen || slot == kBlue;
                 has_uv |= is_face_uv(p) && header_.textures.empty();
             }
-            if (has_colour) messages.leave_out(file_ + ": colours of faces are left out; those of vertices are read");
+            if (has_colour)
+                messages.leave_out({Place{file_}, "colours of faces are left out; those of vertices are read"});
             if (has_uv)
-                messages.leave_out(file_ +
-                                   ": texture coordinates of faces are left out: no comment TextureFile has a texture");
+                messages.leave_out(
+                    {Place{file_}, "texture coordinates of faces are left out: no comment TextureFile has a texture"});
         }
     }
 
@@ -154,7 +155,7 @@ private:
 
     void vertices(const PlyElement& element) {
         if (element.count > std::numeric_limits<uint32_t>::max()) {
-            throw Error(ErrorCode::OverLimit, fmt::format("{}: more than 2^32 - 1 vertices", file_));
+            throw Error(ErrorCode::OverLimit, Place{file_}, "more than 2^32 - 1 vertices");
         }
         std::vector<std::size_t> slots;
         std::array<bool, kSlots + 1> has = {};
@@ -265,7 +266,7 @@ private:
                 body_
                     .fault(fmt::format("vertex index {} is out of range; there are {} vertices, counted from 0", value,
                                        vertex_count_))
-                    .what();
+                    .remark();
         }
         return std::nullopt;
     }
@@ -333,8 +334,8 @@ private:
         std::size_t triangles = 0;
         for (const uint32_t size : sizes_) triangles += size - 2;
         if (triangles > kMaxTrianglesPerMesh) {
-            throw Error(ErrorCode::OverLimit,
-                        fmt::format("{}: {} triangles; a mesh has at most {}", file_, triangles, kMaxTrianglesPerMesh));
+            throw Error(ErrorCode::OverLimit, Place{file_},
+                        fmt::format("{} triangles; a mesh has at most {}", triangles, kMaxTrianglesPerMesh));
         }
         if (triangles == sizes_.size()) {
             mesh_.indices = std::move(corners_);
@@ -366,7 +367,7 @@ private:
     std::vector<float> face_uvs_; // of the face that is read
     bool has_float_colors_ = false;
     uint64_t strays_ = 0, bad_indices_ = 0, bad_textures_ = 0;
-    std::string first_bad_index_;
+    std::optional<Remark> first_bad_index_;
 };
 
 } // namespace
@@ -376,8 +377,7 @@ Scene read_ply(const fs::path& path, const FileAccess& access, const ReadOptions
     const std::vector<std::byte> bytes = read_file(path);
     PlyHeader header = parse_ply_header(bytes, file);
     if (header.unknown_line > 0) {
-        messages.warn(fmt::format("{}:{}: a header line that is not understood is taken as a comment", file,
-                                  header.unknown_line));
+        messages.warn({Place{file, header.unknown_line}, "a header line that is not understood is taken as a comment"});
     }
     if (options.geometry_only) header.textures.clear();
     Reader reader(bytes, header, file);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The limit of --integrator bidirectional that others ask for, apart from its stages.
+// The limit of `integrator=bidirectional` that others ask for, apart from its stages.
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What --integrator irradiance_cache is asked for beside scene and camera, and what follows from it.
+// What `integrator=irradiance_cache` is asked for beside scene and camera, and what follows from it.
 
 #include <algorithm>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
 
-// What --integrator photon_map is asked for beside scene and camera, and what follows from it.
+// What `integrator=photon_map` is asked for beside scene and camera, and what follows from it.
 
 #include <cstdint>
 

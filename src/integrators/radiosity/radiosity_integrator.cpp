@@ -26,10 +26,10 @@ std::size_t RadiosityIntegrator::predicted_bytes(const RayTreeSettings& settings
 }
 
 void RadiosityIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
-    if (!look_.solution) throw Error(ErrorCode::BadInput, "--integrator radiosity: there is no solution to show");
+    if (!look_.solution) throw Error(ErrorCode::BadInput, "integrator", "radiosity", "there is no solution to show");
     const RadiositySolution& solution = *look_.solution;
     if (picture.scene.first_triangle == nullptr || solution.roots.size() != 2 * picture.scene.triangle_count) {
-        throw Error(ErrorCode::BadInput, "--integrator radiosity: the solution is of another scene");
+        throw Error(ErrorCode::BadInput, "integrator", "radiosity", "the solution is of another scene");
     }
     if (uploaded_ != look_.solution) {
         uploaded_.reset();

@@ -1,6 +1,6 @@
 #pragma once
 
-// What --integrator radiosity is asked for beside scene and camera.
+// What `integrator=radiosity` is asked for beside scene and camera.
 
 #include <memory>
 

@@ -25,8 +25,8 @@ std::size_t RasterIntegrator::predicted_bytes(uint64_t pixels) {
 
 void RasterIntegrator::begin(const PictureView& picture, SceneTracer&, uint32_t) {
     if (picture.scene.triangle_count >= kNoHit) {
-        throw Error(ErrorCode::OverLimit,
-                    fmt::format("--integrator raster: {} triangles in all instances of the scene; it draws {} at most",
+        throw Error(ErrorCode::OverLimit, "integrator", "raster",
+                    fmt::format("{} triangles in all instances of the scene; it draws {} at most",
                                 picture.scene.triangle_count, kNoHit - 1));
     }
     picture_ = picture;

@@ -94,8 +94,8 @@ std::size_t ReyesIntegrator::bytes() const {
 
 void ReyesIntegrator::begin(const PictureView& picture, SceneTracer&, uint32_t samples) {
     if (picture.scene.triangle_count >= kNoHit) {
-        throw Error(ErrorCode::OverLimit,
-                    fmt::format("--integrator reyes: {} triangles in all instances of the scene; it dices {} at most",
+        throw Error(ErrorCode::OverLimit, "integrator", "reyes",
+                    fmt::format("{} triangles in all instances of the scene; it dices {} at most",
                                 picture.scene.triangle_count, kNoHit - 1));
     }
     picture_ = picture;
@@ -142,10 +142,11 @@ void ReyesIntegrator::check_work(uint64_t pieces, uint32_t wide) const {
     const double most = kMostPiecesOfTriangle * static_cast<double>(picture_.scene.triangle_count) +
                         static_cast<double>(most_work(pixels)) * finer * finer;
     if (static_cast<double>(pieces) <= most && wide <= most_wide(pixels)) return;
-    throw Error(ErrorCode::OverLimit,
-                fmt::format("--displacement: surfaces are moved so far that dicing them does not end (over {} pieces a "
-                            "pixel); a smaller SCALE makes fewer, and so does a larger --shading-rate",
-                            kMostWorkOfPixel));
+    throw Error(
+        ErrorCode::OverLimit, "displacement", "",
+        fmt::format("surfaces are moved so far that dicing them does not end (over {} pieces a pixel); a smaller "
+                    "SCALE makes fewer, and so does a larger `shading_rate`",
+                    kMostWorkOfPixel));
 }
 
 template <HidingPass kPass>

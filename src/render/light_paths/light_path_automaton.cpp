@@ -17,7 +17,7 @@ using Kind = LightPathLetter::Kind;
 using StateSet = std::vector<uint32_t>; // of all automata, sorted
 
 [[noreturn]] void refuse(const std::string& why) {
-    throw Error(ErrorCode::OverLimit, fmt::format("--lpe: {}; render some of the expressions apart", why));
+    throw Error(ErrorCode::OverLimit, "lpe", "", why + "; render some of the expressions apart");
 }
 
 /// The automata of all expressions side by side, as if they were one.

@@ -29,7 +29,7 @@ std::string_view why_no_atom(char letter) {
     case '"':
         return "names stand between < and >: L<'lamp'>";
     case ',':
-        return "each expression has a --lpe NAME=EXPRESSION of its own";
+        return "each expression has a `lpe` NAME=EXPRESSION of its own";
     case 'C':
         return "from the light to the eye: LD*E is what is CD*L elsewhere";
     case 'l':
@@ -253,29 +253,27 @@ std::size_t letters_before(std::string_view text, std::size_t place) {
 
 } // namespace
 
-std::string point_at(const LightPathExpression& expression, std::size_t place, std::string_view why) {
+Remark point_at(const LightPathExpression& expression, std::size_t place, std::string_view why) {
     const std::size_t column = letters_before(expression.text, place);
     std::string shown = expression.text;
     std::ranges::replace_if(
         shown, [](char c) { return static_cast<uint8_t>(c) < ' '; }, ' ');
-    return fmt::format("--lpe {}: character {}: {}\n  {}\n  {}^", expression.name, column + 1, why, shown,
-                       std::string(column, ' '));
+    return {"lpe", expression.name,
+            fmt::format("character {}: {}\n  {}\n  {}^", column + 1, why, shown, std::string(column, ' '))};
 }
 
 LightPathExpression parse_light_path(std::string_view text) {
     const std::size_t equals = text.find('=');
     if (equals == std::string_view::npos || !is_name(text.substr(0, equals))) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--lpe {}: expected NAME=EXPRESSION, as caustics=LS+DE; a name has letters, digits, - "
-                                "and _, 64 at most",
-                                text));
+        throw Error(ErrorCode::BadInput, "lpe", std::string(text),
+                    "expected NAME=EXPRESSION, as caustics=LS+DE; a name has letters, digits, - and _, 64 at most");
     }
     LightPathExpression expression;
     expression.name = text.substr(0, equals);
     expression.text = text.substr(equals + 1);
     if (expression.text.size() > kMaxLightPathText) {
-        throw Error(ErrorCode::OverLimit, fmt::format("--lpe {}: an expression of more than {} characters",
-                                                      expression.name, kMaxLightPathText));
+        throw Error(ErrorCode::OverLimit, "lpe", expression.name,
+                    fmt::format("an expression of more than {} characters", kMaxLightPathText));
     }
     Parser(expression).parse();
     check_matches_something(expression);

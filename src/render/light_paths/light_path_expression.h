@@ -19,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/remark.h"
 #include "shading/lobes/bsdf_sample.h"
 
 namespace pertev {
@@ -78,12 +79,12 @@ inline constexpr std::size_t kMaxLightPathText = 4096;
 /// Of one expression, in letters, each counted as often as {n} asks for it.
 inline constexpr uint64_t kMaxLightPathLetters = 4096;
 
-/// Of NAME=EXPR, as --lpe takes it. NAME: letters, digits, - and _, at most 64. Throws Error(BadInput) with the
+/// Of NAME=EXPR, as `lpe` takes it. NAME: letters, digits, - and _, at most 64. Throws Error(BadInput) with the
 /// expression and a caret under the character that is wrong, also for one that no light path can match;
 /// Error(OverLimit) past kMaxLightPathText and kMaxLightPathLetters.
 LightPathExpression parse_light_path(std::string_view text);
 
-/// "--lpe NAME: why", the expression, and a caret under the letter at `place`.
-std::string point_at(const LightPathExpression& expression, std::size_t place, std::string_view why);
+/// A remark on the setting `lpe`: why, the expression, and a caret under the letter at `place`.
+Remark point_at(const LightPathExpression& expression, std::size_t place, std::string_view why);
 
 } // namespace pertev

@@ -84,7 +84,7 @@ std::vector<uint16_t> tag(const Things& things, const Chooser& chooser, std::vec
         const auto [place, is_new] = numbers.try_emplace(chooser.choose(names), static_cast<uint16_t>(tags.size()));
         if (is_new) tags.push_back(place->first);
         if (tags.size() > UINT16_MAX) {
-            throw Error(ErrorCode::OverLimit, "--lpe: the names tell more than 65535 things apart");
+            throw Error(ErrorCode::OverLimit, "lpe", "", "the names tell more than 65535 things apart");
         }
         of_things.push_back(place->second);
     }
@@ -99,8 +99,9 @@ void check_layers(std::span<const LightPathExpression> expressions) {
     for (const LightPathExpression& expression : expressions) {
         const auto [first, is_new] = named.try_emplace(expression.name, &expression);
         if (is_new) continue;
-        throw Error(ErrorCode::BadInput, fmt::format("--lpe {0}: two expressions have this name\n  {0}={1}\n  {0}={2}",
-                                                     expression.name, first->second->text, expression.text));
+        throw Error(ErrorCode::BadInput, "lpe", expression.name,
+                    fmt::format("two expressions have this name\n  {0}={1}\n  {0}={2}", expression.name,
+                                first->second->text, expression.text));
     }
 }
 

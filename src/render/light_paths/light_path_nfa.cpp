@@ -30,9 +30,8 @@ private:
 
     uint32_t add_state(State state = {}) {
         if (nfa_.states.size() >= 4 * kMaxLightPathLetters) {
-            throw Error(ErrorCode::OverLimit,
-                        fmt::format("--lpe {}: with its {{n}} written out it has more than {} letters",
-                                    expression_.name, kMaxLightPathLetters));
+            throw Error(ErrorCode::OverLimit, "lpe", expression_.name,
+                        fmt::format("with its {{n}} written out it has more than {} letters", kMaxLightPathLetters));
         }
         nfa_.states.push_back(state);
         return static_cast<uint32_t>(nfa_.states.size() - 1);

@@ -52,10 +52,9 @@ std::size_t CameraRaster::bytes() const {
 void CameraRaster::begin(const PictureView& picture) {
     scene_ = picture.scene;
     if (scene_.triangle_count > UINT32_MAX) {
-        throw Error(
-            ErrorCode::OverLimit,
-            fmt::format("--integrator hybrid: {} triangles in all instances of the scene; it rasterises {} at most",
-                        scene_.triangle_count, UINT32_MAX));
+        throw Error(ErrorCode::OverLimit, "integrator", "hybrid",
+                    fmt::format("{} triangles in all instances of the scene; it rasterises {} at most",
+                                scene_.triangle_count, UINT32_MAX));
     }
     const uint32_t width = picture.camera.width, height = picture.camera.height;
     const Capacity c = capacity_for(scene_.triangle_count, width, height);
@@ -91,10 +90,10 @@ bool CameraRaster::make_lists(const Pinhole& camera, uint32_t shift) {
     launch(queue_, "bin_triangles", static_cast<uint32_t>(scene_.triangle_count), BinTriangles{camera, scene_, lists});
     const TileCounts first = counts_.download().front();
     if (first.triangles > triangles_.size()) {
-        throw Error(ErrorCode::OverLimit,
-                    fmt::format("--integrator hybrid: {} triangles are in view; it rasterises {} at "
-                                "most (--integrator path has no such limit)",
-                                first.triangles, triangles_.size()));
+        throw Error(
+            ErrorCode::OverLimit, "integrator", "hybrid",
+            fmt::format("{} triangles are in view; it rasterises {} at most (`integrator=path` has no such limit)",
+                        first.triangles, triangles_.size()));
     }
     if (first.entries > codes_.size() || first.rows > rows_.size()) return false;
     launch(queue_, "bin_rows", static_cast<uint32_t>(first.rows), BinRows{camera, scene_, lists});

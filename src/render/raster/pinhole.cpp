@@ -52,9 +52,8 @@ Pinhole make_pinhole(const CameraRays& camera) {
 
 std::string why_no_raster(const Camera& camera) {
     if (camera.aperture_radius > 0) {
-        return "a rasteriser sees through a pinhole, and this camera has a lens (--aperture 0 takes it away; "
-               "--integrator "
-               "path has it)";
+        return "a rasteriser sees through a pinhole, and this camera has a lens (`aperture=0` takes it away; "
+               "`integrator=path` has it)";
     }
     if (is_light_meter(camera.projection)) {
         return "a rasteriser knows perspective and orthographic cameras alone";

@@ -39,7 +39,8 @@ public:
         drop_singular_instances();
         if (scene_.instances.empty()) {
             if (first_misplaced_.ends_with(kTooFar)) {
-                throw Error(ErrorCode::OverLimit, fmt::format("{}: {}; scale the scene down", file_, first_misplaced_));
+                throw Error(ErrorCode::OverLimit, Place{file_},
+                            fmt::format("{}; scale the scene down", first_misplaced_));
             }
             if (!first_misplaced_.empty()) throw bad(first_misplaced_);
             throw no_geometry(all - with_triangles, with_triangles);
@@ -50,9 +51,9 @@ public:
     }
 
 private:
-    Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, fmt::format("{}: {}", file_, what)); }
+    Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, Place{file_}, what); }
     Error too_far(const std::string& what) const {
-        return Error(ErrorCode::OverLimit, fmt::format("{}: {} {}; scale the scene down", file_, what, kTooFar));
+        return Error(ErrorCode::OverLimit, Place{file_}, fmt::format("{} {}; scale the scene down", what, kTooFar));
     }
 
     Error no_geometry(std::size_t without_triangles, std::size_t singular) const {
@@ -79,8 +80,8 @@ private:
 
     void references() const {
         if (scene_.instances.size() > kMaxInstances) {
-            throw Error(ErrorCode::OverLimit, fmt::format("{}: {} instances; the limit is {}", file_,
-                                                          scene_.instances.size(), kMaxInstances));
+            throw Error(ErrorCode::OverLimit, Place{file_},
+                        fmt::format("{} instances; the limit is {}", scene_.instances.size(), kMaxInstances));
         }
         for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
             const Instance& instance = scene_.instances[i];
@@ -168,16 +169,16 @@ private:
             if (const std::string fault = fault_of_place(instance, bounds[instance.mesh]); !fault.empty()) {
                 const std::string what = fmt::format("{} {}", place_of(number, instance), fault);
                 if (first_misplaced_.empty()) first_misplaced_ = what;
-                messages_.leave_out(fmt::format("{}: {}; it is left out", file_, what));
+                messages_.leave_out({Place{file_}, fmt::format("{}; it is left out", what)});
                 return true;
             }
             const bool drops = is_singular(instance.world_from_local) && !moves_[number];
             if (drops && dropped++ == 0) first_singular_ = place_of(number, instance);
             if (drops && is_flat(instance.world_from_local)) {
                 messages_.leave_out(
-                    fmt::format("{}: {} is squeezed flat by its transform, such as by one scale of 0: it "
-                                "is left out",
-                                file_, place_of(number, instance)));
+                    {Place{file_}, fmt::format("{} is squeezed flat by its transform, such as by one scale of 0: it "
+                                               "is left out",
+                                               place_of(number, instance))});
             }
             return drops;
         });
@@ -187,8 +188,9 @@ private:
             instance.world_from_local = {};
         }
         if (dropped == 0) return;
-        messages_.warn(fmt::format("{}: {} with a singular transform, such as a scale of 0: hidden; the first is {}",
-                                   file_, counted(dropped, "instance"), first_singular_));
+        messages_.warn(
+            {Place{file_}, fmt::format("{} with a singular transform, such as a scale of 0: hidden; the first is {}",
+                                       counted(dropped, "instance"), first_singular_)});
     }
 
     /// Whether a surface would be left of what is placed so.

@@ -107,9 +107,7 @@ std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
 }
 
 void validate_nodes(const Scene& scene, const std::string& file) {
-    const auto bad = [&](const std::string& what) {
-        return Error(ErrorCode::BadInput, fmt::format("{}: {}", file, what));
-    };
+    const auto bad = [&](const std::string& what) { return Error(ErrorCode::BadInput, Place{file}, what); };
     const std::size_t count = scene.nodes.size();
     const auto place_of = [&](std::size_t i) {
         return numbered("node", i, scene.nodes[i].name, fmt::format("/nodes/{}", i));

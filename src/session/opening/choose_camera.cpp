@@ -20,7 +20,7 @@ namespace {
 std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 std::string text_of(DoubleVec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
-/// `x` as a notice writes it, and no more exactly: the flags that the notice shows make the same picture.
+/// `x` as a notice writes it, and no more exactly, so that the settings of the notice make the same picture.
 float rounded(float x, int digits) {
     const std::string text = fmt::format("{:.{}g}", x, digits);
     float value = x;
@@ -37,10 +37,9 @@ void place_camera(const CameraChoice& choice, const Scene& scene, Camera& camera
     Transform placed = look_at(eye, target, up);
     if (!is_finite(placed.row0) && !choice.up) placed = look_at(eye, target, {0, 0, -1}); // straight down or up
     if (!is_finite(placed.row0) || !is_finite(placed.row1) || !is_finite(placed.row2)) {
-        const std::string of_up = choice.up ? fmt::format(" and not lie along --up {}", text_of(up)) : "";
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--eye {} --target {}: the target must differ from the eye{}",
-                                text_of(in_file(scene, eye)), text_of(in_file(scene, target)), of_up));
+        throw Error(ErrorCode::BadInput, "target", text_of(in_file(scene, target)),
+                    fmt::format("it must differ from `eye={}`{}", text_of(in_file(scene, eye)),
+                                choice.up ? fmt::format(" and not lie along `up={}`", text_of(up)) : ""));
     }
     camera.world_from_camera = placed;
     if (choice.target) camera.focus_distance = length(target - eye);
@@ -52,7 +51,7 @@ Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect,
     Messages unsaid; // of a view that is not to be: it looks elsewhere
     const Camera camera = make_default_camera(scene, aspect, unsaid);
     const Vec3 eye = camera.world_from_camera.translation;
-    messages.make_up(fmt::format("no camera in the scene: a made-up eye looks at the target (--eye {} --target {})",
+    messages.make_up(fmt::format("no camera in the scene: a made-up eye looks at the target (`eye={}` `target={}`)",
                                  place_text(scene, eye, 4), text_of(*choice.target)));
     return camera;
 }
@@ -78,23 +77,26 @@ void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera&
     const float away = length(middle - camera.world_from_camera.translation);
     const float distance = seen.value_or(max(away, 0x1p-40f));
     camera.focus_distance = rounded(distance, 4);
-    messages.make_up(fmt::format("--aperture without --focus: sharp at {:.4g} m, {} (--focus {:.4g})", distance,
-                                 seen ? "the distance of what is in the middle of the picture"
-                                      : "the distance of the scene's middle, for nothing is in that of the picture",
-                                 distance));
+    messages.make_up({"aperture", "",
+                      fmt::format("without `focus` it is sharp at {:.4g} m, {} (`focus={:.4g}`)", distance,
+                                  seen ? "the distance of what is in the middle of the picture"
+                                       : "the distance of the scene's middle, for nothing is in that of the picture",
+                                  distance)});
 }
 
 /// `flattened`: the camera's angle of view has become a height.
 void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, bool flattened, Messages& messages) {
     const bool is_perspective = camera.projection == Projection::Perspective;
     if (choice.view_height && is_perspective) {
-        messages.warn("--view-height: the camera is a perspective one; --projection orthographic makes use of it");
+        messages.warn(
+            {"view_height", "", "the camera is a perspective one; `projection=orthographic` makes use of it"});
     }
     if (choice.fov_deg && !is_perspective && (!flattened || choice.view_height)) {
-        messages.warn("--fov: the camera is an orthographic one, whose view has a height; --view-height sets that");
+        messages.warn(
+            {"fov", "", "the camera is an orthographic one, whose view has a height; `view_height` sets that"});
     }
     if (choice.focus && camera.aperture_radius == 0) {
-        messages.warn("--focus: the lens has no aperture, so all is sharp; --aperture gives it one");
+        messages.warn({"focus", "", "the lens has no aperture, so all is sharp; `aperture` gives it one"});
     }
 }
 
@@ -102,11 +104,11 @@ void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, boo
 
 void check_camera_choice(const CameraChoice& choice) {
     if (choice.view_height && choice.projection == Projection::Perspective) {
-        throw Error(ErrorCode::BadInput, "--view-height: a perspective view has none; say --fov, or "
-                                         "--projection orthographic");
+        throw Error(ErrorCode::BadInput, "view_height", "",
+                    "a perspective view has none; say `fov`, or `projection=orthographic`");
     }
     if (choice.focus && choice.aperture == 0.0f) {
-        throw Error(ErrorCode::BadInput, "--focus: with --aperture 0 all is sharp; give the lens a radius");
+        throw Error(ErrorCode::BadInput, "focus", "", "with `aperture=0` all is sharp; give the lens a radius");
     }
 }
 
@@ -122,8 +124,8 @@ const Camera* scene_camera(const std::string& name, const Scene& scene) {
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
         known += fmt::format("\n  {}  {}", i, scene.cameras[i].name.empty() ? "(no name)" : scene.cameras[i].name);
     }
-    throw Error(ErrorCode::BadInput, fmt::format("--camera {}: the scene has no such camera; it has:{}", name,
-                                                 known.empty() ? "\n  none" : known));
+    throw Error(ErrorCode::BadInput, "camera", name,
+                fmt::format("the scene has no such camera; it has:{}", known.empty() ? "\n  none" : known));
 }
 
 void aim_eye(CameraChoice& choice, const Scene& scene, Messages& messages) {
@@ -131,9 +133,10 @@ void aim_eye(CameraChoice& choice, const Scene& scene, Messages& messages) {
     const Target target = target_from(scene, in_scene(scene, *choice.eye));
     choice.target = told_place(scene, target.position, 6);
     choice.is_aimed = true;
-    messages.make_up(fmt::format("--eye without --target: it looks {} (--eye {} --target {})",
-                                 target.is_middle ? "at the middle of the scene" : "along the scene from its middle",
-                                 text_of(*choice.eye), place_text(scene, target.position, 6)));
+    messages.make_up({"eye", "",
+                      fmt::format("without `target` it looks {} (`eye={}` `target={}`)",
+                                  target.is_middle ? "at the middle of the scene" : "along the scene from its middle",
+                                  text_of(*choice.eye), place_text(scene, target.position, 6))});
 }
 
 Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Messages& messages) {

@@ -1,7 +1,7 @@
 #pragma once
 
 // From what is said of a camera (a name, an eye, a lens) to a camera: what is left open comes from the scene's own, or
-// from what there is to see. Messages name the command line's flags, which the fields below are called after.
+// from what there is to see. The fields below are called after the settings.
 
 #include <optional>
 #include <string>

@@ -52,7 +52,9 @@ Camera MovingCamera::at(const Scene& scene, std::optional<double> time_s) const 
         return choose_camera(choice_at(time_s), scene, aspect_, said_already);
     } catch (const Error& error) {
         if (!path_) throw;
-        throw Error(error.code(), fmt::format("the camera's path at {} s: {}", time_s.value_or(0), error.what()));
+        Remark remark = error.remark();
+        remark.reason += fmt::format(" (the camera's path at {} s)", time_s.value_or(0));
+        throw Error(error.code(), std::move(remark));
     }
 }
 

@@ -25,17 +25,15 @@ std::optional<Environment> environment_of(const OpenOptions& options, Messages& 
     if (options.environment_radiance) {
         const Rgb color = *options.environment_radiance;
         if (!(is_finite(color) && color.r >= 0 && color.g >= 0 && color.b >= 0)) {
-            throw Error(ErrorCode::BadInput,
-                        fmt::format("--environment {},{},{}: radiance cannot be negative", color.r, color.g, color.b));
+            throw Error(ErrorCode::BadInput, "environment", environment_text(options), "radiance cannot be negative");
         }
         environment.scale = color;
         return environment;
     }
     if (options.environment.empty()) return std::nullopt;
     if (std::error_code fault; !std::filesystem::exists(options.environment, fault)) {
-        throw Error(ErrorCode::BadInput, fmt::format("--environment {}: neither a file nor a radiance R,G,B such as "
-                                                     "0.5,0.5,0.5",
-                                                     options.environment.string()));
+        throw Error(ErrorCode::BadInput, "environment", options.environment.string(),
+                    "neither a file nor a radiance R,G,B such as 0.5,0.5,0.5");
     }
     environment.image = read_environment_image(options.environment, messages);
     return environment;
@@ -47,17 +45,17 @@ void turn_and_scale(const OpenOptions& options, Scene& scene, Messages& messages
         scene.environment->scale = options.environment_scale * scene.environment->scale;
         return;
     }
-    const auto warn = [&](const char* flag) {
-        messages.warn(fmt::format("{}: the scene has no environment; --environment gives it one", flag));
+    const auto warn = [&](const char* setting) {
+        messages.warn({setting, "", "the scene has no environment; `environment` gives it one"});
     };
-    if (options.environment_rotation_deg != 0) warn("--environment-rotation");
-    if (options.environment_scale != 1) warn("--environment-scale");
+    if (options.environment_rotation_deg != 0) warn("environment_rotation");
+    if (options.environment_scale != 1) warn("environment_scale");
 }
 
 void show_back_faces(Scene& scene, Messages& messages) {
     bool any_hidden = false;
     for (Material& material : scene.materials) any_hidden |= !std::exchange(material.double_sided, true);
-    if (!any_hidden) messages.warn("--show-back-faces: no surface of the scene hides its back");
+    if (!any_hidden) messages.warn({"show_back_faces", "", "no surface of the scene hides its back"});
 }
 
 /// `light`: what was made up. `around`: of the scene, where that is a sky.
@@ -85,18 +83,19 @@ std::string in_a_row(const std::vector<std::string>& list) {
 void say_which_clip(const Scene& scene, const std::string& file, Messages& messages) {
     if (scene.clips.size() < 2) return;
     const std::vector<std::string> clips = list_clips(scene.clips);
-    messages.note(
-        fmt::format("{}: the file has {} animations, of which the first plays, {}; --animation NAME|N|all plays "
-                    "another or all of {}",
-                    file, clips.size(), shortened(clips.front()), in_a_row(clips)));
+    messages.note({Place{file},
+                   fmt::format("the file has {} animations, of which the first plays, {}; `animation` (NAME, N or all) "
+                               "plays another or all of {}",
+                               clips.size(), shortened(clips.front()), in_a_row(clips))});
 }
 
 void say_which_scene(const Scene& scene, const std::string& file, Messages& messages) {
     if (scene.file_scenes.size() < 2) return;
     const std::vector<std::string> scenes = list_file_scenes(scene);
     messages.note(
-        fmt::format("{}: the file has {} scenes, of which {} is shown; --file-scene NAME|N shows another of {}", file,
-                    scenes.size(), shortened(scenes[scene.file_scene]), in_a_row(scenes)));
+        {Place{file},
+         fmt::format("the file has {} scenes, of which {} is shown; `file_scene` (NAME or N) shows another of {}",
+                     scenes.size(), shortened(scenes[scene.file_scene]), in_a_row(scenes))});
 }
 
 } // namespace
@@ -105,14 +104,14 @@ FileSpace file_space(const std::string& up_axis, const std::string& unit) {
     FileSpace space;
     if (!up_axis.empty()) {
         const std::optional<UpAxis> read = parse_up_axis(up_axis);
-        if (!read) throw Error(ErrorCode::BadInput, fmt::format("--up-axis {}: expected x, y or z", up_axis));
+        if (!read) throw Error(ErrorCode::BadInput, "up_axis", up_axis, "expected x, y or z");
         space.up_axis = *read;
     }
     if (!unit.empty()) {
         const std::optional<double> read = parse_unit(unit);
         if (!read) {
-            throw Error(ErrorCode::BadInput,
-                        fmt::format("--unit {}: expected {} or a number of metres above 0", unit, kUnitNames));
+            throw Error(ErrorCode::BadInput, "unit", unit,
+                        fmt::format("expected {} or a number of metres above 0", kUnitNames));
         }
         space.unit_m = *read;
     }
@@ -139,8 +138,8 @@ Scene read_scene_and_lamps(const std::filesystem::path& path, const ReadOptions&
     Scene scene = read_scene(path, options, messages);
     if (options.file_scene.empty()) say_which_scene(scene, path.string(), messages);
     if (!(options.space == FileSpace()) && tells_space(path)) {
-        messages.warn(fmt::format("--up-axis, --unit: {} is in metres with y up; these flags are for .obj and .ply",
-                                  path.string()));
+        messages.warn(
+            {Place{path.string()}, "the file is in metres with y up; `up_axis` and `unit` are for .obj and .ply"});
     }
     if (!options.two_sided_lights && !tells_lamp_sides(path)) say_lamp_fronts(scene, path.string(), messages);
     return scene;
@@ -150,7 +149,7 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
     Scene scene = read_scene_and_lamps(options.scene, read_options(options), messages);
     if (options.animation.empty()) say_which_clip(scene, options.scene, messages);
     if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
-        messages.warn("--two-sided-lights: no surface of the scene gives light");
+        messages.warn({"two_sided_lights", "", "no surface of the scene gives light"});
     }
     if (options.show_back_faces) show_back_faces(scene, messages);
     if (auto environment = environment_of(options, messages)) scene.environment = *std::move(environment);
@@ -158,7 +157,7 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
     const DefaultLight light = add_default_light(scene, options.use, messages, &around);
     if (wants_ground(options, scene, light, around)) {
         add_ground(scene);
-        messages.make_up("a made-up ground catches the shadow; --ground off leaves it out");
+        messages.make_up("a made-up ground catches the shadow; `ground=off` leaves it out");
     }
     turn_and_scale(options, scene, messages);
     set_lamps(scene, options.lamps, lumens_per_watt(options.scene, options.efficacy));

@@ -1,8 +1,8 @@
 #pragma once
 
 // From a name to a scene that is ready to be prepared: the file read, its environment, its light if it has none, and
-// which faces count. Whoever renders begins here, then with session/opening/choose_camera.h. Messages name the command
-// line's flags, which the fields below are called after.
+// which faces count. Whoever renders begins here, then with session/opening/choose_camera.h. The fields below are
+// called after the settings.
 
 #include <filesystem>
 #include <optional>
@@ -39,13 +39,13 @@ struct OpenOptions {
     std::string file_scene;        // of the file, is shown; empty: the file's own choice
 };
 
-/// How the file's coordinates are meant, by the words of --up-axis and --unit. Throws Error(BadInput) for others.
+/// How the file's coordinates are meant, by the words of `up_axis` and `unit`. Throws Error(BadInput) for others.
 FileSpace file_space(const std::string& up_axis, const std::string& unit);
 
 /// Reading as these options say it.
 ReadOptions read_options(const OpenOptions& options);
 
-/// The environment that is asked for, in the words of --environment: a file, or a radiance R,G,B; empty: none.
+/// The environment that is asked for, in the words of `environment`: a file, or a radiance R,G,B; empty: none.
 std::string environment_text(const OpenOptions& options);
 
 /// The scene read, with the environment that the options give it or else, where it has no light, the default light, and

@@ -140,7 +140,7 @@ Camera make_default_camera(const Scene& scene, float aspect, Messages& messages)
     }
     const Vec3 eye = camera.world_from_camera.translation;
     const Vec3 target = eye - camera.focus_distance * column(camera.world_from_camera, 2);
-    messages.make_up(fmt::format("no camera in the scene: {} (--eye {} --target {})", what, place_text(scene, eye, 4),
+    messages.make_up(fmt::format("no camera in the scene: {} (`eye={}` `target={}`)", what, place_text(scene, eye, 4),
                                  place_text(scene, target, 4)));
     return camera;
 }

@@ -91,7 +91,7 @@ DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages, S
     // Through the openings of a room the clear sky's narrow sun shows more than soft boxes do.
     const bool is_thing = around.kind == SurroundingsKind::Object && use != SceneUse::Benchmark;
     scene.environment = is_thing ? make_studio() : make_clear_sky();
-    messages.make_up(fmt::format("{}: it gets a sky{}", why, is_weak ? " (--environment 0,0,0: none)" : ""));
+    messages.make_up(fmt::format("{}: it gets a sky{}", why, is_weak ? " (`environment=0,0,0`: none)" : ""));
     return DefaultLight::Sky;
 }
 

@@ -46,9 +46,11 @@ bool SequenceRecord::load() {
     for (const auto& [name, value] : settings_) {
         const std::string then = before.string_or(name, "");
         if (then == value) continue;
-        throw before.error(fmt::format("--continue: the frames there were made with {} \"{}\", not \"{}\"; make them "
-                                       "anew without --continue, or elsewhere",
-                                       name, then, value));
+        Remark why(before.place(), fmt::format("the frames there were made with {} \"{}\", not \"{}\"; make them anew "
+                                               "without `continue`, or elsewhere",
+                                               name, then, value));
+        why.setting = "continue";
+        throw Error(ErrorCode::BadInput, why);
     }
     for (const gltf::JsonValue& frame : file.root().elements_of("files")) {
         hashes_[std::string(frame.at("name").to_string())] = frame.at("hash").to_string();
@@ -74,10 +76,10 @@ void SequenceRecord::check_picture(uint32_t frame, const std::string& picture) c
     const auto known = pictures_.find(frame);
     if (known == pictures_.end() || known->second == picture) return;
     throw Error(
-        ErrorCode::BadInput,
-        fmt::format("{}: frame {} is another picture now ({}) than when it was written ({}), so that those after "
-                    "it would not follow; make them anew without --continue, or elsewhere",
-                    path_.string(), frame, picture, known->second));
+        ErrorCode::BadInput, Place{path_.string()},
+        fmt::format("frame {} is another picture now ({}) than when it was written ({}), so that those after it would "
+                    "not follow; make them anew without `continue`, or elsewhere",
+                    frame, picture, known->second));
 }
 
 void SequenceRecord::add(uint32_t frame, const std::string& picture) {

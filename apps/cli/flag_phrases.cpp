@@ -1,0 +1,95 @@
+#include "apps/cli/flag_phrases.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/json_text.h"
+#include "base/phrase_settings.h"
+
+namespace pertev {
+namespace {
+
+/// Settings whose flags are not made of their names.
+constexpr std::pair<std::string_view, std::string_view> kOtherFlags[] = {{"output", "-o"}, {"scene", "SCENE"}};
+
+/// `value` as one word of a shell.
+std::string shell_word(std::string_view value) {
+    if (value.find_first_of(" \t\n\"'`\\$&|;<>()[]{}*?!#~") == std::string_view::npos) return std::string(value);
+    std::string word = "'";
+    for (const char c : value) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return word + '\'';
+}
+
+std::string flag_and_value(std::string_view setting, std::string_view value) {
+    return flag_of(setting) + (value.empty() ? "" : ' ' + shell_word(value));
+}
+
+std::string place_json(const Place& place) {
+    std::string json = fmt::format(R"({{"file":{})", json_string(place.file));
+    if (place.line > 0) json += fmt::format(R"(,"line":{})", place.line);
+    if (place.pointer) json += fmt::format(R"(,"pointer":{})", json_string(*place.pointer));
+    return json + '}';
+}
+
+/// The settings that a reason names, as an object; a value is null where the reason gives none.
+std::string named_settings_json(const std::string& reason) {
+    std::map<std::string, std::string, std::less<>> named;
+    phrase_settings(reason, [&](std::string_view name, std::string_view value) {
+        std::string& known = named[std::string(name)];
+        if (!value.empty()) known = value;
+        return std::string();
+    });
+    std::string json;
+    for (const auto& [name, value] : named) {
+        json += fmt::format("{}{}:{}", json.empty() ? "" : ",", json_string(name),
+                            value.empty() ? "null" : json_string(value));
+    }
+    return json;
+}
+
+/// The command line's own remarks begin with the flag that they are about, "--lpe NAME: why": those by its setting.
+Remark by_setting(const Remark& remark) {
+    const std::size_t end = remark.reason.find(": ");
+    if (remark.place || !remark.setting.empty() || !remark.reason.starts_with("--") || end == std::string::npos) {
+        return remark;
+    }
+    const std::string flag = remark.reason.substr(2, end - 2), name = flag.substr(0, flag.find(' '));
+    if (name.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") != std::string::npos) return remark;
+    Remark parts(name, flag.substr(std::min(flag.size(), name.size() + 1)), remark.reason.substr(end + 2));
+    std::ranges::replace(parts.setting, '-', '_');
+    return parts;
+}
+
+} // namespace
+
+std::string flag_of(std::string_view setting) {
+    const auto* const other =
+        std::ranges::find(kOtherFlags, setting, &std::pair<std::string_view, std::string_view>::first);
+    if (other != std::end(kOtherFlags)) return std::string(other->second);
+    std::string flag = "--" + std::string(setting);
+    std::ranges::replace(flag, '_', '-');
+    return flag;
+}
+
+std::string phrase(const Remark& remark) {
+    std::string text;
+    if (remark.place) text += text_of(*remark.place) + ": ";
+    if (!remark.setting.empty()) text += flag_and_value(remark.setting, remark.value) + ": ";
+    return text + phrase_settings(remark.reason, flag_and_value);
+}
+
+std::string json_parts(const Remark& said) {
+    const Remark remark = by_setting(said);
+    std::string json;
+    if (remark.place) json += fmt::format(R"(,"place":{})", place_json(*remark.place));
+    if (!remark.setting.empty()) json += fmt::format(R"(,"setting":{})", json_string(remark.setting));
+    if (!remark.value.empty()) json += fmt::format(R"(,"value":{})", json_string(remark.value));
+    json += fmt::format(R"(,"reason":{})", json_string(remark.reason));
+    const std::string named = named_settings_json(remark.reason);
+    return json + (named.empty() ? "" : fmt::format(R"(,"settings":{{{}}})", named));
+}
+
+} // namespace pertev
