@@ -163,7 +163,7 @@ bool ViewCamera::follow_path(std::optional<double> time_s, Camera& lens) {
 void ViewCamera::step(const ClientMessage& message, const Camera& lens, float speed) {
     const Pose before = pose_;
     if (!is_own_) pose_.target = pose_.centre; // what the view turns about is what it looks at from now on
-    const bool is_flat = base_.projection == Projection::Orthographic;
+    const bool is_flat = has_parallel_rays(base_.projection);
     const float height = is_flat ? base_.ortho_height : 2 * tan(0.5f * lens.fov_y);
     if (message.kind == MessageKind::Move) {
         const float metres = metres_of(message, speed);

@@ -123,7 +123,7 @@ private:
     /// In how many frames a camera that goes on as it went passes half a lobe of this width: what a surface reflects to
     /// it changes meanwhile.
     HD float frames_of_lobe(float alpha, Float4 place) const {
-        if (cameras.now.projection == Projection::Orthographic) return kInfinity;
+        if (has_parallel_rays(cameras.now.projection)) return kInfinity;
         const Vec3 point = point_at(scene.instances, scene.meshes, place),
                    now_seen = normalize(point - cameras.now.world_from_camera.translation),
                    then_seen = normalize(point - cameras.before.world_from_camera.translation);

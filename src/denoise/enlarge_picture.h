@@ -63,8 +63,7 @@ private:
         const Vec2 centre = {static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f};
         const Vec3 point = point_seen(camera, centre, normal.w);
         const Vec3 n = transform_transposed(camera.world_from_camera, vec3_of(normal));
-        const float scale = coarse.camera.projection == Projection::Perspective ? abs(normal.w) : 1.0f;
-        const float inv_size = 1.0f / max(2.0f * coarse.camera.half_height * coarse.camera.inv_height * scale, 1e-20f);
+        const float inv_size = 1.0f / max(pixel_size(coarse.camera, abs(normal.w)), 1e-20f);
         const float x = centre.x * camera.inv_width / coarse.camera.inv_width - 0.5f,
                     y = centre.y * camera.inv_height / coarse.camera.inv_height - 0.5f;
         const int w = static_cast<int>(coarse.width), h = static_cast<int>(coarse.height);

@@ -49,7 +49,7 @@ struct MotionOfHits {
             const Reprojection at =
                 reproject_surface(cameras, scene, was_there ? before : PreviousScene{scene.instances, scene.meshes},
                                   centre, {float_of(hit.instance), float_of(hit.primitive), hit.u, hit.v});
-            if (at.depth > 0 || cameras.before.projection == Projection::Orthographic) then = at.pixel;
+            if (is_projected(cameras.before, at.depth)) then = at.pixel;
         }
         const Vec2 moved = {centre.x - then.x, then.y - centre.y};
         motion[i] = is_finite(moved.x) && is_finite(moved.y) ? moved : Vec2{0, 0};

@@ -51,8 +51,7 @@ HD inline bool shows_surface(const PictureGuide& guide, const CameraView& camera
     const Vec2 centre = {static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f};
     const Vec3 n = transform_transposed(camera.world_from_camera, vec3_of(there));
     const float off = abs(dot(n, point - point_seen(camera, centre, there.w)));
-    const float scale = camera.projection == Projection::Perspective ? abs(there.w) : 1.0f;
-    return off <= 4.0f * camera.half_height * camera.inv_height * scale; // two widths of a pixel
+    return off <= 2.0f * pixel_size(camera, abs(there.w));
 }
 
 } // namespace pertev

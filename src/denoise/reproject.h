@@ -24,7 +24,7 @@ HD inline Reprojection reproject_virtual(const FrameCameras& cameras, Vec2 centr
 
 /// Of the sky, which is endlessly far.
 HD inline Vec2 reproject_sky(const FrameCameras& cameras, Vec2 centre) {
-    if (cameras.now.projection == Projection::Orthographic) return centre;
+    if (has_parallel_rays(cameras.now.projection)) return centre;
     const Vec3 direction = make_camera_ray(cameras.now, centre, {0, 0}).direction;
     return see_point(cameras.before, cameras.before.world_from_camera.translation + direction).pixel;
 }

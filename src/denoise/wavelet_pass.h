@@ -86,17 +86,17 @@ private:
     /// exp(-x) for a fifth of its price: (1 - x / 4)^4, and 0 from 4 on.
     HD static float falloff(float x) { return square(square(max(fma(-0.25f, x, 1.0f), 0.0f))); }
 
-    /// The plane of the surface at a pixel. Seen by the camera a point is linear in its pixel, times its depth in
-    /// perspective.
+    /// The plane of the surface at a pixel. Seen by the camera a point is linear in its pixel, times its depth where
+    /// rays part.
     struct Plane {
         float at_zero, per_column, per_row, per_depth, here;
-        bool is_perspective;
+        bool is_parallel; // the camera's rays
 
         HD Plane(const CameraView& camera, Vec3 normal, float depth, int x, int y, int step)
-            : is_perspective(camera.projection == Projection::Perspective) {
+            : is_parallel(has_parallel_rays(camera.projection)) {
             const Vec3 n = transform_transposed(camera.world_from_camera, normal);
             // Distances are counted in widths of a tap's step at this depth.
-            const float size = 2.0f * camera.half_height * camera.inv_height * (is_perspective ? depth : 1.0f);
+            const float size = pixel_size(camera, depth);
             const float scale = 1.0f / (size * static_cast<float>(step));
             per_column = scale * (n.x * (2.0f * camera.inv_width * camera.half_width));
             per_row = -scale * (n.y * (2.0f * camera.inv_height * camera.half_height));
@@ -109,7 +109,7 @@ private:
         HD float on_column(int x) const { return fma(per_column, static_cast<float>(x), at_zero); }
         HD float on_row(int y) const { return per_row * static_cast<float>(y); }
         HD float signed_distance(float in_view, float depth) const {
-            return fma(is_perspective ? depth : 1.0f, in_view, fma(per_depth, depth, -here));
+            return fma(is_parallel ? 1.0f : depth, in_view, fma(per_depth, depth, -here));
         }
         HD float distance(float in_view, float depth) const { return abs(signed_distance(in_view, depth)); }
     };

@@ -45,7 +45,7 @@ struct MovedHit {
     }
 };
 
-/// For sample_light: where the lamps are at a time.
+/// For sample_light and pdf_light_hit: where the lamps are at a time.
 struct LampsAt {
     const MotionsView& motions;
     float time;
@@ -53,11 +53,20 @@ struct LampsAt {
     HD RigidMotion operator()(uint32_t instance) const { return motions.of_instance_at(instance, time); }
 };
 
-/// pdf_light_hit of a ray that has a time.
-HD inline float pdf_light_hit_at(const SceneView& scene, uint32_t light, uint32_t instance, Vec3 from_point,
-                                 Vec3 hit_point, float time) {
-    const RigidMotion motion = scene.motions.of_instance_at(instance, time);
-    return pdf_light_hit(scene.lights, light, motion.move_back(from_point), motion.move_back(hit_point));
+/// sample_light of a scene; `moves`: something in it does.
+template <bool kTextures = true>
+HD INLINE_ON_DEVICE bool draw_direct(const SceneView& scene, bool moves, const LightContext& context, SampleBits u,
+                                     LightSample& sample) {
+    return moves ? sample_light<kTextures>(scene.lights, context, u, sample, LampsAt{scene.motions, context.time})
+                 : sample_light<kTextures>(scene.lights, context, u, sample);
+}
+
+/// Density with which draw_direct, for `context`, draws the place of `surface`, 1/sr; 0 where that is no light.
+HD inline float pdf_direct(const SceneView& scene, bool moves, const LightContext& context, const Surface& surface) {
+    const uint32_t light = light_of(scene.lights, surface.triangle.instance, surface.triangle.primitive);
+    if (light == kNoLight) return 0;
+    return moves ? pdf_light_hit(scene.lights, light, context, surface.position, LampsAt{scene.motions, context.time})
+                 : pdf_light_hit(scene.lights, light, context, surface.position);
 }
 
 /// What ray_to_light adds for a lamp that moves.

@@ -25,6 +25,11 @@ struct Surface {
     bool is_unlit;
     float tilt; // of the interpolated normal (shadow_terminator.h); 0 where the mesh has none
 
+    /// Of who asks for light here; `time`: of the ray, while the shutter is open.
+    HD LightContext light_context(float time = kAtRest) const {
+        return {position, frame.normal, bsdf.lets_through(), time};
+    }
+
     /// Both directions before the triangle, or both behind it.
     HD bool same_side(Vec3 wo, Vec3 wi) const {
         return (dot(wo, geometric_normal) > 0) == (dot(wi, geometric_normal) > 0);

@@ -79,7 +79,8 @@ private:
         const Ray& ray = sent_[i];
         if (hit.instance == kNoHit) {
             if (lights.has_environment()) {
-                const float weight = rays_.weight_of_hemisphere(pdf_environment(lights, ray.direction), cosines_[i]);
+                const float weight =
+                    rays_.weight_of_hemisphere(pdf_environment(lights, ray.origin, ray.direction), cosines_[i]);
                 row.direct += (weight * each * kPi) * environment_radiance(lights.environment, ray.direction);
             }
             return static_cast<double>(each);

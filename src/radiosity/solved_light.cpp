@@ -113,12 +113,13 @@ Hash128 lights_hash(const Scene& scene) {
     for (const Light& light : scene.lights) {
         hasher.add_value(static_cast<uint32_t>(light.kind));
         add_bytes(hasher, light.intensity);
-        if (light.kind != LightKind::Directional) {
+        const LightParts parts = parts_of(light.kind);
+        if (parts.place) {
             add_bytes(hasher, light.position);
             hasher.add_value(light.range);
         }
-        if (light.kind != LightKind::Point) add_bytes(hasher, light.direction);
-        if (light.kind == LightKind::Spot) {
+        if (parts.direction) add_bytes(hasher, light.direction);
+        if (parts.cone) {
             hasher.add_value(light.cos_inner);
             hasher.add_value(light.cos_outer);
         }

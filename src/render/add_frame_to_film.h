@@ -30,7 +30,7 @@ struct AddFrameToFilm {
     }
 
 private:
-    /// Auxiliary channels, in the words of add_first_hit (integrators/path/shade_hit.h).
+    /// Auxiliary channels, in the words of add_first_hit (render/first_hit.h).
     HD void add_hit(uint32_t pixel, const Hit& hit) const {
         const Float4 normal = frame.normal[pixel], albedo = frame.albedo[pixel];
         add_channel(film, pixel, kFilmHits, 1.0f);

@@ -21,7 +21,7 @@ HD inline uint32_t ordered_pixel(uint32_t place, uint32_t width, uint32_t height
     return tiled_pixel(place, width, height, kBandRows);
 }
 
-/// Which sample of which pixel.
+/// Which sample of which pixel, counted row by row in a film.
 struct PixelSample {
     uint32_t pixel, sample;
 };

@@ -48,6 +48,11 @@ struct CameraRays {
     }
     /// `axis` at the time of a ray.
     HD Vec3 axis_at(float time) const { return motion.moves() ? motion.at(time).turn(axis) : axis; }
+    /// Density of a ray's direction where it counts as one that a white surface scatters, which a light meter does,
+    /// 1/sr; else 0.
+    HD float pdf_of_surface(Vec3 direction) const {
+        return is_light_meter(view.projection) ? pdf_cosine_hemisphere(dot(direction, axis)) : 0.0f;
+    }
     HD bool has_lens() const { return view.aperture_radius > 0; }
 
 private:

@@ -59,7 +59,7 @@ void Film::clear() {
 }
 
 FilmView Film::view() const {
-    return {sums_.data(), ids_.data(), invalid_.data(), channels_, aovs_, width_, height_, {}};
+    return {sums_.data(), ids_.data(), invalid_.data(), channels_, aovs_, width_, height_, {}, {}};
 }
 
 void Film::add(const Film& other) {

@@ -10,6 +10,7 @@
 #include "render/film_channels.h"
 #include "render/fixed_sum.h"
 #include "render/noisy_frame_view.h"
+#include "render/pixel_window.h"
 
 namespace pertev {
 
@@ -26,8 +27,11 @@ struct FilmView {
     uint32_t aovs; // AovBits
     uint32_t width, height;
     NoisyFrameView frame; // where it is there, samples go to it: there are no sums, ids or auxiliary channels
+    PixelWindow window;   // that sums and ids are of
 
-    HD FixedSum* pixel(uint32_t index) const { return sums + static_cast<uint64_t>(index) * channels; }
+    HD FixedSum* pixel(uint32_t index) const { return at_place(window.place_of(index)); }
+    HD FixedSum* at_place(uint32_t place) const { return sums + static_cast<uint64_t>(place) * channels; }
+    HD void set_ids(uint32_t pixel, const PixelIds& of_pixel) const { ids[window.place_of(pixel)] = of_pixel; }
 };
 
 HD inline bool is_valid_sample(float x) { return abs(x) <= kMaxSampleValue; } // false for NaN

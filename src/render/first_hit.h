@@ -15,7 +15,7 @@ struct RayLine {
 
 /// Of a camera ray that met nothing.
 HD inline void add_no_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample) {
-    if ((film.aovs & kAovIds) != 0 && sample == 0) film.ids[pixel] = {kNoHit, kNoHit, kNoHit};
+    if ((film.aovs & kAovIds) != 0 && sample == 0) film.set_ids(pixel, {kNoHit, kNoHit, kNoHit});
 }
 
 /// `surface` is what `hit` made. A ground that was made up counts as background. `time`: of the ray, while the shutter
@@ -42,7 +42,7 @@ HD inline void add_first_hit(const FilmView& film, uint32_t pixel, uint32_t samp
         add_channels(film, pixel, channel, surface.position);
         add_channels(film, pixel, channel, picture.scene.position_shift);
     }
-    if ((film.aovs & kAovIds) != 0 && sample == 0) film.ids[pixel] = {hit.instance, hit.primitive, surface.material};
+    if ((film.aovs & kAovIds) != 0 && sample == 0) film.set_ids(pixel, {hit.instance, hit.primitive, surface.material});
 }
 
 } // namespace pertev

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/host_device.h"
 #include "math/rigid_motion.h"
 #include "math/transform.h"
 #include "scene/node_number.h"
@@ -15,6 +16,30 @@ namespace pertev {
 /// Cosine is no view but a light meter (integrators/path/meter_light.h): rays from the origin over the hemisphere about
 /// -z, their density the cosine over pi, over the picture from (0, 0) to (1, 1) as math/sampling.h has them.
 enum class Projection : uint8_t { Perspective, Orthographic, Cosine };
+
+/// Whether all rays of a picture go one way, so that nothing looks smaller for being far away.
+HD constexpr bool has_parallel_rays(Projection projection) {
+    switch (projection) {
+    case Projection::Perspective:
+    case Projection::Cosine:
+        return false;
+    case Projection::Orthographic:
+        break;
+    }
+    return true;
+}
+
+/// Whether it measures light and shows nothing.
+HD constexpr bool is_light_meter(Projection projection) {
+    switch (projection) {
+    case Projection::Perspective:
+    case Projection::Orthographic:
+        return false;
+    case Projection::Cosine:
+        break;
+    }
+    return true;
+}
 
 struct Camera {
     std::string name, origin;

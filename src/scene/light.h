@@ -2,9 +2,11 @@
 
 // Lights that are not surfaces: KHR_lights_punctual's three kinds, and the environment.
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
+#include "base/host_device.h"
 #include "image/image.h"
 #include "math/rgb.h"
 #include "math/transform.h"
@@ -26,6 +28,30 @@ struct Light {
     uint32_t node = kNoNode; // index into Scene::nodes
 };
 
+/// What a kind of light has beside its strength.
+struct LightParts {
+    bool place, direction, cone;
+};
+HD constexpr LightParts parts_of(LightKind kind) {
+    switch (kind) {
+    case LightKind::Point:
+        return {.place = true, .direction = false, .cone = false};
+    case LightKind::Spot:
+        return {.place = true, .direction = true, .cone = true};
+    case LightKind::Directional:
+        break;
+    }
+    return {.place = false, .direction = true, .cone = false};
+}
+
+/// Of a light with a place: its flux over 2 pi times its intensity. The edge of a cone is the square of a ramp in the
+/// cosine (shading/punctual_light.h), a third of its width.
+inline double breadth_of_beam(const LightParts& parts, float cos_inner, float cos_outer) {
+    if (!parts.cone) return 2;
+    const double inner = static_cast<double>(cos_inner);
+    return (1 - inner) + std::max(inner - static_cast<double>(cos_outer), 0.001) / 3;
+}
+
 /// Beside 1, the smallest difference of two floats: cones of one angle have this sharp an edge.
 inline constexpr float kSharpestEdge = 0x1p-24f;
 
@@ -34,7 +60,7 @@ inline constexpr float kSharpestEdge = 0x1p-24f;
 inline bool place_light(const Transform& world_from_node, Light& light) {
     light.position = world_from_node.translation;
     light.direction = normalize(-column(world_from_node, 2));
-    return light.kind == LightKind::Point || is_finite(light.direction);
+    return !parts_of(light.kind).direction || is_finite(light.direction);
 }
 
 /// Light from infinitely far away. Image columns run with longitude: the middle column looks along -z, +x is a quarter

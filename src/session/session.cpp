@@ -246,7 +246,7 @@ Integrator& Session::begin(const Camera& camera, const RenderSettings& settings,
     check_camera(settings, camera);
     if (picture.camera.is_open) {
         check_shutter(settings);
-        if (camera.projection == Projection::Cosine) {
+        if (is_light_meter(camera.projection)) {
             throw Error(ErrorCode::BadInput, "--shutter: light is measured at one moment");
         }
     }

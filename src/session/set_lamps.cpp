@@ -47,18 +47,13 @@ void set_light(const LampStrength& lamp, double lumens_per_watt, Light& light) {
     const auto set = [&](double photometric) {
         light.intensity = with_luminance(lamp, light.intensity, photometric / lumens_per_watt);
     };
-    const bool is_far = light.kind == LightKind::Directional;
+    const LightParts parts = parts_of(light.kind);
+    const bool is_far = !parts.place;
     switch (lamp.unit) {
     case LampUnit::Watt:
-    case LampUnit::Lumen: {
+    case LampUnit::Lumen:
         if (is_far) break;
-        // The cone's edge is the square of a ramp in the cosine (shading/light_set.h), a third of its width.
-        const double inner = static_cast<double>(light.cos_inner);
-        const double ramp = std::max(inner - static_cast<double>(light.cos_outer), 0.001);
-        const double solid_angle =
-            light.kind == LightKind::Point ? 4 * kPiDouble : 2 * kPiDouble * (1 - inner + ramp / 3);
-        return set(lumens(lamp) / solid_angle);
-    }
+        return set(lumens(lamp) / (2 * kPiDouble * breadth_of_beam(parts, light.cos_inner, light.cos_outer)));
     case LampUnit::Candela:
         if (is_far) break;
         return set(lamp.value);
@@ -69,9 +64,9 @@ void set_light(const LampStrength& lamp, double lumens_per_watt, Light& light) {
         break;
     }
     refuse(lamp, fmt::format("{} is a {}, which has {}", light.name.empty() ? "the light" : "'" + light.name + "'",
-                             is_far                          ? "directional light"
-                             : light.kind == LightKind::Spot ? "spot light"
-                                                             : "point light",
+                             is_far       ? "directional light"
+                             : parts.cone ? "spot light"
+                                          : "point light",
                              is_far ? "lx" : "W, lm or cd"));
 }
 

@@ -228,6 +228,8 @@ struct Bsdf {
             if (layers[i].lobe_class() == lobe_class) return true;
         return false;
     }
+    /// Whether light that comes from behind may leave in front.
+    HD bool lets_through() const { return base.kind == LobeKind::Dielectric; }
     HD bool has_delta() const { return has(LobeClass::Specular); }
     /// eval() is black for every pair of directions: light sampling is of no use here.
     HD bool has_delta_only() const {

@@ -52,26 +52,21 @@ double triangle_power(const LightSetData& data, const Pyramids& pyramids, const 
 
 double punctual_power(const PunctualLight& light, double radius) {
     const double intensity = mean_of_channels(light.intensity);
-    const double inner = static_cast<double>(light.cos_inner), outer = static_cast<double>(light.cos_outer);
-    switch (light.kind) {
-    case LightKind::Point:
-        return 4 * kPiDouble * intensity;
-    case LightKind::Spot:
-        return 2 * kPiDouble * intensity * ((1 - inner) + std::max(inner - outer, 0.001) / 3);
-    case LightKind::Directional:
-        return kPiDouble * radius * radius * intensity;
-    }
-    return 0;
+    const LightParts parts = parts_of(light.kind);
+    return parts.place ? 2 * kPiDouble * intensity * breadth_of_beam(parts, light.cos_inner, light.cos_outer)
+                       : kPiDouble * radius * radius * intensity;
 }
 
-bool is_light(const Material& material) { return material.is_lamp(); }
+double environment_power(const EnvironmentData& environment, double radius) {
+    return 4 * kPiDouble * kPiDouble * radius * radius * mean_of_channels(environment.mean_radiance);
+}
 
 void add_triangles(const Scene& scene, Vec3 centre, LightSetData& data) {
     uint64_t count = 0;
     data.first_light.assign(scene.instances.size(), kNoLight);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
-        if (instance.is_hidden || !is_light(scene.materials[instance.material])) continue;
+        if (instance.is_hidden || !scene.materials[instance.material].is_lamp()) continue;
         data.first_light[i] = static_cast<uint32_t>(count);
         const uint64_t triangles = scene.meshes[instance.mesh].triangle_count();
         data.emitters.push_back(
@@ -184,7 +179,7 @@ void order_emitters(LightSetData& data) {
 /// Puts punctual lights into the order of space, those without a place last.
 void order_punctual_lights(LightSetData& data) {
     const auto first_far = std::ranges::stable_partition(
-        data.punctual, [](const PunctualLight& light) { return light.kind != LightKind::Directional; });
+        data.punctual, [](const PunctualLight& light) { return parts_of(light.kind).place; });
     std::vector<Vec3> places;
     for (auto light = data.punctual.begin(); light != first_far.begin(); ++light) places.push_back(light->position);
     std::vector<PunctualLight> ordered;
@@ -242,7 +237,7 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
                              std::shared_ptr<const EnvironmentData> environment) {
     LightSetData data;
     for (const Material& material : scene.materials) {
-        data.emissions.push_back({is_light(material) ? material.emission : Rgb{}, material.emission_texture});
+        data.emissions.push_back({material.is_lamp() ? material.emission : Rgb{}, material.emission_texture});
     }
     add_triangles(scene, centre, data);
     for (const Light& light : scene.lights) {
@@ -271,12 +266,9 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     };
     data.near_count = static_cast<uint32_t>(data.source_powers.size());
     for (const PunctualLight& light : data.punctual) {
-        add_source(punctual_power(light, radius), light.kind == LightKind::Directional);
+        add_source(punctual_power(light, radius), !parts_of(light.kind).place);
     }
-    if (data.environment) {
-        add_source(4 * kPiDouble * kPiDouble * radius * radius * mean_of_channels(data.environment->mean_radiance),
-                   true);
-    }
+    if (data.environment) add_source(environment_power(*data.environment, radius), true);
     share_draws(data, kEvenShare);
     return data;
 }
@@ -304,7 +296,7 @@ void share_draws(LightSetData& data, double far_share) {
 uint64_t count_emissive_triangles(const Scene& scene) {
     uint64_t count = 0;
     for (const Instance& instance : scene.instances) {
-        if (!instance.is_hidden && is_light(scene.materials[instance.material]))
+        if (!instance.is_hidden && scene.materials[instance.material].is_lamp())
             count += scene.meshes[instance.mesh].triangle_count();
     }
     return count;

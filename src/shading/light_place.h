@@ -20,8 +20,13 @@ struct alignas(16) LightPlace {
     float u = 0, v = 0;           // weights of the triangle's second and third vertex; y and z of the direction
 
     HD bool is_there() const { return instance != kNoLight; }
+    HD SourceKind kind() const;
 };
 inline constexpr uint32_t kInEnvironment = 0xfffffffeu, kPunctualPlace = 0xfffffffdu;
+HD inline SourceKind LightPlace::kind() const {
+    if (instance == kInEnvironment) return SourceKind::Environment;
+    return instance == kPunctualPlace ? SourceKind::Punctual : SourceKind::Triangle;
+}
 static_assert(kMaxInstances < kPunctualPlace);
 
 HD inline LightPlace place_in_environment(Vec3 direction) {
@@ -34,33 +39,36 @@ HD inline LightPlace place_of(const LightSample& sample) {
     return place_in_environment(sample.wi);
 }
 
-/// What arrives at `from_point` of the light at `place`: as sample_light gives it, but for the pdf of punctual lights,
+/// What arrives at `context` of the light at `place`: as sample_light gives it, but for the pdf of punctual lights,
 /// which is 1. `measure` is the solid angle of the place over its own measure, 1/sr times that. False where nothing
 /// arrives; occlusion is the caller's, and so is alpha.
-HD inline bool find_light(const LightSetView& view, const LightPlace& place, Vec3 from_point, LightSample& sample,
-                          float& measure) {
+HD inline bool find_light(const LightSetView& view, const LightPlace& place, const LightContext& context,
+                          LightSample& sample, float& measure) {
     measure = 1;
     if (!place.is_there()) return false;
-    if (place.instance == kInEnvironment) {
+    switch (place.kind()) {
+    case SourceKind::Environment: {
         sample = {};
         sample.wi = {float_of(place.index), place.u, place.v};
-        const EnvironmentHit hit = find_environment(view, sample.wi, true);
+        const EnvironmentHit hit = find_environment(view, context, sample.wi, true);
         if (!(hit.pdf > 0)) return false;
         sample.pdf = hit.pdf;
         sample.distance = kInfinity;
         sample.radiance = hit.radiance;
         return true;
     }
-    if (place.instance == kPunctualPlace) {
+    case SourceKind::Punctual: {
         if (place.index >= view.punctual_count) return false; // another scene than it was drawn in
-        const bool arrives = sample_punctual_light(view.punctual[place.index], 1.0f, from_point, sample);
+        const bool arrives = sample_punctual_light(view.punctual[place.index], 1.0f, context.point, sample);
         sample.primitive = place.index;
         return arrives;
     }
+    case SourceKind::Triangle:
+        break;
+    }
     const uint32_t light = light_of(view, place.instance, place.index);
-    if (light == kNoLight || !triangle_light_at<true>(view, light, from_point, {place.u, place.v}, sample))
-        return false;
-    measure = 2.0f * view.triangles[light].pmf / sample.pdf; // a triangle of weights has the area 1/2
+    if (light == kNoLight || !triangle_light_at<true>(view, light, context, {place.u, place.v}, sample)) return false;
+    measure = 2.0f * pmf_of_triangle(view, context, light) / sample.pdf; // a triangle of weights has the area 1/2
     return true;
 }
 

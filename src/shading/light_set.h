@@ -1,9 +1,10 @@
 #pragma once
 
 // All lights of a scene behind one door: emissive triangles (any number), point, spot and directional lights, and the
-// environment, drawn by power. sample_light draws a light and a direction to it; pdf_light_hit and pdf_environment give
-// the density of that draw for a direction found otherwise, which multiple importance sampling needs (Veach 1997,
-// section 9.2).
+// environment, drawn by power. sample_light draws a light and a direction to it for a context, the place that asks;
+// pdf_light_hit and find_environment give the density of that draw for a direction found otherwise, which multiple
+// importance sampling needs (Veach 1997, section 9.2). Which light is drawn is decided by draw_light alone, and how
+// probable that was is said by pmf_of_triangle and pmf_of_environment: a light tree is another body of these three.
 //
 // A pair of numbers draws all of it, and near pairs draw near places: x the source (an emissive instance, a punctual
 // light, the environment) and y the instance's triangle, both by ordered tables; what remains of x and y draws the
@@ -21,14 +22,15 @@
 #include "base/host_device.h"
 #include "base/limits.h"
 #include "math/rgb.h"
+#include "math/rigid_motion.h"
 #include "math/sampling.h"
 #include "math/scalar.h"
 #include "math/vec2.h"
 #include "math/vec3.h"
-#include "scene/light.h"
 #include "scene/texture.h"
 #include "shading/environment_light.h"
 #include "shading/ordered_table.h"
+#include "shading/punctual_light.h"
 #include "shading/texture_lookup.h"
 
 namespace pertev {
@@ -57,20 +59,14 @@ struct Emitter {
 };
 static_assert(kMaxInstances <= 1u << 30, "EmissiveTriangle::instance has 30 bits");
 
-/// scene/light.h's Light without its name.
-struct PunctualLight {
-    LightKind kind = LightKind::Point;
-    Vec3 position, direction; // metres; unit, the way the light travels
-    Rgb intensity;            // W/sr; Directional: W/m2
-    float cos_inner = 1, cos_outer = 0, range = 0;
-    uint32_t number = 0; // in Scene::lights: the table's order is another
-};
-
 /// What a material emits: emission times the texture.
 struct SurfaceEmission {
     Rgb emission; // W/(sr m2); 0 for materials that are no lights
     TextureRef texture;
 };
+
+/// The kinds of light that draws tell apart: each is drawn, found and emitted in its own way.
+enum class SourceKind : uint8_t { Triangle, Punctual, Environment };
 
 struct LightSetView {
     OrderedTableView choice; // over all sources; no starts: there are none
@@ -89,11 +85,28 @@ struct LightSetView {
     EnvironmentView environment;                // where there is one
 
     HD bool has_environment() const { return environment_source != kNoLight; }
+    HD bool has_lights() const { return choice.starts != nullptr; }
+    HD SourceKind kind_of(uint32_t source) const {
+        if (source < emitter_count) return SourceKind::Triangle;
+        return source != environment_source ? SourceKind::Punctual : SourceKind::Environment;
+    }
     HD OrderedTableView triangles_of(uint32_t source) const {
         const Emitter& emitter = emitters[source];
         return {triangle_starts + emitter.first_start, triangle_guides + emitter.first_guide, emitter.triangle_count,
                 emitter.guide_bits};
     }
+};
+
+/// Who asks for light: a point of a surface, or of space. What the draws leave alone costs nothing.
+struct LightContext {
+    Vec3 point;        // metres, moved world
+    Vec3 normal;       // unit, shading; zero: there is none
+    bool lets_through; // light may come from behind the normal
+    float time;        // of the ray, while the shutter is open
+
+    HD LightContext(Vec3 at, float at_time = kAtRest) : point(at), normal{0, 0, 0}, lets_through(true), time(at_time) {}
+    HD LightContext(Vec3 at, Vec3 shading_normal, bool is_translucent, float at_time)
+        : point(at), normal(shading_normal), lets_through(is_translucent), time(at_time) {}
 };
 
 struct LightSample {
@@ -130,31 +143,27 @@ HD inline float triangle_pdf(Vec3 normal, Vec3 wi, float distance_squared) {
     return 2.0f * distance_squared / abs(dot(normal, wi));
 }
 
-/// Share of a punctual light's intensity that reaches `distance` (metres) in direction `wi` (towards the light), as
-/// KHR_lights_punctual recommends: the spot's cone is a smooth step in the cosine, squared, and the range a window.
-HD inline float punctual_falloff(const PunctualLight& light, Vec3 wi, float distance) {
-    float falloff = 1;
-    if (light.range > 0) falloff = clamp(1.0f - square(square(distance / light.range)), 0.0f, 1.0f);
-    if (light.kind == LightKind::Spot) {
-        const float width = max(0.001f, light.cos_inner - light.cos_outer);
-        falloff *= square(clamp((-dot(light.direction, wi) - light.cos_outer) / width, 0.0f, 1.0f));
-    }
-    return falloff;
+/// Probability that draw_light draws a triangle light, or the environment.
+HD inline float pmf_of_triangle(const LightSetView& view, const LightContext&, uint32_t light) {
+    return view.triangles[light].pmf;
+}
+HD inline float pmf_of_environment(const LightSetView& view, const LightContext&) {
+    return ordered_pmf(view.choice, view.environment_source);
 }
 
 /// The place `b` (weights of the second and third vertex) on triangle light `light` as sample_light would have drawn
 /// it. False where nothing arrives.
 template <bool kTextures>
-HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, Vec3 from_point, Vec2 b,
+HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, const LightContext& context, Vec2 b,
                                  LightSample& sample) {
     const EmissiveTriangle& triangle = view.triangles[light];
     const Vec3 point = triangle.a + (b.x * triangle.ab + b.y * triangle.ac);
-    const Vec3 to_light = point - from_point;
+    const Vec3 to_light = point - context.point;
     const float distance_squared = length_squared(to_light), distance = sqrt(distance_squared);
     const Vec3 wi = to_light / distance;
     const Vec3 normal = cross(triangle.ab, triangle.ac);
     if (!triangle.emits_against(wi, normal)) return false; // its dark back
-    const float pdf = triangle.pmf * triangle_pdf(normal, wi, distance_squared);
+    const float pdf = pmf_of_triangle(view, context, light) * triangle_pdf(normal, wi, distance_squared);
     if (!(pdf > 0) || !is_finite(pdf)) return false; // edge-on, or the receiver lies on the light
     const Vec2 uv = (1.0f - b.x - b.y) * triangle.uv0 + b.x * triangle.uv1 + b.y * triangle.uv2;
     const Rgb radiance = surface_emission<kTextures>(view, triangle.material, uv);
@@ -165,95 +174,127 @@ HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, Vec3 
 }
 
 HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3 from_point, LightSample& sample) {
+    PunctualArrival arrival;
+    if (!find_punctual_light(light, from_point, arrival)) return false;
     sample = {};
+    sample.wi = arrival.wi;
+    sample.distance = arrival.distance;
+    sample.light_point = light.position;
+    sample.radiance = arrival.irradiance;
     sample.pdf = pmf;
     sample.is_delta = true;
-    if (light.kind == LightKind::Directional) {
-        sample.wi = -light.direction;
-        sample.distance = kInfinity;
-        sample.radiance = light.intensity;
-        return pmf > 0;
-    }
-    const Vec3 to_light = light.position - from_point;
-    const float distance_squared = length_squared(to_light);
-    sample.distance = sqrt(distance_squared);
-    sample.wi = to_light / sample.distance;
-    sample.light_point = light.position;
-    const float factor = punctual_falloff(light, sample.wi, sample.distance) / distance_squared;
-    if (!(factor > 0) || !is_finite(factor)) return false; // out of cone or range, or the receiver is the light
-    sample.radiance = factor * light.intensity;
     return pmf > 0;
 }
 
 /// For sample_light: every lamp is where its triangles are.
 struct LampsAtRest {};
 
-/// Draws a light and a direction to it by `u`. False where nothing arrives: no lights, the dark back or a dark spot of
-/// a triangle, outside a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha: where the
-/// triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives. `lamps`: the rigid
-/// motion of the lamp of an instance (math/rigid_motion.h).
-template <bool kTextures = true, class Lamps = LampsAtRest>
-HD inline bool sample_light(const LightSetView& view, Vec3 from_point, SampleBits u, LightSample& sample,
-                            const Lamps& lamps = {}) {
-    if (view.choice.starts == nullptr) return false;
+/// Draws a light by `u` and returns what that one of the functions of `to` says that is for its kind; each is given
+/// what remains of `u`. False: there are no lights.
+///   triangle(light, place)   place: weights of its second and third vertex; pmf_of_triangle says how probable it was
+///   punctual(number, pmf)    number: in LightSetView::punctual
+///   environment(pmf, rest)
+template <class ToKind>
+HD INLINE_ON_DEVICE bool draw_light(const LightSetView& view, SampleBits u, const ToKind& to) {
+    if (!view.has_lights()) return false;
     const uint32_t more = bits_behind(u);
     const OrderedDraw source = draw_ordered(view.choice, u.x, more);
-    if (source.index < view.emitter_count) {
+    switch (view.kind_of(source.index)) {
+    case SourceKind::Triangle: {
         const OrderedDraw triangle = draw_ordered(view.triangles_of(source.index), u.y, more);
         const uint32_t first = view.emitters[source.index].first_triangle;
-        const uint32_t light = first + view.triangle_order[first + triangle.index];
-        const Vec2 b = sample_uniform_triangle({rest_of(source), rest_of(triangle)});
+        return to.triangle(first + view.triangle_order[first + triangle.index],
+                           sample_uniform_triangle({rest_of(source), rest_of(triangle)}));
+    }
+    case SourceKind::Punctual:
+        return to.punctual(source.index - view.emitter_count, ordered_pmf(source.owned));
+    case SourceKind::Environment:
+        break;
+    }
+    return to.environment(ordered_pmf(source.owned), SampleBits{number_of_rest(source), u.y});
+}
+
+/// What a context sees of the light that was drawn: sample_light's functions of the kinds.
+template <bool kTextures, class Lamps>
+struct SampleOfKind {
+    const LightSetView& view;
+    const LightContext& context;
+    const Lamps& lamps;
+    LightSample& sample;
+
+    HD bool triangle(uint32_t light, Vec2 b) const {
         if constexpr (std::is_same_v<Lamps, LampsAtRest>) {
-            return triangle_light_at<kTextures>(view, light, from_point, b, sample);
+            return triangle_light_at<kTextures>(view, light, context, b, sample);
         } else {
             const auto motion = lamps(view.triangles[light].instance);
-            if (!triangle_light_at<kTextures>(view, light, motion.move_back(from_point), b, sample)) return false;
+            if (!triangle_light_at<kTextures>(view, light, motion.move_back(context.point), b, sample)) return false;
             sample.wi = motion.turn(sample.wi);
             sample.light_point = motion.move(sample.light_point);
             sample.light_normal = motion.turn(sample.light_normal);
             return true;
         }
     }
-    const float pmf = ordered_pmf(source.owned);
-    if (source.index != view.environment_source) {
-        const uint32_t punctual = source.index - view.emitter_count;
-        const bool arrives = sample_punctual_light(view.punctual[punctual], pmf, from_point, sample);
-        sample.primitive = punctual;
+    HD bool punctual(uint32_t number, float pmf) const {
+        const bool arrives = sample_punctual_light(view.punctual[number], pmf, context.point, sample);
+        sample.primitive = number;
         return arrives;
     }
-    EnvironmentSample from_environment;
-    if (!sample_environment(view.environment, {number_of_rest(source), u.y}, from_environment)) return false;
-    sample = {};
-    sample.wi = from_environment.wi;
-    sample.distance = kInfinity;
-    sample.radiance = from_environment.radiance;
-    sample.pdf = pmf * from_environment.pdf;
-    return sample.pdf > 0;
+    HD bool environment(float pmf, SampleBits rest) const {
+        EnvironmentSample from_environment;
+        if (!sample_environment(view.environment, rest, from_environment)) return false;
+        sample = {};
+        sample.wi = from_environment.wi;
+        sample.distance = kInfinity;
+        sample.radiance = from_environment.radiance;
+        sample.pdf = pmf * from_environment.pdf;
+        return sample.pdf > 0;
+    }
+};
+
+/// Draws a light and a direction to it by `u`. False where nothing arrives: no lights, the dark back or a dark spot of
+/// a triangle, outside a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha: where the
+/// triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives. `lamps`: the rigid
+/// motion of the lamp of an instance at the context's time (math/rigid_motion.h).
+template <bool kTextures = true, class Lamps = LampsAtRest>
+HD inline bool sample_light(const LightSetView& view, const LightContext& context, SampleBits u, LightSample& sample,
+                            const Lamps& lamps = {}) {
+    return draw_light(view, u, SampleOfKind<kTextures, Lamps>{view, context, lamps, sample});
 }
 
-/// Density with which sample_light, at `from_point`, draws the direction to `hit_point` on triangle light `light`,
-/// 1/sr. The very number in LightSample::pdf where hit_point is the light_point drawn; 0 where that is not drawn, as
-/// from behind a triangle that emits from its front alone.
-HD inline float pdf_light_hit(const LightSetView& view, uint32_t light, Vec3 from_point, Vec3 hit_point) {
+/// Density with which sample_light draws, for `context`, the direction to `hit_point` on triangle light `light`, 1/sr.
+/// The very number in LightSample::pdf where hit_point is the light_point drawn; 0 where that is not drawn, as from
+/// behind a triangle that emits from its front alone.
+template <class Lamps = LampsAtRest>
+HD inline float pdf_light_hit(const LightSetView& view, uint32_t light, const LightContext& context, Vec3 hit_point,
+                              const Lamps& lamps = {}) {
     const EmissiveTriangle& triangle = view.triangles[light];
+    Vec3 from_point = context.point;
+    if constexpr (!std::is_same_v<Lamps, LampsAtRest>) {
+        const auto motion = lamps(triangle.instance);
+        from_point = motion.move_back(from_point);
+        hit_point = motion.move_back(hit_point);
+    }
     const Vec3 to_light = hit_point - from_point;
     const float distance_squared = length_squared(to_light);
     const Vec3 wi = to_light / sqrt(distance_squared);
     const Vec3 normal = cross(triangle.ab, triangle.ac);
     if (!triangle.emits_against(wi, normal)) return 0;
-    const float pdf = triangle_pdf(normal, wi, distance_squared) * triangle.pmf;
+    const float pdf = triangle_pdf(normal, wi, distance_squared) * pmf_of_triangle(view, context, light);
     return is_finite(pdf) ? pdf : 0.0f;
 }
 
-/// What direction `wi` meets in the environment, with the density with which sample_light draws it, 1/sr.
-HD inline EnvironmentHit find_environment(const LightSetView& view, Vec3 wi, bool wants_pdf) {
+/// What direction `wi` meets in the environment, with the density with which sample_light draws it for `context`, 1/sr.
+HD inline EnvironmentHit find_environment(const LightSetView& view, const LightContext& context, Vec3 wi,
+                                          bool wants_pdf) {
     if (!view.has_environment()) return {{0, 0, 0}, 0};
-    EnvironmentHit hit = find_environment(view.environment, wi, wants_pdf && view.choice.starts != nullptr);
-    if (hit.pdf > 0) hit.pdf = ordered_pmf(view.choice, view.environment_source) * hit.pdf;
+    EnvironmentHit hit = find_environment(view.environment, wi, wants_pdf && view.has_lights());
+    if (hit.pdf > 0) hit.pdf = pmf_of_environment(view, context) * hit.pdf;
     return hit;
 }
 
 /// That density alone; 0 without an environment.
-HD inline float pdf_environment(const LightSetView& view, Vec3 wi) { return find_environment(view, wi, true).pdf; }
+HD inline float pdf_environment(const LightSetView& view, const LightContext& context, Vec3 wi) {
+    return find_environment(view, context, wi, true).pdf;
+}
 
 } // namespace pertev

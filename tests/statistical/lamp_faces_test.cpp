@@ -119,8 +119,7 @@ TEST_CASE("a clamp takes later light alike, however it is found, before it is we
     const auto found = [&](uint32_t depth, LightStrategy strategy, float light_pdf, float clamp) {
         PathState here = path;
         here.depth = depth;
-        add_emission({.strategy = strategy, .clamp = clamp}, here, grey(5), light_pdf);
-        return here.radiance;
+        return emitted_light({.strategy = strategy, .clamp = clamp}, here, grey(5), light_pdf);
     };
     const float weight = power_heuristic(3, 1);
     for (const uint32_t depth : {0u, 1u}) CHECK(found(depth, LightStrategy::Mis, 0, 10) == Rgb{10, 20, 5});
@@ -144,10 +143,11 @@ TEST_CASE("a clamp takes later light alike, however it is found, before it is we
         PathState here = path;
         here.depth = depth;
         ShadowRay shadow;
-        NoEvents events;
-        const PathSettings settings = {.strategy = strategy, .clamp = clamp, .sampler = SamplerKind::Independent};
-        REQUIRE(ask_for_light<MaterialsKnown::Nothing, MotionKnown::None>(
-            device.view(), settings, here, surface, {0, 1, 0}, DrawWhenAsked(), false, false, shadow, events));
+        PathJob job = {};
+        job.picture.scene = device.view();
+        job.settings = {.strategy = strategy, .clamp = clamp, .sampler = SamplerKind::Independent};
+        FilmListeners listener(job);
+        REQUIRE(sample_direct<kAllMaterials>(job, here, {surface, {0, 1, 0}}, DrawWhenAsked(), shadow, listener));
         return static_cast<double>(max_component(shadow.contribution));
     };
     CHECK(asked(0, LightStrategy::NeeOnly, 1) == asked(0, LightStrategy::NeeOnly, 0));

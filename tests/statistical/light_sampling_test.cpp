@@ -115,8 +115,8 @@ TEST_CASE("lights: a triangle emits from its front, which a mirroring node leave
         check_irradiance(lights.view, shines_down ? full : 0);
         const Estimate above = irradiance(lights.view, {0, 2, 0}, {0, -1, 0}, 20'000, 2);
         CHECK(std::abs(above.mean - (shines_up ? full : 0)) <= 4 * above.error);
-        CHECK((pdf_light_hit(lights.view, 0, {0, 0, 0}, {-0.5f, 1, -0.5f}) > 0) == shines_down);
-        CHECK((pdf_light_hit(lights.view, 0, {0, 2, 0}, {-0.5f, 1, -0.5f}) > 0) == shines_up);
+        CHECK((pdf_light_hit(lights.view, 0, Vec3{0, 0, 0}, {-0.5f, 1, -0.5f}) > 0) == shines_down);
+        CHECK((pdf_light_hit(lights.view, 0, Vec3{0, 2, 0}, {-0.5f, 1, -0.5f}) > 0) == shines_up);
     }
 }
 
@@ -216,7 +216,7 @@ TEST_CASE("lights: point, spot and directional lights give what their definition
     const auto only = [&](const Light& light) {
         scene.lights = {light};
         const Lights lights(scene);
-        const bool is_lit = sample_light(lights.view, {0, 0, 0}, {0x80000000u, 0x80000000u}, sample);
+        const bool is_lit = sample_light(lights.view, Vec3{0, 0, 0}, {0x80000000u, 0x80000000u}, sample);
         if (is_lit) {
             CHECK(sample.pdf == 1);
             CHECK(sample.is_delta);
@@ -310,7 +310,7 @@ TEST_CASE("lights: draws follow the density, over lights of eight decades of pow
         for (uint32_t i = 0; i < draws; ++i) {
             const Hash4 h = hash_words(i, count, 1, 2);
             LightSample sample;
-            if (!sample_light(lights.view, {0, 0, 0}, {h.x, h.y}, sample)) continue;
+            if (!sample_light(lights.view, Vec3{0, 0, 0}, {h.x, h.y}, sample)) continue;
             const bool from_sky = sample.instance == kNoLight;
             const uint32_t light = from_sky ? count : light_of(lights.view, sample.instance, sample.primitive);
             observed[4 * std::size_t(light) + (from_sky ? octant(sample.wi) : quarter(sample.b1, sample.b2))] += 1;
@@ -349,7 +349,7 @@ TEST_CASE("lights: the density of a sample is found again from its point or its 
         CHECK_FALSE(sample.is_delta);
         if (sample.instance == kNoLight) {
             ++from_sky;
-            const float pdf = pdf_environment(lights.view, sample.wi);
+            const float pdf = pdf_environment(lights.view, Vec3{0, 0, 0}, sample.wi);
             if (std::abs(pdf - sample.pdf) > 1e-5f * sample.pdf) ++sky_differs;
             continue;
         }
@@ -382,7 +382,7 @@ TEST_CASE("lights: the density of directions to a triangle integrates to its pro
             const Vec3 hit = {static_cast<float>(x), 1, static_cast<float>(z)};
             const uint32_t light = i + j < steps ? 0 : 1;
             integral += 4.0 / (steps * steps) / std::pow(x * x + z * z + 1, 1.5) *
-                        as_double(pdf_light_hit(lights.view, light, {0, 0, 0}, hit));
+                        as_double(pdf_light_hit(lights.view, light, Vec3{0, 0, 0}, hit));
         }
     }
     CHECK(integral == doctest::Approx(1 - as_double(light_pmf(lights.view, 2))).epsilon(1e-4));
@@ -418,8 +418,8 @@ TEST_CASE("lights: what cannot be lit is no sample, never a value that is not fi
     LightSample sample;
     Scene empty;
     const Lights none(empty);
-    CHECK_FALSE(sample_light(none.view, {0, 0, 0}, {0x80000000u, 0x80000000u}, sample));
-    CHECK(pdf_environment(none.view, {0, 1, 0}) == 0);
+    CHECK_FALSE(sample_light(none.view, Vec3{0, 0, 0}, {0x80000000u, 0x80000000u}, sample));
+    CHECK(pdf_environment(none.view, Vec3{0, 0, 0}, {0, 1, 0}) == 0);
 
     Scene scene;
     Mesh mesh = make_square(1);
@@ -442,6 +442,6 @@ TEST_CASE("lights: what cannot be lit is no sample, never a value that is not fi
         CHECK(is_finite(sample.pdf));
         CHECK(sample.pdf > 0);
     }
-    CHECK(pdf_light_hit(lights.view, 0, {0, 0, 0}, {0, 0, 0}) == 0);
-    CHECK(pdf_light_hit(lights.view, 2, {0, 1, 0}, mesh.positions[0]) == 0);
+    CHECK(pdf_light_hit(lights.view, 0, Vec3{0, 0, 0}, {0, 0, 0}) == 0);
+    CHECK(pdf_light_hit(lights.view, 2, Vec3{0, 1, 0}, mesh.positions[0]) == 0);
 }

@@ -36,7 +36,8 @@ double gain(const LightSetView& view) {
     const auto variance = [&](SamplerKind kind) {
         return relative_variance_of([&](SampleKey key) {
             LightSample sample;
-            if (!sample_light(view, {0, 0, 0}, sample_bits(kind, key, kGroupCamera, Pair::Last), sample)) return 0.0;
+            if (!sample_light(view, Vec3{0, 0, 0}, sample_bits(kind, key, kGroupCamera, Pair::Last), sample))
+                return 0.0;
             return static_cast<double>(max(sample.wi.y, 0.0f)) * static_cast<double>(sample.radiance.g / sample.pdf);
         });
     };

@@ -71,7 +71,7 @@ struct DrawLights {
         }
         const uint32_t hash = fold(fold(fold(1, sample.wi), sample.radiance), sample.pdf);
         const Vec3 towards = random_direction(i, 6);
-        out[i] = fold(fold(fold(hash, sample.light_point), sample.distance), pdf_environment(lights, towards));
+        out[i] = fold(fold(fold(hash, sample.light_point), sample.distance), pdf_environment(lights, from, towards));
     }
 };
 

@@ -6,6 +6,7 @@
 
 #include "device_scene/accept_hit.h"
 #include "device_scene/scene_on_device.h"
+#include "render/prepare_scene.h"
 #include "math/portable_math.h"
 #include "tests/support/random.h"
 #include "trace/intersect/intersect_triangle.h"

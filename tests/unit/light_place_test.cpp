@@ -46,7 +46,7 @@ TEST_CASE("a light that is found again at its place is the one that was drawn") 
             // The density over weights is the same wherever it is asked from.
             float elsewhere = 0;
             LightSample other;
-            if (find_light(lights.view, place_of(drawn), {1, 0.5f, 1}, other, elsewhere)) {
+            if (find_light(lights.view, place_of(drawn), Vec3{1, 0.5f, 1}, other, elsewhere)) {
                 CHECK(other.pdf * elsewhere == doctest::Approx(as_double(drawn.pdf * measure)));
             }
         } else if (drawn.is_delta) {
@@ -66,9 +66,9 @@ TEST_CASE("nothing arrives from nowhere, nor from a lamp that is none any more")
     const Lights lights(make_kept_lamps());
     LightSample sample;
     float measure = 0;
-    CHECK_FALSE(find_light(lights.view, {}, {0, 0, 0}, sample, measure));
-    CHECK_FALSE(find_light(lights.view, {kPunctualPlace, 2, 0, 0}, {0, 0, 0}, sample, measure));
+    CHECK_FALSE(find_light(lights.view, {}, Vec3{0, 0, 0}, sample, measure));
+    CHECK_FALSE(find_light(lights.view, {kPunctualPlace, 2, 0, 0}, Vec3{0, 0, 0}, sample, measure));
     Scene dark = make_kept_lamps();
     dark.materials[1].emission = {0, 0, 0};
-    CHECK_FALSE(find_light(Lights(dark).view, {1, 0, 0.2f, 0.2f}, {2, 0, 1}, sample, measure));
+    CHECK_FALSE(find_light(Lights(dark).view, {1, 0, 0.2f, 0.2f}, Vec3{2, 0, 1}, sample, measure));
 }

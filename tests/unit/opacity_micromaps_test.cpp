@@ -13,6 +13,7 @@
 #include "device_scene/classify_opacity.h"
 #include "device_scene/opacity_micromaps.h"
 #include "device_scene/scene_on_device.h"
+#include "render/prepare_scene.h"
 #include "tests/support/random.h"
 
 using namespace pertev;

@@ -268,7 +268,7 @@ TEST_CASE("mtl: what is not read is a warning with the first line") {
     const Loaded l = load_text("mtllib a.mtl\n" + kTriangle + "usemtl m\nf 1 2 3\n",
                                "Kd 1 0 0\nnewmtl m\nfoo 3\nmap_Normal x.png\nKd spectral x.rfl\nmap_Ks t.png\n"
                                "map_Ks u.png\nNs 10 11\nPc 0.5\nPs 0\nKa 1 1 1\nsharpness 60\nmap_Ka t.png\n");
-    CHECK(l.said("a.mtl:1: 3 lines not understood (Kd is the first)"));
+    CHECK(l.said("a.mtl:1: 3 lines that are not understood (Kd is the first) are left out"));
     CHECK(l.said("a.mtl:5: 1 line of Kd spectral is left out"));
     CHECK(l.said("a.mtl:6: 2 lines of map_Ks are left out"));
     CHECK(l.said("a.mtl:8: 1 line with more than the key takes"));

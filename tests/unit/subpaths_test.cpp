@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "integrators/subpaths/see_vertex.h"
 #include "integrators/subpaths/splat.h"
 #include "render/filter_table.h"
+#include "render/see_vertex.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"

@@ -56,7 +56,7 @@ private:
         if (state.depth() == 0) return add_seen_background(scene.picture, film, state, ray);
         const LightSetView& lights = scene.picture.scene.lights;
         if (!lights.has_environment()) return;
-        const float pdf = pdf_environment(lights, ray.direction);
+        const float pdf = pdf_environment(lights, ray.origin, ray.direction);
         add_light(state, {pdf, pdf_disc(scene.world)}, environment_radiance(lights.environment, ray.direction));
     }
     HD LightDensities light_densities(const Hit& hit, Vec3 direction) const {
@@ -74,7 +74,7 @@ private:
         const SceneView& view = scene.picture.scene;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<has_textures(kKnown)>(view.lights, surface.position, bits, light)) return;
+        if (!sample_light<has_textures(kKnown)>(view.lights, surface.light_context(), bits, light)) return;
         const BothWays scattered = scatter_both_ways<kKnown>(surface, wo, light.wi);
         if (is_black(scattered.eye.f)) return;
         const uint32_t coin = coin_key(key, state.depth(), true);
@@ -98,7 +98,7 @@ private:
         const LightSetView& lights = scene.picture.scene.lights;
         if (light.distance == kInfinity) return pdf_disc(scene.world);
         const float inverse = 1.0f / square(light.distance);
-        if (light.is_delta) return inverse * pdf_direction(lights.punctual[light.primitive]);
+        if (light.is_delta) return inverse * pdf_beam(lights.punctual[light.primitive]);
         const uint32_t number = light_of(lights, light.instance, light.primitive);
         return inverse * pdf_emission(lights.triangles[number], dot(light.light_normal, light.wi));
     }

@@ -122,7 +122,7 @@ private:
         const LightSetView& lights = scene.picture.scene.lights;
         if (!lights.has_environment()) return;
         add_light(walk, state, sight, environment_radiance(lights.environment, ray.direction),
-                  sight.pdf > 0 ? pdf_environment(lights, ray.direction) : 0.0f);
+                  sight.pdf > 0 ? pdf_environment(lights, ray.origin, ray.direction) : 0.0f);
     }
 
     /// One point of one light, as path tracing draws it.
@@ -132,7 +132,7 @@ private:
         if (surface.bsdf.has_delta_only() || is_black(state.throughput)) return;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<has_textures(kKnown)>(view.lights, surface.position, bits, light)) return;
+        if (!sample_light<has_textures(kKnown)>(view.lights, surface.light_context(), bits, light)) return;
         const BsdfValue scattered = surface.evaluate(vertex.wo, light.wi);
         if (is_black(scattered.f)) return;
         const uint32_t coin = coin_key(vertex.key, state.depth(), true);

@@ -6,7 +6,6 @@
 
 #include "device_scene/surface.h"
 #include "integrators/irradiance_cache/irradiance_record.h"
-#include "render/camera_rays.h"
 
 namespace pertev {
 
@@ -44,20 +43,6 @@ HD inline float let_in(const Bsdf& bsdf, float side, Vec3 wi) {
     if (bsdf.layer_count == 0) return 1;
     const float straight = max_component(diffuse_reflectance(bsdf, {0, 0, side}, {0, 0, side}));
     return straight > 0 ? max_component(diffuse_reflectance(bsdf, {0, 0, side}, wi)) / straight : 0.0f;
-}
-
-/// Metres of the world that a pixel's side shows, so far from the camera.
-HD inline float pixel_size(const CameraRays& camera, float way) {
-    const float across = 2.0f * camera.view.half_height * camera.view.inv_height;
-    switch (camera.view.projection) {
-    case Projection::Orthographic:
-        return across;
-    case Projection::Perspective:
-        return way * across;
-    case Projection::Cosine:
-        break;
-    }
-    return way * 2.0f * camera.view.inv_height;
 }
 
 } // namespace pertev

@@ -99,7 +99,7 @@ struct FinishRecords {
         const RecordSite site = job.sites[job.begin + i];
         const Surface surface = make_surface<kKnown>(scene.picture.scene, hit_of(site), site.direction);
         const float side = CachedSurface(surface, -site.direction).side;
-        const float pixel = pixel_size(scene.picture.camera, site.way);
+        const float pixel = pixel_size(scene.picture.camera.view, site.way);
         const std::size_t first = std::size_t(i) * job.grid.cells();
         const float nearest = 0x1p-6f * pixel; // what is nearer counts as so near
         HemisphereSum sum = sum_hemisphere(job.grid, surface.frame, [&](uint32_t cell) {

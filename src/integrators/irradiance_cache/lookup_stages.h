@@ -101,7 +101,7 @@ struct DrawRecords {
         const CachedSurface cached(surface, -ray.direction);
         if (!cached.is_cached) return;
         const CachePlace place = place_of(surface, cached.side, state.depth());
-        const float radius = kPixels * pixel_size(scene.picture.camera, cache.ways[walk] + hit.t);
+        const float radius = kPixels * pixel_size(scene.picture.camera.view, cache.ways[walk] + hit.t);
         bool is_marked = false;
         visit_within(records.tree, place.position, radius, [&](const NearPoint& near) {
             const CachePlace& own = records.records[near.index].place;

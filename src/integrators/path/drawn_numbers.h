@@ -18,7 +18,7 @@ inline Vec2 unit_square(const SampleBitsOf<Words8>& bits, uint32_t lane) {
     return {unit_interval(bits.x[lane]), unit_interval(bits.y[lane])};
 }
 
-/// Of one path out of eight, as shade_hit asks for them (vertex_numbers.h). `lobe` and `roulette` are only of words
+/// Of one path out of eight, as shade_vertex asks for them (vertex_numbers.h). `lobe` and `roulette` are only of words
 /// that were drawn with choices.
 class DrawnNumbers {
 public:

@@ -21,9 +21,7 @@ HD inline PathState begin_path(const CameraRays& camera, uint32_t pixel, uint32_
     path.pixel = pixel;
     path.sample = sample;
     path.time = time;
-    if (camera.view.projection == Projection::Cosine) {
-        path.bsdf_pdf = pdf_cosine_hemisphere(dot(ray.direction, camera.axis)); // as if a white surface stood there
-    }
+    path.bsdf_pdf = camera.pdf_of_surface(ray.direction);
     return path;
 }
 

@@ -1,17 +1,36 @@
 #pragma once
 
-// shade_hit as the CPU's loop calls it: compiled for what a picture's materials are known to be, by numbers that have
-// been drawn.
+// shade_vertex as the CPU's loop calls it: compiled for what a picture's materials are known to be, by numbers that
+// have been drawn.
 
 #include "integrators/path/drawn_numbers.h"
-#include "integrators/path/shade_hit.h"
+#include "integrators/path/frame_listeners.h"
+#include "integrators/path/layer_listeners.h"
+#include "integrators/path/path_vertex.h"
 
 namespace pertev {
 
-using ShadeOnHost = bool (*)(const PictureView&, const PathSettings&, const FilmView&, PathState&, const Hit&,
-                             const DrawnNumbers&, ShadowRay&, bool& wants_shadow);
+/// What a vertex gives beside its path.
+template <class Listener>
+struct AskedByVertex {
+    ShadowRay ray; // where one is wanted
+    [[no_unique_address]] typename Listener::Asked asked;
+};
 
-/// The one with no more code than picture and film need.
-ShadeOnHost shading_for(const PictureView& picture, const FilmView& film);
+/// Takes a path over a vertex, with what the listener keeps of it. Sets whether the path goes on and returns whether it
+/// asks for a shadow ray.
+template <class Listener>
+using ShadeOnHost = bool (*)(const PathJob&, PathState&, typename Listener::Kept&, const Hit&, const DrawnNumbers&,
+                             AskedByVertex<Listener>&, bool& goes_on);
+
+/// The one with no more code than the picture needs.
+template <class Listener>
+ShadeOnHost<Listener> shading_for(const PictureView& picture);
+template <>
+ShadeOnHost<FilmListeners> shading_for<FilmListeners>(const PictureView& picture);
+template <>
+ShadeOnHost<ReuseListeners> shading_for<ReuseListeners>(const PictureView& picture);
+template <>
+ShadeOnHost<LayerListeners> shading_for<LayerListeners>(const PictureView& picture);
 
 } // namespace pertev

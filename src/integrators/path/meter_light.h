@@ -3,7 +3,7 @@
 // A light meter: pictures of a camera with Projection::Cosine are the radiance of a white diffuse surface that stands
 // at the camera and faces along its -z; pi times that is the irradiance there. No such surface is in the scene. Paths
 // begin where its bounces would, and this is its next-event estimation: one light a sample, lights without extent
-// included, weighted against what the paths find as at every other vertex (integrators/path/shade_hit.h).
+// included, weighted against what the paths find as at every other vertex (integrators/path/path_vertex.h).
 
 #include <cstdint>
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <type_traits>
 
 #include "base/error.h"
 #include "base/parallel_for.h"
@@ -42,52 +43,33 @@ std::size_t bytes_of(const Size& size, const PathParts& parts) {
     return static_cast<std::size_t>(size.wavefronts) * of_wavefront + sizeof(RenderCounts);
 }
 
-/// ShadeHits with no more code than materials and film need.
-void shade_hits(Queue& queue, const WorkCount& active, const PictureView& picture, const PathSettings& settings,
-                const FilmView& film, const PathQueueView& paths, const PathQueueView& next, const HitQueueView& hits,
-                const ShadowQueueView& shadows, RoundCounts* counts, uint32_t last) {
-    const auto shade_as = [&]<MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave,
-                              MotionKnown kMotion = MotionKnown::None>() {
-        launch(queue, "shade_hits", active,
-               ShadeHits<kKnown, kMayBeFrame, kMayLeave, kMotion>{picture, settings, film, paths, next, hits, shadows,
-                                                                  counts, last});
+/// What code has to know of the picture. A moving camera's depth is along its axis at the ray's time.
+Features features_for(const PathJob& job) {
+    const PictureView& picture = job.picture;
+    const bool has_times =
+        picture.scene.motions.is_there() ||
+        (picture.camera.motion.moves() && !job.film.frame.is_there() && (job.film.aovs & kAovDepth) != 0);
+    return features_of(picture.scene.known) | (has_times ? Features{kMoving} : 0);
+}
+
+/// Calls `with`, a template over a mask of features and a listener, with those that have no more code than the job
+/// needs.
+template <class With>
+void choose_shading(const PathJob& job, const With& with) {
+    const Features features = features_for(job);
+    const auto choose = [&]<class Compiled, class Plain, class Listener>() {
+        PERTEV_CHECK(Compiled::choose(features, [&]<Features kFeatures>() {
+            with.template operator()<kFeatures, std::conditional_t<(kFeatures & kLayered) == 0, Plain, Listener>>();
+        }));
     };
-    if (picture.scene.motions.is_there()) {
-        PERTEV_CHECK(!film.frame.is_there());
-        switch (picture.scene.known) {
-        case MaterialsKnown::Nothing:
-            return shade_as.operator()<MaterialsKnown::Nothing, false, false, MotionKnown::Some>();
-        case MaterialsKnown::Diffuse:
-            return shade_as.operator()<MaterialsKnown::Diffuse, false, false, MotionKnown::Some>();
-        case MaterialsKnown::PlainDiffuse:
-            return shade_as.operator()<MaterialsKnown::PlainDiffuse, false, false, MotionKnown::Some>();
-        }
-    }
-    if (picture.camera.motion.moves() && !film.frame.is_there() &&
-        (film.aovs & kAovDepth) != 0) { // along the axis at the ray's time
-        return shade_as.operator()<MaterialsKnown::Nothing, false, false, MotionKnown::Perhaps>();
-    }
-    const bool leaves_light = film.frame.first_bounce.leaves_direct_light();
-    const auto shade = [&]<MaterialsKnown kKnown, bool kMayBeFrame>() {
-        if constexpr (kMayBeFrame) {
-            if (leaves_light) return shade_as.operator()<kKnown, true, true>();
-        }
-        shade_as.operator()<kKnown, kMayBeFrame, false>();
-    };
-    switch (picture.scene.known) {
-    case MaterialsKnown::Nothing:
-        if (film.frame.is_there()) {
-            shade.operator()<MaterialsKnown::Nothing, true>();
-        } else {
-            shade.operator()<MaterialsKnown::Nothing, false>();
-        }
-        break;
-    case MaterialsKnown::Diffuse:
-        shade.operator()<MaterialsKnown::Diffuse, true>();
-        break;
-    case MaterialsKnown::PlainDiffuse:
-        shade.operator()<MaterialsKnown::PlainDiffuse, true>();
-        break;
+    if (job.layers.is_there() || job.is_meter) {
+        choose.template operator()<LayerFeatures, LayerListeners, LayerListeners>();
+    } else if (!job.film.frame.is_there()) {
+        choose.template operator()<FilmFeatures, FilmListeners, FilmListeners>();
+    } else if (job.film.frame.first_bounce.leaves_direct_light()) {
+        choose.template operator()<FrameFeatures, PlainReuseListeners, ReuseListeners>();
+    } else {
+        choose.template operator()<FrameFeatures, PlainFrameListeners, FrameListeners>();
     }
 }
 
@@ -121,34 +103,35 @@ void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
     if (parts.tells_bounce && shadow_sent.size() == 0) shadow_sent = {queue, capacity, "shadow rays"};
 }
 
-PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round, bool splits_light) const {
+PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round) const {
     const Paths& set = sets[of_round % 2];
     return {set.rays.data(),       path_starts.data(),  path_keys.data(),
-            set.throughput.data(), set.radiance.data(), splits_light ? set.diffuse.data() : nullptr,
-            path_times.data()};
+            set.throughput.data(), set.radiance.data(), path_times.data()};
 }
 
-ShadowQueueView PathIntegrator::Wavefront::shadows(bool splits_light, bool tells_bounce) const {
-    return {shadow_rays.data(),
-            shadow_starts.data(),
-            shadow_targets.data(),
-            shadow_keys.data(),
-            contribution.data(),
-            splits_light ? shadow_diffuse.data() : nullptr,
-            tells_bounce ? shadow_sent.data() : nullptr,
-            shadow_times.data()};
+ShadowQueueView PathIntegrator::Wavefront::shadows() const {
+    return {shadow_rays.data(), shadow_starts.data(), shadow_targets.data(),
+            shadow_keys.data(), contribution.data(),  shadow_times.data()};
 }
 
-LayerQueueView PathIntegrator::Wavefront::layered(uint32_t of_round) const {
-    return {sets[of_round % 2].states.data(), sets[(of_round + 1) % 2].states.data(), layer_diffuse.data(),
-            layer_parts.data()};
+ListenerQueues PathIntegrator::Wavefront::listened(uint32_t of_round) const {
+    const Paths &set = sets[of_round % 2], &next = sets[(of_round + 1) % 2];
+    return {.diffuse = set.diffuse.data(),
+            .next_diffuse = next.diffuse.data(),
+            .shadow_diffuse = shadow_diffuse.data(),
+            .shadow_sent = shadow_sent.data(),
+            .states = set.states.data(),
+            .next_states = next.states.data(),
+            .layer_diffuse = layer_diffuse.data(),
+            .layer_parts = layer_parts.data()};
 }
 
 std::size_t PathIntegrator::bytes_of_path(const PathParts& parts) {
     constexpr std::size_t always = 2 * (sizeof(Ray) + 2 * sizeof(Float4)) + // both sets
                                    sizeof(Ray) + 3 * sizeof(Uint2) + 2 * sizeof(Float4) + 3 * sizeof(uint32_t);
-    return always + (parts.has_times ? 2 * sizeof(float) : 0) + (parts.has_layers ? LayerQueueView::kBytesOfPath : 0) +
-           (parts.splits_light ? 3 * sizeof(Float4) : 0) + (parts.tells_bounce ? sizeof(Float4) : 0);
+    return always + (parts.has_times ? 2 * sizeof(float) : 0) +
+           (parts.has_layers ? ListenerQueues::kBytesOfLayers : 0) + (parts.splits_light ? 3 * sizeof(Float4) : 0) +
+           (parts.tells_bounce ? sizeof(Float4) : 0);
 }
 
 std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth,
@@ -223,28 +206,29 @@ void PathIntegrator::render(uint32_t first, uint32_t count, const FilmView& film
     } else {
         render_wavefront(first, count, film);
     }
-    if (picture_.camera.view.projection == Projection::Cosine) {
+    if (is_light_meter(picture_.camera.view.projection)) {
         rays_.shadow += add_meter_lights(queue_, *tracer_, picture_, settings_, first, count, film);
     }
 }
 
 /// What ReSTIR takes over from the first surface on goes through no roulette there.
-PathSettings PathIntegrator::settings_for(const FilmView& film) const {
-    PathSettings settings = settings_;
-    if (film.frame.first_bounce.leaves_direct_light()) settings.roulette_depth = std::max(settings.roulette_depth, 2u);
-    return settings;
+PathJob PathIntegrator::job_for(const FilmView& film) const {
+    PathJob job = {picture_, settings_, film, layers_for(film), is_meter_};
+    if (film.frame.first_bounce.leaves_direct_light()) {
+        job.settings.roulette_depth = std::max(job.settings.roulette_depth, 2u);
+    }
+    return job;
 }
 
 void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees) {
-    const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;
-    const PathSettings settings = settings_for(film);
-    const LightPathView layers = layers_for(film);
+    const uint64_t pixels = uint64_t(film.width) * film.height;
+    const PathJob job = job_for(film);
     const TileRasterView* const raster = raster_ ? &raster_->view() : nullptr;
     std::atomic<uint64_t> bounces{0}, shadows{0};
     parallel_for_ranges(pixels, kLoopPixels, [&](uint64_t begin, uint64_t end) {
         if (abandon_ != nullptr && *abandon_) return;
         RayCounts counts;
-        render_pixels(picture_, settings, {trees, raster}, film, layers, is_meter_,
+        render_pixels(job, {trees, raster},
                       {static_cast<uint32_t>(begin), static_cast<uint32_t>(end - begin), first, count}, counts);
         bounces += counts.bounce;
         shadows += counts.shadow;
@@ -257,8 +241,8 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
     take_wavefronts(
         count, {.splits_light = film.frame.splits_light(), .tells_bounce = film.frame.first_bounce.tells_bounce()});
-    const uint32_t pixels = picture_.camera.width * picture_.camera.height;
-    const Work work = {{0, pixels, first, count}, film, layers_for(film), settings_for(film)};
+    const uint32_t pixels = film.width * film.height;
+    const Work work = {{0, pixels, first, count}, job_for(film)};
     // Kinds of rays can be timed only one after the other.
     const bool in_turns = tracer_->times_kinds();
     const uint64_t all = work.samples.count();
@@ -308,10 +292,9 @@ void PathIntegrator::give_rounds(int going, const Work& work) {
 void PathIntegrator::give_round(Wavefront& w, const Work& work) {
     const uint32_t last = w.capacity - 1;
     const bool any_alpha = picture_.scene.any_alpha != 0;
-    const bool splits_light = work.film.frame.splits_light();
-    const PathQueueView paths = w.paths(w.round, splits_light), next = w.paths(w.round + 1, splits_light);
-    const ShadowQueueView shadows = w.shadows(splits_light, work.film.frame.first_bounce.tells_bounce());
-    const LayerQueueView layered = w.layered(w.round);
+    const PathQueueView paths = w.paths(w.round), next = w.paths(w.round + 1);
+    const ShadowQueueView shadows = w.shadows();
+    const ListenerQueues listened = w.listened(w.round);
     const HitQueueView hits = {w.hit_places.data(), w.hit_instances.data()};
     RoundCounts* const counts = w.counts.data() + w.round % 2;
     // Once all paths have begun, a round has no more of them than the one before.
@@ -330,7 +313,7 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
         if (w.known.all_begun == 0) {
             const WorkCount fresh = {most, &counts->fresh};
             launch(queue_, "generate_paths", fresh,
-                   GeneratePaths{picture_.camera, work.settings, work.samples, counts, last, any_alpha, paths});
+                   GeneratePaths{work.job, work.samples, counts, last, any_alpha, paths});
             const HitQueueView camera_hits = {hits.places + last, hits.instances + last, -1};
             if (raster_) {
                 tracer_->timed(RayKind::Camera,
@@ -340,28 +323,20 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
             }
         }
         const WorkCount active = {most, &counts->active};
-        if (work.layers.is_there() || is_meter_) {
-            const auto shade_as = [&]<MotionKnown kMotion>() {
-                launch(queue_, "shade_hits", active,
-                       ShadeHitsToLayers<kMotion>{picture_, work.settings, work.film, work.layers, is_meter_, paths,
-                                                  next, layered, hits, shadows, counts, last});
-            };
-            const bool moves = picture_.scene.motions.is_there();
-            moves ? shade_as.operator()<MotionKnown::Some>() : shade_as.operator()<MotionKnown::None>();
-        } else {
-            shade_hits(queue_, active, picture_, work.settings, work.film, paths, next, hits, shadows, counts, last);
-        }
+        choose_shading(work.job, [&]<Features kFeatures, class Listener>() {
+            launch(queue_, "shade_hits", active,
+                   Shade<kFeatures, Listener>{work.job, paths, next, hits, shadows, listened, counts, last});
+        });
     }
     queue_.let_wait(w.light_stream, w.path_stream);
     const Queue::OnStream on(queue_, w.light_stream);
     const WorkCount asked = {most, &counts->shadows};
     tracer_->find_occlusions(shadows.query(), asked, {nullptr, shadows.keys}, // a ray's key has been used by then
                              pool(RayKind::Shadow));
-    launch(queue_, "add_light", asked, AddLight{shadows, next, work.film.frame.first_bounce});
-    if (work.layers.is_there()) {
-        launch(queue_, "add_light_to_layers", asked, AddLightToLayers{shadows, work.film, work.layers, layered});
-    }
-    launch(queue_, "add_to_film", {most, &counts->ended}, AddToFilm{work.film, next, last});
+    choose_shading(work.job, [&]<Features, class Listener>() {
+        launch(queue_, "add_light", asked, AddLight<Listener>{work.job, shadows, next, listened});
+        launch(queue_, "add_to_film", {most, &counts->ended}, EndPaths<Listener>{work.job, next, listened, last});
+    });
     ++w.round;
 }
 

@@ -20,7 +20,7 @@
 #include "device/buffer.h"
 #include "device/readback.h"
 #include "integrators/integrator.h"
-#include "integrators/path/layer_stages.h"
+#include "integrators/path/path_listener.h"
 #include "integrators/path/path_queues.h"
 #include "integrators/path/path_settings.h"
 #include "render/begin_order.h"
@@ -55,7 +55,7 @@ public:
     void set_settings(const PathSettings& settings) { settings_ = settings; }
     /// Likewise. Light goes to these layers of the film too; null: there are none. A film of render() has as many.
     void set_layers(std::shared_ptr<const LightPathLayers> layers);
-    /// Likewise. The picture is that of the irradiance of what the camera sees (shade_hit_to_layers).
+    /// Likewise. The picture is that of the irradiance of what the camera sees (IrradianceMeter).
     void set_meter(bool is_meter) { is_meter_ = is_meter; }
 
 private:
@@ -66,11 +66,9 @@ private:
     /// Samples that render() makes.
     struct Work {
         BeginOrder samples;
-        FilmView film;
-        LightPathView layers;
-        PathSettings settings;
+        PathJob job;
     };
-    PathSettings settings_for(const FilmView& film) const;
+    PathJob job_for(const FilmView& film) const;
     struct Wavefront;
     void take_wavefronts(uint32_t samples, const PathParts& parts);
     std::size_t queue_bytes() const;
@@ -94,9 +92,9 @@ private:
         /// Memory for what is not there yet. It is kept.
         void take(Queue& queue, const PathParts& parts);
         /// Of a round: rounds read and write two sets of arrays in turns.
-        PathQueueView paths(uint32_t of_round, bool splits_light) const;
-        ShadowQueueView shadows(bool splits_light, bool tells_bounce) const;
-        LayerQueueView layered(uint32_t of_round) const;
+        PathQueueView paths(uint32_t of_round) const;
+        ShadowQueueView shadows() const;
+        ListenerQueues listened(uint32_t of_round) const;
 
         struct Paths {
             Paths(Queue& queue, uint32_t capacity);

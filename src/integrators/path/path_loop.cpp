@@ -1,43 +1,22 @@
 #include "integrators/path/path_loop.h"
 
-#include <type_traits>
-
 #include "device_scene/find_hits.h"
 #include "integrators/path/eight_samples.h"
 #include "integrators/path/host_shading.h"
-#include "integrators/path/shade_to_layers.h"
 
 namespace pertev {
 namespace {
 
 constexpr uint32_t kPaths = 128; // side by side: 30 KB, of a cache of 1 MB that the trees want too
 
-/// Of each path, where it stands in the automaton of light-path expressions; for those that ask for layers.
-struct LayersOfGroup {
-    const LightPathView& view; // may be none
-    bool is_meter;
-    LightPathState states[kPaths];
-    LayerShadow shadows[kPaths + 1];
-};
-struct NoLayers {};
-
-/// `Layers`: LayersOfGroup or NoLayers.
-template <class Layers>
+template <class Listener>
 class PathGroup {
-    static constexpr bool kHasLayers = std::is_same_v<Layers, LayersOfGroup>;
-
 public:
-    PathGroup(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees, const FilmView& film,
-              const Layers& layers)
-        : picture_(picture), settings_(settings), trees_(trees.trees), raster_(trees.raster), film_(film),
-          layers_(layers) {}
+    PathGroup(const PathJob& job, const LoopTrees& trees) : job_(job), trees_(trees.trees), raster_(trees.raster) {}
 
     bool is_full() const { return count_ == kPaths; }
     bool is_empty() const { return count_ == 0; }
-    void add(const PathState& path) {
-        if constexpr (kHasLayers) layers_.states[count_] = layers_.view.begin();
-        paths_[count_++] = path;
-    }
+    void add(const PathState& path) { paths_[count_++] = path; }
 
     /// Takes each path to its next vertex. Those that have been added since the last call start at the camera.
     void advance(RayCounts& counts) {
@@ -51,7 +30,8 @@ public:
             ask_for_vertices(i + 8);
             Asked& asked = asked_[shadows];
             const uint32_t key = key_of(paths_[i], true);
-            const bool wants_shadow = shade(i, DrawnNumbers(words, i % kWords), shadows);
+            const bool wants_shadow =
+                shade_(job_, paths_[i], kept_[i], hits_[i], DrawnNumbers(words, i % kWords), asked.at, goes_on_[i]);
             asked.start = {hits_[i].instance, hits_[i].primitive};
             asked.key = key, asked.path = i;
             shadows += wants_shadow ? 1 : 0;
@@ -64,7 +44,7 @@ public:
 
 private:
     struct Asked {
-        ShadowRay ray;
+        AskedByVertex<Listener> at;
         TriangleId start;
         uint32_t key, path;
     };
@@ -73,45 +53,25 @@ private:
     VertexWords<Words8> draw_for(uint32_t begin) const {
         SampleKeyOf<Words8> keys;
         Words8 depths = {};
-        bool has_choices = picture_.scene.known == MaterialsKnown::Nothing; // lobes
+        bool has_choices = job_.picture.scene.known == MaterialsKnown::Nothing; // lobes
         for (uint32_t i = begin; i < begin + kWords && i < count_; ++i) {
             const PathState& path = paths_[i];
-            set_lane(keys, i - begin, sample_key(settings_, path.pixel, path.sample));
+            set_lane(keys, i - begin, sample_key(job_.settings, path.pixel, path.sample));
             depths[i - begin] = path.depth;
-            has_choices = has_choices || may_end_by_chance(settings_, path.depth + 1);
+            has_choices = has_choices || may_end_by_chance(job_.settings, path.depth + 1);
         }
-        return draw_vertex(settings_.sampler, keys, depths, has_choices);
-    }
-
-    /// Takes path i over what it met; true where it asks for the shadow ray at place `shadow`.
-    bool shade(uint32_t i, const DrawnNumbers& numbers, uint32_t shadow) {
-        bool wants_shadow = false;
-        if constexpr (kHasLayers) {
-            goes_on_[i] = shade_hit_to_layers<MotionKnown::Perhaps>(
-                picture_, settings_, film_, layers_.view, layers_.is_meter, layers_.states[i], paths_[i], hits_[i],
-                numbers, asked_[shadow].ray, wants_shadow, layers_.shadows[shadow]);
-            return wants_shadow;
-        }
-        LightSplit split;
-        if (splits_light_) split.take_out(paths_[i], paths_[i].depth > 0 ? diffuse_[i] : Float4{0, 0, 0, 0});
-        goes_on_[i] =
-            shade_(picture_, settings_, film_, paths_[i], hits_[i], numbers, asked_[shadow].ray, wants_shadow);
-        if (splits_light_) {
-            split.put_back(paths_[i]);
-            diffuse_[i] = split.diffuse;
-        }
-        return wants_shadow;
+        return draw_vertex(job_.settings.sampler, keys, depths, has_choices);
     }
 
     /// Of the path's ray at its depth, for the coins of blended surfaces; nothing else asks for it.
     uint32_t key_of(const PathState& path, bool is_shadow) const {
-        return picture_.scene.any_alpha != 0 ? path_key(path, settings_.seed, is_shadow) : 0;
+        return job_.picture.scene.any_alpha != 0 ? path_key(path, job_.settings.seed, is_shadow) : 0;
     }
 
     // What make_surface reads of hit i, asked for in time: its vertices are known once its indices are there.
     const MeshView* mesh_of(uint32_t i) const {
         if (i >= count_ || hits_[i].instance == kNoHit) return nullptr;
-        return picture_.scene.meshes + picture_.scene.instances[hits_[i].instance].mesh;
+        return job_.picture.scene.meshes + job_.picture.scene.instances[hits_[i].instance].mesh;
     }
     void ask_for_indices(uint32_t i) const {
         if (const MeshView* mesh = mesh_of(i)) __builtin_prefetch(mesh->indices + 3 * uint64_t(hits_[i].primitive));
@@ -134,19 +94,19 @@ private:
         };
         const auto accept_of = [&](uint32_t i) {
             const PathState& path = paths_[begin + i];
-            return AcceptHit{picture_.scene, path.start, {}, key_of(path, false), path.time};
+            return AcceptHit{job_.picture.scene, path.start, {}, key_of(path, false), path.time};
         };
         if (begin == end) return;
         const bool from_camera = paths_[begin].depth == 0;
         if (from_camera && raster_ != nullptr) {
             for (uint32_t i = begin; i < end; ++i) {
-                hits_[i] = find_in_tile(*raster_, picture_.scene, ray_of(i - begin), paths_[i].pixel,
+                hits_[i] = find_in_tile(*raster_, job_.picture.scene, ray_of(i - begin), paths_[i].pixel,
                                         key_of(paths_[i], false));
             }
             return;
         }
         const RayOrder order = from_camera ? RayOrder::Together : RayOrder::Scattered;
-        if (from_camera && picture_.scene.any_hidden_back != 0) {
+        if (from_camera && job_.picture.scene.any_hidden_back != 0) {
             const auto accept_camera = [&](uint32_t i) {
                 return AcceptCameraHit{accept_of(i), paths_[begin + i].direction};
             };
@@ -158,29 +118,20 @@ private:
 
     void add_light(uint32_t shadows) {
         const auto ray_of = [&](uint32_t i) {
-            const ShadowRay& ray = asked_[i].ray;
+            const ShadowRay& ray = asked_[i].at.ray;
             return Ray{ray.origin, 0.0f, ray.direction, ray.t_max};
         };
         const auto accept_of = [&](uint32_t i) {
-            return AcceptHit{picture_.scene, asked_[i].start, asked_[i].ray.target, asked_[i].key,
+            return AcceptHit{job_.picture.scene, asked_[i].start, asked_[i].at.ray.target, asked_[i].key,
                              paths_[asked_[i].path].time};
         };
         find_occlusions(trees_, shadows, RayOrder::Together, ray_of, accept_of, occluded_);
+        const Listener listener(job_);
         for (uint32_t i = 0; i < shadows; ++i) {
             if (occluded_[i]) continue;
             const uint32_t path = asked_[i].path;
-            paths_[path].radiance += asked_[i].ray.contribution;
-            if constexpr (kHasLayers) {
-                if (layers_.view.is_there())
-                    add_to_layers(layers_.view, film_, paths_[path].pixel, layers_.shadows[i],
-                                  asked_[i].ray.contribution);
-            }
-            if (tells_bounce_) film_.frame.first_bounce.add_sent(paths_[path].pixel, asked_[i].ray.sent);
-            if (splits_light_) {
-                const Rgb add = asked_[i].ray.diffuse;
-                Float4& d = diffuse_[path];
-                d = {d.x + add.r, d.y + add.g, d.z + add.b, d.w};
-            }
+            paths_[path].radiance += asked_[i].at.ray.contribution;
+            listener.arrived(kept_[path], asked_[i].at.asked, asked_[i].at.ray.contribution);
         }
     }
 
@@ -188,55 +139,39 @@ private:
         going_on_ = 0;
         for (uint32_t i = 0; i < count_; ++i) {
             if (!goes_on_[i]) {
-                finish(i);
+                Listener(job_).ended(paths_[i].pixel, paths_[i].radiance, kept_[i]);
             } else if (going_on_++ != i) {
                 paths_[going_on_ - 1] = paths_[i];
-                if (splits_light_) diffuse_[going_on_ - 1] = diffuse_[i];
-                if constexpr (kHasLayers) layers_.states[going_on_ - 1] = layers_.states[i];
+                kept_[going_on_ - 1] = kept_[i];
             }
         }
         count_ = going_on_;
     }
 
-    void finish(uint32_t i) {
-        const PathState& path = paths_[i];
-        if (film_.frame.is_there()) {
-            store_sample(film_, path.pixel, path.radiance, {diffuse_[i].x, diffuse_[i].y, diffuse_[i].z});
-        } else {
-            add_radiance(film_, path.pixel, path.radiance);
-        }
-    }
-
-    const PictureView& picture_;
-    const PathSettings& settings_;
+    const PathJob& job_;
     const HostTrees& trees_;
     const TileRasterView* raster_;
-    const FilmView& film_;
-    const ShadeOnHost shade_ = shading_for(picture_, film_);
-    const bool splits_light_ = film_.frame.splits_light();
-    const bool tells_bounce_ = film_.frame.first_bounce.tells_bounce();
+    const ShadeOnHost<Listener> shade_ = shading_for<Listener>(job_.picture);
     uint32_t count_ = 0, going_on_ = 0; // paths; of which those that are not new
     PathState paths_[kPaths];
-    Float4 diffuse_[kPaths]; // LightSplit's, where a frame splits light
+    typename Listener::Kept kept_[kPaths];
     Hit hits_[kPaths];
     bool goes_on_[kPaths];
     Asked asked_[kPaths + 1]; // one more: written before it is known whether it is wanted
     bool occluded_[kPaths];
-    [[no_unique_address]] Layers layers_;
 };
 
-template <class Layers>
-void render_group(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
-                  const FilmView& film, const Layers& layers, const BeginOrder& work, RayCounts& counts) {
-    PathGroup<Layers> group(picture, settings, trees, film, layers);
-    const uint32_t width = picture.camera.width, height = picture.camera.height;
-    EightSamples samples(picture.camera, settings);
+template <class Listener>
+void render_group(const PathJob& job, const LoopTrees& trees, const BeginOrder& work, RayCounts& counts) {
+    PathGroup<Listener> group(job, trees);
+    const FilmView& film = job.film;
+    EightSamples samples(job.picture.camera, job.settings);
     const auto trace = [&](const PathState& path) {
         group.add(path);
         while (group.is_full()) group.advance(counts);
     };
     for (uint32_t i = 0; i < work.pixels; ++i) {
-        const uint32_t pixel = ordered_pixel(work.first_place + i, width, height);
+        const uint32_t pixel = film.window.pixel_at(ordered_pixel(work.first_place + i, film.width, film.height));
         for (uint32_t k = 0; k < work.samples; ++k) {
             samples.add(pixel, work.first_sample + k);
             if (samples.is_full()) samples.begin(trace);
@@ -248,11 +183,10 @@ void render_group(const PictureView& picture, const PathSettings& settings, cons
 
 } // namespace
 
-void render_pixels(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
-                   const FilmView& film, const LightPathView& layers, bool is_meter, const BeginOrder& work,
-                   RayCounts& counts) {
-    if (!layers.is_there() && !is_meter) return render_group(picture, settings, trees, film, NoLayers{}, work, counts);
-    render_group(picture, settings, trees, film, LayersOfGroup{layers, is_meter, {}, {}}, work, counts);
+void render_pixels(const PathJob& job, const LoopTrees& trees, const BeginOrder& work, RayCounts& counts) {
+    if (job.film.frame.is_there()) return render_group<ReuseListeners>(job, trees, work, counts);
+    if (job.layers.is_there() || job.is_meter) return render_group<LayerListeners>(job, trees, work, counts);
+    render_group<FilmListeners>(job, trees, work, counts);
 }
 
 } // namespace pertev

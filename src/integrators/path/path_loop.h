@@ -4,11 +4,8 @@
 // them side by side, so that rays of one kind are traced together. Its functions are those of the wavefront's stages.
 
 #include "integrators/integrator.h"
-#include "integrators/path/path_settings.h"
+#include "integrators/path/path_job.h"
 #include "render/begin_order.h"
-#include "render/film_view.h"
-#include "render/light_paths/light_path_view.h"
-#include "render/picture_view.h"
 #include "render/raster/find_in_tile.h"
 #include "trace/scene_trees.h"
 
@@ -20,10 +17,8 @@ struct LoopTrees {
     const TileRasterView* raster;
 };
 
-/// Adds the samples to the film, and to those layers that there are. What was traced beside camera rays is added to
-/// `counts`. `is_meter`: shade_hit_to_layers'.
-void render_pixels(const PictureView& picture, const PathSettings& settings, const LoopTrees& trees,
-                   const FilmView& film, const LightPathView& layers, bool is_meter, const BeginOrder& work,
-                   RayCounts& counts);
+/// Adds the samples to the job's film, and to those layers that there are. What was traced beside camera rays is added
+/// to `counts`.
+void render_pixels(const PathJob& job, const LoopTrees& trees, const BeginOrder& work, RayCounts& counts);
 
 } // namespace pertev

@@ -22,7 +22,6 @@ struct PathQueueView {
     uint32_t* keys;     // written where some surface is blended
     Float4* throughput; // rgb, bits of (depth | rough_depth << 16)
     Float4* radiance;   // rgb, bsdf_pdf; of a path that has ended rgb, bits of the pixel
-    Float4* diffuse;    // LightSplit's; null unless a frame splits light
     float* times;       // RayQueueView's, as the keys; null unless something moves while the shutter is open
 
     /// Of the rays at places 0, 1, ..., or back from `last`.
@@ -70,14 +69,6 @@ struct PathQueueView {
     }
     HD uint32_t load_pixel(uint32_t i) const { return bits_of(radiance[i].w); }
     HD Rgb load_radiance(uint32_t i) const { return {radiance[i].x, radiance[i].y, radiance[i].z}; }
-    HD Rgb load_diffuse(uint32_t i) const {
-        if (diffuse == nullptr) return {};
-        return {diffuse[i].x, diffuse[i].y, diffuse[i].z};
-    }
-    HD void add_diffuse(uint32_t i, Float4 value) const {
-        const Float4 d = diffuse[i];
-        diffuse[i] = {d.x + value.x, d.y + value.y, d.z + value.z, d.w};
-    }
     /// Keeps what lies beside it.
     HD void add_radiance(uint32_t i, Rgb value) const {
         const Float4 r = radiance[i];
@@ -90,25 +81,18 @@ struct ShadowQueueView {
     Uint2 *starts, *targets;
     uint32_t* keys;       // then what the ray met
     Float4* contribution; // rgb, bits of the path's place in the next round's arrays
-    Float4* diffuse;      // ShadowRay's; null unless a frame splits light
-    Float4* sent;         // ShadowRay's, bits of the pixel; null unless a frame tells its first bounce
     float* times;         // as PathQueueView's
 
     RayQueueView query() const {
         return {.rays = rays, .starts = starts, .targets = targets, .keys = keys, .times = times};
     }
 
-    /// `kMayTell`: `sent` may be there.
-    template <bool kMayTell>
-    HD void store(uint32_t i, const ShadowRay& ray, uint32_t path, uint32_t pixel, TriangleId start,
-                  uint32_t key) const {
+    HD void store(uint32_t i, const ShadowRay& ray, uint32_t path, TriangleId start, uint32_t key) const {
         store_ray(rays + i, {ray.origin, 0.0f, ray.direction, ray.t_max});
         starts[i] = {start.instance, start.primitive};
         targets[i] = {ray.target.instance, ray.target.primitive};
         keys[i] = key;
         contribution[i] = {ray.contribution.r, ray.contribution.g, ray.contribution.b, float_of(path)};
-        if (diffuse != nullptr) diffuse[i] = {ray.diffuse.r, ray.diffuse.g, ray.diffuse.b, 0};
-        if (kMayTell && sent != nullptr) sent[i] = {ray.sent.r, ray.sent.g, ray.sent.b, float_of(pixel)};
     }
 };
 

@@ -5,6 +5,16 @@
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const PlanRound&);
 template void launch(Queue&, const char*, WorkCount, const GeneratePaths&);
-template void launch(Queue&, const char*, WorkCount, const AddLight&);
-template void launch(Queue&, const char*, WorkCount, const AddToFilm&);
+template void launch(Queue&, const char*, WorkCount, const AddLight<FilmListeners>&);
+template void launch(Queue&, const char*, WorkCount, const AddLight<PlainFrameListeners>&);
+template void launch(Queue&, const char*, WorkCount, const AddLight<FrameListeners>&);
+template void launch(Queue&, const char*, WorkCount, const AddLight<PlainReuseListeners>&);
+template void launch(Queue&, const char*, WorkCount, const AddLight<ReuseListeners>&);
+template void launch(Queue&, const char*, WorkCount, const AddLight<LayerListeners>&);
+template void launch(Queue&, const char*, WorkCount, const EndPaths<FilmListeners>&);
+template void launch(Queue&, const char*, WorkCount, const EndPaths<PlainFrameListeners>&);
+template void launch(Queue&, const char*, WorkCount, const EndPaths<FrameListeners>&);
+template void launch(Queue&, const char*, WorkCount, const EndPaths<PlainReuseListeners>&);
+template void launch(Queue&, const char*, WorkCount, const EndPaths<ReuseListeners>&);
+template void launch(Queue&, const char*, WorkCount, const EndPaths<LayerListeners>&);
 } // namespace pertev

@@ -4,9 +4,11 @@
 // what the CPU's loop does in one line, through the same functions.
 
 #include "device/launch.h"
+#include "integrators/path/frame_listeners.h"
 #include "integrators/path/generate_path.h"
+#include "integrators/path/layer_listeners.h"
 #include "integrators/path/path_queues.h"
-#include "integrators/path/shade_hit.h"
+#include "integrators/path/path_vertex.h"
 #include "render/begin_order.h"
 
 namespace pertev {
@@ -39,8 +41,7 @@ struct PlanRound {
 };
 
 struct GeneratePaths {
-    CameraRays camera;
-    PathSettings settings;
+    PathJob job;
     BeginOrder samples;
     const RoundCounts* round;
     uint32_t last; // place of the first one
@@ -48,36 +49,38 @@ struct GeneratePaths {
     PathQueueView paths;
 
     HD void operator()(uint32_t i) const {
-        const PixelSample begun = samples.at(round->first + i, camera.width, camera.height);
-        const PathState path = generate_path(camera, settings, begun.pixel, begun.sample);
-        paths.store(last - i, path, settings.seed, any_alpha);
+        const FilmView& film = job.film;
+        const PixelSample begun = samples.at(round->first + i, film.width, film.height);
+        const PathState path =
+            generate_path(job.picture.camera, job.settings, film.window.pixel_at(begun.pixel), begun.sample);
+        paths.store(last - i, path, job.settings.seed, any_alpha);
         if (paths.times != nullptr) paths.times[last - i] = path.time;
     }
 };
 
-/// `kMayBeFrame`, `kMayLeave`, `kMotion`: as shade_hit has them.
-template <MaterialsKnown kKnown, bool kMayBeFrame, bool kMayLeave, MotionKnown kMotion>
-struct ShadeHits {
-    PictureView picture;
-    PathSettings settings;
-    FilmView film;
+/// Shading of what paths have met, with no more code than the features need, and `Listener` listens.
+template <Features kFeatures, class Listener>
+struct Shade {
+    PathJob job;
     PathQueueView paths, next;
     HitQueueView hits;
     ShadowQueueView shadows;
+    ListenerQueues listened;
     RoundCounts* round;
     uint32_t last; // place of the first fresh path, and of the first one that ends
 
     // Measured (docs/performance.md). Where there is much code, warps that wait for each other fetch it together.
-    static constexpr BlockShape kShape = kKnown == MaterialsKnown::PlainDiffuse ? BlockShape{128, 6}
-                                         : kKnown == MaterialsKnown::Diffuse    ? BlockShape{512, 2}
-                                         : kMayBeFrame                          ? BlockShape{512, 1}
+    static constexpr BlockShape kShape = Listener::template has<LightPaths>     ? BlockShape{128, 1}
+                                         : (kFeatures & kAllMaterials) == 0     ? BlockShape{128, 6}
+                                         : (kFeatures & kLayered) == 0          ? BlockShape{512, 2}
+                                         : Listener::template has<FrameSurface> ? BlockShape{512, 1}
                                                                                 : BlockShape{384, 2};
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i, bool is_there) const {
+        constexpr bool kMoves = (kFeatures & kMoving) != 0;
         const RoundLists lists;
-        const bool splits_light = kMayBeFrame && kKnown == MaterialsKnown::Nothing && paths.diffuse != nullptr;
+        Listener listener(job);
         PathState path;
-        LightSplit split;
         ShadowRay shadow;
         TriangleId here;
         uint32_t key = 0;
@@ -85,68 +88,73 @@ struct ShadeHits {
         if (is_there) {
             const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
             path = paths.load(place);
-            if (kMotion != MotionKnown::None) path.time = time_of(picture.camera, settings, path);
+            if (kMoves) path.time = time_of(job.picture.camera, job.settings, path);
             const Hit hit = hits.load(place);
-            key = path_key(path, settings.seed, true);
+            key = path_key(path, job.settings.seed, true);
             here = {hit.instance, hit.primitive};
-            if (splits_light) split.take_out(path, path.depth > 0 ? paths.diffuse[place] : Float4{0, 0, 0, 0});
-            goes_on = shade_hit<kKnown, kMayBeFrame, kMayLeave, kMotion>(picture, settings, film, path, hit,
-                                                                         DrawWhenAsked(), shadow, wants_shadow);
-            if (splits_light) split.put_back(path);
+            if (path.depth == 0) {
+                listener.begins(path);
+            } else {
+                typename Listener::Kept kept;
+                Listener::load(listened, place, kept);
+                listener.take_up(kept);
+            }
+            goes_on = shade_vertex<kFeatures>(job, path, hit, DrawWhenAsked(), shadow, wants_shadow, listener);
         }
         const RoundPlaces places = take_places(lists, *round, last, is_there, goes_on, wants_shadow);
         if (!is_there) return;
         if (goes_on) {
-            next.store(places.path, path, settings.seed, picture.scene.any_alpha != 0);
-            if (keeps_times(next.times)) next.times[places.path] = path.time;
+            next.store(places.path, path, job.settings.seed, job.picture.scene.any_alpha != 0);
+            if (kMoves && next.times != nullptr) next.times[places.path] = path.time;
         } else {
             next.store_ended(places.path, path);
         }
-        if (splits_light) next.diffuse[places.path] = split.diffuse;
-        if (wants_shadow) {
-            shadows.store<kMayLeave>(places.shadow, shadow, places.path, path.pixel, here, key);
-            if (keeps_times(shadows.times)) shadows.times[places.shadow] = path.time;
-        }
-    }
-
-private:
-    HD static bool keeps_times(const float* times) {
-        return kMotion == MotionKnown::Some || (kMotion == MotionKnown::Perhaps && times != nullptr);
+        typename Listener::Kept kept;
+        listener.put_down(kept);
+        Listener::store_next(listened, places.path, kept);
+        if (!wants_shadow) return;
+        shadows.store(places.shadow, shadow, places.path, here, key);
+        if (kMoves && shadows.times != nullptr) shadows.times[places.shadow] = path.time;
+        typename Listener::Asked asked;
+        listener.hand_over(asked);
+        Listener::store_asked(listened, places.shadow, asked);
     }
 };
 
 /// Light whose shadow ray met nothing.
+template <class Listener>
 struct AddLight {
+    PathJob job;
     ShadowQueueView shadows; // keys: what a tracer found, kNoHit where the ray met nothing
     PathQueueView next;
-    FirstBounceView first_bounce;
+    ListenerQueues listened;
 
     HD void operator()(uint32_t i) const {
         if (shadows.keys[i] != kNoHit) return;
         const Float4 c = shadows.contribution[i];
-        next.add_radiance(bits_of(c.w), {c.x, c.y, c.z});
-        if (shadows.diffuse != nullptr) next.add_diffuse(bits_of(c.w), shadows.diffuse[i]);
-        if (shadows.sent != nullptr) {
-            const Float4 sent = shadows.sent[i];
-            first_bounce.add_sent(bits_of(sent.w), {sent.x, sent.y, sent.z});
-        }
+        const uint32_t path = bits_of(c.w);
+        next.add_radiance(path, {c.x, c.y, c.z});
+        typename Listener::Kept kept;
+        typename Listener::Asked asked;
+        Listener::load_next(listened, path, kept);
+        Listener::load_asked(listened, i, asked);
+        Listener(job).arrived(kept, asked, {c.x, c.y, c.z});
+        Listener::store_next(listened, path, kept);
     }
 };
 
 /// Paths that have ended.
-struct AddToFilm {
-    FilmView film;
+template <class Listener>
+struct EndPaths {
+    PathJob job;
     PathQueueView next;
+    ListenerQueues listened;
     uint32_t last; // place of the first one
 
     HD void operator()(uint32_t i) const {
-        const uint32_t pixel = next.load_pixel(last - i);
-        const Rgb radiance = next.load_radiance(last - i);
-        if (film.frame.is_there()) {
-            store_sample(film, pixel, radiance, next.load_diffuse(last - i));
-        } else {
-            add_radiance(film, pixel, radiance);
-        }
+        typename Listener::Kept kept;
+        Listener::load_next(listened, last - i, kept);
+        Listener(job).ended(next.load_pixel(last - i), next.load_radiance(last - i), kept);
     }
 };
 

@@ -19,55 +19,18 @@ struct PathState {
     Rgb radiance = {0, 0, 0}; // gathered so far
     float bsdf_pdf = 0;       // density with which `direction` was drawn, 1/sr; 0 after the camera or a delta lobe
     uint32_t pixel = 0, sample = 0;
-    TriangleId start;              // triangle that the ray leaves
-    uint32_t depth = 0;            // scattering vertices so far
-    uint32_t rough_depth = 0;      // of which not delta
-    Rgb first_diffuse = {0, 0, 0}; // share of diffuse lobes in what the first vertex scattered, where a frame asks
-    float time = kAtRest;          // of all of its rays, while the shutter is open
+    TriangleId start;         // triangle that the ray leaves
+    uint32_t depth = 0;       // scattering vertices so far
+    uint32_t rough_depth = 0; // of which not delta
+    float time = kAtRest;     // of all of its rays, while the shutter is open
 };
 
-/// Asked for by shade_hit: `contribution` counts if nothing stands between origin and origin + direction * t_max.
+/// Asked for by sample_direct: `contribution` counts if nothing stands between origin and origin + direction * t_max.
 struct ShadowRay {
     Vec3 origin, direction;
     float t_max = 0;
     TriangleId target; // the light's triangle
     Rgb contribution;
-    Rgb diffuse; // of it, what goes through diffuse lobes of the first vertex; where a frame splits light alone
-    Rgb sent;    // of it, what goes through those of the second one; where a frame tells its first bounce alone
-};
-
-/// Which part of a path's radiance went through diffuse lobes of its first vertex. Beside the path, as frames that
-/// split light alone ask for it: the vertex at hand adds to a radiance of nothing, from which the diffuse part is
-/// known.
-struct LightSplit {
-    Float4 diffuse; // rgb; w: bits of PathState::first_diffuse, ten a colour
-    Rgb before;
-
-    /// Before a vertex.
-    HD void take_out(PathState& path, Float4 diffuse_before) {
-        diffuse = diffuse_before;
-        before = path.radiance;
-        path.radiance = {0, 0, 0};
-        path.first_diffuse = unpacked(bits_of(diffuse.w));
-    }
-    /// After it. Light that the camera's ray itself meets is not scattered.
-    HD void put_back(PathState& path) {
-        const Rgb more = unpacked(bits_of(diffuse.w)) * path.radiance;
-        diffuse = {diffuse.x + more.r, diffuse.y + more.g, diffuse.z + more.b, float_of(packed(path.first_diffuse))};
-        path.radiance = before + path.radiance;
-    }
-
-private:
-    static constexpr uint32_t kMost = 1023;
-    HD static uint32_t part(float share) {
-        return static_cast<uint32_t>(to_int(fma(share, static_cast<float>(kMost), 0.5f), 0, kMost));
-    }
-    HD static uint32_t packed(Rgb share) { return part(share.r) | part(share.g) << 10 | part(share.b) << 20; }
-    HD static Rgb unpacked(uint32_t bits) {
-        constexpr float kInv = 1.0f / static_cast<float>(kMost);
-        return kInv * Rgb{static_cast<float>(bits & kMost), static_cast<float>(bits >> 10 & kMost),
-                          static_cast<float>(bits >> 20 & kMost)};
-    }
 };
 
 /// Random numbers of a path, in groups of four (math/sampler.h). The places of numbers that nothing draws yet are kept:

@@ -122,7 +122,7 @@ private:
         const LightSetView& lights = scene.picture.scene.lights;
         if (!lights.has_environment()) return;
         add_light(state, sight, environment_radiance(lights.environment, ray.direction),
-                  sight.pdf > 0 ? pdf_environment(lights, ray.direction) : 0.0f);
+                  sight.pdf > 0 ? pdf_environment(lights, ray.origin, ray.direction) : 0.0f);
     }
 
     /// One point of one light, as path tracing draws it. Returns how near that is: nearness_of, or 0.
@@ -131,7 +131,7 @@ private:
         const Surface& surface = vertex.surface;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<has_textures(kKnown)>(view.lights, surface.position, bits, light)) return 0;
+        if (!sample_light<has_textures(kKnown)>(view.lights, surface.light_context(), bits, light)) return 0;
         const float nearness = nearness_of(light);
         const BsdfValue all = surface.evaluate(vertex.wo, light.wi);
         if (is_black(all.f)) return nearness;

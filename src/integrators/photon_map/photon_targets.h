@@ -100,65 +100,65 @@ HD inline Start draw_start(const PhotonTargetsView& targets, const WorldSphere& 
     return {through - back * direction, static_cast<float>(discs) * kInvPi / all};
 }
 
-HD inline bool from_triangle(const SceneView& scene, const PhotonTargetsView& targets, uint32_t light, Vec2 place,
-                             Vec2 u, uint32_t key, Particle& particle) {
-    const EmissiveTriangle& triangle = scene.lights.triangles[light];
-    if (scene.any_alpha != 0 &&
-        !AcceptHit{scene, {}, {}, key}.passes_alpha(triangle.instance, triangle.primitive, place.x, place.y)) {
-        return false; // a hole in the light
-    }
-    const Vec2 uv = (1.0f - place.x - place.y) * triangle.uv0 + place.x * triangle.uv1 + place.y * triangle.uv2;
-    const Rgb radiance = surface_emission<true>(scene.lights, triangle.material, uv);
-    const float place_pdf = pdf_place(triangle);
-    if (is_black(radiance) || !(place_pdf > 0)) return false;
-    const Vec3 point = triangle.a + (place.x * triangle.ab + place.y * triangle.ac);
-    if (!(depth_of_cones(targets, point) < 1)) return emission::from_triangle(scene, light, place, u, key, particle);
-    const Direction direction = draw_direction(targets, point, u);
-    Vec3 normal = normalize(cross(triangle.ab, triangle.ac));
-    if (triangle.is_two_sided == 0 ? triangle.is_mirrored != 0 : dot(normal, direction.to) < 0) normal = -normal;
-    const float cosine = dot(normal, direction.to);
-    if (!(cosine > 0)) return false; // the target lies behind the lamp
-    particle.ray = {offset_ray_origin(point, light_point_error(point), normal, direction.to), 0, direction.to,
-                    kInfinity};
-    particle.start = {triangle.instance, triangle.primitive};
-    particle.power = (cosine / (place_pdf * direction.pdf)) * radiance;
-    return true;
-}
+/// How a particle leaves each kind of light for the targets.
+struct AimFromKind {
+    EmitFromKind freely;
+    const PhotonTargetsView& targets;
 
-HD inline bool from_punctual(const PunctualLight& light, const PhotonTargetsView& targets, float pmf, Vec2 u,
-                             const WorldSphere& world, Particle& particle) {
-    const bool is_directional = light.kind == LightKind::Directional;
-    const float own = light.kind == LightKind::Spot ? 1.0f - light.cos_outer : 2.0f;
-    if (is_directional ? !(area_of_discs(targets) < square(world.radius))
-                       : !(depth_of_cones(targets, light.position) < own)) {
-        return emission::from_punctual(light, pmf, u, world, particle);
-    }
-    if (is_directional) {
-        const Start start = draw_start(targets, world, light.direction, u);
-        particle.ray = {start.from, 0, light.direction, kInfinity};
-        particle.power = (1.0f / (pmf * start.pdf)) * light.intensity;
+    HD bool triangle(uint32_t light, Vec2 at) const {
+        LampPlace place;
+        if (!find_lamp_place(freely.scene, light, at, freely.key, place)) return false;
+        if (!(depth_of_cones(targets, place.point) < 1)) return freely.triangle(light, place);
+        const EmissiveTriangle& triangle = freely.scene.lights.triangles[light];
+        const Direction direction = draw_direction(targets, place.point, freely.u);
+        Vec3 normal = place.normal;
+        if (triangle.is_two_sided == 0 ? triangle.is_mirrored != 0 : dot(normal, direction.to) < 0) normal = -normal;
+        const float cosine = dot(normal, direction.to);
+        if (!(cosine > 0)) return false; // the target lies behind the lamp
+        leave_lamp(triangle, place, normal, direction.to, freely.particle);
+        freely.particle.power = (cosine / (place.pdf * direction.pdf)) * place.radiance;
         return true;
     }
-    const Direction direction = draw_direction(targets, light.position, u);
-    particle.ray = {light.position, 0, direction.to, light.range > 0 ? light.range : kInfinity};
-    particle.power = (punctual_falloff(light, -direction.to, 0) / (pmf * direction.pdf)) * light.intensity;
-    return true;
-}
-
-HD inline bool from_environment(const EnvironmentView& environment, const PhotonTargetsView& targets, float pmf,
-                                SampleBits place, Vec2 u, const WorldSphere& world, Particle& particle) {
-    if (!(area_of_discs(targets) < square(world.radius))) {
-        return emission::from_environment(environment, pmf, place, u, world, particle);
+    HD bool punctual(uint32_t number, float pmf) const {
+        const PunctualLight& light = freely.scene.lights.punctual[number];
+        Particle& particle = freely.particle;
+        switch (light.kind) {
+        case LightKind::Point:
+        case LightKind::Spot: {
+            if (!(depth_of_cones(targets, light.position) < depth_of_beam(light))) break;
+            if (!(pmf > 0)) return false;
+            const Direction direction = draw_direction(targets, light.position, freely.u);
+            particle.ray = {light.position, 0, direction.to, light.range > 0 ? light.range : kInfinity};
+            particle.power = (punctual_falloff(light, -direction.to, 0) / (pmf * direction.pdf)) * light.intensity;
+            return true;
+        }
+        case LightKind::Directional: {
+            if (!are_narrow()) break;
+            if (!(pmf > 0)) return false;
+            const Start start = draw_start(targets, freely.world, light.direction, freely.u);
+            particle.ray = {start.from, 0, light.direction, kInfinity};
+            particle.power = (1.0f / (pmf * start.pdf)) * light.intensity;
+            return true;
+        }
+        }
+        return freely.punctual(number, pmf);
     }
-    EnvironmentSample sample;
-    if (!sample_environment(environment, place, sample)) return false;
-    const float pdf = pmf * sample.pdf;
-    if (!(pdf > 0)) return false;
-    const Start start = draw_start(targets, world, -sample.wi, u);
-    particle.ray = {start.from, 0, -sample.wi, kInfinity};
-    particle.power = (1.0f / (pdf * start.pdf)) * sample.radiance;
-    return true;
-}
+    HD bool environment(float pmf, SampleBits place) const {
+        if (!are_narrow()) return freely.environment(pmf, place);
+        EnvironmentSample sample;
+        if (!(pmf > 0) || !sample_environment(freely.scene.lights.environment, place, sample)) return false;
+        const float pdf = pmf * sample.pdf;
+        if (!(pdf > 0)) return false;
+        const Start start = draw_start(targets, freely.world, -sample.wi, freely.u);
+        freely.particle.ray = {start.from, 0, -sample.wi, kInfinity};
+        freely.particle.power = (1.0f / (pdf * start.pdf)) * sample.radiance;
+        return true;
+    }
+
+private:
+    /// Narrower than the disc that light from far away comes through.
+    HD bool are_narrow() const { return area_of_discs(targets) < square(freely.world.radius); }
+};
 
 } // namespace aim
 
@@ -166,26 +166,10 @@ HD inline bool from_environment(const EnvironmentView& environment, const Photon
 /// was drawn. Its `mis` says nothing.
 HD inline bool aim_particle(const SceneView& scene, const PhotonTargetsView& targets, const WorldSphere& world,
                             SampleBits u_place, Vec2 u, uint32_t key, Particle& particle) {
-    const LightSetView& lights = scene.lights;
-    if (lights.choice.starts == nullptr || !(world.radius > 0)) return false;
+    if (!(world.radius > 0)) return false;
     particle.start = {};
     particle.is_from_far = false;
-    const uint32_t more = bits_behind(u_place);
-    const OrderedDraw source = draw_ordered(lights.choice, u_place.x, more);
-    if (source.index < lights.emitter_count) {
-        const OrderedDraw triangle = draw_ordered(lights.triangles_of(source.index), u_place.y, more);
-        const uint32_t first = lights.emitters[source.index].first_triangle;
-        return aim::from_triangle(scene, targets, first + lights.triangle_order[first + triangle.index],
-                                  sample_uniform_triangle({rest_of(source), rest_of(triangle)}), u, key, particle);
-    }
-    const float pmf = ordered_pmf(source.owned);
-    if (!(pmf > 0)) return false;
-    if (source.index != lights.environment_source) {
-        return aim::from_punctual(lights.punctual[source.index - lights.emitter_count], targets, pmf, u, world,
-                                  particle);
-    }
-    return aim::from_environment(lights.environment, targets, pmf, {number_of_rest(source), u_place.y}, u, world,
-                                 particle);
+    return draw_light(scene.lights, u_place, aim::AimFromKind{{scene, world, u, key, particle}, targets});
 }
 
 } // namespace pertev

@@ -67,7 +67,7 @@ private:
         const LightSetView& lights = picture.scene.lights;
         if (ray.depth == 0) add_no_first_hit(film, state.pixel, state.sample);
         if (!lights.has_environment() || (picture.hide_background && ray.depth == 0)) return;
-        const float light_pdf = ray.bsdf_pdf > 0 ? pdf_environment(lights, ray.direction) : 0.0f;
+        const float light_pdf = ray.bsdf_pdf > 0 ? pdf_environment(lights, ray.origin, ray.direction) : 0.0f;
         add_emission(state, ray, environment_radiance(lights.environment, ray.direction), light_pdf);
     }
     /// `light_pdf`: density with which light sampling at the ray's start draws its direction, 1/sr; 0: it cannot.
@@ -89,12 +89,7 @@ private:
                               time);
             }
             if (!is_black(surface.emission)) {
-                const uint32_t light =
-                    ray.bsdf_pdf > 0 ? light_of(scene.lights, hit.instance, hit.primitive) : kNoLight;
-                const float light_pdf =
-                    light == kNoLight ? 0.0f
-                    : moves           ? pdf_light_hit_at(scene, light, hit.instance, ray.origin, surface.position, time)
-                                      : pdf_light_hit(scene.lights, light, ray.origin, surface.position);
+                const float light_pdf = ray.bsdf_pdf > 0 ? pdf_direct(scene, moves, {ray.origin, time}, surface) : 0.0f;
                 add_emission(state, ray, surface.emission, light_pdf);
             }
         }

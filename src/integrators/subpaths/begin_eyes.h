@@ -22,7 +22,7 @@ struct BeginEyes {
         const Ray ray = camera.ray(state.pixel, scene.settings.sampler, key);
         state.throughput = {1, 1, 1};
         state.mis = {min(square(1.0f / camera_density(camera, ray.direction)), kMostOdds), 0};
-        state.is_from_far = camera.view.projection == Projection::Perspective ? 0 : 1;
+        state.is_from_far = has_parallel_rays(camera.view.projection) ? 1 : 0;
         walks.states[i] = state;
         walks.queue_ray(i, i, ray, {}, coin_key(key, 0, false), 0);
     }

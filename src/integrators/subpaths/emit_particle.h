@@ -34,111 +34,123 @@ HD inline float pdf_place(const EmissiveTriangle& triangle) {
 }
 /// Of places that parallel rays come through, 1/m2.
 HD inline float pdf_disc(const WorldSphere& world) { return kInvPi / square(world.radius); }
-/// Of a direction of a point or spot light, 1/sr.
-HD inline float pdf_direction(const PunctualLight& light) {
-    return light.kind == LightKind::Spot ? pdf_uniform_cone(1.0f - light.cos_outer) : pdf_uniform_sphere();
-}
 
 /// Share of a point or spot light that is left at `distance` of one that reaches to `t_max`.
 HD inline float left_at(float distance, float t_max) {
-    PunctualLight reaching;
-    reaching.range = t_max;
-    return t_max < kInfinity ? punctual_falloff(reaching, {0, 0, 1}, distance) : 1.0f;
+    return t_max < kInfinity ? range_falloff(t_max, distance) : 1.0f;
 }
 
-namespace emission {
+/// A place on a lamp that light leaves.
+struct LampPlace {
+    Vec3 point, normal; // normal: unit, by the winding
+    Rgb radiance;
+    float pdf; // 1/m2, the choice of the lamp included
+};
 
-HD inline bool from_triangle(const SceneView& scene, uint32_t light, Vec2 place, Vec2 u, uint32_t key,
-                             Particle& particle) {
+/// The place with the weights `at` of a triangle light's second and third vertex. False where it emits nothing. `key`:
+/// the coin of a blended lamp.
+HD inline bool find_lamp_place(const SceneView& scene, uint32_t light, Vec2 at, uint32_t key, LampPlace& place) {
     const EmissiveTriangle& triangle = scene.lights.triangles[light];
     if (scene.any_alpha != 0 &&
-        !AcceptHit{scene, {}, {}, key}.passes_alpha(triangle.instance, triangle.primitive, place.x, place.y)) {
+        !AcceptHit{scene, {}, {}, key}.passes_alpha(triangle.instance, triangle.primitive, at.x, at.y)) {
         return false; // a hole in the light
     }
-    const Vec2 uv = (1.0f - place.x - place.y) * triangle.uv0 + place.x * triangle.uv1 + place.y * triangle.uv2;
-    const Rgb radiance = surface_emission<true>(scene.lights, triangle.material, uv);
-    const float place_pdf = pdf_place(triangle);
-    if (is_black(radiance) || !(place_pdf > 0)) return false;
-    Vec3 normal = normalize(cross(triangle.ab, triangle.ac));
-    if (triangle.is_two_sided != 0 && u.x < 0.5f) normal = -normal;
-    if (triangle.is_two_sided != 0) u.x = u.x < 0.5f ? 2.0f * u.x : 2.0f * u.x - 1.0f;
-    if (triangle.is_two_sided == 0 && triangle.is_mirrored != 0) normal = -normal;
-    const Vec3 local = sample_cosine_hemisphere(u);
-    const float pdf = pdf_emission(triangle, local.z);
-    if (!(pdf > 0)) return false;
-    const Vec3 direction = normalize(make_frame(normal).to_world(local));
-    const Vec3 point = triangle.a + (place.x * triangle.ab + place.y * triangle.ac);
-    particle.ray = {offset_ray_origin(point, light_point_error(point), normal, direction), 0, direction, kInfinity};
-    particle.start = {triangle.instance, triangle.primitive};
-    particle.power = (local.z / (place_pdf * pdf)) * radiance;
-    particle.mis = {square(1.0f / pdf), min(square(local.z / (place_pdf * pdf)), kMostOdds)};
+    const Vec2 uv = (1.0f - at.x - at.y) * triangle.uv0 + at.x * triangle.uv1 + at.y * triangle.uv2;
+    place.radiance = surface_emission<true>(scene.lights, triangle.material, uv);
+    place.pdf = pdf_place(triangle);
+    if (is_black(place.radiance) || !(place.pdf > 0)) return false;
+    place.point = triangle.a + (at.x * triangle.ab + at.y * triangle.ac);
+    place.normal = normalize(cross(triangle.ab, triangle.ac));
     return true;
 }
 
-HD inline bool from_punctual(const PunctualLight& light, float pmf, Vec2 u, const WorldSphere& world,
-                             Particle& particle) {
-    if (light.kind == LightKind::Directional) {
-        const Vec2 disc = sample_uniform_disk_concentric(u);
-        const Vec3 across = world.radius * make_frame(light.direction).to_world({disc.x, disc.y, -1});
-        const float pdf = pdf_disc(world);
-        particle.ray = {world.centre + across, 0, light.direction, kInfinity};
-        particle.power = (1.0f / (pmf * pdf)) * light.intensity;
-        particle.mis = {square(1.0f / pdf), 0};
-        particle.is_from_far = true;
+/// The ray from there, on the side of `normal`.
+HD inline void leave_lamp(const EmissiveTriangle& triangle, const LampPlace& place, Vec3 normal, Vec3 direction,
+                          Particle& particle) {
+    particle.ray = {offset_ray_origin(place.point, light_point_error(place.point), normal, direction), 0, direction,
+                    kInfinity};
+    particle.start = {triangle.instance, triangle.primitive};
+}
+
+/// How a particle leaves each kind of light that draw_light has drawn, by `u`.
+struct EmitFromKind {
+    const SceneView& scene;
+    const WorldSphere& world;
+    Vec2 u;
+    uint32_t key; // find_lamp_place's
+    Particle& particle;
+
+    HD bool triangle(uint32_t light, Vec2 at) const {
+        LampPlace place;
+        return find_lamp_place(scene, light, at, key, place) && triangle(light, place);
+    }
+    HD bool triangle(uint32_t light, const LampPlace& place) const {
+        const EmissiveTriangle& triangle = scene.lights.triangles[light];
+        Vec3 normal = place.normal;
+        Vec2 about = u;
+        if (triangle.is_two_sided != 0 && u.x < 0.5f) normal = -normal;
+        if (triangle.is_two_sided != 0) about.x = u.x < 0.5f ? 2.0f * u.x : 2.0f * u.x - 1.0f;
+        if (triangle.is_two_sided == 0 && triangle.is_mirrored != 0) normal = -normal;
+        const Vec3 local = sample_cosine_hemisphere(about);
+        const float pdf = pdf_emission(triangle, local.z);
+        if (!(pdf > 0)) return false;
+        leave_lamp(triangle, place, normal, normalize(make_frame(normal).to_world(local)), particle);
+        particle.power = (local.z / (place.pdf * pdf)) * place.radiance;
+        particle.mis = {square(1.0f / pdf), min(square(local.z / (place.pdf * pdf)), kMostOdds)};
         return true;
     }
-    const bool is_spot = light.kind == LightKind::Spot;
-    const float pdf = pdf_direction(light);
-    if (!(pdf > 0) || !is_finite(pdf)) return false;
-    const Vec3 direction =
-        is_spot ? normalize(make_frame(light.direction).to_world(sample_uniform_cone(u, 1.0f - light.cos_outer)))
-                : sample_uniform_sphere(u);
-    particle.ray = {light.position, 0, direction, light.range > 0 ? light.range : kInfinity};
-    particle.power = (punctual_falloff(light, -direction, 0) / (pmf * pdf)) * light.intensity;
-    particle.mis = {square(1.0f / pdf), 0};
-    return true;
-}
+    HD bool punctual(uint32_t number, float pmf) const {
+        if (!(pmf > 0)) return false;
+        const PunctualLight& light = scene.lights.punctual[number];
+        float pdf = 0;
+        switch (light.kind) {
+        case LightKind::Point:
+        case LightKind::Spot: {
+            pdf = pdf_beam(light);
+            if (!(pdf > 0) || !is_finite(pdf)) return false;
+            const Vec3 direction = draw_beam(light, u);
+            particle.ray = {light.position, 0, direction, light.range > 0 ? light.range : kInfinity};
+            particle.power = (punctual_falloff(light, -direction, 0) / (pmf * pdf)) * light.intensity;
+            break;
+        }
+        case LightKind::Directional:
+            pdf = pdf_disc(world);
+            from_disc(light.direction);
+            particle.power = (1.0f / (pmf * pdf)) * light.intensity;
+            break;
+        }
+        particle.mis = {square(1.0f / pdf), 0};
+        return true;
+    }
+    HD bool environment(float pmf, SampleBits place) const {
+        EnvironmentSample sample;
+        if (!(pmf > 0) || !sample_environment(scene.lights.environment, place, sample)) return false;
+        const float pdf = pmf * sample.pdf, through_disc = pdf_disc(world);
+        if (!(pdf > 0)) return false;
+        from_disc(-sample.wi);
+        particle.power = (1.0f / (pdf * through_disc)) * sample.radiance;
+        particle.mis = {square(1.0f / through_disc), min(square(1.0f / (pdf * through_disc)), kMostOdds)};
+        return true;
+    }
 
-HD inline bool from_environment(const EnvironmentView& environment, float pmf, SampleBits place, Vec2 u,
-                                const WorldSphere& world, Particle& particle) {
-    EnvironmentSample sample;
-    if (!sample_environment(environment, place, sample)) return false;
-    const float pdf = pmf * sample.pdf, through_disc = pdf_disc(world);
-    if (!(pdf > 0)) return false;
-    const Vec2 disc = sample_uniform_disk_concentric(u);
-    const Vec3 direction = -sample.wi;
-    const Vec3 across = world.radius * make_frame(direction).to_world({disc.x, disc.y, -1});
-    particle.ray = {world.centre + across, 0, direction, kInfinity};
-    particle.power = (1.0f / (pdf * through_disc)) * sample.radiance;
-    particle.mis = {square(1.0f / through_disc), min(square(1.0f / (pdf * through_disc)), kMostOdds)};
-    particle.is_from_far = true;
-    return true;
-}
-
-} // namespace emission
+private:
+    /// From outside of the world, through a place of the disc across `direction` that `u` draws.
+    HD void from_disc(Vec3 direction) const {
+        const Vec2 disc = sample_uniform_disk_concentric(u);
+        const Vec3 across = world.radius * make_frame(direction).to_world({disc.x, disc.y, -1});
+        particle.ray = {world.centre + across, 0, direction, kInfinity};
+        particle.is_from_far = true;
+    }
+};
 
 /// Draws a particle by `u_place`, as sample_light draws a light by it, and `u`. False: none, which counts as black.
 /// `key`: the coin of a blended lamp.
 HD inline bool emit_particle(const SceneView& scene, const WorldSphere& world, SampleBits u_place, Vec2 u, uint32_t key,
                              Particle& particle) {
-    const LightSetView& lights = scene.lights;
-    if (lights.choice.starts == nullptr || !(world.radius > 0)) return false;
+    if (!(world.radius > 0)) return false;
     particle.start = {};
     particle.is_from_far = false;
-    const uint32_t more = bits_behind(u_place);
-    const OrderedDraw source = draw_ordered(lights.choice, u_place.x, more);
-    if (source.index < lights.emitter_count) {
-        const OrderedDraw triangle = draw_ordered(lights.triangles_of(source.index), u_place.y, more);
-        const uint32_t first = lights.emitters[source.index].first_triangle;
-        return emission::from_triangle(scene, first + lights.triangle_order[first + triangle.index],
-                                       sample_uniform_triangle({rest_of(source), rest_of(triangle)}), u, key, particle);
-    }
-    const float pmf = ordered_pmf(source.owned);
-    if (!(pmf > 0)) return false;
-    if (source.index != lights.environment_source) {
-        return emission::from_punctual(lights.punctual[source.index - lights.emitter_count], pmf, u, world, particle);
-    }
-    return emission::from_environment(lights.environment, pmf, {number_of_rest(source), u_place.y}, u, world, particle);
+    return draw_light(scene.lights, u_place, EmitFromKind{scene, world, u, key, particle});
 }
 
 /// Densities of a light that a walk from the camera has met: of the place (1/m2; of far light the direction, 1/sr),

@@ -8,10 +8,10 @@
 
 #include "device/atomic_add.h"
 #include "integrators/subpaths/emit_particle.h"
-#include "integrators/subpaths/see_vertex.h"
 #include "integrators/subpaths/splat.h"
 #include "integrators/subpaths/walk_vertex.h"
 #include "render/begin_order.h"
+#include "render/see_vertex.h"
 
 namespace pertev {
 

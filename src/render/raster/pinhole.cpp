@@ -17,7 +17,7 @@ Pinhole make_pinhole(const CameraRays& camera) {
     p.row_y = scaled(-inverse_determinant, cross(c2, c0));
     p.row_depth = scaled(-inverse_determinant, cross(c0, c1));
     p.eye = to_double(m.translation);
-    p.is_perspective = camera.view.projection == Projection::Perspective;
+    p.is_perspective = !has_parallel_rays(camera.view.projection);
     p.width = camera.width;
     p.height = camera.height;
     p.half_width = static_cast<double>(camera.view.half_width);
@@ -56,7 +56,7 @@ std::string why_no_raster(const Camera& camera) {
                "--integrator "
                "path has it)";
     }
-    if (camera.projection == Projection::Cosine) {
+    if (is_light_meter(camera.projection)) {
         return "a rasteriser knows perspective and orthographic cameras alone";
     }
     return {};

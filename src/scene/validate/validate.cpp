@@ -238,14 +238,15 @@ private:
             throw bad(
                 fmt::format("{}: its intensity is ({}, {}, {}); it is finite and not negative", of, e.r, e.g, e.b));
         }
-        if (light.kind != LightKind::Directional) {
+        const LightParts parts = parts_of(light.kind);
+        if (parts.place) {
             if (!is_near(light.position)) throw too_far(of);
             if (!(light.range >= 0)) throw bad(fmt::format("{}: its range is {}; it is 0 or above", of, light.range));
         }
-        if (light.kind == LightKind::Point) return;
+        if (!parts.direction) return;
         light.direction = normalize_safely(light.direction);
         if (!is_finite(light.direction)) throw bad(of + ": its direction is zero or not finite");
-        if (light.kind == LightKind::Directional) return;
+        if (!parts.cone) return;
         if (!(light.cos_outer >= -1 && light.cos_inner <= 1 && light.cos_outer < light.cos_inner)) {
             throw bad(
                 fmt::format("{}: the cosines of its cone are {} (inner) and {} (outer); outer is the smaller, both "

@@ -3,7 +3,6 @@
 // The camera's end of a light path: which place of the picture sees a point of the scene, through which point of the
 // lens, and how densely the camera's rays go there. The camera's own rays (render/camera_view.h) backwards.
 
-#include "integrators/subpaths/subpath_settings.h"
 #include "render/camera_rays.h"
 
 namespace pertev {
@@ -21,8 +20,8 @@ struct SeenVertex {
 HD inline float camera_density(const CameraRays& camera, Vec3 direction) {
     const float cosine = dot(direction, camera.axis);
     const float view = 4.0f * camera.view.half_width * camera.view.half_height;
-    return camera.view.projection == Projection::Perspective ? 1.0f / (view * cosine * cosine * cosine)
-                                                             : 1.0f / (view * cosine);
+    return has_parallel_rays(camera.view.projection) ? 1.0f / (view * cosine)
+                                                     : 1.0f / (view * cosine * cosine * cosine);
 }
 
 /// False where `point` is not before the camera, or the camera is a light meter. `u`: of the lens.
@@ -30,11 +29,12 @@ HD inline bool see_vertex(const CameraRays& camera, Vec3 point, Vec2 u, SeenVert
     const CameraView& view = camera.view;
     const Vec3 local = transform_transposed(view.world_from_camera, point - view.world_from_camera.translation);
     const float depth = -local.z;
-    if (!(depth > 0) || view.projection == Projection::Cosine) return false;
+    if (!(depth > 0) || is_light_meter(view.projection)) return false;
     const Vec2 lens = camera.has_lens() ? view.aperture_radius * sample_uniform_disk_concentric(u) : Vec2{0, 0};
     float x, y; // in the plane at distance 1, or of the orthographic view
     Vec3 from = {lens.x, lens.y, 0};
-    if (view.projection == Projection::Perspective) {
+    const bool is_parallel = has_parallel_rays(view.projection);
+    if (!is_parallel) {
         x = local.x / depth;
         y = local.y / depth;
         if (camera.has_lens()) { // where the ray meets the plane in focus
@@ -61,7 +61,7 @@ HD inline bool see_vertex(const CameraRays& camera, Vec3 point, Vec2 u, SeenVert
         return false;
     }
     seen.density = camera_density(camera, seen.direction);
-    seen.distance_squared = view.projection == Projection::Perspective ? distance_squared : 1.0f;
+    seen.distance_squared = is_parallel ? 1.0f : distance_squared;
     return seen.density > 0 && is_finite(seen.density);
 }
 

@@ -1,0 +1,30 @@
+#pragma once
+
+// Listens for a film: auxiliary layers of what camera rays meet first, and the samples of its pixels.
+
+#include "integrators/path/path_listener.h"
+#include "render/first_hit.h"
+
+namespace pertev {
+
+class FirstHitLayers : public PathListener<FirstHitLayers> {
+public:
+    HD explicit FirstHitLayers(const PathJob& job) : job_(job) {}
+
+    HD void missed(const PathState& path) {
+        if (path.depth == 0) add_no_first_hit(job_.film, path.pixel, path.sample);
+    }
+    HD void vertex(const PathState& path, const Hit& hit, Surface& surface) {
+        if (path.depth != 0) return;
+        add_first_hit(job_.film, path.pixel, path.sample, {path.origin, path.direction}, hit, surface, job_.picture,
+                      path.time);
+    }
+    HD void ended(uint32_t pixel, Rgb radiance, const Kept&) const { add_radiance(job_.film, pixel, radiance); }
+
+private:
+    const PathJob& job_;
+};
+
+using FilmListeners = Listeners<FirstHitLayers>;
+
+} // namespace pertev

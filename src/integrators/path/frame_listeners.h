@@ -1,0 +1,216 @@
+#pragma once
+
+// Listen for a frame of samples (render/noisy_frame_view.h): the surface that a camera ray met; which part of the light
+// went through its diffuse lobes; and what is left to ReSTIR of the path's first bounce.
+
+#include "integrators/path/path_listener.h"
+
+namespace pertev {
+
+/// The surface that the camera's ray met, and the sample.
+class FrameSurface : public PathListener<FrameSurface> {
+public:
+    HD explicit FrameSurface(const PathJob& job) : film_(job.film), axis_(job.picture.camera.axis) {}
+
+    HD void missed(const PathState& path) {
+        if (path.depth != 0) return;
+        const NoisyFrameView& frame = film_.frame;
+        frame.place[path.pixel] = {float_of(kNoHit), float_of(kNoHit), 0, 0};
+        frame.normal[path.pixel] = {0, 0, 0, kFarAway};
+        frame.albedo[path.pixel] = {0, 0, 0, 1};
+        frame.gloss[path.pixel] = {0, 0, 0, kFarAway};
+    }
+    HD void vertex(const PathState& path, const Hit& hit, Surface& surface) {
+        if (path.depth == 0) store(path, hit, surface);
+        if (path.depth == 1) film_.frame.gloss[path.pixel].w = hit.t;
+    }
+    HD void emitted(const PathState& path, Rgb light) {
+        if (path.depth == 0) film_.frame.emission[path.pixel] = {light.r, light.g, light.b, passage_};
+    }
+    HD void ended(uint32_t pixel, Rgb radiance, const Kept&) const { store_sample(film_, pixel, radiance, {}); }
+
+private:
+    HD void store(const PathState& path, const Hit& hit, const Surface& surface) {
+        const NoisyFrameView& frame = film_.frame;
+        const Vec3 normal = surface.frame.normal;
+        const float cosine = dot(normal, path.direction);
+        const Vec3 seen = cosine > 0 ? -normal : normal;
+        const Gloss gloss = surface.bsdf.gloss(abs(cosine));
+        frame.place[path.pixel] = {float_of(hit.instance), float_of(hit.primitive), hit.u, hit.v};
+        frame.normal[path.pixel] = {seen.x, seen.y, seen.z, dot(surface.position - path.origin, axis_)};
+        frame.albedo[path.pixel] = {surface.albedo.r, surface.albedo.g, surface.albedo.b, gloss.alpha};
+        frame.gloss[path.pixel] = {gloss.reflectance.r, gloss.reflectance.g, gloss.reflectance.b, kFarAway};
+        passage_ = gloss.passage;
+    }
+
+    const FilmView& film_;
+    const Vec3& axis_;
+    float passage_ = 1; // Gloss's
+};
+
+/// Which part of a path's radiance went through diffuse lobes of its first vertex, where a frame splits light.
+class LightSplit : public PathListener<LightSplit> {
+public:
+    struct Kept {
+        Float4 diffuse; // rgb; w: bits of the share of diffuse lobes in what the first vertex scattered, ten a colour
+    };
+    struct Asked {
+        Rgb diffuse; // of the contribution
+    };
+
+    HD explicit LightSplit(const PathJob& job) : frame_(job.film.frame) {}
+
+    HD void begins(const PathState&) { kept_ = {}; }
+    HD void take_up(const Kept& kept) {
+        kept_ = kept;
+        first_ = unpacked(bits_of(kept.diffuse.w));
+    }
+    /// Light that the camera's ray itself meets is not scattered.
+    HD void emitted(const PathState&, Rgb light) {
+        if (!frame_.splits_light()) return;
+        const Rgb more = first_ * light;
+        kept_.diffuse = {kept_.diffuse.x + more.r, kept_.diffuse.y + more.g, kept_.diffuse.z + more.b, kept_.diffuse.w};
+    }
+    HD void direct(const PathState& path, const VertexView& at, Vec3 wi, const ShadowRay& shadow) {
+        if (!frame_.splits_light()) return;
+        asked_.diffuse = (path.depth == 0 ? at.surface.diffuse_share(at.wo, wi) : first_) * shadow.contribution;
+    }
+    /// Not by the lobe that was drawn: others send light that way, too, and light of glossy ones changes with the view.
+    HD void scattered(const PathState& path, const VertexView& at, const BsdfSample&) {
+        if (!frame_.splits_light() || path.depth != 1) return;
+        first_ = path.bsdf_pdf > 0 ? at.surface.diffuse_share(at.wo, path.direction) : Rgb{0, 0, 0};
+    }
+    HD void put_down(Kept& kept) const {
+        kept = {{kept_.diffuse.x, kept_.diffuse.y, kept_.diffuse.z, float_of(packed(first_))}};
+    }
+    HD void hand_over(Asked& asked) const { asked = asked_; }
+
+    HD void arrived(Kept& kept, const Asked& asked, Rgb) const {
+        Float4& d = kept.diffuse;
+        d = {d.x + asked.diffuse.r, d.y + asked.diffuse.g, d.z + asked.diffuse.b, d.w};
+    }
+    HD void ended(uint32_t pixel, Rgb, const Kept& kept) const {
+        if (frame_.splits_light()) frame_.diffuse[pixel] = {kept.diffuse.x, kept.diffuse.y, kept.diffuse.z, 0};
+    }
+
+    HD static void load(const ListenerQueues& queues, uint32_t i, Kept& kept) {
+        if (queues.diffuse != nullptr) kept.diffuse = queues.diffuse[i];
+    }
+    HD static void load_next(const ListenerQueues& queues, uint32_t i, Kept& kept) {
+        if (queues.next_diffuse != nullptr) kept.diffuse = queues.next_diffuse[i];
+    }
+    HD static void store_next(const ListenerQueues& queues, uint32_t i, const Kept& kept) {
+        if (queues.next_diffuse != nullptr) queues.next_diffuse[i] = kept.diffuse;
+    }
+    HD static void load_asked(const ListenerQueues& queues, uint32_t i, Asked& asked) {
+        if (queues.shadow_diffuse == nullptr) return;
+        const Float4 d = queues.shadow_diffuse[i];
+        asked.diffuse = {d.x, d.y, d.z};
+    }
+    HD static void store_asked(const ListenerQueues& queues, uint32_t i, const Asked& asked) {
+        if (queues.shadow_diffuse == nullptr) return;
+        queues.shadow_diffuse[i] = {asked.diffuse.r, asked.diffuse.g, asked.diffuse.b, 0};
+    }
+
+private:
+    static constexpr uint32_t kMost = 1023;
+    HD static uint32_t part(float share) {
+        return static_cast<uint32_t>(to_int(fma(share, static_cast<float>(kMost), 0.5f), 0, kMost));
+    }
+    HD static uint32_t packed(Rgb share) { return part(share.r) | part(share.g) << 10 | part(share.b) << 20; }
+    HD static Rgb unpacked(uint32_t bits) {
+        constexpr float kInv = 1.0f / static_cast<float>(kMost);
+        return kInv * Rgb{static_cast<float>(bits & kMost), static_cast<float>(bits >> 10 & kMost),
+                          static_cast<float>(bits >> 20 & kMost)};
+    }
+
+    const NoisyFrameView& frame_;
+    Kept kept_ = {};
+    Asked asked_ = {};
+    Rgb first_ = {0, 0, 0}; // share of diffuse lobes in what the first vertex scattered
+};
+
+/// What a frame leaves to ReSTIR (FirstBounceView), where it does.
+class FirstBounce : public PathListener<FirstBounce> {
+public:
+    struct Asked {
+        Rgb sent; // of the contribution, what goes through the diffuse lobes of the second vertex
+        uint32_t pixel;
+    };
+
+    HD explicit FirstBounce(const PathJob& job) : frame_(job.film.frame) {}
+
+    HD void begins(const PathState& path) {
+        if (leaves()) left().light[path.pixel] = {};
+        if (tells()) begin_bounce(path, {}, false);
+    }
+    HD bool takes(const PathState& path, const LightPlace& place, float light_pdf) {
+        if (!leaves() || path.depth != 1 || !(light_pdf > 0)) return false;
+        left().light[path.pixel] = place;
+        return true;
+    }
+    HD void emitted(const PathState& path, Rgb light) {
+        if (!tells() || path.depth <= 1) return;
+        // As much as the sample's radiance grows by, which where light is split is of this vertex alone.
+        const Rgb more = frame_.splits_light() ? light : (path.radiance + light) - path.radiance;
+        left().add_sent(path.pixel, share_onwards(path.pixel) * more);
+    }
+    HD bool wants_direct(const PathState& path, const Hit& hit, const Surface& surface) {
+        // With coat or sheen on top, what leaves it in one direction says little of another.
+        is_bounce_ = tells() && path.depth == 1 && path.bsdf_pdf > 0 && !surface.bsdf.is_stacked;
+        if (is_bounce_) begin_bounce(path, hit, true);
+        return !(leaves() && path.depth == 0);
+    }
+    HD void direct(const PathState& path, const VertexView& at, Vec3 wi, const ShadowRay& shadow) {
+        if (!tells()) return;
+        const Rgb share = is_bounce_ ? at.surface.diffuse_share(at.wo, wi) : share_onwards(path.pixel);
+        asked_ = {share * shadow.contribution, path.pixel};
+    }
+    HD void scattered(const PathState& path, const VertexView& at, const BsdfSample&) {
+        if (!is_bounce_ || !(path.bsdf_pdf > 0)) return; // by a delta lobe nothing can be shared
+        const Rgb share = at.surface.diffuse_share(at.wo, path.direction);
+        left().onwards[path.pixel] = {share.r, share.g, share.b, 0};
+    }
+    HD void hand_over(Asked& asked) const { asked = asked_; }
+
+    HD void arrived(Kept&, const Asked& asked, Rgb) const {
+        if (tells()) left().add_sent(asked.pixel, asked.sent);
+    }
+
+    HD static void load_asked(const ListenerQueues& queues, uint32_t i, Asked& asked) {
+        if (queues.shadow_sent == nullptr) return;
+        const Float4 sent = queues.shadow_sent[i];
+        asked = {{sent.x, sent.y, sent.z}, bits_of(sent.w)};
+    }
+    HD static void store_asked(const ListenerQueues& queues, uint32_t i, const Asked& asked) {
+        if (queues.shadow_sent == nullptr) return;
+        queues.shadow_sent[i] = {asked.sent.r, asked.sent.g, asked.sent.b, float_of(asked.pixel)};
+    }
+
+private:
+    HD const FirstBounceView& left() const { return frame_.first_bounce; }
+    HD bool leaves() const { return left().leaves_direct_light(); }
+    HD bool tells() const { return left().tells_bounce(); }
+    /// What the first bounce has met, before anything is added there. A place that nobody can share is none.
+    HD void begin_bounce(const PathState& path, const Hit& hit, bool is_shared) const {
+        left().place[path.pixel] = {float_of(is_shared ? hit.instance : kNoHit), float_of(hit.primitive), hit.u, hit.v};
+        left().way[path.pixel] = {path.throughput.r, path.throughput.g, path.throughput.b, path.bsdf_pdf};
+        left().sent[path.pixel] = left().onwards[path.pixel] = {0, 0, 0, 0};
+    }
+    HD Rgb share_onwards(uint32_t pixel) const {
+        const Float4 share = left().onwards[pixel];
+        return {share.x, share.y, share.z};
+    }
+
+    const NoisyFrameView& frame_;
+    bool is_bounce_ = false;
+    Asked asked_ = {};
+};
+
+/// Plain: of scenes that have diffuse lobes alone. Reuse: light is left to ReSTIR.
+using FrameListeners = Listeners<FrameSurface, LightSplit>;
+using PlainFrameListeners = Listeners<FrameSurface>;
+using ReuseListeners = Listeners<FrameSurface, LightSplit, FirstBounce>;
+using PlainReuseListeners = Listeners<FrameSurface, FirstBounce>;
+
+} // namespace pertev

@@ -1,0 +1,129 @@
+#pragma once
+
+// Listen for layers of light-path expressions, and for pictures of irradiance, whose paths' first surface is a light
+// meter.
+
+#include "integrators/path/film_listener.h"
+
+namespace pertev {
+
+/// Share of diffuse lobes, [0, 1] for each colour, in what the surface scatters of light along wi to wo by lobes that
+/// are not delta; the rest is by glossy ones. `if_dark` where it scatters nothing.
+HD inline Rgb exact_diffuse_share(const Surface& surface, Vec3 wo, Vec3 wi, float if_dark) {
+    if (!surface.bsdf.has(LobeClass::Glossy)) return grey(1.0f);
+    if (!surface.bsdf.has(LobeClass::Diffuse)) return grey(0.0f);
+    const Rgb all = surface.evaluate(wo, wi).f, f = surface.evaluate(wo, wi, only(LobeClass::Diffuse)).f;
+    return {all.r > 0 ? min(f.r / all.r, 1.0f) : if_dark, all.g > 0 ? min(f.g / all.g, 1.0f) : if_dark,
+            all.b > 0 ? min(f.b / all.b, 1.0f) : if_dark};
+}
+
+/// Makes the first surface a light meter, which gives its irradiance to the eye and nothing else. Black where the
+/// camera sees no surface.
+class IrradianceMeter : public PathListener<IrradianceMeter> {
+public:
+    HD explicit IrradianceMeter(const PathJob& job) : is_there_(job.is_meter) {}
+
+    HD void vertex(const PathState& path, const Hit&, Surface& surface) {
+        if (!is_there_ || path.depth != 0) return;
+        surface.bsdf = Bsdf(DiffuseLobe{grey(kPi), 1}); // a white one would have the radiance E / pi
+        surface.emission = {};
+        surface.is_unlit = false;
+    }
+    HD bool takes(const PathState& path, const LightPlace&, float) { return is_there_ && path.depth == 0; }
+
+private:
+    bool is_there_;
+};
+
+/// Gives light to the layers that the automaton says (render/light_paths/light_path_view.h).
+class LightPaths : public PathListener<LightPaths> {
+public:
+    struct Kept {
+        LightPathState state; // of the path before the vertex that it goes to
+    };
+    struct Asked {
+        Rgb diffuse; // of the contribution, what goes through diffuse lobes of the vertex
+        uint32_t pixel;
+        LightPathState state; // of the path before the vertex
+        uint32_t column;      // of the vertex' scatterings to that side
+        uint32_t light;       // LightPathView::light_of
+    };
+
+    HD explicit LightPaths(const PathJob& job) : job_(job) {}
+
+    HD void begins(const PathState&) { state_ = layers().begin(); }
+    HD void take_up(const Kept& kept) { state_ = kept.state; }
+    HD void missed(const PathState&) { met_ = {kNoLight, kNoLight}; }
+    HD void vertex(const PathState&, const Hit& hit, Surface&) { met_ = {hit.instance, hit.primitive}; }
+    HD void emitted(const PathState& path, Rgb light) {
+        if (!layers().is_there() || is_black(light)) return;
+        layers().add(job_.film, path.pixel, state_, layers().light_of(lights(), met_), light);
+    }
+    HD INLINE_ON_DEVICE void direct(const PathState& path, const VertexView& at, Vec3 wi, const ShadowRay& shadow) {
+        if (!layers().is_there()) return;
+        const bool is_transmission = !at.surface.same_side(at.wo, wi);
+        asked_ = {exact_diffuse_share(at.surface, at.wo, wi, 0) * shadow.contribution, path.pixel, state_,
+                  layers().first_column(met_.instance) + scattering_column(LobeClass::Diffuse, is_transmission),
+                  layers().light_of(lights(), shadow.target)};
+    }
+    HD INLINE_ON_DEVICE void scattered(const PathState& path, const VertexView& at, const BsdfSample& sample) {
+        if (!layers().is_there()) return;
+        const bool is_specular = sample.is_delta();
+        Rgb diffuse;
+        float u = 0.5f;
+        if (!is_specular) {
+            const float if_dark = sample.lobe_class == LobeClass::Diffuse ? 1.0f : 0.0f;
+            diffuse = exact_diffuse_share(at.surface, at.wo, sample.wi, if_dark);
+            const SampleKey key = sample_key(job_.settings, path.pixel, path.sample);
+            const uint32_t group = vertex_group(path.depth - 1, kGroupChoices); // of the vertex left behind
+            u = sample_1d(job_.settings.sampler, key, group, kNumberLightPath);
+        }
+        state_ = after_scattering(layers(), state_, layers().first_column(met_.instance), is_specular,
+                                  sample.is_transmission, diffuse, u);
+    }
+    HD void put_down(Kept& kept) const { kept = {state_}; }
+    HD void hand_over(Asked& asked) const { asked = asked_; }
+
+    HD void arrived(Kept&, const Asked& asked, Rgb contribution) const {
+        if (!layers().is_there()) return;
+        const auto after = [&](LobeClass lobe_class) {
+            return layers().after(asked.state, asked.column + scattering_column(lobe_class, false));
+        };
+        layers().add(job_.film, asked.pixel, after(LobeClass::Diffuse), asked.light, asked.diffuse);
+        layers().add(job_.film, asked.pixel, after(LobeClass::Glossy), asked.light, contribution - asked.diffuse);
+    }
+
+    HD static void load(const ListenerQueues& queues, uint32_t i, Kept& kept) {
+        if (queues.states != nullptr) kept.state = {queues.states[i].x, queues.states[i].y};
+    }
+    HD static void load_next(const ListenerQueues& queues, uint32_t i, Kept& kept) {
+        if (queues.next_states != nullptr) kept.state = {queues.next_states[i].x, queues.next_states[i].y};
+    }
+    HD static void store_next(const ListenerQueues& queues, uint32_t i, const Kept& kept) {
+        if (queues.next_states != nullptr) queues.next_states[i] = {kept.state.red_green, kept.state.blue};
+    }
+    HD static void load_asked(const ListenerQueues& queues, uint32_t i, Asked& asked) {
+        if (queues.layer_parts == nullptr) return;
+        const Float4 d = queues.layer_diffuse[i];
+        const Uint4 p = queues.layer_parts[i];
+        asked = {{d.x, d.y, d.z}, bits_of(d.w), {p.x, p.y}, p.z, p.w};
+    }
+    HD static void store_asked(const ListenerQueues& queues, uint32_t i, const Asked& asked) {
+        if (queues.layer_parts == nullptr) return;
+        queues.layer_diffuse[i] = {asked.diffuse.r, asked.diffuse.g, asked.diffuse.b, float_of(asked.pixel)};
+        queues.layer_parts[i] = {asked.state.red_green, asked.state.blue, asked.column, asked.light};
+    }
+
+private:
+    HD const LightPathView& layers() const { return job_.layers; }
+    HD const LightSetView& lights() const { return job_.picture.scene.lights; }
+
+    const PathJob& job_;
+    LightPathState state_;
+    TriangleId met_; // by the path's ray
+    Asked asked_ = {};
+};
+
+using LayerListeners = Listeners<IrradianceMeter, FirstHitLayers, LightPaths>;
+
+} // namespace pertev

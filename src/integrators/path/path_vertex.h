@@ -1,0 +1,195 @@
+#pragma once
+
+// Third step of a path: what happens where its ray has hit (or left the scene). Makes the vertex, adds what it emits,
+// asks for a shadow ray towards one light (next-event estimation), and scatters the path onwards: light transport and
+// nothing else, of which listeners are told (path_listener.h). The same functions on both devices.
+//
+// Source: Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, chapter 9 (multiple importance
+// sampling, power heuristic) and 10.4 (Russian roulette).
+
+#include "device_scene/moved_surface.h"
+#include "device_scene/ray_origin.h"
+#include "device_scene/surface.h"
+#include "integrators/path/path_listener.h"
+#include "integrators/path/vertex_numbers.h"
+#include "shading/power_heuristic.h"
+
+namespace pertev {
+
+/// Whether light that was scattered `rough` times by other than delta lobes is asked for.
+HD inline bool counts(PathLight light, uint32_t rough) {
+    switch (light) {
+    case PathLight::Path:
+        return true;
+    case PathLight::Direct:
+        return rough <= 1;
+    case PathLight::Indirect:
+        return rough >= 2;
+    }
+    return false;
+}
+
+/// Contribution after the user's clamp, which spares light that was scattered at most once. It is for what a technique
+/// found before its weight: `contribution` has been weighted by `weight`, so the limit is as well.
+HD inline Rgb clamp_contribution(const PathSettings& settings, uint32_t scatterings, float weight, Rgb contribution) {
+    const float largest = max_component(contribution), limit = weight * settings.clamp;
+    if (!(settings.clamp > 0) || scatterings <= 1 || !(largest > limit)) return contribution;
+    return (limit / largest) * contribution;
+}
+
+/// What light that the path's own ray has run into adds to it. `light_pdf`: density with which next-event estimation at
+/// the previous vertex would have drawn this direction, 1/sr; 0 for light that it cannot find.
+HD inline Rgb emitted_light(const PathSettings& settings, const PathState& path, Rgb emission, float light_pdf) {
+    if (!counts(settings.light, path.rough_depth)) return {0, 0, 0};
+    float weight = 1;
+    if (path.bsdf_pdf > 0 && light_pdf > 0) {
+        if (settings.strategy == LightStrategy::NeeOnly) return {0, 0, 0};
+        if (settings.strategy == LightStrategy::Mis) weight = power_heuristic(path.bsdf_pdf, light_pdf);
+    }
+    return clamp_contribution(settings, path.depth, weight, path.throughput * (weight * emission));
+}
+
+/// Adds light that the path's own ray has run into.
+template <class Listener>
+HD inline void add_emitted(PathState& path, Rgb light, Listener& listener) {
+    listener.emitted(path, light);
+    path.radiance += light;
+}
+
+/// Light of the environment, of a ray that met nothing.
+template <class Listener>
+HD INLINE_ON_DEVICE void add_background(const PathJob& job, PathState& path, Listener& listener) {
+    const LightSetView& lights = job.picture.scene.lights;
+    Rgb light = {0, 0, 0};
+    if (lights.has_environment() && !(job.picture.hide_background && path.depth == 0)) {
+        const EnvironmentHit seen = find_environment(lights, path.origin, path.direction, path.bsdf_pdf > 0);
+        if (!listener.takes(path, place_in_environment(path.direction), seen.pdf)) {
+            light = emitted_light(job.settings, path, seen.radiance, seen.pdf);
+        }
+    }
+    add_emitted(path, light, listener);
+}
+
+/// Light of the surface that the ray has hit.
+template <Features kFeatures, class Listener>
+HD INLINE_ON_DEVICE void add_surface_emission(const PathJob& job, PathState& path, const Hit& hit,
+                                              const Surface& surface, Listener& listener) {
+    Rgb light = {0, 0, 0};
+    if (!is_black(surface.emission)) {
+        constexpr bool kMoves = (kFeatures & kMoving) != 0;
+        const float light_pdf =
+            path.bsdf_pdf > 0 ? pdf_direct(job.picture.scene, kMoves, {path.origin, path.time}, surface) : 0.0f;
+        if (!listener.takes(path, {hit.instance, hit.primitive, hit.u, hit.v}, light_pdf)) {
+            light = emitted_light(job.settings, path, surface.emission, light_pdf);
+        }
+    }
+    add_emitted(path, light, listener);
+}
+
+/// One point of one light, drawn for the vertex. True when `shadow` is to be traced.
+template <Features kFeatures, class Numbers, class Listener>
+HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path, const VertexView& vertex,
+                                       const Numbers& numbers, ShadowRay& shadow, Listener& listener) {
+    const SceneView& scene = job.picture.scene;
+    const PathSettings& settings = job.settings;
+    const Surface& surface = vertex.surface;
+    if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
+    if (!counts(settings.light, path.rough_depth + 1)) return false;
+    LightSample light;
+    constexpr bool kMoves = (kFeatures & kMoving) != 0;
+    const SampleBits u = numbers.light(settings, path);
+    if (!draw_direct<(kFeatures & kTextured) != 0>(scene, kMoves, surface.light_context(path.time), u, light)) {
+        return false;
+    }
+    const BsdfValue scattered = surface.evaluate(vertex.wo, light.wi);
+    if (is_black(scattered.f)) return false;
+    if ((kFeatures & kAlpha) != 0 && light.instance != kNoLight && scene.any_alpha != 0 &&
+        !AcceptHit{scene, {}, {}, path_key(path, settings.seed, true)}.passes_alpha(light.instance, light.primitive,
+                                                                                    light.b1, light.b2)) {
+        return false; // a hole in the light
+    }
+    float weight = 1;
+    if (!light.is_delta && settings.strategy == LightStrategy::Mis) {
+        weight = power_heuristic(light.pdf, scattered.pdf);
+    }
+    shadow.contribution = clamp_contribution(settings, path.depth + 1, weight,
+                                             path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
+    const float lamp_error = kMoves ? lamp_error_at(scene, light, path.time) : 0.0f;
+    const Ray ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal, lamp_error);
+    shadow.origin = ray.origin;
+    shadow.direction = ray.direction;
+    shadow.t_max = ray.t_max;
+    shadow.target = {light.instance, light.primitive};
+    listener.direct(path, vertex, light.wi, shadow);
+    return true;
+}
+
+HD inline float survival_probability(Roulette roulette, float throughput) {
+    if (roulette == Roulette::Throughput) return throughput;
+    const float fourth = sqrt(sqrt(throughput));
+    return roulette == Roulette::FourthRoot ? fourth : fourth * sqrt(sqrt(fourth));
+}
+
+/// Draws where the path goes on. False when it ends here.
+template <class Numbers, class Listener>
+HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathState& path, const VertexView& vertex,
+                                           const Numbers& numbers, Listener& listener) {
+    const Surface& surface = vertex.surface;
+    const float lobe = surface.bsdf.draws_lobe() ? numbers.lobe(settings, path) : 0.5f;
+    const BsdfSample sample = surface.sample(vertex.wo, lobe, numbers.direction(settings, path));
+    if (!(sample.pdf > 0)) return false;
+    const Vec3 wi = sample.wi;
+    path.throughput = path.throughput * sample.weight;
+    path.bsdf_pdf = sample.is_delta() ? 0.0f : sample.pdf;
+    path.origin = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi);
+    path.direction = wi;
+    path.start = surface.triangle;
+    path.rough_depth += sample.is_delta() ? 0 : 1;
+    if (settings.light == PathLight::Direct && path.rough_depth > 1) return false; // nothing of it would count
+    const uint32_t depth = path.depth + 1;
+    if (may_end_by_chance(settings, depth)) {
+        const float survival = survival_probability(settings.roulette, max_component(path.throughput));
+        if (survival < 1) {
+            if (!(numbers.roulette(settings, path) < survival)) return false;
+            path.throughput = (1.0f / survival) * path.throughput;
+        }
+    }
+    path.depth = depth;
+    listener.scattered(path, vertex, sample);
+    return true;
+}
+
+/// The surface that the path's ray has hit, where it is at the time of the ray.
+template <Features kFeatures>
+HD INLINE_ON_DEVICE Surface make_vertex(const SceneView& scene, const PathState& path, const Hit& hit) {
+    constexpr bool kMoves = (kFeatures & kMoving) != 0;
+    const MovedHit moved(scene, hit, kMoves ? path.time : kAtRest);
+    Surface surface =
+        make_surface<known_of(kFeatures)>(scene, hit, kMoves ? moved.back(path.direction) : path.direction);
+    if (kMoves) moved.move(surface);
+    return surface;
+}
+
+/// What the ray of `path` met: `hit`, or nothing when hit.instance is kNoHit. Returns whether the path goes on;
+/// `wants_shadow` says whether `shadow` was written. `numbers`: DrawWhenAsked or DrawnNumbers.
+template <Features kFeatures, class Numbers, class Listener>
+HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const Hit& hit, const Numbers& numbers,
+                                      ShadowRay& shadow, bool& wants_shadow, Listener& listener) {
+    const SceneView& scene = job.picture.scene;
+    wants_shadow = false;
+    if (hit.instance == kNoHit) {
+        listener.missed(path);
+        add_background(job, path, listener);
+        return false;
+    }
+    Surface surface = make_vertex<kFeatures>(scene, path, hit);
+    listener.vertex(path, hit, surface);
+    add_surface_emission<kFeatures>(job, path, hit, surface, listener);
+    if (surface.is_unlit || path.depth >= job.settings.max_depth) return false;
+    const VertexView vertex = {surface, -path.direction};
+    wants_shadow = listener.wants_direct(path, hit, surface) &&
+                   sample_direct<kFeatures>(job, path, vertex, numbers, shadow, listener);
+    return sample_scattering(job.settings, path, vertex, numbers, listener);
+}
+
+} // namespace pertev

@@ -1,0 +1,10 @@
+#include "integrators/path/host_shading_body.h"
+
+namespace pertev {
+
+template <>
+ShadeOnHost<ReuseListeners> shading_for<ReuseListeners>(const PictureView& picture) {
+    return choose_shading_on_host<ReuseListeners, FrameFeatures>(picture);
+}
+
+} // namespace pertev

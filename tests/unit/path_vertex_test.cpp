@@ -1,0 +1,185 @@
+// Vertices of paths: whoever listens is told of each in its order and changes nothing of the light; and each mask of
+// features finds the least code that holds it.
+
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "device_scene/scene_on_device.h"
+#include "integrators/path/path_vertex.h"
+#include "render/prepare_scene.h"
+#include "tests/support/flat_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+/// Writes down what it is told, and the depth of the path then.
+class Witness : public PathListener<Witness> {
+public:
+    struct Kept {
+        uint32_t vertices = 0;
+    };
+    struct Asked {
+        Rgb contribution;
+    };
+
+    explicit Witness(const PathJob&) {}
+    void begins(const PathState&) { kept_ = {}; }
+    void take_up(const Kept& kept) { kept_ = kept; }
+    void vertex(const PathState& path, const Hit&, Surface&) {
+        ++kept_.vertices;
+        tell("vertex", path);
+    }
+    void missed(const PathState& path) { tell("missed", path); }
+    void emitted(const PathState& path, Rgb light) {
+        tell("emitted", path);
+        found = light;
+    }
+    void direct(const PathState& path, const VertexView&, Vec3, const ShadowRay& shadow) {
+        tell("direct", path);
+        asked_ = {shadow.contribution};
+    }
+    void scattered(const PathState& path, const VertexView&, const BsdfSample&) { tell("scattered", path); }
+    void put_down(Kept& kept) const { kept = kept_; }
+    void hand_over(Asked& asked) const { asked = asked_; }
+
+    std::vector<std::string> told;
+    Rgb found;
+
+private:
+    void tell(const char* what, const PathState& path) {
+        told.push_back(std::string(what) + " " + std::to_string(path.depth));
+    }
+    Kept kept_;
+    Asked asked_;
+};
+
+/// Takes all light that rays run into and lets no shadow ray be asked for.
+class Thief : public PathListener<Thief> {
+public:
+    explicit Thief(const PathJob&) {}
+    bool takes(const PathState&, const LightPlace& place, float) {
+        place_ = place;
+        return true;
+    }
+    bool wants_direct(const PathState&, const Hit&, const Surface&) { return false; }
+    LightPlace place_;
+};
+
+/// A white floor that glows, in a bright sky.
+struct Place {
+    Scene scene = glowing_floor();
+    Messages messages;
+    Queue queue = Queue::make_cpu();
+    PreparedScene prepared;
+    SceneOnDevice device;
+    PathJob job = {};
+
+    static Scene glowing_floor() {
+        Scene scene;
+        Material material = test::white(0.5f);
+        material.emission = {1, 2, 3};
+        test::add(scene, test::floor_at(0, 1), material);
+        scene.environment.emplace();
+        return scene;
+    }
+    Place() : prepared(prepare_scene(scene, {}, messages)), device(queue, prepared) {
+        job.picture.scene = device.view();
+        job.settings.sampler = SamplerKind::Independent;
+    }
+};
+
+PathState path_down() {
+    PathState path;
+    path.origin = {0.1f, 1, 0.2f};
+    path.direction = {0, -1, 0};
+    path.pixel = 7;
+    return path;
+}
+
+constexpr Hit kFloor = {1, 0.3f, 0.3f, 0, 0};
+constexpr Hit kNothing = {kInfinity, 0, 0, kNoHit, kNoHit};
+
+template <Features... kMasks>
+Features chosen(CompiledFor<kMasks...>, Features wanted) {
+    Features found = ~0u;
+    CompiledFor<kMasks...>::choose(wanted, [&]<Features kFeatures>() { found = kFeatures; });
+    return found;
+}
+
+} // namespace
+
+TEST_CASE("unit/path_vertex: a listener is told of a vertex in its order, and changes nothing of the light") {
+    const Place place;
+    PathState alone = path_down(), heard = path_down();
+    ShadowRay shadow_alone, shadow_heard;
+    bool asks_alone = false, asks_heard = false;
+    Listeners<> nobody(place.job);
+    Listeners<Witness> witness(place.job);
+    witness.begins(heard);
+    const bool goes_on =
+        shade_vertex<kAllMaterials>(place.job, alone, kFloor, DrawWhenAsked(), shadow_alone, asks_alone, nobody);
+    REQUIRE(goes_on);
+    CHECK(shade_vertex<kPlainDiffuse>(place.job, heard, kFloor, DrawWhenAsked(), shadow_heard, asks_heard, witness));
+    REQUIRE(asks_alone);
+    CHECK(asks_heard);
+    CHECK(heard.radiance == alone.radiance);
+    CHECK(heard.throughput == alone.throughput);
+    CHECK(heard.direction == alone.direction);
+    CHECK(shadow_heard.contribution == shadow_alone.contribution);
+    CHECK(shadow_heard.direction == shadow_alone.direction);
+    CHECK(witness.told == std::vector<std::string>{"vertex 0", "emitted 0", "direct 0", "scattered 1"});
+    CHECK(witness.found == Rgb{1, 2, 3});
+
+    Listeners<Witness>::Kept kept;
+    Listeners<Witness>::Asked asked;
+    witness.put_down(kept);
+    witness.hand_over(asked);
+    CHECK(kept.vertices == 1);
+    CHECK(asked.contribution == shadow_alone.contribution);
+
+    Listeners<Witness> next(place.job);
+    next.take_up(kept);
+    CHECK_FALSE(
+        shade_vertex<kPlainDiffuse>(place.job, heard, kNothing, DrawWhenAsked(), shadow_heard, asks_heard, next));
+    CHECK_FALSE(asks_heard);
+    CHECK(next.told == std::vector<std::string>{"missed 1", "emitted 1"});
+    next.put_down(kept);
+    CHECK(kept.vertices == 1);
+}
+
+TEST_CASE("unit/path_vertex: light that a listener takes is not the path's, and others are told that none was added") {
+    const Place place;
+    PathState path = path_down();
+    ShadowRay shadow;
+    bool asks = true;
+    Listeners<Witness, Thief> both(place.job);
+    CHECK(shade_vertex<kAllMaterials>(place.job, path, kFloor, DrawWhenAsked(), shadow, asks, both));
+    CHECK(path.radiance == Rgb{0, 0, 0});
+    CHECK_FALSE(asks);
+    CHECK(both.place_.instance == 0);
+    CHECK(both.place_.u == 0.3f);
+    CHECK(both.found == Rgb{0, 0, 0});
+    CHECK(both.told == std::vector<std::string>{"vertex 0", "emitted 0", "scattered 1"});
+    CHECK_FALSE(shade_vertex<kAllMaterials>(place.job, path, kNothing, DrawWhenAsked(), shadow, asks, both));
+    CHECK(path.radiance == Rgb{0, 0, 0});
+    CHECK(both.place_.kind() == SourceKind::Environment);
+}
+
+TEST_CASE("unit/path_vertex: the code for a mask of features is the least that holds all of them") {
+    const FilmFeatures films;
+    CHECK(chosen(films, 0) == kPlainDiffuse);
+    CHECK(chosen(films, kTextured) == kDiffuse);
+    CHECK(chosen(films, kAlpha) == kDiffuse);
+    CHECK(chosen(films, kLayered) == kAllMaterials);
+    CHECK(chosen(films, kMoving) == kMoving);
+    CHECK(chosen(films, kTextured | kMoving) == (kDiffuse | kMoving));
+    CHECK(chosen(FrameFeatures(), kMoving) == ~0u);
+    CHECK(chosen(LayerFeatures(), 0) == kAllMaterials);
+    for (const MaterialsKnown known :
+         {MaterialsKnown::Nothing, MaterialsKnown::Diffuse, MaterialsKnown::PlainDiffuse}) {
+        CHECK(known_of(features_of(known)) == known);
+    }
+}
