@@ -34,6 +34,7 @@ ALLOWED["radiosity"] = ALLOWED["render"] | {"render"}
 ALLOWED["integrators"] = ALLOWED["radiosity"] | {"radiosity"}
 ALLOWED["denoise"] = ALLOWED["render"] | {"render"}
 ALLOWED["restir"] = ALLOWED["render"] | {"render"}
+ALLOWED["settings"] = set(ALLOWED)
 ALLOWED["session"] = set(ALLOWED)
 ALLOWED["lab"] = set(ALLOWED)
 

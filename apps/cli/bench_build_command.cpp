@@ -26,11 +26,11 @@
 namespace pertev {
 namespace {
 
-struct BuildFlags {
+struct BuildFlags : PictureOptions {
     std::vector<std::string> scenes;
     uint32_t runs = 0;
     bool compare = false;
-    MachineFlags machine;
+    SettingFlags settings;
     ReportFlags report;
 };
 
@@ -121,8 +121,9 @@ void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags,
     print_refit(name, queue.device_name(), count, refits, reporter);
 }
 
-int bench_build(const BuildFlags& flags) {
+int bench_build(BuildFlags& flags) {
     Reporter reporter(flags.report);
+    flags.settings.read(flags, reporter.messages());
     std::vector<std::string> scenes = flags.scenes;
     if (scenes.empty()) {
         for (const RecordScene& scene : record_scenes()) scenes.emplace_back(scene.name);
@@ -157,7 +158,7 @@ void add_bench_build_command(CLI::App& bench, int& status) {
         ->check(whole_between(1, 10000));
     verb.add_flag("--compare", flags->compare,
                   "build by sbvh, sbvh-reinsertion, reinsertion, binned and\nploc on the CPU too");
-    add_machine_flags(verb, flags->machine);
+    flags->settings.add(verb, kBenchBuild, *flags);
     add_report_flags(verb, flags->report);
     verb.callback([&verb, flags, &status] {
         refuse_flags_before(verb);

@@ -14,7 +14,6 @@
 #include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/parse_values.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/tracer_flags.h"
 #include "base/error.h"
@@ -22,6 +21,7 @@
 #include "session/opening/choose_camera.h"
 #include "session/opening/open_scene.h"
 #include "session/session.h"
+#include "settings/parse_values.h"
 
 namespace pertev {
 namespace {
@@ -139,11 +139,12 @@ std::vector<std::string> default_scenes() {
     return scenes;
 }
 
-int bench_scenes(const PictureFlags& flags) {
+int bench_scenes(PictureFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
+    flags.settings.read(flags, messages);
     RenderSettings settings;
-    std::tie(settings.width, settings.height) = parse_size("--size", flags.size.value_or(kSize));
+    std::tie(settings.width, settings.height) = parse_size("--size", flags.size_text.empty() ? kSize : flags.size_text);
     const std::vector<std::string> scenes = flags.scenes.empty() ? default_scenes() : flags.scenes;
     for (const std::string& scene : scenes) check_bench_scene(scene);
     listen_for_interrupt();

@@ -9,7 +9,7 @@
 #include "apps/cli/bench_parts.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/parse_values.h"
+#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_flags.h"
 #include "apps/cli/strictness.h"
 #include "base/error.h"
@@ -21,6 +21,7 @@
 #include "image/write_png.h"
 #include "math/portable_math.h"
 #include "session/session.h"
+#include "settings/parse_values.h"
 
 namespace pertev {
 namespace {
@@ -48,7 +49,7 @@ struct FrameFigures {
 FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, float scene_size, float exposure,
                      ToneMap tone_map, Reporter& reporter) {
     const ReconstructionSettings settings = reconstruction_settings(flags.render.reconstruction);
-    const RestirSettings restir = restir_settings(flags.render.reconstruction);
+    const RestirSettings& restir = flags.render.reconstruction.sharing;
     const Camera first = session.camera();
     std::vector<double> whole, reconstruction, copy;
     FrameFigures figures;
@@ -119,7 +120,7 @@ Likeness compare_last(Session& session, uint32_t samples, Reporter& reporter) {
             mean_of(reference)};
 }
 
-int bench_frames(const FramesFlags& flags) {
+int bench_frames(FramesFlags& flags) {
     Reporter reporter(flags.render.report);
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, reporter);
     const auto& [queue, scene, settings, camera, prepared] = *benched;
@@ -127,7 +128,7 @@ int bench_frames(const FramesFlags& flags) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--integrator {}: its frames are samples as they are; --restir, --resolution-scale and "
                                 "--sample-order are for path and hybrid",
-                                flags.render.integrator));
+                                integrator_name(settings)));
     }
     Session session(*queue, prepared, camera, settings);
     const ToneMap tone_map = ToneMap::Agx;
@@ -145,8 +146,8 @@ int bench_frames(const FramesFlags& flags) {
         reporter.event(fmt::format(
             R"({{"event":"frames","scene":{},"device":{},"integrator":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"reconstruction":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"copy_seconds":{},"mrays_per_s":{:.1f},"hdr_flip":{},"hdr_flip_of_sample":{},"rel_mse":{},"rel_mse_of_sample":{},"mean":{},"reference_mean":{},"picture":"{}"}})",
             json_string(flags.render.scene.scene), json_string(queue->device_name()),
-            json_string(flags.render.integrator), settings.width, settings.height, flags.render.max_depth, flags.frames,
-            flags.still, json_of(flags.render.reconstruction), json_number(figures.whole.median),
+            json_string(integrator_name(settings)), settings.width, settings.height, settings.path.max_depth,
+            flags.frames, flags.still, json_of(flags.render.reconstruction), json_number(figures.whole.median),
             json_number(figures.whole.least), json_number(figures.whole.greatest),
             json_number(figures.reconstruction.median), json_number(figures.copy.median), rays_a_second,
             part(&Likeness::flip), part(&Likeness::flip_of_sample), part(&Likeness::rel_mse),
@@ -157,10 +158,11 @@ int bench_frames(const FramesFlags& flags) {
         "{} on {}: {}x{}, {}, at most {} scatterings, {} frames, camera {}, ReSTIR {}\n{:.3f} ms a "
         "frame (median; {:.3f} to {:.3f}), "
         "{:.1f} frames a second; reconstruction {:.3f} ms, copying to the host {:.3f}; {:.1f} Mrays/s; last frame {}\n",
-        flags.render.scene.scene, queue->device_name(), settings.width, settings.height, flags.render.integrator,
-        flags.render.max_depth, flags.frames, flags.still ? "still" : "moving", flags.render.reconstruction.restir,
-        figures.whole.median * 1e3, figures.whole.least * 1e3, figures.whole.greatest * 1e3, 1 / figures.whole.median,
-        figures.reconstruction.median * 1e3, figures.copy.median * 1e3, rays_a_second, hash));
+        flags.render.scene.scene, queue->device_name(), settings.width, settings.height, integrator_name(settings),
+        settings.path.max_depth, flags.frames, flags.still ? "still" : "moving",
+        name_of(flags.render.reconstruction.sharing.light), figures.whole.median * 1e3, figures.whole.least * 1e3,
+        figures.whole.greatest * 1e3, 1 / figures.whole.median, figures.reconstruction.median * 1e3,
+        figures.copy.median * 1e3, rays_a_second, hash));
     if (likeness) {
         reporter.answer(fmt::format(
             "HDR-FLIP of the last frame against {} spp {:.4f}, of its sample alone {:.4f}; relMSE {:.4f} and {:.4f}; "
@@ -176,26 +178,21 @@ int bench_frames(const FramesFlags& flags) {
 void add_bench_frames_command(CLI::App& bench, int& status) {
     CLI::App& verb = *bench.add_subcommand("frames", "Frames in real time, each of one sample a pixel, reconstructed");
     const auto flags = std::make_shared<FramesFlags>();
-    flags->render.size = "1920x1080";
-    flags->render.max_depth = 4;
-    add_scene_options(verb, flags->render.scene);
-    add_light_path_flags(verb, flags->render, "Picture");
-    verb.remove_option(verb.get_option("--spp")); // a frame has one
-    verb.add_option("--size", flags->render.size, "of the frames")->type_name("WIDTHxHEIGHT")->capture_default_str();
+    flags->render.size = PictureSize{1920, 1080};
+    flags->render.render.path.max_depth = 4;
+    add_scene_name(verb, flags->render.scene);
     verb.add_option("--frames", flags->frames, "of the sequence; the first two are not timed")
         ->type_name("N")
         ->check(whole_between(1, 100000))
         ->capture_default_str();
     verb.add_flag("--still", flags->still, "the camera stands still");
-    add_reconstruction_flags(verb, flags->render.reconstruction, "Reconstruction");
     verb.add_option("--reference", flags->reference,
                     "compare the last frame with a picture of so many samples,\nby HDR-FLIP, and its first sample too")
         ->type_name("SPP")
         ->check(whole_between(1, kMaxSamplesPerPixel));
     verb.add_option("--write", flags->write, "write each frame as a PNG file into this folder")->type_name("FOLDER");
-    add_machine_flags(verb, flags->render.machine);
-    add_strict_flag(verb, flags->render.strict);
     add_report_flags(verb, flags->render.report);
+    flags->render.settings.add(verb, kBenchFrames, flags->render);
     verb.callback([&verb, flags, &status] {
         refuse_flags_before(verb);
         status = bench_frames(*flags);

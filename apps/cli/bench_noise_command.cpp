@@ -7,12 +7,12 @@
 #include "apps/cli/bench_parts.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/parse_values.h"
 #include "apps/cli/render_flags.h"
 #include "apps/cli/strictness.h"
 #include "base/limits.h"
 #include "image/metrics.h"
 #include "session/session.h"
+#include "settings/parse_values.h"
 
 namespace pertev {
 namespace {
@@ -58,7 +58,7 @@ Pictures render_pictures(Session& session, SamplerKind sampler, const NoiseFlags
         };
         throw_if_interrupted();
         report(0);
-        settings.path.seed = flags.render.seed + i;
+        settings.path.seed = flags.render.render.path.seed + i;
         session.set_settings(settings);
         session.cut();
         session.render(settings.samples, [&](const RenderProgress& now) {
@@ -108,7 +108,7 @@ void print(const NoiseFlags& flags, const RenderSettings& settings, const Queue&
                                 sobol.efficiency(), independent.efficiency()));
 }
 
-int bench_noise(const NoiseFlags& flags) {
+int bench_noise(NoiseFlags& flags) {
     Reporter reporter(flags.render.report);
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, reporter);
     const auto& [queue, scene, settings, camera, prepared] = *benched;
@@ -133,10 +133,8 @@ int bench_noise(const NoiseFlags& flags) {
 void add_bench_noise_command(CLI::App& bench, int& status) {
     CLI::App& verb = *bench.add_subcommand("noise", "The variance of a picture, beside that of independent samples");
     const auto flags = std::make_shared<NoiseFlags>();
-    flags->render.size = "640x360";
-    add_scene_options(verb, flags->render.scene);
-    add_light_path_flags(verb, flags->render, "Picture");
-    verb.add_option("--size", flags->render.size, "of the pictures")->type_name("WIDTHxHEIGHT")->capture_default_str();
+    flags->render.size = PictureSize{640, 360};
+    add_scene_name(verb, flags->render.scene);
     verb.add_option("--seeds", flags->seeds, "pictures of each sampler")
         ->type_name("N")
         ->check(whole_between(2, 1024))
@@ -148,9 +146,8 @@ void add_bench_noise_command(CLI::App& bench, int& status) {
         ->type_name("PERCENT")
         ->check(number_above_zero(100))
         ->capture_default_str();
-    add_machine_flags(verb, flags->render.machine);
-    add_strict_flag(verb, flags->render.strict);
     add_report_flags(verb, flags->render.report);
+    flags->render.settings.add(verb, kBenchNoise, flags->render);
     verb.callback([&verb, flags, &status] {
         refuse_flags_before(verb);
         status = bench_noise(*flags);

@@ -5,7 +5,6 @@
 
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/parse_values.h"
 #include "apps/cli/strictness.h"
 #include "base/error.h"
 #include "formats/builtin_scenes.h"
@@ -13,6 +12,7 @@
 #include "lab/record_scenes.h"
 #include "math/portable_math.h"
 #include "session/check_integrator.h"
+#include "settings/parse_values.h"
 
 namespace pertev {
 
@@ -38,9 +38,9 @@ double mean_of(const Image& image) {
     return sum / static_cast<double>(image.pixels.size());
 }
 
-std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Reporter& reporter) {
+std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, Reporter& reporter) {
     Messages& messages = reporter.messages();
-    parse_size("--size", flags.size); // before anything is read
+    flags.settings.read(flags, messages); // before anything is read
     check_scene_options(flags.scene);
     listen_for_interrupt();
     auto benched = std::make_unique<BenchedScene>();
@@ -51,25 +51,25 @@ std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Repor
     if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
     const RenderSettings& settings = benched->settings = render_settings(flags, benched->scene);
     check_light(settings, benched->scene, messages);
-    benched->camera = choose_camera(flags.scene, benched->scene, aspect_of(settings.width, settings.height), messages);
+    benched->camera =
+        choose_camera(flags.scene.camera, benched->scene, aspect_of(settings.width, settings.height), messages);
     check_camera(settings, benched->camera);
     throw_if_interrupted();
     reporter.set_work("building trees");
     benched->prepared = prepare_scene(benched->scene, {}, messages);
     reporter.say_messages();
     if (settings.integrator == IntegratorKind::Radiosity) {
-        benched->settings.radiosity = radiosity_look(flags.radiosity, benched->prepared, flags.seed, reporter);
+        benched->settings.radiosity = radiosity_look(flags.radiosity, benched->prepared, settings.path.seed, reporter);
     }
     return benched;
 }
 
 void add_picture_flags(CLI::App& verb, PictureFlags& flags, const std::string& sizes, const std::string& samples) {
-    verb.add_option("--size", flags.size, fmt::format("of the picture ({})", sizes))->type_name("WIDTHxHEIGHT");
+    verb.add_option("--size", flags.size_text, fmt::format("of the picture ({})", sizes))->type_name("WIDTHxHEIGHT");
     verb.add_option("--spp", flags.samples, fmt::format("samples a pixel ({})", samples))
         ->type_name("N")
         ->check(whole_between(1, kMaxSamplesPerPixel));
-    add_machine_flags(verb, flags.machine);
-    add_tracer_flags(verb, flags.tracer, "Tracing");
+    flags.settings.add(verb, kBench, flags);
     add_report_flags(verb, flags.report);
 }
 

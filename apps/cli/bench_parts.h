@@ -54,15 +54,14 @@ struct BenchedScene {
 
 /// The device, then the scene that flags name, seen and lit as they say, with its trees. Says what there is to say on
 /// the way, and listens for Ctrl-C from then on. Throws Error: of the line before anything is read.
-std::unique_ptr<BenchedScene> read_benched_scene(const RenderFlags& flags, Reporter& reporter);
+std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, Reporter& reporter);
 
 /// What benchmarks of whole pictures take.
-struct PictureFlags {
+struct PictureFlags : PictureOptions {
     std::vector<std::string> scenes;
-    std::optional<std::string> size; // none: the benchmark's own, as of `samples` 0
-    uint32_t samples = 0;            // of a pixel
-    MachineFlags machine;
-    TracerFlags tracer;
+    std::string size_text; // empty: the benchmark's own, as of `samples` 0
+    uint32_t samples = 0;  // of a pixel
+    SettingFlags settings;
     ReportFlags report;
 };
 

@@ -32,13 +32,11 @@
 namespace pertev {
 namespace {
 
-struct RaysFlags {
+struct RaysFlags : PictureOptions {
     std::vector<std::string> scenes;
-    SceneOptions camera; // --eye, --target and --fov of it
     uint32_t count = kRecordRays, runs = 0;
     bool check = false, axes = false;
-    TracerFlags tracer = {.default_build = TreeBuild::Best}; // no tree's making is timed
-    MachineFlags machine;
+    SettingFlags settings;
     ReportFlags report;
 };
 
@@ -167,7 +165,7 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     const PreparedScene prepared = // the sets are in the file's coordinates
         prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, messages);
     const FrameSize frame = record_frame(flags.count);
-    const Camera camera = choose_camera(flags.camera, scene, 16.0f / 9.0f, messages);
+    const Camera camera = choose_camera(flags.scene.camera, scene, 16.0f / 9.0f, messages);
     reporter.say_messages();
     watch.restart();
     std::vector<RaySet> sets = make_isolated_sets(queue, scene, camera, prepared, flags.count, throw_if_interrupted);
@@ -177,7 +175,7 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
                              name, prepared.triangles, load_s, prepared.build_seconds, watch.seconds(), frame.width,
                              frame.height));
     const RecordScene* const record = find_record_scene(name);
-    const bool is_moved = !flags.camera.eye.empty() || !flags.camera.target.empty() || flags.camera.fov_deg > 0;
+    const bool is_moved = flags.scene.camera.eye || flags.scene.camera.target || flags.scene.camera.fov_deg;
     std::vector<double> ratios;
     for (std::size_t i = 0; i < sets.size(); ++i) {
         reporter.set_work(fmt::format("{}: measuring {}", name, sets[i].name));
@@ -197,8 +195,9 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     }
 }
 
-int bench_rays(const RaysFlags& flags) {
+int bench_rays(RaysFlags& flags) {
     Reporter reporter(flags.report);
+    flags.settings.read(flags, reporter.messages());
     std::vector<std::string> scenes = flags.scenes;
     if (scenes.empty()) {
         for (const RecordScene& scene : record_scenes()) scenes.emplace_back(scene.name);
@@ -233,11 +232,6 @@ void add_bench_rays_command(CLI::App& bench, int& status) {
                     "PERTEV_SCENES)")
         ->type_name("NAME|FILE")
         ->allow_extra_args(false);
-    verb.add_option("--eye", flags->camera.eye, "where the camera is, metres (the scene's own)")->type_name("X,Y,Z");
-    verb.add_option("--target", flags->camera.target, "what it looks at")->type_name("X,Y,Z");
-    verb.add_option("--fov", flags->camera.fov_deg, "full vertical angle of view, degrees")
-        ->type_name("DEG")
-        ->check(number_between(0.01f, 179.0f));
     verb.add_option("--count", flags->count, "rays of a set; that of the record is four frames of 1920x1080")
         ->type_name("N")
         ->check(whole_between(1, 1u << 30))
@@ -247,8 +241,8 @@ void add_bench_rays_command(CLI::App& bench, int& status) {
         ->check(whole_between(1, 10000));
     verb.add_flag("--check", flags->check, "compare every hit with the binary walk's on the CPU, bit for bit");
     verb.add_flag("--axes", flags->axes, "two more sets: diffuse1 turned along axes, and a thousandth beside them");
-    add_tracer_flags(verb, flags->tracer, "Tracing");
-    add_machine_flags(verb, flags->machine);
+    flags->tracer.default_build = TreeBuild::Best; // no tree's making is timed
+    flags->settings.add(verb, kBenchRays, *flags);
     add_report_flags(verb, flags->report);
     verb.callback([&verb, flags, &status] {
         refuse_flags_before(verb);

@@ -14,7 +14,6 @@
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/parse_values.h"
 #include "base/stopwatch.h"
 #include "device/device_timer.h"
 #include "image/picture_hash.h"
@@ -23,6 +22,7 @@
 #include "lab/isolated_rays.h"
 #include "lab/record_jobs.h"
 #include "lab/stored_figures.h"
+#include "settings/parse_values.h"
 
 namespace pertev {
 namespace {
@@ -36,7 +36,9 @@ struct JobFlags {
 
 RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
     RenderSettings settings = job_settings(job);
-    if (flags.picture.size) std::tie(settings.width, settings.height) = parse_size("--size", *flags.picture.size);
+    if (!flags.picture.size_text.empty()) {
+        std::tie(settings.width, settings.height) = parse_size("--size", flags.picture.size_text);
+    }
     if (flags.picture.samples > 0) settings.samples = flags.picture.samples;
     settings.path.seed = flags.seed;
     return settings;
@@ -87,9 +89,10 @@ IsolatedRates isolated_rates(Queue& queue, const RecordJob& job, const Scene& sc
     return measure_isolated_rays(queue, scene, camera, prepared, choice, count, throw_if_interrupted);
 }
 
-int bench_job(const JobFlags& flags) {
+int bench_job(JobFlags& flags) {
     Reporter reporter(flags.picture.report);
     Messages& messages = reporter.messages();
+    flags.picture.settings.read(flags.picture, messages);
     const RecordJob& job = *find_record_job(flags.job);
     const std::string& file = flags.picture.scenes.front();
     RenderSettings settings = settings_of(job, flags);

@@ -10,9 +10,9 @@
 #include "apps/cli/bench_parts.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/parse_values.h"
 #include "apps/cli/pfm_file.h"
 #include "apps/cli/ready_scene.h"
+#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
 #include "apps/cli/strictness.h"
 #include "base/limits.h"
@@ -20,6 +20,7 @@
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
 #include "image/write_png.h"
+#include "settings/parse_values.h"
 
 namespace pertev {
 namespace {
@@ -108,7 +109,7 @@ Rgba8Image strip_of(const std::vector<Rgba8Image>& pictures) {
 Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const SequenceFlags& flags, float exposure,
                ToneMap tone_map, Reporter& reporter) {
     const ReconstructionSettings settings = reconstruction_settings(flags.render.reconstruction);
-    const RestirSettings restir = restir_settings(flags.render.reconstruction);
+    const RestirSettings restir = flags.render.reconstruction.sharing;
     Scores scores;
     if (!flags.peer.empty()) scores.peer.emplace();
     const FrameCamera camera = {*ready.camera, ready.sequence};
@@ -167,8 +168,9 @@ std::string text_of(const char* name, const Score& score) {
                        score.mean_flip(), score.flip_of_first, score.flip_of_last, score.mean_flicker());
 }
 
-int bench_sequence(const SequenceFlags& flags) {
+int bench_sequence(SequenceFlags& flags) {
     Reporter reporter(flags.render.report);
+    flags.render.settings.read(flags.render, reporter.messages());
     if (!frame_sequence(flags.render)) {
         throw Error(ErrorCode::BadInput, "bench sequence: which frames? say --frames A-B or --turntable N");
     }
@@ -179,7 +181,7 @@ int bench_sequence(const SequenceFlags& flags) {
     const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, reporter);
     reporter.say_messages();
     listen_for_interrupt();
-    PictureRecord record = picture_record(flags.render.scene, *ready, reporter.messages());
+    PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
     Session session(*ready->queue, ready->prepared(), record.camera.camera, ready->settings);
     const ToneMap tone_map = ToneMap::Agx;
     const float exposure = session.meter(tone_map);
@@ -191,7 +193,7 @@ int bench_sequence(const SequenceFlags& flags) {
         reporter.event(fmt::format(
             R"({{"event":"sequence_errors","scene":{},"device":{},"width":{},"height":{},"frames":{},"max_depth":{},"reconstruction":{},"reference_spp":{},"reference_noise":{},"reference_flicker":{},"ours":{},"sample":{},"peer":{},"last_frame":"{}"}})",
             json_string(flags.render.scene.scene), json_string(ready->queue->device_name()), ready->settings.width,
-            ready->settings.height, ready->sequence.count(), flags.render.max_depth,
+            ready->settings.height, ready->sequence.count(), ready->settings.path.max_depth,
             json_of(flags.render.reconstruction), flags.reference, json_number(scores.noise),
             json_number(scores.half.mean_flicker()), json_of(scores.ours), json_of(scores.sample),
             scores.peer ? json_of(*scores.peer) : "null", picture_hash(session.frame().picture()).hex()));
@@ -216,16 +218,9 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
     CLI::App& verb = *bench.add_subcommand(
         "sequence", "Frames of a moving picture against pictures of many samples, and another denoiser's frames");
     const auto flags = std::make_shared<SequenceFlags>();
-    flags->render.size = "1280x720";
-    flags->render.max_depth = 4;
-    add_scene_options(verb, flags->render.scene);
-    add_time_flags(verb, flags->render, false);
-    add_motion_flags(verb, flags->render);
-    verb.remove_option(verb.get_option("--continue"));
-    add_light_path_flags(verb, flags->render, "Picture");
-    verb.remove_option(verb.get_option("--spp")); // a frame has one
-    verb.add_option("--size", flags->render.size, "of the frames")->type_name("WIDTHxHEIGHT")->capture_default_str();
-    add_reconstruction_flags(verb, flags->render.reconstruction, "Reconstruction");
+    flags->render.size = PictureSize{1280, 720};
+    flags->render.render.path.max_depth = 4;
+    add_scene_name(verb, flags->render.scene);
     verb.add_option("--reference", flags->reference,
                     "compare each frame with a picture of so many samples, by HDR-FLIP;\nits errors' mean change from "
                     "frame to frame is the flicker")
@@ -242,9 +237,8 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
                     "write of each fifteenth frame samples, frame, peer and reference\nside by side as PNG into this "
                     "folder")
         ->type_name("FOLDER");
-    add_machine_flags(verb, flags->render.machine);
-    add_strict_flag(verb, flags->render.strict);
     add_report_flags(verb, flags->render.report);
+    flags->render.settings.add(verb, kBenchSequence, flags->render);
     verb.callback([&verb, flags, &status] {
         refuse_flags_before(verb);
         status = bench_sequence(*flags);

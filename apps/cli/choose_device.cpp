@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "apps/cli/flag_checks.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
 
@@ -38,24 +37,14 @@ std::unique_ptr<Queue> choose_device(const std::string& name, Messages& messages
     return ComingMachine({.device = name}, messages).take();
 }
 
-void add_machine_flags(CLI::App& verb, MachineFlags& flags, const char* group) {
-    verb.add_option("--device", flags.device, "auto, cpu, cuda or cuda:N")
-        ->type_name("NAME")
-        ->capture_default_str()
-        ->group(group);
-    verb.add_option("--threads", flags.threads, "of the CPU (all)")
-        ->type_name("N")
-        ->check(whole_between(1, 4096))
-        ->group(group);
-}
-
-std::unique_ptr<Queue> take_machine(const MachineFlags& flags, Messages& messages) {
-    if (flags.threads > 0) set_thread_count(flags.threads);
+std::unique_ptr<Queue> take_machine(const MachineOptions& flags, Messages& messages) {
+    if (flags.threads > 0) set_thread_count(static_cast<int>(flags.threads));
     return choose_device(flags.device, messages);
 }
 
-ComingMachine::ComingMachine(const MachineFlags& flags, Messages& messages) : name_(flags.device), messages_(messages) {
-    if (flags.threads > 0) set_thread_count(flags.threads);
+ComingMachine::ComingMachine(const MachineOptions& flags, Messages& messages)
+    : name_(flags.device), messages_(messages) {
+    if (flags.threads > 0) set_thread_count(static_cast<int>(flags.threads));
     if (name_ == "cpu") {
         queue_ = std::make_unique<Queue>(Queue::make_cpu());
         is_cuda_ = false;

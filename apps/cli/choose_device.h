@@ -9,10 +9,7 @@
 
 #include "base/messages.h"
 #include "device/queue.h"
-
-namespace CLI {
-class App;
-}
+#include "settings/picture_options.h"
 
 namespace pertev {
 
@@ -20,21 +17,15 @@ namespace pertev {
 /// why; `cpu` never touches CUDA. Throws Error(BadInput) with the reason when the device named cannot be used.
 std::unique_ptr<Queue> choose_device(const std::string& name, Messages& messages);
 
-struct MachineFlags {
-    std::string device = "auto";
-    int threads = 0; // 0: all
-};
-
-void add_machine_flags(CLI::App& verb, MachineFlags& flags, const char* group = "Options");
 /// Sets the number of threads, and gives the device's queue as choose_device does.
-std::unique_ptr<Queue> take_machine(const MachineFlags& flags, Messages& messages);
+std::unique_ptr<Queue> take_machine(const MachineOptions& flags, Messages& messages);
 
 /// The same for a verb that has a scene to read meanwhile: a GPU's driver takes as long to start as that does. Where
 /// there is no driver, a GPU that is named is refused at once; all else is known once it is asked for.
 class ComingMachine {
 public:
     /// Throws as choose_device. `messages` outlives it.
-    ComingMachine(const MachineFlags& flags, Messages& messages);
+    ComingMachine(const MachineOptions& flags, Messages& messages);
 
     /// Waits until that is known. Throws Error(BadInput) where a GPU that is named cannot be used.
     bool is_cuda();

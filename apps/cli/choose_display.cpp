@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "apps/cli/parse_values.h"
 #include "image/tone_map_image.h"
+#include "settings/parse_values.h"
 
 namespace pertev {
 
@@ -13,7 +13,7 @@ std::optional<Display> choose_display(const RenderFlags& flags, Session& session
 
 Display choose_shown_display(const RenderFlags& flags, Session& session, Reporter& reporter) {
     if (const auto colors = false_colors(flags)) return Display{.false_colors = colors};
-    const ToneMap tone_map = flags.tone_map.empty() ? Display{}.tone_map : *tone_map_named(flags.tone_map);
+    const ToneMap tone_map = flags.tone_map.value_or(Display{}.tone_map);
     const std::string_view name = name_of(tone_map);
     const std::optional<PhysicalExposure> physical = physical_exposure(flags);
     const bool is_given = physical || (!flags.exposure.empty() && flags.exposure != "auto");

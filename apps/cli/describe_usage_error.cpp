@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "apps/cli/parse_values.h"
 #include "apps/cli/suggest_name.h"
+#include "settings/parse_values.h"
 
 namespace pertev {
 namespace {

@@ -13,6 +13,7 @@
 #include "apps/cli/flag_phrases.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
+#include "apps/cli/setting_flags.h"
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "formats/files/file_choices.h"
@@ -29,8 +30,9 @@
 namespace pertev {
 namespace {
 
-struct InfoFlags {
-    SceneOptions scene; // or another kind of file
+struct InfoFlags : PictureOptions { // its scene may be another kind of file
+    SettingFlags settings;
+    bool shows_settings = false;
     ReportFlags report;
 };
 
@@ -97,6 +99,23 @@ void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
     for (const auto& entry : exr.metadata) facts.add(entry);
 }
 
+/// Returns the settings that made a picture, with as many samples as it has. Throws Error(BadInput).
+std::string settings_of(const std::string& picture) {
+    const ExrMetadata metadata = lower_case_extension(picture) == ".exr" ? read_exr(picture).metadata : ExrMetadata();
+    const auto value_of = [&](std::string_view name) {
+        const auto entry = std::ranges::find(metadata, name, &ExrMetadata::value_type::first);
+        if (entry == metadata.end()) {
+            throw Error(ErrorCode::BadInput,
+                        fmt::format("{}: it holds no settings ({}); EXR files of pertev render do", picture, name));
+        }
+        return std::visit([](const auto& value) { return fmt::format("{}", value); }, entry->second);
+    };
+    const std::string json = value_of("pertev.settings"), key = R"("spp":)";
+    const std::size_t begin = std::min(json.find(key), json.size() - key.size()) + key.size();
+    return json.substr(0, begin) + value_of("pertev.spp") +
+           json.substr(std::min(json.find_first_of(",}", begin), json.size()));
+}
+
 /// Which animations and scenes the file has, and which of them a render plays and shows unless flags say otherwise.
 void describe_choices(const Scene& scene, Facts& facts) {
     std::vector<std::string> animations = list_clips(scene.clips); // what --animation takes
@@ -154,11 +173,18 @@ void describe_solution(const InfoFlags& flags, Facts& facts) {
     facts.add("geometry", solution.geometry.hex());
 }
 
-int info(const InfoFlags& flags) {
+int info(InfoFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
-    Facts facts;
+    flags.settings.read(flags, messages);
     const std::string& name = flags.scene.scene;
+    if (flags.shows_settings) {
+        const std::string settings = settings_of(name);
+        reporter.event(settings);
+        reporter.answer(settings + "\n");
+        return 0;
+    }
+    Facts facts;
     facts.add("file", name);
     refuse(!flags.scene.file_scene.empty() && (is_picture_name(name) || !is_scene_name(name)),
            fmt::format("--file-scene: of a scene; {} is none", name));
@@ -189,8 +215,9 @@ void add_info_command(CLI::App& app, int& status) {
         ->type_name("")
         ->check(file_name())
         ->required();
-    add_file_scene(verb, flags->scene);
-    add_read_options(verb, flags->scene);
+    flags->settings.add(verb, kInfo, *flags);
+    verb.add_flag("--settings", flags->shows_settings,
+                  "The settings that made a picture are printed as JSON, for pertev render --settings.");
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = info(*flags); });
 }

@@ -13,9 +13,9 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/lab_files.h"
 #include "apps/cli/lab_scene.h"
-#include "apps/cli/parse_values.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
+#include "apps/cli/setting_flags.h"
 #include "apps/cli/strictness.h"
 #include "apps/cli/thesis_command.h"
 #include "apps/cli/transport_command.h"
@@ -27,20 +27,20 @@
 #include "lab/record_scenes.h"
 #include "lab/run_lab.h"
 #include "lab/write_tables.h"
+#include "settings/parse_values.h"
 
 namespace pertev {
 namespace {
 
-struct LabFlags {
-    SceneOptions scene;
+struct LabFlags : PictureOptions {
     std::vector<std::string> structures, walks, rays = {"primary", "shadow", "diffuse"}, tests = {"exact"};
     std::vector<std::string> rta = {"both"};
-    std::string order = "on", persistent = "both", size, depths;
+    std::string order = "on", persistent = "both", size_text, depths;
     std::string output;
     uint32_t runs = 20, count = 0;
-    bool no_heat_maps = false, thesis = false, transport = false, strict = false;
+    bool no_heat_maps = false, thesis = false, transport = false;
     TransportFlags of_transport;
-    MachineFlags machine;
+    SettingFlags settings;
     ReportFlags report;
 };
 
@@ -109,13 +109,14 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
         settings.distributions.push_back(Distribution::Persistent);
         settings.distributions.push_back(Distribution::DynamicFetch);
     }
-    std::tie(settings.width, settings.height) = parse_size("--size", flags.size.empty() ? "1024x768" : flags.size);
+    std::tie(settings.width, settings.height) =
+        parse_size("--size", flags.size_text.empty() ? "1024x768" : flags.size_text);
     const std::string depths = !flags.depths.empty() ? flags.depths : flags.thesis ? "1-8" : "1-3";
     std::tie(settings.first_depth, settings.depth) = parse_depths(depths);
     const auto traces = [&](const char* kind) { return std::ranges::find(flags.rays, kind) != flags.rays.end(); };
     settings.primary = traces("primary"), settings.shadow = traces("shadow"), settings.diffuse = traces("diffuse");
     if (traces("record")) {
-        if (flags.rays.size() > 1 || !flags.size.empty() || !flags.depths.empty()) {
+        if (flags.rays.size() > 1 || !flags.size_text.empty() || !flags.depths.empty()) {
             throw Error(ErrorCode::BadInput,
                         "--rays record: its sets are fixed; no other kind, --size or --depths goes with it");
         }
@@ -139,16 +140,17 @@ void say_refusals(const LabFlags& flags, const LabReport& report, Reporter& repo
     }
 }
 
-int run(const LabFlags& flags) {
+int run(LabFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
+    flags.settings.read(flags, messages);
     if (!flags.thesis && !flags.transport && flags.scene.scene.empty()) {
         throw Error(ErrorCode::BadInput, "lab: SCENE is required (or --thesis, or --transport)");
     }
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
     if (flags.transport) {
         reporter.set_work("loading");
-        return run_transport_command(*queue, flags.scene, flags.of_transport, flags.size, flags.output, reporter);
+        return run_transport_command(*queue, flags.scene, flags.of_transport, flags.size_text, flags.output, reporter);
     }
     LabSettings settings = lab_settings(flags, queue->is_cuda());
     reporter.set_work("loading");
@@ -156,7 +158,8 @@ int run(const LabFlags& flags) {
 
     const Scene scene = read_lab_scene(flags.scene, messages);
     if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
-    const Camera camera = choose_camera(flags.scene, scene, aspect_of(settings.width, settings.height), messages);
+    const Camera camera =
+        choose_camera(flags.scene.camera, scene, aspect_of(settings.width, settings.height), messages);
     check_any_can_run(list_combinations(settings, queue->is_cuda())); // before a folder is made
     if (!flags.output.empty()) check_lab_folder(flags.output);
     reporter.say_messages();
@@ -194,9 +197,7 @@ void add_lab_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand(
         "lab", "Every structure and every walk side by side, on your scene and card; or every integrator");
     const auto flags = std::make_shared<LabFlags>();
-    add_view_options(verb, flags->scene);
-    CLI::Option* scene = verb.get_option("SCENE");
-    scene->required(false);
+    CLI::Option* scene = add_scene_name(verb, flags->scene)->required(false);
     scene->description(scene->get_description() + "; or\nsponza, bunny, forest: those of bench rays");
     verb.add_option("--structures", flags->structures, "some of the structures (all)")
         ->type_name("NAME,...")
@@ -223,7 +224,7 @@ void add_lab_command(CLI::App& app, int& status) {
         ->check(one_of(names_of(all_tests())))
         ->capture_default_str();
     add_switch(verb, "--persistent", flags->persistent, "CUDA: rays from a pool");
-    verb.add_option("--size", flags->size, "camera rays (1024x768; with --transport pictures of 256x256)")
+    verb.add_option("--size", flags->size_text, "camera rays (1024x768; with --transport pictures of 256x256)")
         ->type_name("WIDTHxHEIGHT");
     verb.add_option("--depths", flags->depths,
                     fmt::format("frames of paths of FIRST to LAST rays, LAST at most {}; LAST\nalone is 1-LAST (1-3; "
@@ -261,8 +262,7 @@ void add_lab_command(CLI::App& app, int& status) {
                 "write report.html, .csv, .json and heat maps here; with --thesis\nthesis.html, its figures and "
                 "pictures, thesis-1 and -2.csv and .json;\nwith --transport transport.html, .csv and .json")
             ->type_name("DIR");
-    add_machine_flags(verb, flags->machine);
-    add_strict_flag(verb, flags->strict);
+    flags->settings.add(verb, kLab, *flags);
     for (CLI::Option* many : {thesis, transport}) many->excludes(verb.get_option("--strict")); // their scenes are known
     add_report_flags(verb, flags->report);
     verb.callback([flags, output, &status] {

@@ -22,6 +22,8 @@
 
 #include "apps/cli/commands.h"
 #include "apps/cli/describe_usage_error.h"
+#include "apps/cli/flag_checks.h"
+#include "apps/cli/help.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/report_error.h"
 #include "base/error.h"
@@ -64,12 +66,26 @@ bool wants_json(int argc, char** argv) {
     return json;
 }
 
+/// Writes what is made of all flags, where the line asks for it.
+bool write_document(const CLI::App& app, const std::vector<std::string>& words) {
+    if (words.empty()) return false;
+    if (words[0] == "--man")
+        std::cout << man_page(app);
+    else if (words[0] == "--settings-document")
+        std::cout << settings_document();
+    else if (words[0] == "--completion" && words.size() > 1)
+        std::cout << completion(app, words[1]);
+    else
+        return false;
+    return true;
+}
+
 /// Parses the command line, which runs its verb.
-int run(int argc, char** argv, bool json) {
+int run(std::vector<std::string> words, bool json) {
     CLI::App app("Pertev: a path tracer for GPUs without ray-tracing hardware, and for CPUs.", "pertev");
     app.set_version_flag("--version", fmt::format("pertev {} ({})", version(), git_commit()));
+    app.formatter(std::make_shared<Help>(take_help_group(words)));
     app.require_subcommand(1);
-    app.get_formatter()->column_width(34);
     int status = 0;
     add_render_command(app, status);
     add_view_command(app, status);
@@ -79,8 +95,16 @@ int run(int argc, char** argv, bool json) {
     add_info_command(app, status);
     add_bench_command(app, status);
     add_lab_command(app, status);
+    app.add_flag("--man")->description("A page for man is printed.");
+    app.add_flag("--settings-document")->description("docs/settings.md is printed.");
+    app.add_option("--completion")
+        ->description("A script is printed by which this shell completes flags.")
+        ->type_name("bash|zsh|fish")
+        ->check(one_of({"bash", "zsh", "fish"}));
     try {
-        app.parse(argc, argv);
+        if (write_document(app, words)) return 0;
+        std::ranges::reverse(words); // as CLI11 takes them
+        app.parse(std::move(words));
         return status;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // help or version
@@ -120,7 +144,7 @@ int main(int argc, char** argv) {
     open_standard_files();
     turn_signals_into_errors();
     end_at_interrupt(json);
-    const int status = run(argc, argv, json);
+    const int status = run({argv + 1, argv + argc}, json);
     std::cout.flush(); // CLI11 writes help and version there
     if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
         if (is_reader_gone()) return status; // it has all that it wanted

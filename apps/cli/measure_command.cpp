@@ -10,25 +10,22 @@
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/parse_values.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
+#include "apps/cli/setting_flags.h"
 #include "apps/cli/strictness.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "session/measure_irradiance.h"
 #include "session/moving_scene.h"
+#include "settings/parse_values.h"
 
 namespace pertev {
 namespace {
 
-struct MeasureFlags {
-    SceneOptions scene;
+struct MeasureFlags : PictureOptions {
     std::string at, normal;
-    uint32_t samples = 64, max_depth = PathSettings{}.max_depth, seed = 0;
-    std::optional<double> time_s;
-    MachineFlags machine;
-    bool no_cache = false, strict = false;
+    SettingFlags settings;
     ReportFlags report;
 };
 
@@ -63,29 +60,29 @@ void print(const MeasureFlags& flags, const Irradiance& e, const Queue& queue, d
             json_string(flags.scene.scene), json_of(flags.at), json_of(flags.normal), json_string(queue.device_name()),
             in_json(e.rgb[0]), in_json(e.rgb[1]), in_json(e.rgb[2]), in_json(e.luminance),
             in_json(e.luminance, efficacy), json_number(efficacy), e.paths, e.invalid_paths, e.rays.total(),
-            flags.max_depth, flags.seed, seconds));
+            flags.render.path.max_depth, flags.render.path.seed, seconds));
         return;
     }
     reporter.answer(fmt::format("irradiance   {} W/m2 (red {}, green {}, blue {})\n"
                                 "illuminance  {} lx ({:.6g} lm/W)\n",
                                 in_words(e.luminance), in_words(e.rgb[0]), in_words(e.rgb[1]), in_words(e.rgb[2]),
                                 in_words(e.luminance, efficacy), efficacy));
-    reporter.say(fmt::format("{} paths of at most {} scatterings on {} in {:.2f} s{}", e.paths, flags.max_depth,
-                             queue.device_name(), seconds,
+    reporter.say(fmt::format("{} paths of at most {} scatterings on {} in {:.2f} s{}", e.paths,
+                             flags.render.path.max_depth, queue.device_name(), seconds,
                              e.invalid_paths > 0 ? fmt::format("; {} were not finite", e.invalid_paths) : ""));
 }
 
-int measure(const MeasureFlags& flags) {
+int measure(MeasureFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
+    flags.settings.read(flags, messages);
+    const uint32_t seed = flags.render.path.seed;
+    refuse(seed > kMostMeterSeed, fmt::format("--seed {}: at most {}", seed, kMostMeterSeed));
     const MeterPlace place = place_of(flags); // before anything is read
     ComingMachine machine(flags.machine, messages);
     reporter.say_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
-    RenderSettings settings;
-    settings.samples = flags.samples;
-    settings.path.max_depth = flags.max_depth;
-    settings.path.seed = flags.seed;
+    const RenderSettings& settings = flags.render;
     Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
     if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
     for (Material& material : scene.materials) material.double_sided = true; // backs are hidden from cameras alone
@@ -119,29 +116,7 @@ void add_measure_command(CLI::App& app, int& status) {
     verb.add_option("--normal", flags->normal, "the way that a surface there faces, of any length")
         ->type_name("X,Y,Z")
         ->required();
-    verb.add_option("--spp", flags->samples,
-                    fmt::format("times {}, paths from the point", kMeterRepeats * kMeterSide * kMeterSide))
-        ->type_name("N")
-        ->check(whole_between(1, kMaxSamplesPerPixel))
-        ->capture_default_str();
-    verb.add_option("--max-depth", flags->max_depth, "most scatterings on the way to the point: 0 direct light")
-        ->type_name("N")
-        ->check(whole_between(0, kMaxPathDepth - 1))
-        ->capture_default_str();
-    verb.add_option("--seed", flags->seed, "of the random numbers")
-        ->type_name("N")
-        ->check(whole_between(0, kMostMeterSeed))
-        ->capture_default_str();
-    verb.add_option("--time", flags->time_s, "the scene at this time of its animation (at rest)")
-        ->type_name("SECONDS")
-        ->check(number_between(-1e9f, 1e9f))
-        ->group("Motion");
-    add_animation(verb, flags->scene);
-    add_read_options(verb, flags->scene);
-    add_light_options(verb, flags->scene);
-    add_machine_flags(verb, flags->machine, "Machine");
-    verb.add_flag("--no-bvh-cache", flags->no_cache, "build the tree even if it was built before")->group("Machine");
-    add_strict_flag(verb, flags->strict);
+    flags->settings.add(verb, kMeasure, *flags);
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = measure(*flags); });
 }

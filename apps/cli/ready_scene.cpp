@@ -15,6 +15,7 @@
 #include "render/film.h"
 #include "session/check_integrator.h"
 #include "session/render_memory.h"
+#include "settings/settings_file.h"
 
 namespace pertev {
 namespace {
@@ -23,15 +24,27 @@ namespace {
 /// find a part of the light alone show a ground that differs from the studio's floor.
 Ground ground_of(const RenderFlags& flags) {
     refuse(
-        flags.ground == "on" && flags.transparent,
+        flags.scene.ground == "on" && flags.render.transparent,
         "--ground on: the ground is a part of the background, which --transparent leaves out; leave out one of them");
-    if (flags.ground == "on") return Ground::On;
-    const bool has_camera = !flags.scene.eye.empty() || !flags.scene.camera.empty() || !flags.camera_path.empty();
-    RenderSettings settings;
-    set_integrator(settings, flags.integrator);
-    const bool is_off =
-        flags.ground == "off" || has_camera || flags.transparent || !finds_all_light(settings.integrator);
+    if (flags.scene.ground == "on") return Ground::On;
+    const CameraChoice& camera = flags.scene.camera;
+    const bool has_camera = camera.eye || !camera.camera.empty() || !flags.camera_path.empty();
+    const bool is_off = flags.scene.ground == "off" || has_camera || flags.render.transparent ||
+                        !finds_all_light(flags.render.integrator);
     return is_off ? Ground::Off : Ground::Auto;
+}
+
+/// Says all that was asked for, and what asked for it, with the size and the number of samples that came of it.
+void tell_settings(PictureOptions options, const RenderSettings& settings, SceneSource& source) {
+    for (const auto& [name, origin] : options.given) {
+        std::string& names = origin == SettingOrigin::Flag ? source.by_flags : source.by_file;
+        names += (names.empty() ? "" : " ") + name;
+    }
+    options.size = PictureSize{settings.width, settings.height};
+    options.given.try_emplace("size", SettingOrigin::File);
+    options.given.try_emplace("spp", SettingOrigin::File);
+    source.hash = scene_hash(options.scene.scene);
+    source.settings = settings_json(options, source.hash);
 }
 
 } // namespace
@@ -72,8 +85,7 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
     settings = render_settings(flags, scene);
     settings.tracers = tracers;
     check_light(settings, scene, messages);
-    ready->camera.emplace(camera_choice(flags.scene), path, scene, aspect_of(settings.width, settings.height),
-                          messages);
+    ready->camera.emplace(flags.scene.camera, path, scene, aspect_of(settings.width, settings.height), messages);
     check_camera(settings, ready->camera->at(scene, std::nullopt));
     ready->load_s = watch.seconds();
     // Where it is none after all, the session makes what is missing.
@@ -97,19 +109,20 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
             check_render_memory(film, settings,
                                 memory_to_render_in(*ready->queue, settings, max_memory_bytes(flags.radiosity)));
         }
-        settings.radiosity = radiosity_look(flags.radiosity, ready->prepared(), flags.seed, reporter);
+        settings.radiosity = radiosity_look(flags.radiosity, ready->prepared(), settings.path.seed, reporter);
     }
     return ready;
 }
 
-PictureRecord picture_record(const SceneOptions& options, ReadyScene& ready, const Messages& messages) {
-    PictureRecord record = {.scene = source_of(open_options(options), ready.scene()),
+PictureRecord picture_record(const PictureOptions& options, ReadyScene& ready, const Messages& messages) {
+    PictureRecord record = {.scene = source_of(open_options(options.scene), ready.scene()),
                             .camera = {},
                             .settings = ready.settings,
                             .device = ready.queue->device_name(),
                             .frame = {},
                             .display = {}};
     if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
+    tell_settings(options, ready.settings, record.scene);
     record.scene.made_up = messages.made_up();
     record.scene.left_out = messages.left_out();
     record.scene.load_seconds = ready.load_s;

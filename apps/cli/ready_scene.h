@@ -33,6 +33,6 @@ std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& repor
 void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Messages& messages);
 
 /// How the picture of the first frame is made, but for how it is displayed; with its camera.
-PictureRecord picture_record(const SceneOptions& options, ReadyScene& ready, const Messages& messages);
+PictureRecord picture_record(const PictureOptions& options, ReadyScene& ready, const Messages& messages);
 
 } // namespace pertev

@@ -8,9 +8,10 @@
 
 #include "apps/cli/choose_display.h"
 #include "apps/cli/commands.h"
+#include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/ready_scene.h"
-#include "apps/cli/real_time_flags.h"
+#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
 #include "apps/cli/report_result.h"
 #include "base/byte_units.h"
@@ -18,8 +19,8 @@
 #include "base/message_text.h"
 #include "base/stopwatch.h"
 #include "session/render_memory.h"
-#include "session/settings_text.h"
 #include "session/survey/ground.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -73,7 +74,7 @@ void report_start(const RenderFlags& flags, const Scene& scene, const PreparedSc
                   const RenderSettings& settings, const Queue& queue, double load_s, Reporter& reporter) {
     const std::size_t bytes =
         flags.real_time ? predicted_frame_bytes(prepared, settings, reconstruction_settings(flags.reconstruction),
-                                                restir_settings(flags.reconstruction), queue.is_cuda())
+                                                flags.reconstruction.sharing, queue.is_cuda())
                         : predicted_bytes(prepared, settings, queue.is_cuda());
     const bool has_more = has_ground(scene); // the file is counted, not what is made up
     const uint64_t triangles = prepared.triangles - (has_more ? scene.meshes.back().triangle_count() : 0);
@@ -126,8 +127,10 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureR
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 
-int render(const RenderFlags& flags) {
+int render(RenderFlags& flags) {
     Reporter reporter(flags.report);
+    flags.settings.read(flags, reporter.messages());
+    if (flags.real_time && !flags.is_given("spp")) flags.render.samples = 1;
     check_render_flags(flags, reporter.messages());
     const Stopwatch watch;
     const std::unique_ptr<ReadyScene> ready = make_ready(flags, reporter);
@@ -137,7 +140,7 @@ int render(const RenderFlags& flags) {
     reporter.say_messages();
     listen_for_interrupt();
     report_start(flags, ready->scene(), ready->prepared(), settings, queue, ready->load_s, reporter);
-    PictureRecord record = picture_record(flags.scene, *ready, reporter.messages());
+    PictureRecord record = picture_record(flags, *ready, reporter.messages());
     report_camera(record.camera, reporter);
     reporter.set_work("handing the scene to the device");
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
@@ -156,11 +159,18 @@ int render(const RenderFlags& flags) {
 void add_render_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("render", "Render a picture of a scene");
     const auto flags = std::make_shared<RenderFlags>();
-    add_render_flags(verb, *flags);
-    verb.callback([&verb, flags, &status] {
-        note_real_time_flags(verb, *flags);
-        status = render(*flags);
-    });
+    flags->limits_memory = true;
+    add_scene_name(verb, flags->scene);
+    verb.add_option("-o,--output", flags->outputs,
+                    "The picture is written to this file: .exr .png .jpg .hdr. It may be given again.")
+        ->type_name("FILE")
+        ->allow_extra_args(false)
+        ->check(file_name())
+        ->required();
+    flags->settings.add_file(verb);
+    add_report_flags(verb, flags->report);
+    flags->settings.add(verb, kRender, *flags);
+    verb.callback([flags, &status] { status = render(*flags); });
 }
 
 } // namespace pertev

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <exception>
 #include <iterator>
+#include <map>
 #include <string_view>
 #include <variant>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "apps/cli/interrupt.h"
+#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/report_result.h"
 #include "base/hash.h"
 #include "base/message_text.h"
@@ -27,16 +30,11 @@ std::string hash_of_file(const std::string& file) {
     return hasher.result().hex();
 }
 
-/// The numbers of --shutter, however they were written.
-std::string shutter_text(const RenderFlags& flags) {
-    const std::optional<Shutter> open = shutter(flags);
-    return open ? fmt::format("{},{}", open->open_s, open->close_s) : "";
-}
-
 /// All that decides the pictures: what the first frame's metadata say, and how the others follow.
 SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequence& sequence,
                                      const PictureRecord& record) {
     SequenceRecord::Settings settings;
+    const RenderSettings& picture = record.settings;
     for (const auto& [name, value] : settings_metadata(record)) {
         // They stand there only where they are; a run without them must be told apart from one with them.
         constexpr std::string_view kSometimes[] = {
@@ -48,39 +46,24 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequen
         if (std::ranges::find(kSometimes, name) != std::end(kSometimes)) continue;
         settings.emplace_back(name, std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
     }
-    std::string layers;
-    for (const std::string& layer : flags.aovs) layers += layer + " ";
-    for (const std::string& layer : flags.light_paths) layers += layer + " ";
-    std::string lamps;
-    for (const std::string& lamp : flags.scene.lamps) lamps += lamp + " ";
-    std::string displacements;
-    for (const std::string& displacement : flags.displacements) displacements += displacement + " ";
-    const RenderSettings& picture = record.settings;
     settings.insert(settings.end(), {{"first frame", fmt::format("{}", sequence.first)},
-                                     {"--fps", sequence.fps ? fmt::format("{}", *sequence.fps) : ""},
-                                     {"--turntable", fmt::format("{}", sequence.turntable)},
                                      {"hash of --camera-path", hash_of_file(flags.camera_path)},
                                      {"hash of the scene's file", hash_of_file(flags.scene.scene)},
                                      {"hash of --environment", hash_of_file(flags.scene.environment)},
-                                     {"--animation", record.scene.animation},
-                                     {"--file-scene", record.scene.file_scene},
-                                     {"--shutter", shutter_text(flags)},
-                                     {"--size", fmt::format("{}x{}", picture.width, picture.height)},
-                                     {"--spp", fmt::format("{}", picture.samples)},
-                                     {"--aov", layers},
-                                     {"--up-axis", flags.scene.up_axis},
-                                     {"--unit", flags.scene.unit},
-                                     {"--lamp", lamps},
-                                     {"--displacement", displacements},
-                                     {"--efficacy", fmt::format("{}", flags.scene.efficacy)},
-                                     {"--false-color", flags.false_color},
-                                     {"--false-color-range", flags.false_color_range},
-                                     {"--ambient", flags.ambient},
-                                     {"--shading", flags.shading},
-                                     {"--wireframe", flags.wireframe ? "yes" : "no"},
-                                     {"--denoise", picture.denoise == Denoise::None ? "" : flags.denoise},
-                                     {"--real-time", record.frame ? json_of(flags.reconstruction) : ""},
-                                     {"--transparent", picture.transparent ? "yes" : "no"}});
+                                     {"the real size", fmt::format("{}x{}", picture.width, picture.height)}});
+    const std::optional<Shutter> open = shutter(flags);
+    const std::map<std::string_view, std::string> resolved = {
+        // however they were written, or not at all
+        {"animation", record.scene.animation},
+        {"file_scene", record.scene.file_scene},
+        {"shutter", open ? fmt::format("{},{}", open->open_s, open->close_s) : ""}};
+    for (const Setting& setting : all_settings()) { // frames may be others of the same sequence
+        if (!setting.is_kept || (setting.verbs & kRender) == 0 || setting.name == std::string_view("frames")) continue;
+        const auto known = resolved.find(setting.name);
+        settings.emplace_back(flag_of(setting.name), known != resolved.end()
+                                                         ? known->second
+                                                         : fmt::format("{}", fmt::join(texts_of(flags, setting), " ")));
+    }
     return settings;
 }
 
@@ -280,7 +263,7 @@ void go_to_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving,
 
 ReconstructedFrame reconstructed_frame(const RenderFlags& flags, const FrameSequence& sequence) {
     return {sequence.first, sequence.first, reconstruction_settings(flags.reconstruction),
-            restir_settings(flags.reconstruction)};
+            flags.reconstruction.sharing};
 }
 
 int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingScene& moving, PictureRecord& record,

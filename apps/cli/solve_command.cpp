@@ -14,6 +14,7 @@
 #include "apps/cli/radiosity_flags.h"
 #include "apps/cli/report_result.h"
 #include "apps/cli/scene_options.h"
+#include "apps/cli/setting_flags.h"
 #include "apps/cli/strictness.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
@@ -26,13 +27,9 @@
 namespace pertev {
 namespace {
 
-struct SolveFlags {
-    SceneOptions scene;
+struct SolveFlags : PictureOptions {
     std::string output;
-    RadiosityFlags radiosity;
-    std::optional<double> time_s;
-    uint32_t seed = 0, threads = 0;
-    bool no_cache = false, strict = false;
+    SettingFlags settings;
     ReportFlags report;
 };
 
@@ -41,31 +38,31 @@ std::string solution_name(const std::string& picture) {
     return std::filesystem::path(picture).replace_extension(".rad").string();
 }
 
-int solve(const SolveFlags& flags) {
+int solve(SolveFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
-    radiosity_settings(flags.radiosity, flags.seed); // refused before anything is read
+    flags.settings.read(flags, messages);
+    radiosity_settings(flags.radiosity, flags.render.path.seed); // refused before anything is read
     refuse(
         is_picture_name(flags.output),
         fmt::format("--output {}: a solution is no picture; -o {} keeps it, and pertev render --integrator radiosity "
                     "--solution {} shows it",
                     flags.output, solution_name(flags.output), solution_name(flags.output)));
     check_writable(flags.output);
-    set_thread_count(static_cast<int>(flags.threads));
+    set_thread_count(static_cast<int>(flags.machine.threads));
     const Stopwatch total_time;
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
     if (flags.strict) refuse_what_is_left_out(messages, "nothing is solved");
-    RenderSettings shown;
-    shown.integrator = IntegratorKind::Radiosity;
-    check_light(shown, scene, messages);
-    PrepareOptions prepare = prepare_options(shown, false);
+    check_light(flags.render, scene, messages);
+    PrepareOptions prepare = prepare_options(flags.render, false);
     prepare.may_be_better = true;
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     reporter.set_work("building trees");
     const MovingScene moving(std::move(scene), flags.time_s, prepare, messages);
     reporter.say_messages();
-    const SolvedRadiosity solved = solve_and_report(moving.prepared(), flags.radiosity, flags.seed, reporter);
+    const SolvedRadiosity solved =
+        solve_and_report(moving.prepared(), flags.radiosity, flags.render.path.seed, reporter);
     reporter.set_work("writing");
     reporter.write_output(flags.output, [&] { write_solution(flags.output, solved.solution); });
     const bool cut_short = solved.stats.was_interrupted;
@@ -91,25 +88,8 @@ void add_solve_command(CLI::App& app, int& status) {
     const auto flags = std::make_shared<SolveFlags>();
     add_scene_name(verb, flags->scene);
     verb.add_option("-o,--output", flags->output, "the solution")->type_name("FILE")->check(file_name())->required();
-    add_solving_flags(verb, flags->radiosity, "Radiosity");
-    verb.add_option("--seed", flags->seed, "of the random numbers")
-        ->type_name("N")
-        ->check(whole_between(0, UINT32_MAX))
-        ->capture_default_str()
-        ->group("Radiosity");
-    verb.add_option("--time", flags->time_s, "the scene at this time of its animation (at rest)")
-        ->type_name("SECONDS")
-        ->check(number_between(-1e9f, 1e9f))
-        ->group("Motion");
-    add_animation(verb, flags->scene);
-    add_read_options(verb, flags->scene);
-    add_light_options(verb, flags->scene);
-    verb.add_option("--threads", flags->threads, "of the CPU (all)")
-        ->type_name("N")
-        ->check(whole_between(1, 4096))
-        ->group("Machine");
-    verb.add_flag("--no-bvh-cache", flags->no_cache, "build the tree even if it was built before")->group("Machine");
-    add_strict_flag(verb, flags->strict);
+    flags->render.integrator = IntegratorKind::Radiosity;
+    flags->settings.add(verb, kSolve, *flags);
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = solve(*flags); });
 }

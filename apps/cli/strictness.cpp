@@ -1,16 +1,11 @@
 #include "apps/cli/strictness.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/message_text.h"
 
 namespace pertev {
-
-void add_strict_flag(CLI::App& verb, bool& strict) {
-    verb.add_flag("--strict", strict, "fail where anything of the scene is left out");
-}
 
 void refuse_what_is_left_out(const Messages& messages, const char* outcome) {
     const std::vector<std::string> left_out = messages.left_out();

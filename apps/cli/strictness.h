@@ -4,14 +4,7 @@
 
 #include "base/messages.h"
 
-namespace CLI {
-class App;
-}
-
 namespace pertev {
-
-/// --strict of verbs that fail before they render or measure, and for no other reason.
-void add_strict_flag(CLI::App& verb, bool& strict);
 
 /// Throws Error(BadInput) that repeats the first warning of something left out. `outcome` ends the message, as "nothing
 /// is rendered".

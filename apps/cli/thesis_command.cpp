@@ -58,7 +58,7 @@ MeasuredScene load(SceneOptions options, const std::string& scene, const LabSett
     MeasuredScene thesis = {lab_scene_title(scene), read_lab_scene(options, messages), false, {}};
     if (has_pictures)
         thesis.default_light = add_default_light(thesis.scene, SceneUse::Benchmark, messages) != DefaultLight::None;
-    thesis.camera = choose_camera(options, thesis.scene, aspect_of(settings.width, settings.height), messages);
+    thesis.camera = choose_camera(options.camera, thesis.scene, aspect_of(settings.width, settings.height), messages);
     return thesis;
 }
 

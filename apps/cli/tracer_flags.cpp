@@ -3,10 +3,8 @@
 #include <set>
 #include <span>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "apps/cli/flag_checks.h"
 #include "base/error.h"
 
 namespace pertev {
@@ -59,32 +57,7 @@ bool set_on_off(bool& value, const std::string& name) {
 
 } // namespace
 
-void add_tracer_flags(CLI::App& verb, TracerFlags& flags, const char* group) {
-    const auto add = [&](const char* flag, std::vector<std::string>& values, const char* what, const char* type) {
-        verb.add_option(flag, values, what)->type_name(type)->allow_extra_args(false)->group(group);
-    };
-    std::vector<std::string> builds;
-    for (const TreeBuild build : kTreeBuilds) builds.emplace_back(name_of(build));
-    verb.add_option(
-            "--build", flags.build,
-            fmt::format("how much time the tree that rays go through is worth ({}):\nfast is built soonest, best "
-                        "is gone through soonest; none changes\nthe picture",
-                        name_of(flags.default_build)))
-        ->type_name("WHICH")
-        ->check(one_of(builds))
-        ->group(group);
-    add("--structure", flags.structures,
-        "how the scene is sorted for rays, as pertev lab names it, in place\nof what --build says; of one kind of ray: "
-        "camera=, bounce= or\nshadow=NAME; may be given again. Neither this nor what follows\nchanges the picture",
-        "[KIND=]NAME");
-    add("--walk", flags.walks, "how rays go through it, as pertev lab names it", "[KIND=]NAME");
-    add("--rta", flags.rta, "redundant traversal avoidance: on, nodes or off", "[KIND=]WHICH");
-    add("--order", flags.order, "nearer children first: on or off", "[KIND=]WHICH");
-    add("--distribution", flags.distributions,
-        "how rays come to a GPU's threads: one-a-thread, persistent or\ndynamic-fetch", "[KIND=]NAME");
-}
-
-std::optional<TracerChoice> tracer_choice(const TracerFlags& flags, bool on_cuda) {
+std::optional<TracerChoice> tracer_choice(const TracerOptions& flags, bool on_cuda) {
     if (flags.are_empty() && flags.default_build == kDefaultBuild) return std::nullopt;
     TracerChoice choice = default_tracers(on_cuda, tree_build_named(flags.build).value_or(flags.default_build));
     std::set<const Combination*> structure_named, walk_named;

@@ -11,7 +11,6 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/lab_files.h"
 #include "apps/cli/lab_scene.h"
-#include "apps/cli/parse_values.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/read_file.h"
@@ -23,8 +22,9 @@
 #include "lab/transport_light.h"
 #include "lab/transport_presets.h"
 #include "lab/write_transport.h"
-#include "session/settings_text.h"
 #include "session/survey/default_light.h"
+#include "settings/parse_values.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -49,7 +49,7 @@ Subject read_subject(SceneOptions options, const TransportPreset* preset, float 
     subject.reference_integrator =
         preset != nullptr ? preset->reference_integrator : default_reference_integrator(subject.scene);
     subject.camera = preset != nullptr ? choose_camera(camera_choice(*preset), subject.scene, aspect, messages)
-                                       : choose_camera(options, subject.scene, aspect, messages);
+                                       : choose_camera(options.camera, subject.scene, aspect, messages);
     return subject;
 }
 
@@ -62,7 +62,7 @@ std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const 
         const std::string wanted = flags.preset.empty() ? "cornell" : flags.preset;
         if (wanted == kAllPresets || wanted == preset.name) presets.push_back(&preset);
     }
-    const CameraChoice camera = camera_choice(scene);
+    const CameraChoice& camera = scene.camera;
     refuse(!camera.camera.empty() || camera.eye || camera.target || camera.up || camera.fov_deg || camera.projection ||
                camera.view_height,
            "--preset: it has a camera of its own; name a SCENE to see it by another");

@@ -18,6 +18,7 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/ready_scene.h"
+#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
 #include "apps/cli/strictness.h"
 #include "apps/viewer/panel_phrases.h"
@@ -46,7 +47,6 @@ struct ViewFlags {
     uint32_t port = 8080;
     bool no_browser = false;
     std::optional<uint32_t> moving_depth;
-    bool has_depth = false; // --max-depth was given
     std::string jpeg = "auto";
 };
 
@@ -93,7 +93,7 @@ void report_address(const ViewFlags& flags, const std::string& address, Reporter
 
 /// The text of a scene's camera for --camera; empty where there is none.
 std::string camera_name(const SceneOptions& options, const Scene& scene) {
-    if (!options.camera.empty()) return options.camera;
+    if (!options.camera.camera.empty()) return options.camera.camera;
     return scene.cameras.empty() ? "" : "0";
 }
 
@@ -138,7 +138,7 @@ void let_time_move(const ViewFlags& flags, const ReadyScene& ready, ViewerStart&
         start.camera.path = read_camera_path(flags.render.camera_path);
         start.clock.end_s = std::max(start.clock.end_s, start.camera.path.keys.back().time_s);
     }
-    if (flags.render.scene.focus_m > 0) start.camera.focus_m = flags.render.scene.focus_m;
+    if (flags.render.scene.camera.focus) start.camera.focus_m = *flags.render.scene.camera.focus;
     if (turntable > 0) {
         start.clock.end_s = std::max(start.clock.end_s, turntable / kTurntableFps);
         start.camera.at = [&ready](double time_s) { return turned_camera(ready, time_s); };
@@ -147,9 +147,9 @@ void let_time_move(const ViewFlags& flags, const ReadyScene& ready, ViewerStart&
     }
     start.camera.moves = start.is_animated || turntable > 0;
     const SceneOptions& scene = flags.render.scene;
-    const bool is_made_up = ready.scene().cameras.empty() && scene.eye.empty() && flags.render.camera_path.empty();
+    const bool is_made_up = ready.scene().cameras.empty() && !scene.camera.eye && flags.render.camera_path.empty();
     if (is_made_up && turntable == 0 && !moving.is_animated()) {
-        start.camera.framed = [&ready, choice = camera_choice(scene)](float aspect) {
+        start.camera.framed = [&ready, choice = scene.camera](float aspect) {
             Messages said_already;
             const MovingCamera framed(choice, std::nullopt, ready.scene(), aspect, said_already);
             return camera_at(framed, ready.scene(), std::nullopt, 0);
@@ -203,8 +203,9 @@ void end_soon() {
     }).detach();
 }
 
-int view(const ViewFlags& flags) {
+int view(ViewFlags& flags) {
     Reporter reporter(flags.render.report);
+    flags.render.settings.read(flags.render, reporter.messages());
     check_host(flags.host);
     check_shown_picture_flags(flags.render);
     const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, reporter);
@@ -219,7 +220,8 @@ int view(const ViewFlags& flags) {
     reporter.say_messages();
     listen_for_interrupt();
     reporter.set_work("handing the scene to the device");
-    const PictureRecord record = picture_record(flags.render.scene, *ready, reporter.messages());
+    PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
+    record.scene.settings = record.scene.by_flags = record.scene.by_file = ""; // the panel changes them
     const Camera& camera = record.camera.camera;
     Session session(*ready->queue, ready->prepared(), camera, ready->settings);
     const bool on_cuda = ready->queue->is_cuda();
@@ -229,7 +231,7 @@ int view(const ViewFlags& flags) {
     start.camera.camera = camera;
     start.record = record;
     start.view.picture = ready->settings;
-    if (flags.render.size.empty()) {
+    if (!flags.render.size) {
         start.view.window_pixels = uint64_t(ready->settings.width) * ready->settings.height;
     }
     start.view.display = choose_shown_display(flags.render, session, reporter);
@@ -239,11 +241,10 @@ int view(const ViewFlags& flags) {
     start.view.lens = camera;
     start.view.on_cuda = on_cuda;
     start.view.is_reconstructed = !flags.render.reconstruction.none;
-    ReconstructionFlags asked = flags.render.reconstruction;
-    asked.none = false; // so that the panel's denoiser brings them back
-    start.view.reconstruction = reconstruction_settings(asked);
-    start.view.restir = restir_settings(asked);
-    start.view.moving_depth = flags.moving_depth.value_or(flags.has_depth ? flags.render.max_depth : kMovingDepth);
+    start.view.reconstruction = flags.render.reconstruction.settings; // the panel's denoiser brings them back
+    start.view.restir = flags.render.reconstruction.sharing;
+    start.view.moving_depth =
+        flags.moving_depth.value_or(flags.render.is_given("max_depth") ? ready->settings.path.max_depth : kMovingDepth);
     if (start.view.finds_exposure) {
         source.begin_exposed({.camera = camera, .view = start.view}, start.view.display.exposure_stops);
         start.view.display.exposure_stops = 0;
@@ -274,7 +275,7 @@ int view(const ViewFlags& flags) {
 void add_view_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("view", "Look at a scene in a browser, through one port");
     const auto flags = std::make_shared<ViewFlags>();
-    add_scene_options(verb, flags->render.scene);
+    add_scene_name(verb, flags->render.scene);
     const char* group = "Server";
     verb.add_option("--port", flags->port, "to listen on; 0: any that is free")
         ->type_name("N")
@@ -292,21 +293,15 @@ void add_view_command(CLI::App& app, int& status) {
         ->capture_default_str()
         ->group(group);
     verb.add_flag("--no-browser", flags->no_browser, "open none, though there is a desktop")->group(group);
-    add_shown_picture_flags(verb, flags->render);
-    const char* moving = "While the view moves";
     verb.add_option("--moving-depth", flags->moving_depth,
                     fmt::format("most scatterings of a path ({}, or --max-depth where that is given)", kMovingDepth))
         ->type_name("N")
         ->check(whole_between(0, kMaxPathDepth - 1))
-        ->group(moving);
-    add_reconstruction_flags(verb, flags->render.reconstruction, moving);
-    add_time_flags(verb, flags->render, true);
-    add_strict_flag(verb, flags->render.strict);
+        ->group("Frames");
+    flags->render.settings.add_file(verb);
     add_report_flags(verb, flags->render.report);
-    verb.callback([flags, &verb, &status] {
-        flags->has_depth = verb.count("--max-depth") > 0;
-        status = view(*flags);
-    });
+    flags->render.settings.add(verb, kView, flags->render);
+    verb.callback([flags, &status] { status = view(*flags); });
 }
 
 } // namespace pertev

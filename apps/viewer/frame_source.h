@@ -13,7 +13,7 @@
 #include "apps/viewer/view_state.h"
 #include "image/image.h"
 #include "integrators/integrator.h"
-#include "session/render_settings.h"
+#include "settings/render_settings.h"
 
 namespace pertev {
 

@@ -11,8 +11,8 @@
 #include "apps/viewer/window_shape.h"
 #include "base/error.h"
 #include "base/limits.h"
-#include "image/tone_map_image.h"
-#include "session/settings_text.h"
+#include "settings/setting_table.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -24,6 +24,7 @@ constexpr const char* kLayers[] = {"picture",   "albedo",      "normal",        
 
 constexpr const char* kScales[] = {"automatic", "1", "1/2", "1/4", "1/8"};
 constexpr float kScaleValues[] = {0, 1, 0.5f, 0.25f, 0.125f};
+constexpr double kLeastShown = 1e-6; // of numbers above 0
 
 float number_of(const SettingValue& value) { return static_cast<float>(std::get<double>(value)); }
 const std::string& text_of(const SettingValue& value) { return std::get<std::string>(value); }
@@ -131,6 +132,19 @@ std::vector<ViewSetting> make_settings() {
                        }});
     };
 
+    // Settings that pictures by flags have, too: what they are, and their values, are those of the table of settings.
+    const auto shared_choice = [&](const char* name, const char* label, const char* group, auto get, auto set) {
+        const Setting& setting = *find_setting(name);
+        choice(name, label, group, *setting.more != '\0' ? setting.more : setting.sentence, choices_of(setting), get,
+               set);
+    };
+    const auto shared_number = [&](const char* name, const char* label, const char* group, Kind kind, double step,
+                                   auto get, auto set) {
+        const Setting& setting = *find_setting(name);
+        const double low = setting.above ? kLeastShown : setting.low;
+        numeric(name, label, group, setting.sentence, kind, low, setting.high, step, get, set);
+    };
+
     choice(
         "layer", "Show", "Picture",
         "The picture, or something else of each pixel, in colours of its own. Heat: how much its camera ray had to "
@@ -158,22 +172,14 @@ std::vector<ViewSetting> make_settings() {
         "A stop more is twice the light. Where the exposure is auto, it is added to that", Kind::Number, -60, 60, 0.25,
         [](const ViewState& s) { return s.display.exposure_stops; },
         [](ViewState& s, float v) { s.display.exposure_stops = v; });
-    choice(
-        "tone_map", "Tone map", "Picture", "How light becomes the colours of a screen", tone_map_names(),
-        [](const ViewState& s) { return name_of(s.display.tone_map); },
+    shared_choice(
+        "tone_map", "Tone map", "Picture", [](const ViewState& s) { return name_of(s.display.tone_map); },
         [](ViewState& s, const std::string& name) {
-            s.display.tone_map = *tone_map_named(name);
+            s.display.tone_map = *value_named<ToneMap>(name);
             return std::string();
         });
-    choice(
-        "integrator", "Light", "Light",
-        "path: all light; direct: from lamps and sky alone; indirect: what other surfaces send on; hybrid: path, by "
-        "rasterisation first; cast, whitted and distributed: trees of rays, without most of what surfaces send on; "
-        "raster: no rays at all; reyes: nor any, of micropolygons; light: particles from the lights, without what "
-        "mirrors and glass show; bidirectional: all light, from both ends; photon_map: all light in the end, caustics "
-        "soon, by photons; irradiance_cache: all light, what surfaces send on nearly so, without its noise; "
-        "radiosity: diffuse surfaces by patches, solved once",
-        integrator_names(), [](const ViewState& s) { return integrator_name(s.picture); },
+    shared_choice(
+        "integrator", "Light", "Light", [](const ViewState& s) { return integrator_name(s.picture); },
         [](ViewState& s, const std::string& name) {
             RenderSettings wanted = s.picture;
             set_integrator(wanted, name);
@@ -189,18 +195,15 @@ std::vector<ViewSetting> make_settings() {
             if (too_deep.empty()) s.picture = wanted;
             return too_deep;
         });
-    numeric(
-        "max_depth", "Scatterings, at most", "Light",
-        "How often light is scattered at most on its way to the camera, at rest and while moving", Kind::Whole, 0,
-        kMaxPathDepth - 1, 1, [](const ViewState& s) { return s.picture.path.max_depth; },
+    shared_number(
+        "max_depth", "Scatterings, at most", "Light", Kind::Whole, 1,
+        [](const ViewState& s) { return s.picture.path.max_depth; },
         [](ViewState& s, float v) {
             s.picture.path.max_depth = std::min(static_cast<uint32_t>(v), most_depth(s.picture.integrator));
             s.moving_depth = s.picture.path.max_depth;
         });
-    numeric(
-        "spp", "Samples a pixel", "Light",
-        "At rest, each pixel is the mean of so many paths. Four times as many halve the noise", Kind::Whole, 1,
-        kMaxSamplesPerPixel, 1, [](const ViewState& s) { return s.picture.samples; },
+    shared_number(
+        "spp", "Samples a pixel", "Light", Kind::Whole, 1, [](const ViewState& s) { return s.picture.samples; },
         [](ViewState& s, float v) { s.picture.samples = static_cast<uint32_t>(v); });
     choice(
         "mode", "At rest", "Frames",
@@ -223,24 +226,20 @@ std::vector<ViewSetting> make_settings() {
             s.is_reconstructed = name == "svgf";
             return std::string();
         });
-    choice(
+    shared_choice(
         "restir", "ReSTIR: light that pixels share", "Frames",
-        "di: light of lamps is drawn together with neighbours and frames before, gi: that of surfaces, too. Helps "
-        "where there are many lamps, and takes time",
-        restir_names(), [](const ViewState& s) { return name_of(s.restir.light); },
+        [](const ViewState& s) { return name_of(s.restir.light); },
         [](ViewState& s, const std::string& name) {
-            s.restir.light = *restir_named(name);
+            s.restir.light = *value_named<RestirLight>(name);
             return std::string();
         });
-    numeric(
-        "restir_history", "Frames that share it, at most", "Frames",
-        "Fewer: light and shadows that move are followed sooner, with more noise", Kind::Whole, 0, 1024, 1,
+    shared_number(
+        "restir_history", "Frames that share it, at most", "Frames", Kind::Whole, 1,
         [](const ViewState& s) { return s.restir.history; },
         [](ViewState& s, float v) { s.restir.history = static_cast<uint32_t>(v); });
-    numeric(
-        "resolution_scale", "Resolution of light, a side", "Frames",
-        "Under 1, light is found for fewer pixels, which is faster. Edges and textures stay as they are", Kind::Number,
-        0.1, 1, 0.05, [](const ViewState& s) { return s.reconstruction.resolution_scale; },
+    shared_number(
+        "resolution_scale", "Resolution of light, a side", "Frames", Kind::Number, 0.05,
+        [](const ViewState& s) { return s.reconstruction.resolution_scale; },
         [](ViewState& s, float v) { s.reconstruction.resolution_scale = v; });
     choice(
         "moving_scale", "Size while moving", "Frames", "automatic: as large as the frame rate allows", strings(kScales),
@@ -251,18 +250,17 @@ std::vector<ViewSetting> make_settings() {
             s.moving_scale = kScaleValues[std::ranges::find(kScales, name) - std::begin(kScales)];
             return std::string();
         });
-    numeric(
-        "fov", "Angle of view, degrees", "Camera", "From the lower to the upper edge of the picture", Kind::Number,
-        0.01, 179, 1, [](const ViewState& s) { return degrees_for(s.lens.fov_y); },
+    shared_number(
+        "fov", "Angle of view, degrees", "Camera", Kind::Number, 1,
+        [](const ViewState& s) { return degrees_for(s.lens.fov_y); },
         [](ViewState& s, float v) { s.lens.fov_y = v * kRadiansPerDegree; });
-    numeric(
-        "aperture", "Radius of the lens, m", "Camera",
-        "0: all is sharp. The larger, the more is blurred that is not in focus. hybrid, raster and reyes have none",
-        Kind::Number, 0, 1e6, 0.005, [](const ViewState& s) { return s.lens.aperture_radius; },
+    shared_number(
+        "aperture", "Radius of the lens, m", "Camera", Kind::Number, 0.005,
+        [](const ViewState& s) { return s.lens.aperture_radius; },
         [](ViewState& s, float v) { s.lens.aperture_radius = rasterises_camera(s.picture.integrator) ? 0.0f : v; });
-    numeric(
-        "focus", "Distance in focus, m", "Camera", "How far away things are sharp. Alt-click sets it", Kind::Number,
-        1e-6, 1e9, 0.1, [](const ViewState& s) { return s.lens.focus_distance; },
+    shared_number(
+        "focus", "Distance in focus, m", "Camera", Kind::Number, 0.1,
+        [](const ViewState& s) { return s.lens.focus_distance; },
         [](ViewState& s, float v) { s.lens.focus_distance = v; });
     choice(
         "structure", "Structure", "Rays (the picture stays the same)",

@@ -12,8 +12,8 @@
 #include "apps/viewer/client_message.h"
 #include "denoise/reconstruction_settings.h"
 #include "restir/restir_settings.h"
-#include "session/render_settings.h"
 #include "session/writing/picture_metadata.h"
+#include "settings/render_settings.h"
 
 namespace pertev {
 

@@ -4,12 +4,9 @@
 
 #include <cstdint>
 
-namespace pertev {
+#include "settings/picture_options.h"
 
-struct PictureSize {
-    uint32_t width = 0, height = 0;
-    bool operator==(const PictureSize&) const = default;
-};
+namespace pertev {
 
 /// Returns a size of the window's shape, with even sides (JPEG halves the resolution of colour). It has at most
 /// `most_pixels` pixels, and no more than the window, which shows no more. A window that is more than 4 times as long

@@ -22,25 +22,4 @@ Rgba8Image tone_map_image(const Image& linear, ToneMap kind, float exposure_stop
     return result;
 }
 
-std::string_view name_of(ToneMap kind) {
-    switch (kind) {
-    case ToneMap::Srgb:
-        return "srgb";
-    case ToneMap::Agx:
-        return "agx";
-    case ToneMap::Aces:
-        return "aces";
-    case ToneMap::Neutral:
-        return "neutral";
-    }
-    return "";
-}
-
-std::optional<ToneMap> tone_map_named(std::string_view name) {
-    for (const ToneMap kind : {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral}) {
-        if (name == name_of(kind)) return kind;
-    }
-    return std::nullopt;
-}
-
 } // namespace pertev

@@ -2,9 +2,7 @@
 
 // A linear picture as 8-bit sRGB, for PNG, JPEG and viewers.
 
-#include <optional>
-#include <string_view>
-
+#include "base/value_names.h"
 #include "image/image.h"
 #include "image/tone_map.h"
 
@@ -16,8 +14,8 @@ namespace pertev {
 /// result is opaque: the picture over black.
 Rgba8Image tone_map_image(const Image& linear, ToneMap kind, float exposure_stops = 0, bool keep_alpha = true);
 
-/// Names on the command line: srgb, agx, aces, neutral.
-std::string_view name_of(ToneMap kind);
-std::optional<ToneMap> tone_map_named(std::string_view name);
+inline constexpr ValueName<ToneMap> kToneMaps[] = {
+    {ToneMap::Srgb, "srgb"}, {ToneMap::Agx, "agx"}, {ToneMap::Aces, "aces"}, {ToneMap::Neutral, "neutral"}};
+constexpr const auto& names_of_all(ToneMap) { return kToneMaps; }
 
 } // namespace pertev

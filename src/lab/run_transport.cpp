@@ -17,7 +17,7 @@
 #include "lab/transport_light.h"
 #include "lab/transport_solutions.h"
 #include "session/check_integrator.h"
-#include "session/settings_text.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {

@@ -14,8 +14,8 @@
 #include "lab/run_lab.h"
 #include "lab/transport_report.h"
 #include "scene/scene.h"
-#include "session/render_settings.h"
 #include "session/session.h"
+#include "settings/render_settings.h"
 
 namespace pertev {
 
@@ -23,7 +23,7 @@ inline constexpr uint32_t kMostRepetitions = 1024;
 
 struct TransportSettings {
     std::string camera;                   // describe_camera in the words of the front end, for the report
-    std::vector<std::string> integrators; // names (session/settings_text.h)
+    std::vector<std::string> integrators; // names (settings/value_names.h)
     uint32_t repetitions = 4;             // [1, kMostRepetitions]
     double seconds = 10;                  // of rendering for each integrator, all repetitions together
     uint32_t max_samples = 1u << 16;      // of each pixel, of one repetition

@@ -11,7 +11,7 @@
 #include "lab/heat_map.h"
 #include "lab/thesis_recipes.h"
 #include "radiosity/solve_radiosity.h"
-#include "session/settings_text.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "lab/thesis_scenes.h"
-#include "session/render_settings.h"
+#include "settings/render_settings.h"
 #include "tracer/combination.h"
 
 namespace pertev {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "session/settings_text.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {

@@ -9,7 +9,7 @@
 #include "image/image.h"
 #include "lab/transport_report.h"
 #include "radiosity/solve_radiosity.h"
-#include "session/render_settings.h"
+#include "settings/render_settings.h"
 
 namespace pertev {
 

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "base/value_names.h"
+
 namespace pertev {
 
 /// How much of the light that leaves a patch arrives at which others.
@@ -20,9 +22,14 @@ enum class RadiositySolver : uint8_t {
     Hierarchical, // by links of patches and clusters of all sizes: radiosity/hierarchical.h
 };
 
-/// As on the command line: "rays", "gauss-seidel".
-const char* name_of(FormFactors method);
-const char* name_of(RadiositySolver solver);
+inline constexpr ValueName<FormFactors> kFormFactors[] = {{FormFactors::Rays, "rays"},
+                                                          {FormFactors::Hemicube, "hemicube"}};
+inline constexpr ValueName<RadiositySolver> kRadiositySolvers[] = {{RadiositySolver::Southwell, "southwell"},
+                                                                   {RadiositySolver::GaussSeidel, "gauss-seidel"},
+                                                                   {RadiositySolver::Matrix, "matrix"},
+                                                                   {RadiositySolver::Hierarchical, "hierarchical"}};
+constexpr const auto& names_of_all(FormFactors) { return kFormFactors; }
+constexpr const auto& names_of_all(RadiositySolver) { return kRadiositySolvers; }
 
 struct RadiositySettings {
     float patch_size = 0;      // metres: no edge of a patch is longer; 0: kPatchOfScene of the scene's longest side

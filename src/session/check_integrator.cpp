@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "render/raster/pinhole.h"
-#include "session/settings_text.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "base/messages.h"
 #include "scene/scene.h"
-#include "session/render_settings.h"
+#include "settings/render_settings.h"
 
 namespace pertev {
 

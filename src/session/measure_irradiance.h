@@ -8,7 +8,7 @@
 
 #include "device/queue.h"
 #include "render/prepare_scene.h"
-#include "session/render_settings.h"
+#include "settings/render_settings.h"
 
 namespace pertev {
 

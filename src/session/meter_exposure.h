@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "image/tone_map.h"
-#include "session/render_settings.h"
+#include "settings/render_settings.h"
 
 namespace pertev {
 

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "session/session.h"
-#include "session/settings_text.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "device/queue.h"
-#include "session/render_settings.h"
+#include "settings/render_settings.h"
 
 namespace pertev {
 

@@ -33,7 +33,7 @@
 #include "render/picture_view.h"
 #include "render/prepare_scene.h"
 #include "restir/restir.h"
-#include "session/render_settings.h"
+#include "settings/render_settings.h"
 
 namespace pertev {
 

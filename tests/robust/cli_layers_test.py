@@ -13,7 +13,7 @@ BELOW = "v -9 -1 -9\nv 9 -1 -9\nv 9 -1 9\nv -9 -1 9\nf 8 7 6 5\n"
 
 # What a render tells of itself; all else in the metadata is a flag.
 RESULTS = {"version", "scene", "world_from_camera", "device", "hash", "invalid_samples", "load_seconds", "build_seconds",
-           "render_seconds", "rays", "made_up", "left_out", "position_origin"}
+           "render_seconds", "rays", "made_up", "left_out", "position_origin", "scene_hash", "by_flags", "by_settings"}
 
 
 class Layers(CliTest):
@@ -90,7 +90,7 @@ class Denoised(CliTest):
 class Metadata(CliTest):
     def test_names_are_those_of_flags(self):
         write(self.path("floor.obj"), FLOOR)
-        flags = set(re.findall(r"(?<![\w-])--([a-z][a-z-]*)", self.succeed("render", "--help").stdout))
+        flags = set(re.findall(r"(?<![\w-])--([a-z][a-z-]*)", self.succeed("render", "--help", "all").stdout))
         for more in [["--aperture", "0.1"], ["--projection", "orthographic"]]:
             self.render("--eye", "0,2,4", "--target", "0,0,0", *more, scene="floor.obj", output="x.exr")
             names = {name[7:] for name in self.info("x.exr") if name.startswith("pertev.")}

@@ -23,13 +23,13 @@ FLAGS = {
               "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest --photon-search "
               "--accuracy --hemisphere-rays --show-records --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube "
               "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --sample-order --history --passes --no-anti-alias "
-              "--no-firefly-limit --no-follow-light --no-history-limit --no-reconstruction --animation --file-scene --ground",
+              "--no-firefly-limit --no-follow-light --no-history-limit --no-reconstruction --animation --file-scene --ground --settings",
     "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --up-axis --unit --environment --environment-rotation "
                "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --animation --file-scene --strict --quiet -q --json",
     "solve radiosity": "--output -o --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube --solver "
                        "--tolerance --steps --link-error --max-memory --seed --time --lamp --efficacy --allow-path --up-axis --unit --environment --environment-rotation "
                        "--environment-scale --two-sided-lights --threads --no-bvh-cache --animation --file-scene --strict --quiet -q --json",
-    "info": "--file-scene --allow-path --up-axis --unit --quiet -q --json",
+    "info": "--file-scene --allow-path --up-axis --unit --settings --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
     "bench": "--scene --size --spp --device --threads --build --structure --walk --rta --order --distribution --quiet -q --json",
     "bench build": "--scene --runs --compare --device --threads --quiet -q --json",
@@ -211,7 +211,7 @@ class WhatIsSaid(CliTest):
         verbs = self.succeed("--help").stdout
         for verb, flags in FLAGS.items():
             self.assertIn(verb.split()[0], verbs)
-            text = self.succeed(*verb.split(), "--help").stdout
+            text = self.succeed(*verb.split(), "--help", "all").stdout
             listed = set(re.findall(r"(?<![\w-])--?[a-z][a-z-]*", re.sub(r" {3,}.*", "", text)))
             self.assertEqual(listed - {"-h", "--help"}, set(flags.split()), verb)
 

@@ -177,9 +177,9 @@ TEST_CASE("a tone-mapped picture divides out premultiplied alpha, or lies over b
 }
 
 TEST_CASE("tone maps are found by their names on the command line") {
-    CHECK(tone_map_named("agx") == ToneMap::Agx);
-    CHECK(tone_map_named("srgb") == ToneMap::Srgb);
-    CHECK(tone_map_named("aces") == ToneMap::Aces);
-    CHECK(tone_map_named("neutral") == ToneMap::Neutral);
-    CHECK(!tone_map_named("filmic"));
+    CHECK(value_named<ToneMap>("agx") == ToneMap::Agx);
+    CHECK(value_named<ToneMap>("srgb") == ToneMap::Srgb);
+    CHECK(value_named<ToneMap>("aces") == ToneMap::Aces);
+    CHECK(value_named<ToneMap>("neutral") == ToneMap::Neutral);
+    CHECK(!value_named<ToneMap>("filmic"));
 }

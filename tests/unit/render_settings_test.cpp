@@ -1,4 +1,4 @@
-#include "session/render_settings.h"
+#include "settings/render_settings.h"
 
 #include <doctest/doctest.h>
 

@@ -88,6 +88,14 @@ std::vector<JsonValue> JsonValue::elements() const {
     return values;
 }
 
+std::vector<std::pair<std::string, JsonValue>> JsonValue::members() const {
+    simdjson::dom::object object;
+    if (element_.get(object)) throw error(fmt::format("{}; expected an object", type_name(element_)));
+    std::vector<std::pair<std::string, JsonValue>> values;
+    for (const auto& [key, element] : object) values.emplace_back(std::string(key), child(key, element));
+    return values;
+}
+
 std::vector<JsonValue> JsonValue::elements_of(std::string_view key) const {
     const std::optional<JsonValue> member = find(key);
     return member ? member->elements() : std::vector<JsonValue>();

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <simdjson.h>
@@ -42,6 +43,9 @@ public:
     std::vector<JsonValue> elements() const;
     /// The values of member `key`, an array; none when it is missing.
     std::vector<JsonValue> elements_of(std::string_view key) const;
+
+    /// Returns all members of an object with their names, in order.
+    std::vector<std::pair<std::string, JsonValue>> members() const;
 
     /// A whole number in [0, 2^53], also when written as 3.0.
     uint64_t to_unsigned() const;

@@ -3,25 +3,13 @@
 // From what is said of a camera (a name, an eye, a lens) to a camera: what is left open comes from the scene's own, or
 // from what there is to see. The fields below are called after the settings.
 
-#include <optional>
 #include <string>
 
 #include "base/messages.h"
 #include "scene/scene.h"
+#include "settings/camera_choice.h"
 
 namespace pertev {
-
-struct CameraChoice {
-    std::string camera;                    // name or number, from 0, of one of the scene's; "": the first there is
-    std::optional<DoubleVec3> eye, target; // metres, in the coordinates of the file
-    std::optional<Vec3> up;
-    bool is_aimed = false;         // the target is made up: aim_eye()
-    std::optional<float> fov_deg;  // full vertical angle of view, degrees
-    std::optional<float> aperture; // radius of the lens, metres
-    std::optional<float> focus;    // distance in focus, metres
-    std::optional<Projection> projection;
-    std::optional<float> view_height; // of an orthographic view: its full height, metres
-};
 
 /// What can be told before the scene is read. Throws Error(BadInput) for a part of the choice that another one makes
 /// useless.

@@ -10,11 +10,13 @@
 #include "formats/files/file_choices.h"
 #include "image/tone_map_image.h"
 #include "session/degrees.h"
-#include "session/settings_text.h"
 #include "session/survey/ground.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
+
+using MetadataValue = ExrMetadata::value_type::second_type;
 
 std::string comma_separated(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
@@ -24,8 +26,6 @@ std::string comma_separated(DoubleVec3 v) { return fmt::format("{},{},{}", v.x, 
 std::string place_in_file(Vec3 p, DoubleVec3 origin) {
     return origin == DoubleVec3{0, 0, 0} ? comma_separated(p) : comma_separated(origin + to_double(p));
 }
-
-std::string comma_separated(Rgb c) { return fmt::format("{},{},{}", c.r, c.g, c.b); }
 
 void append(ExrMetadata& metadata, const ExrMetadata& more) {
     metadata.insert(metadata.end(), more.begin(), more.end());
@@ -47,7 +47,38 @@ std::string names_as_json(const std::set<uint32_t>& ids, const std::vector<std::
     return text.empty() ? "{}" : text + "}";
 }
 
+/// A whole number that needs not fit an int32_t is text.
+MetadataValue metadata_value(const PictureOptions& options, const Setting& setting) {
+    const std::string text = texts_of(options, setting).front();
+    const bool is_text = setting.high > double(INT32_MAX);
+    return std::visit(
+        [&]<class Field>(Field field) -> MetadataValue {
+            if constexpr (std::is_same_v<Field, bool*>)
+                return static_cast<int32_t>(*field);
+            else if constexpr (std::is_same_v<Field, float*>)
+                return *field;
+            else if constexpr (std::is_same_v<Field, uint32_t*>)
+                return is_text ? MetadataValue(text) : static_cast<int32_t>(*field);
+            else
+                return text;
+        },
+        setting.field(const_cast<PictureOptions&>(options)));
+}
+
 } // namespace
+
+ExrMetadata recorded_settings(const PictureOptions& options, std::span<const Setting> settings) {
+    ExrMetadata metadata;
+    for (const Setting& setting : settings) {
+        const std::vector<std::string> texts = texts_of(options, setting);
+        const bool is_used = setting.recorded != Recorded::WhereUsed || has_setting(options.render.integrator, setting);
+        const bool is_default = texts == texts_of(PictureOptions{}, setting);
+        if (setting.recorded == Recorded::No || texts.empty() || !is_used) continue;
+        if (setting.recorded == Recorded::Changed && is_default) continue;
+        metadata.emplace_back(fmt::format("pertev.{}", setting.name), metadata_value(options, setting));
+    }
+    return metadata;
+}
 
 void name_ids(const Scene& scene, SceneSource& source) {
     source.instances.clear(), source.materials.clear();
@@ -131,17 +162,12 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     const RenderSettings& settings = record.settings;
     ExrMetadata metadata = {{"pertev.version", fmt::format("{} {}", version(), git_commit())},
                             {"pertev.scene", scene.scene},
-                            {"pertev.max_depth", static_cast<int32_t>(settings.path.max_depth)},
-                            {"pertev.integrator", std::string(integrator_name(settings))},
-                            {"pertev.sampler", std::string(name_of(settings.path.sampler))},
-                            {"pertev.filter", std::string(name_of(settings.filter))},
                             {"pertev.filter_radius", filter_radius_of(settings)},
-                            {"pertev.seed", fmt::format("{}", settings.path.seed)},
-                            {"pertev.clamp", settings.path.clamp},
                             {"pertev.two_sided_lights", static_cast<int32_t>(scene.two_sided_lights)},
                             {"pertev.show_back_faces", static_cast<int32_t>(scene.show_back_faces)}};
-    if (settings.ambient && needs_punctual_lights(settings.integrator))
-        metadata.emplace_back("pertev.ambient", comma_separated(*settings.ambient));
+    PictureOptions options;
+    options.render = settings;
+    append(metadata, recorded_settings(options, all_settings()));
     if (settings.light_paths) {
         std::string lines;
         for (const LightPathExpression& layer : settings.light_paths->expressions) {
@@ -149,40 +175,18 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
         }
         metadata.emplace_back("pertev.lpe", lines);
     }
-    if (settings.integrator == IntegratorKind::Raster) {
-        metadata.emplace_back("pertev.shading", std::string(name_of(settings.look.shading)));
-        metadata.emplace_back("pertev.wireframe", static_cast<int32_t>(settings.look.is_wireframe));
-    }
     if (settings.integrator == IntegratorKind::Reyes) {
-        metadata.emplace_back("pertev.shading_rate", settings.shading_rate);
         std::set<std::string> heights; // of several materials where a name stands for more than one
         if (settings.heights) {
             for (const HeightMap& map : *settings.heights) heights.insert(map.text);
         }
         if (!heights.empty()) metadata.emplace_back("pertev.displacement", fmt::format("{}", fmt::join(heights, "\n")));
     }
-    if (settings.integrator == IntegratorKind::PhotonMap) {
-        const PhotonMapSettings& map = settings.photon_map;
-        append(metadata, {{"pertev.photons", static_cast<int32_t>(map.photons)},
-                          {"pertev.radius", map.radius},
-                          {"pertev.caustic_radius", map.caustic_radius},
-                          {"pertev.nearest", static_cast<int32_t>(map.nearest)},
-                          {"pertev.gather", std::string(name_of(map.gather))}});
-    }
-    if (settings.integrator == IntegratorKind::IrradianceCache) {
-        const IrradianceCacheSettings& cache = settings.irradiance_cache;
-        append(metadata, {{"pertev.accuracy", cache.accuracy},
-                          {"pertev.hemisphere_rays", static_cast<int32_t>(cache.hemisphere_rays)},
-                          {"pertev.show_records", static_cast<int32_t>(cache.show_records)}});
-    }
     if (settings.integrator == IntegratorKind::Radiosity && settings.radiosity.solution) {
         const RadiositySolution& solution = *settings.radiosity.solution;
         append(metadata, {{"pertev.radiosity", solution.made},
                           {"pertev.radiosity_hash", solution.hash().hex()},
                           {"pertev.flat_patches", static_cast<int32_t>(settings.radiosity.is_flat)}});
-    }
-    if (settings.denoise != Denoise::None) {
-        metadata.emplace_back("pertev.denoise", std::string(name_of(settings.denoise)));
     }
     if (record.frame) {
         append(metadata, {{"pertev.reconstruction", json_of(record.frame->reconstruction, record.frame->restir)},
@@ -224,6 +228,13 @@ ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& sta
                       {"pertev.build_seconds", record.scene.build_seconds},
                       {"pertev.render_seconds", stats.render_seconds},
                       {"pertev.rays", static_cast<double>(stats.rays.total())}});
+    const SceneSource& scene = record.scene;
+    for (const auto& [name, text] : {std::pair("pertev.scene_hash", &scene.hash),
+                                     {"pertev.settings", &scene.settings},
+                                     {"pertev.by_flags", &scene.by_flags},
+                                     {"pertev.by_settings", &scene.by_file}}) {
+        if (!text->empty()) metadata.emplace_back(name, *text);
+    }
     return metadata;
 }
 

@@ -13,8 +13,8 @@
 #include "restir/restir_settings.h"
 #include "session/opening/choose_camera.h"
 #include "session/opening/open_scene.h"
-#include "session/render_settings.h"
 #include "session/shutter.h"
+#include "settings/setting_table.h"
 
 namespace pertev {
 
@@ -24,10 +24,13 @@ struct SceneSource {
     std::string environment;     // asked for: file or colour; empty: none was
     float environment_scale = 1; // factor
     float environment_rotation_deg = 0;
-    std::string up_axis, unit;    // of the file's coordinates, asked for; empty: not
-    std::string lamps;            // set to amounts of light, a line each; empty: none
-    bool has_environment = false; // the scene has one: asked for, its own or the default
-    bool has_ground = false;      // a made-up one
+    std::string up_axis, unit;     // of the file's coordinates, asked for; empty: not
+    std::string hash;              // settings/settings_file.h's scene_hash(); empty: not known
+    std::string settings;          // all that was asked for, as JSON (settings/settings_file.h); empty: not known
+    std::string by_flags, by_file; // the names of the settings that each gave, between spaces
+    std::string lamps;             // set to amounts of light, a line each; empty: none
+    bool has_environment = false;  // the scene has one: asked for, its own or the default
+    bool has_ground = false;       // a made-up one
     bool two_sided_lights = false, show_back_faces = false;
     std::string animation, file_scene; // choices among the file's (formats/files/file_choices.h); empty: no others
     std::optional<double> time_s;      // that it is shown at; none: at rest
@@ -78,6 +81,9 @@ struct PictureRecord {
     std::optional<ReconstructedFrame> frame; // none: a picture of its samples alone
     std::optional<Display> display;          // none: the picture is shown nowhere
 };
+
+/// Returns an entry for each of `settings` that files record, under its name.
+ExrMetadata recorded_settings(const PictureOptions& options, std::span<const Setting> settings);
 
 /// Of a scene that open_scene() made of these options; without seconds.
 SceneSource source_of(const OpenOptions& options, const Scene& scene);

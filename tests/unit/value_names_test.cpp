@@ -3,22 +3,22 @@
 #include <doctest/doctest.h>
 
 #include "image/tone_map_image.h"
-#include "session/settings_text.h"
+#include "settings/value_names.h"
 
 using namespace pertev;
 
 TEST_CASE("each name of a setting's value leads to the value and back, and no other name does") {
-    for (const std::string& name : sampler_names()) CHECK(name_of(*sampler_named(name)) == name);
-    for (const std::string& name : filter_names()) CHECK(name_of(*filter_named(name)) == name);
-    for (const std::string& name : tone_map_names()) CHECK(name_of(*tone_map_named(name)) == name);
+    for (const std::string& name : names_of<SamplerKind>()) CHECK(name_of(*value_named<SamplerKind>(name)) == name);
+    for (const std::string& name : names_of<PixelFilter>()) CHECK(name_of(*value_named<PixelFilter>(name)) == name);
+    for (const std::string& name : names_of<ToneMap>()) CHECK(name_of(*value_named<ToneMap>(name)) == name);
     RenderSettings settings;
     for (const std::string& name : integrator_names()) {
         CHECK(set_integrator(settings, name));
         CHECK(integrator_name(settings) == name);
     }
     for (const char* name : {"", "Box", "box ", "pat", "halton"}) {
-        CHECK(!sampler_named(name));
-        CHECK(!filter_named(name));
+        CHECK(!value_named<SamplerKind>(name));
+        CHECK(!value_named<PixelFilter>(name));
         CHECK(!aov_named(name));
         const RenderSettings before = settings;
         CHECK(!set_integrator(settings, name));
@@ -27,9 +27,9 @@ TEST_CASE("each name of a setting's value leads to the value and back, and no ot
 }
 
 TEST_CASE("every value has a name") {
-    CHECK(sampler_names() == std::vector<std::string>{"sobol", "independent"});
-    CHECK(filter_names() == std::vector<std::string>{"box", "tent", "gaussian", "blackman-harris"});
-    CHECK(tone_map_names() == std::vector<std::string>{"srgb", "agx", "aces", "neutral"});
+    CHECK(names_of<SamplerKind>() == std::vector<std::string>{"sobol", "independent"});
+    CHECK(names_of<PixelFilter>() == std::vector<std::string>{"box", "tent", "gaussian", "blackman-harris"});
+    CHECK(names_of<ToneMap>() == std::vector<std::string>{"srgb", "agx", "aces", "neutral"});
     CHECK(integrator_names() == std::vector<std::string>{"path", "direct", "indirect", "hybrid", "cast", "whitted",
                                                          "distributed", "raster", "reyes", "light", "bidirectional",
                                                          "photon_map", "irradiance_cache", "radiosity"});

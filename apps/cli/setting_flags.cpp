@@ -1,0 +1,114 @@
+#include "apps/cli/setting_flags.h"
+
+#include <algorithm>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "apps/cli/flag_checks.h"
+#include "base/error.h"
+#include "settings/check_settings.h"
+#include "settings/settings_file.h"
+
+namespace pertev {
+namespace {
+
+std::string described(const Setting& setting) {
+    std::string text = setting.sentence;
+    const std::vector<std::string> choices = choices_of(setting);
+    if (!choices.empty() && std::string_view(setting.form).find('|') == std::string_view::npos) {
+        text += fmt::format(" One of {}.", fmt::join(choices, ", "));
+    }
+    if (*setting.otherwise != '\0') text += fmt::format(" Without it: {}.", setting.otherwise);
+    return text;
+}
+
+/// "--solver southwell" for solver=southwell.
+std::string words_of(std::string condition) {
+    const std::size_t equals = std::min(condition.find('='), condition.size());
+    return flag_of(condition.substr(0, equals)) + (equals < condition.size() ? " " + condition.substr(equals + 1) : "");
+}
+
+std::string words_of(const SettingConflict& conflict, const PictureOptions& options) {
+    std::vector<std::string> others = conflict.others;
+    std::string flag = flag_of(conflict.setting->name);
+    switch (conflict.kind) {
+    case SettingConflict::Kind::Integrator:
+        return fmt::format("{}: is of --integrator {}, not of {}", flag, fmt::join(others, ", "),
+                           texts_of(options, *find_setting("integrator")).front());
+    case SettingConflict::Kind::Needs:
+        std::ranges::transform(others, others.begin(), [](const std::string& other) { return words_of(other); });
+        return fmt::format("{}: needs {}", flag, fmt::join(others, " or "));
+    case SettingConflict::Kind::Excludes:
+        return fmt::format("{}: does not go with {}; leave out one of them", flag, words_of(others.front()));
+    }
+    return flag;
+}
+
+} // namespace
+
+std::string flag_of(std::string_view setting) {
+    std::string flag = "--" + std::string(setting);
+    std::ranges::replace(flag, '_', '-');
+    return flag;
+}
+
+const Setting* setting_of(const CLI::Option& flag) {
+    std::string name = flag.get_lnames().empty() ? "" : flag.get_lnames().front();
+    std::ranges::replace(name, '-', '_');
+    const Setting* const setting = find_setting(name);
+    return setting != nullptr && flag.get_group() == setting->group ? setting : nullptr;
+}
+
+void SettingFlags::add(CLI::App& verb, uint32_t verbs, const PictureOptions& options, std::span<const Setting> table) {
+    verbs_ = verbs;
+    for (const Setting& setting : table) {
+        if ((setting.verbs & verbs) == 0) continue;
+        Flag& flag = flags_.emplace_back(Flag{.setting = &setting});
+        const std::string name = flag_of(setting.name), text = described(setting);
+        if (is_switch(setting)) {
+            flag.option = verb.add_flag(name, flag.is_on, text);
+        } else if (is_list(setting)) {
+            flag.option = verb.add_option(name, flag.texts, text)->allow_extra_args(false);
+            if (!setting.choices.empty()) flag.option->delimiter(',');
+        } else {
+            flag.option = verb.add_option(name, flag.text, text);
+        }
+        flag.option->group(setting.group);
+        if (is_switch(setting)) continue;
+        flag.option->type_name(setting.form)
+            ->check(CLI::Validator([&setting](const std::string& value) { return why_no_value(setting, value); }, ""));
+        const std::vector<std::string> now = texts_of(options, setting);
+        if (*setting.otherwise == '\0' && !is_list(setting) && !now.empty()) flag.option->default_str(now.front());
+    }
+}
+
+void SettingFlags::add_file(CLI::App& verb) {
+    verb.add_option("--settings", file_, "A file of settings (info X.exr --settings); flags overrule it.")
+        ->type_name("FILE")
+        ->check(file_name());
+}
+
+void SettingFlags::read(PictureOptions& options, Messages& messages) const {
+    if (!file_.empty()) read_settings(file_, verbs_, options, messages);
+    for (const Flag& flag : flags_) {
+        if (flag.option->count() == 0) continue;
+        const Setting& setting = *flag.setting;
+        const std::vector<std::string> texts = is_switch(setting)
+                                                   ? std::vector<std::string>{flag.is_on ? "true" : "false"}
+                                               : is_list(setting) ? flag.texts
+                                                                  : std::vector{flag.text};
+        try {
+            set_value(options, setting, texts);
+        } catch (const Error& error) {
+            throw Error(error.code(), fmt::format("{} {}", flag_of(setting.name), error.what()));
+        }
+        options.given[setting.name] = SettingOrigin::Flag;
+    }
+    if (const auto conflict = find_conflict(options, verbs_)) {
+        throw Error(ErrorCode::BadInput, words_of(*conflict, options));
+    }
+}
+
+} // namespace pertev

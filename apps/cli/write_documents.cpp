@@ -1,0 +1,239 @@
+// What is made of all flags: a page for man, completion for shells, docs/settings.md.
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "apps/cli/help.h"
+#include "apps/cli/setting_flags.h"
+#include "base/error.h"
+#include "base/version.h"
+#include "settings/value_names.h"
+
+namespace pertev {
+namespace {
+
+struct VerbWords {
+    std::string path; // "bench rays"; empty: pertev itself
+    const CLI::App* app;
+};
+
+std::vector<VerbWords> all_verbs(const CLI::App& app, const std::string& path = "") {
+    std::vector<VerbWords> verbs = {{path, &app}};
+    for (const CLI::App* below : app.get_subcommands([](const CLI::App*) { return true; })) {
+        const std::vector<VerbWords> more =
+            all_verbs(*below, path.empty() ? below->get_name() : path + ' ' + below->get_name());
+        verbs.insert(verbs.end(), more.begin(), more.end());
+    }
+    return verbs;
+}
+
+std::vector<const CLI::Option*> all_flags_of(const CLI::App& verb) {
+    return verb.get_options([](const CLI::Option* option) { return !option->get_positional(); });
+}
+
+std::vector<std::string> long_names(const CLI::App& verb) {
+    std::vector<std::string> names;
+    for (const CLI::Option* flag : all_flags_of(verb)) {
+        for (const std::string& name : flag->get_lnames()) names.push_back("--" + name);
+    }
+    return names;
+}
+
+std::vector<std::string> verbs_below(const CLI::App& verb) {
+    std::vector<std::string> names;
+    for (const CLI::App* below : verb.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(below->get_name());
+    return names;
+}
+
+/// What troff would take for more than text.
+std::string in_man(std::string text) {
+    for (std::size_t at = 0; (at = text.find_first_of("\\-", at)) != std::string::npos; at += 2)
+        text.insert(at, 1, '\\');
+    std::ranges::replace(text, '\n', ' ');
+    return text.starts_with('.') || text.starts_with('\'') ? "\\&" + text : text;
+}
+
+/// The words of a verb, as a pattern of a shell's case.
+std::string pattern_of(const std::string& path) { return fmt::format("\"{}\")", path); }
+
+constexpr const char* kBash = R"bash(# Completion of pertev for bash: eval "$(pertev --completion bash)"
+_pertev() {
+  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} verb= i words=
+  for ((i = 1; i < COMP_CWORD; ++i)); do
+    case "${verb:+$verb }${COMP_WORDS[i]}" in
+      @PATHS@) verb="${verb:+$verb }${COMP_WORDS[i]}" ;;
+    esac
+  done
+  case "$before" in
+@VALUES@    *) case "$verb" in
+@VERBS@    esac ;;
+  esac
+  COMPREPLY=($(compgen -W "$words" -- "$word"))
+  [[ $word == -* || ${#COMPREPLY[@]} -gt 0 ]] || COMPREPLY=($(compgen -f -- "$word"))
+}
+complete -o filenames -F _pertev pertev
+)bash";
+
+std::string bash_completion(const CLI::App& app) {
+    std::string paths, values, verbs;
+    for (const VerbWords& verb : all_verbs(app)) {
+        if (!verb.path.empty()) paths += fmt::format("{}\"{}\"", paths.empty() ? "" : "|", verb.path);
+        std::vector<std::string> words = long_names(*verb.app);
+        const std::vector<std::string> below = verbs_below(*verb.app);
+        words.insert(words.end(), below.begin(), below.end());
+        verbs += fmt::format("    {} words=\"{}\" ;;\n", pattern_of(verb.path), fmt::join(words, " "));
+    }
+    for (const Setting& setting : all_settings()) {
+        const std::vector<std::string> choices = choices_of(setting);
+        if (!choices.empty())
+            values += fmt::format("    {}) words=\"{}\" ;;\n", flag_of(setting.name), fmt::join(choices, " "));
+    }
+    std::string script = kBash;
+    for (const auto& [place, text] : {std::pair("@PATHS@", &paths), {"@VALUES@", &values}, {"@VERBS@", &verbs}}) {
+        script.replace(script.find(place), std::string_view(place).size(), *text);
+    }
+    return script;
+}
+
+std::string fish_completion(const CLI::App& app) {
+    std::string script = "# Completion of pertev for fish: pertev --completion fish | source\n";
+    for (const VerbWords& verb : all_verbs(app)) {
+        std::string condition =
+            verb.path.empty() ? "__fish_use_subcommand" : "__fish_seen_subcommand_from " + verb.app->get_name();
+        for (const std::string& below : verbs_below(*verb.app)) {
+            script += fmt::format("complete -c pertev -n '{}' -a {}\n", condition, below);
+        }
+        for (const CLI::Option* flag : all_flags_of(*verb.app)) {
+            if (flag->get_lnames().empty()) continue;
+            const Setting* const setting = setting_of(*flag);
+            const std::vector<std::string> choices =
+                setting != nullptr ? choices_of(*setting) : std::vector<std::string>();
+            script += fmt::format("complete -c pertev -n '{}' -l {}{}\n", condition, flag->get_lnames().front(),
+                                  choices.empty() ? "" : fmt::format(" -xa '{}'", fmt::join(choices, " ")));
+        }
+    }
+    return script;
+}
+
+std::string verbs_with(const Setting& setting) {
+    constexpr std::pair<uint32_t, const char*> kVerbs[] = {{kRender, "render"},
+                                                           {kView, "view"},
+                                                           {kMeasure, "measure"},
+                                                           {kSolve, "solve"},
+                                                           {kLab, "lab"},
+                                                           {kInfo, "info"},
+                                                           {kBench, "bench"},
+                                                           {kBenchRays, "bench rays"},
+                                                           {kBenchBuild, "bench build"},
+                                                           {kBenchNoise, "bench noise"},
+                                                           {kBenchFrames, "bench frames"},
+                                                           {kBenchSequence, "bench sequence"}};
+    std::string names;
+    for (const auto& [bit, name] : kVerbs) {
+        if ((setting.verbs & bit) != 0) names += (names.empty() ? "" : ", ") + std::string(name);
+    }
+    return names;
+}
+
+std::string integrators_with(const Setting& setting) {
+    std::string names;
+    for (const auto& [kind, name] : kIntegrators) {
+        if (setting.integrators != 0 && has_setting(kind, setting))
+            names += (names.empty() ? "" : ", ") + std::string(name);
+    }
+    return names;
+}
+
+std::string range_of(const Setting& setting) {
+    const std::vector<std::string> choices = choices_of(setting);
+    if (!choices.empty()) return fmt::format("{}", fmt::join(choices, ", "));
+    const bool has_range = setting.high > 0 || setting.low != 0 || setting.above;
+    if (!has_range) return setting.form;
+    const std::string low = fmt::format("{}{:.10g}", setting.above ? "above " : "from ", setting.low);
+    return setting.high > 0 ? fmt::format("{} to {:.10g}", low, setting.high) : low;
+}
+
+std::string default_of(const Setting& setting) {
+    if (*setting.otherwise != '\0') return setting.otherwise;
+    const std::vector<std::string> texts = texts_of({}, setting);
+    return is_switch(setting) ? "off" : fmt::format("{}", fmt::join(texts, ", "));
+}
+
+/// In a table of Markdown.
+std::string cell(std::string text) {
+    for (std::size_t at = 0; (at = text.find_first_of("|*<", at)) != std::string::npos; at += 2)
+        text.insert(at, 1, '\\');
+    return text;
+}
+
+} // namespace
+
+std::string man_page(const CLI::App& app) {
+    std::string page = fmt::format(
+        ".TH PERTEV 1 \"\" \"pertev {}\"\n.SH NAME\npertev \\- {}\n.SH SYNOPSIS\n.B pertev\nVERB [OPTIONS]\n",
+        version(), in_man(app.get_description()));
+    for (const VerbWords& verb : all_verbs(app)) {
+        page += fmt::format(".SH {}\n{}\n", verb.path.empty() ? "OPTIONS" : in_man("pertev " + verb.path),
+                            in_man(verb.app->get_description()));
+        for (const CLI::Option* option : verb.app->get_options([](const CLI::Option*) { return true; })) {
+            page += fmt::format(
+                ".TP\n\\fB{}\\fR \\fI{}\\fR\n{}{}\n", in_man(option->get_name(option->get_positional(), true)),
+                in_man(option->get_type_name()), in_man(option->get_description()),
+                option->get_default_str().empty() ? "" : in_man(fmt::format(" ({})", option->get_default_str())));
+        }
+    }
+    return page + ".SH EXIT STATUS\n0 done, 2 bad input, 3 over a limit, 4 out of memory, 5 a device's fault, 6 a file "
+                  "that could not be\n"
+                  "written, 75 interrupted\n";
+}
+
+std::string completion(const CLI::App& app, const std::string& shell) {
+    if (shell != "bash" && shell != "zsh" && shell != "fish") {
+        throw Error(ErrorCode::BadInput, fmt::format("--completion {}: expected bash, zsh or fish", shell));
+    }
+    if (shell == "fish") return fish_completion(app);
+    const std::string bash = bash_completion(app);
+    return shell == "zsh" ? "autoload -U +X bashcompinit && bashcompinit\n" + bash : bash;
+}
+
+std::string settings_document() {
+    std::string text = "# Settings\n\n"
+                       "This file is made by `pertev --settings-document`; a test holds it to the table of settings "
+                       "(`src/settings/`).\n\n"
+                       "A setting has one name: `max_depth` in C++, in JSON and in a picture's metadata "
+                       "(`pertev.max_depth`), `--max-depth` on\n"
+                       "the command line. A file suggests some of them (its camera, its size); `--settings FILE` "
+                       "overrules it, and flags overrule\n"
+                       "both. `pertev info PICTURE.exr` says what came from where (`pertev.by_flags`, "
+                       "`pertev.by_settings`), and `pertev info\n"
+                       "PICTURE.exr --settings` prints a file of settings by which `pertev render SCENE --settings "
+                       "FILE` makes the picture again.\n"
+                       "Such a file is `{\"version\":1,\"scene\":{\"name\":...,\"hash\":...},\"settings\":{...}}`. "
+                       "What it holds that is no setting is\n"
+                       "left out with a warning, and `--strict` refuses it. Settings that are marked \"not kept\" do "
+                       "not stand there, because the\n"
+                       "picture does not depend on them.\n";
+    std::string_view group;
+    for (const Setting& setting : all_settings()) {
+        if (group != setting.group) {
+            group = setting.group;
+            text += fmt::format("\n## {}\n\n| setting | values | unit | default | |\n| --- | --- | --- | --- | --- |\n",
+                                group);
+        }
+        std::string says = setting.sentence;
+        if (*setting.more != '\0') says += fmt::format(" {}", setting.more);
+        if (const std::string names = integrators_with(setting); !names.empty()) says += " Of " + names + ".";
+        if (!setting.needs.empty()) says += fmt::format(" Needs one of: {}.", setting.needs);
+        if (!setting.excludes.empty()) says += fmt::format(" Not with: {}.", setting.excludes);
+        says += fmt::format(" Verbs: {}.", verbs_with(setting));
+        if (!setting.is_kept) says += " Not kept.";
+        text += fmt::format("| `{}` | {} | {} | {} | {} |\n", flag_of(setting.name), cell(range_of(setting)),
+                            setting.unit, cell(default_of(setting)), cell(says));
+    }
+    return text;
+}
+
+} // namespace pertev

@@ -1,0 +1,47 @@
+#pragma once
+
+// The names of an enumeration's values, each said once: a table beside the enumeration, which names_of_all() returns.
+// The functions below look through it. They are found for every enumeration that has such a function in its namespace.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pertev {
+
+template <class Value>
+struct ValueName {
+    Value value;
+    std::string_view name;
+};
+
+template <class Value>
+concept NamedValue = requires(Value value) { names_of_all(value)[0].name; };
+
+/// Returns the name, or "" for a value that the table lacks.
+template <NamedValue Value>
+constexpr std::string_view name_of(Value value) {
+    for (const auto& entry : names_of_all(value)) {
+        if (entry.value == value) return entry.name;
+    }
+    return "";
+}
+
+template <NamedValue Value>
+constexpr std::optional<Value> value_named(std::string_view name) {
+    for (const auto& entry : names_of_all(Value{})) {
+        if (entry.name == name) return entry.value;
+    }
+    return std::nullopt;
+}
+
+/// Returns the names in the order in which they are offered.
+template <NamedValue Value>
+std::vector<std::string> names_of() {
+    std::vector<std::string> names;
+    for (const auto& entry : names_of_all(Value{})) names.emplace_back(entry.name);
+    return names;
+}
+
+} // namespace pertev

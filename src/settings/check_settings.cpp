@@ -1,0 +1,66 @@
+#include "settings/check_settings.h"
+
+#include <algorithm>
+
+#include "settings/value_names.h"
+
+namespace pertev {
+namespace {
+
+std::vector<std::string> words_of(std::string_view text) {
+    std::vector<std::string> words;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find(' '), text.size());
+        words.emplace_back(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return words;
+}
+
+const Setting* setting_of(const std::string& condition) {
+    return find_setting(condition.substr(0, condition.find('=')));
+}
+
+bool holds(const PictureOptions& options, const std::string& condition) {
+    const Setting& setting = *setting_of(condition);
+    const std::vector<std::string> texts = texts_of(options, setting);
+    if (const std::size_t equals = condition.find('='); equals != std::string::npos) {
+        return std::ranges::find(texts, condition.substr(equals + 1)) != texts.end();
+    }
+    return options.is_given(setting.name) && !texts.empty() && !(is_switch(setting) && texts.front() == "false");
+}
+
+std::vector<std::string> integrators_with(const Setting& setting) {
+    std::vector<std::string> names;
+    for (const auto& [kind, name] : kIntegrators) {
+        if (has_setting(kind, setting)) names.emplace_back(name);
+    }
+    return names;
+}
+
+std::optional<SettingConflict> conflict_of(const PictureOptions& options, const Setting& setting, uint32_t verbs) {
+    using Kind = SettingConflict::Kind;
+    if (!has_setting(options.render.integrator, setting)) {
+        return SettingConflict{&setting, Kind::Integrator, integrators_with(setting)};
+    }
+    std::vector<std::string> needs = words_of(setting.needs);
+    std::erase_if(needs, [&](const std::string& other) { return (setting_of(other)->verbs & verbs) == 0; });
+    const auto is_so = [&](const std::string& other) { return holds(options, other); };
+    if (!needs.empty() && std::ranges::none_of(needs, is_so)) return SettingConflict{&setting, Kind::Needs, needs};
+    for (const std::string& other : words_of(setting.excludes)) {
+        if (is_so(other)) return SettingConflict{&setting, Kind::Excludes, {other}};
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+std::optional<SettingConflict> find_conflict(const PictureOptions& options, uint32_t verbs) {
+    for (const Setting& setting : all_settings()) {
+        if (!options.is_given(setting.name) || !holds(options, setting.name)) continue;
+        if (auto conflict = conflict_of(options, setting, verbs)) return conflict;
+    }
+    return std::nullopt;
+}
+
+} // namespace pertev

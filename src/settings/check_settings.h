@@ -1,0 +1,28 @@
+#pragma once
+
+// Whether the settings that were given go together, as the rows of the table say it.
+
+#include <optional>
+#include <string>
+
+#include "settings/setting_table.h"
+
+namespace pertev {
+
+struct SettingConflict {
+    enum class Kind : uint8_t {
+        Integrator, // the integrator does not have the setting
+        Needs,      // none of the others holds
+        Excludes,   // the other one holds
+    };
+    const Setting* setting;
+    Kind kind;
+    /// Names of settings, or NAME=VALUE; of Integrator the names of those that have the setting.
+    std::vector<std::string> others;
+};
+
+/// Returns the first that is found, in the order of the table; none where all go together. Settings that `verbs` do not
+/// have are not asked for.
+std::optional<SettingConflict> find_conflict(const PictureOptions& options, uint32_t verbs);
+
+} // namespace pertev

@@ -1,0 +1,133 @@
+#include "settings/parse_values.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "formats/files/parse_number.h"
+
+namespace pertev {
+namespace {
+
+constexpr float kMaxFloat = std::numeric_limits<float>::max();
+
+std::string named(const std::string& what, const std::string& text) { return what.empty() ? text : what + ' ' + text; }
+
+/// Each is one that a float can hold.
+std::optional<DoubleVec3> three_doubles(std::string_view text) {
+    double values[3];
+    for (int i = 0; i < 3; ++i) {
+        const std::size_t comma = text.find(',');
+        if ((comma == std::string_view::npos) != (i == 2)) return std::nullopt;
+        const auto value = parse_whole_float<double>(text.substr(0, comma));
+        if (!value || !is_finite(static_cast<float>(*value))) return std::nullopt;
+        values[i] = *value;
+        if (i < 2) text.remove_prefix(comma + 1);
+    }
+    return DoubleVec3{values[0], values[1], values[2]};
+}
+
+std::optional<Vec3> three_numbers(std::string_view text) {
+    const std::optional<DoubleVec3> values = three_doubles(text);
+    return values ? std::optional(to_float(*values)) : std::nullopt;
+}
+
+DoubleVec3 parse_doubles(const std::string& what, const std::string& text) {
+    if (const auto value = three_doubles(text)) return *value;
+    throw Error(ErrorCode::BadInput,
+                fmt::format("{}: expected three numbers X,Y,Z of size {} at most, such as 1,0.5,-2", named(what, text),
+                            kMaxFloat));
+}
+
+/// Before the exponent, other than 0.
+bool has_digits(const std::string& number) { return number.find_first_of("123456789") < number.find_first_of("eE"); }
+
+} // namespace
+
+std::string why_no_number(const std::string& text, double low, double high) {
+    const auto value = number_in(text);
+    const bool is_one = value && *value >= static_cast<float>(low) && *value <= static_cast<float>(high);
+    return is_one ? ""
+                  : fmt::format("{} is not a number from {} to {}", text, static_cast<float>(low),
+                                static_cast<float>(high));
+}
+
+std::string why_not_above(const std::string& text, double low, double high) {
+    const auto value = number_in(text);
+    if (value && *value > static_cast<float>(low) && *value <= static_cast<float>(high)) return "";
+    const bool is_rounded = value && *value == 0 && has_digits(text);
+    return fmt::format("{} is {}not a number above {} and at most {}", text,
+                       is_rounded ? "so near 0 that it counts as 0, which is " : "", static_cast<float>(low),
+                       static_cast<float>(high));
+}
+
+std::string why_not_whole(const std::string& text, uint32_t low, uint32_t high) {
+    const auto value = parse_whole_number(text);
+    const bool is_one = value && *value >= low && *value <= high;
+    return is_one ? "" : fmt::format("{} is not a whole number from {} to {}", text, low, high);
+}
+
+std::string why_no_choice(const std::string& text, const std::vector<std::string>& choices) {
+    const bool is_one = std::ranges::find(choices, text) != choices.end();
+    return is_one ? "" : fmt::format("{} is not one of {}", text, fmt::join(choices, ", "));
+}
+
+std::optional<float> number_in(std::string_view text) {
+    const std::optional<float> value = parse_whole_float(text);
+    return value && is_finite(*value) ? value : std::nullopt;
+}
+
+std::pair<uint32_t, uint32_t> parse_size(const std::string& what, const std::string& text) {
+    const std::size_t cross = std::min(text.find('x'), text.size());
+    const auto width = parse_whole_number(std::string_view(text).substr(0, cross));
+    const auto height = parse_whole_number(std::string_view(text).substr(std::min(cross + 1, text.size())));
+    if (!width || !height || *width == 0 || *height == 0) {
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("{}: expected WIDTHxHEIGHT in pixels, such as 1280x720", named(what, text)));
+    }
+    if (*width > kMaxImageSide || *height > kMaxImageSide || *width * *height > kMaxImagePixels) {
+        throw Error(ErrorCode::OverLimit, fmt::format("{}: over the limit of {} pixels a side and {} in all",
+                                                      named(what, text), kMaxImageSide, kMaxImagePixels));
+    }
+    return {static_cast<uint32_t>(*width), static_cast<uint32_t>(*height)};
+}
+
+float parse_number(const std::string& what, const std::string& text) {
+    if (const auto value = number_in(text)) return *value;
+    throw Error(ErrorCode::BadInput,
+                fmt::format("{}: expected a number of size {} at most", named(what, text), kMaxFloat));
+}
+
+Vec3 parse_vec3(const std::string& what, const std::string& text) { return to_float(parse_doubles(what, text)); }
+
+DoubleVec3 parse_position(const std::string& what, const std::string& text) {
+    const DoubleVec3 position = parse_doubles(what, text);
+    if (max_component(abs(to_float(position))) <= kMaxCoordinate) return position;
+    throw Error(ErrorCode::OverLimit, fmt::format("{}: farther than the limit of {:.4g} m from the origin",
+                                                  named(what, text), kMaxCoordinate));
+}
+
+bool parse_rgb(const std::string& text, Rgb& color) {
+    const auto value = three_numbers(text);
+    if (value) color = {value->x, value->y, value->z};
+    return value.has_value();
+}
+
+Rgb parse_radiance(const std::string& what, const std::string& text) {
+    Rgb radiance;
+    bool is_one = parse_rgb(text, radiance);
+    if (const auto value = is_one ? std::nullopt : number_in(text)) {
+        radiance = grey(*value);
+        is_one = true;
+    }
+    if (is_one && radiance.r >= 0 && radiance.g >= 0 && radiance.b >= 0) return radiance;
+    throw Error(
+        ErrorCode::BadInput,
+        fmt::format("{}: expected a radiance, R,G,B or one number for all three, each at least 0", named(what, text)));
+}
+
+} // namespace pertev

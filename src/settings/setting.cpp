@@ -1,0 +1,173 @@
+#include "settings/setting.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/json_text.h"
+#include "formats/files/parse_number.h"
+#include "settings/parse_values.h"
+
+namespace pertev {
+namespace {
+
+template <class... Cases>
+struct Overloaded : Cases... {
+    using Cases::operator()...;
+};
+
+/// The field of any options: what kind it is of does not depend on them.
+SettingField some_field(const Setting& setting) {
+    static PictureOptions any;
+    return setting.field(any);
+}
+
+/// Nothing is written through it.
+SettingField field_in(const PictureOptions& options, const Setting& setting) {
+    return setting.field(const_cast<PictureOptions&>(options));
+}
+
+template <class Field, class Value>
+constexpr bool is_field_of = std::is_same_v<Field, Value*> || std::is_same_v<Field, std::optional<Value>*>;
+
+template <class Field>
+constexpr bool is_number = is_field_of<Field, float> || is_field_of<Field, double>;
+
+double most_of(const Setting& setting) {
+    return setting.high > 0 ? setting.high : double(std::numeric_limits<float>::max());
+}
+
+std::string why_no_number_for(const Setting& setting, const std::string& text) {
+    return setting.above ? why_not_above(text, setting.low, most_of(setting))
+                         : why_no_number(text, setting.low, most_of(setting));
+}
+
+std::string text_of(bool value) { return value ? "true" : "false"; }
+std::string text_of(const Vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+std::string text_of(const DoubleVec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+std::string text_of(const Rgb& c) { return fmt::format("{},{},{}", c.r, c.g, c.b); }
+std::string text_of(const PictureSize& size) { return fmt::format("{}x{}", size.width, size.height); }
+std::string text_of(const std::filesystem::path& path) { return path.string(); }
+std::string text_of(const std::string& text) { return text; }
+template <class Number>
+    requires std::is_arithmetic_v<Number>
+std::string text_of(Number number) {
+    return fmt::format("{}", number);
+}
+
+} // namespace
+
+bool is_switch(const Setting& setting) {
+    const SettingField field = some_field(setting);
+    return std::holds_alternative<bool*>(field) || std::holds_alternative<InverseSwitch>(field);
+}
+
+bool is_list(const Setting& setting) {
+    const SettingField field = some_field(setting);
+    return std::holds_alternative<std::vector<std::string>*>(field) ||
+           std::holds_alternative<std::vector<std::filesystem::path>*>(field);
+}
+
+std::vector<std::string> choices_of(const Setting& setting) {
+    const SettingField field = some_field(setting);
+    const NamedField* const named = std::get_if<NamedField>(&field);
+    return named != nullptr ? named->names() : setting.choices;
+}
+
+bool has_setting(IntegratorKind integrator, const Setting& setting) {
+    return setting.integrators == 0 || (setting.integrators >> static_cast<uint32_t>(integrator) & 1u) != 0;
+}
+
+std::string why_no_value(const Setting& setting, const std::string& text) {
+    if (const std::vector<std::string> choices = choices_of(setting); !choices.empty()) {
+        return why_no_choice(text, choices);
+    }
+    if (setting.is_name) return text.empty() ? "the name is empty" : "";
+    return std::visit(
+        [&]<class Field>(Field) -> std::string {
+            if constexpr (is_field_of<Field, uint32_t>) {
+                const auto most = setting.high > 0 ? static_cast<uint32_t>(setting.high) : UINT32_MAX;
+                return why_not_whole(text, static_cast<uint32_t>(setting.low), most);
+            } else if constexpr (is_number<Field>) {
+                return why_no_number_for(setting, text);
+            } else if constexpr (std::is_same_v<Field, bool*> || std::is_same_v<Field, InverseSwitch>) {
+                return why_no_choice(text, {"true", "false"});
+            } else {
+                return "";
+            }
+        },
+        some_field(setting));
+}
+
+void set_value(PictureOptions& options, const Setting& setting, std::span<const std::string> texts) {
+    for (const std::string& text : texts) {
+        if (const std::string why = why_no_value(setting, text); !why.empty()) throw Error(ErrorCode::BadInput, why);
+    }
+    PERTEV_CHECK(is_list(setting) || texts.size() == 1);
+    const SettingField field = setting.field(options);
+    const std::string& text = texts.empty() ? setting.name : texts.front();
+    std::visit(Overloaded{[&](bool* f) { *f = text == "true"; }, [&](InverseSwitch f) { *f.field = text != "true"; },
+                          [&](std::string* f) { *f = text; },
+                          [&](std::vector<std::string>* f) { f->assign(texts.begin(), texts.end()); },
+                          [&](std::vector<std::filesystem::path>* f) { f->assign(texts.begin(), texts.end()); },
+                          [&](std::optional<Vec3>* f) { *f = parse_vec3("", text); },
+                          [&](std::optional<DoubleVec3>* f) { *f = parse_position("", text); },
+                          [&](std::optional<Rgb>* f) { *f = parse_radiance("", text); },
+                          [&](std::optional<PictureSize>* f) {
+                              const auto [width, height] = parse_size("", text);
+                              *f = PictureSize{width, height};
+                          },
+                          [&](NamedField f) { f.set(f.field, text); },
+                          [&]<class Number>(std::optional<Number>* f) {
+                              if constexpr (std::is_same_v<Number, uint32_t>)
+                                  *f = parse_whole_number<Number>(text);
+                              else
+                                  *f = parse_whole_float<Number>(text);
+                          },
+                          [&]<class Number>(Number* f) {
+                              if constexpr (std::is_same_v<Number, uint32_t>)
+                                  *f = *parse_whole_number<Number>(text);
+                              else
+                                  *f = *parse_whole_float<Number>(text);
+                          }},
+               field);
+}
+
+std::vector<std::string> texts_of(const PictureOptions& options, const Setting& setting) {
+    return std::visit(Overloaded{[](InverseSwitch f) { return std::vector{text_of(!*f.field)}; },
+                                 [](NamedField f) {
+                                     const std::string_view name = f.get(f.field);
+                                     return name.empty() ? std::vector<std::string>() : std::vector{std::string(name)};
+                                 },
+                                 []<class Value>(std::vector<Value>* f) {
+                                     std::vector<std::string> texts;
+                                     for (const Value& value : *f) texts.push_back(text_of(value));
+                                     return texts;
+                                 },
+                                 []<class Value>(std::optional<Value>* f) {
+                                     return *f ? std::vector{text_of(**f)} : std::vector<std::string>();
+                                 },
+                                 []<class Value>(Value* f) { return std::vector{text_of(*f)}; }},
+                      field_in(options, setting));
+}
+
+std::string json_of(const PictureOptions& options, const Setting& setting) {
+    const std::vector<std::string> texts = texts_of(options, setting);
+    if (is_list(setting)) return json_strings(texts);
+    if (texts.empty()) return "null";
+    return std::visit(
+        [&]<class Field>(Field) {
+            constexpr bool is_bare = is_number<Field> || is_field_of<Field, uint32_t> || std::is_same_v<Field, bool*> ||
+                                     std::is_same_v<Field, InverseSwitch>;
+            constexpr bool is_vector =
+                is_field_of<Field, Vec3> || is_field_of<Field, DoubleVec3> || is_field_of<Field, Rgb>;
+            if constexpr (is_bare)
+                return texts.front();
+            else if constexpr (is_vector)
+                return json_vector(texts.front()).value();
+            else
+                return json_string(texts.front());
+        },
+        some_field(setting));
+}
+
+} // namespace pertev

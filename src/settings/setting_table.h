@@ -1,0 +1,87 @@
+#pragma once
+
+// The table of settings: one row each, in the order of help and documents. A setting that is added here has a flag,
+// help, an entry in JSON and metadata, and a line in docs/settings.md.
+
+#include <utility>
+
+#include "settings/setting.h"
+
+namespace pertev {
+
+const std::vector<Setting>& all_settings();
+/// Returns null where none has this name.
+const Setting* find_setting(std::string_view name);
+
+// The parts of the table.
+std::vector<Setting> scene_settings();      // the file, the camera, light, what moves
+std::vector<Setting> picture_settings();    // what is rendered and shown, by what
+std::vector<Setting> integrator_settings(); // of one integrator, or of a few
+std::vector<Setting> frame_settings();      // of frames in real time
+
+inline constexpr uint32_t kLooking = kRender | kView | kBenchNoise | kBenchFrames | kBenchSequence;
+inline constexpr uint32_t kScenes = kLooking | kMeasure | kSolve;
+
+/// A field by its place in PictureOptions.
+#define PERTEV_SETTING_FIELD(place) [](PictureOptions& all) { return field_of(all.place); }
+
+// What a row has beside that which all have.
+struct Range {
+    double low, high;
+};
+struct Above {
+    double low, high = 0;
+};
+struct Unit {
+    const char* text;
+};
+struct Otherwise {
+    const char* text;
+};
+struct More {
+    const char* text;
+};
+struct Choices {
+    std::vector<std::string> names;
+};
+struct On {
+    uint32_t verbs;
+};
+struct Of {
+    uint32_t integrators;
+};
+struct Needs {
+    const char* text;
+};
+struct Excludes {
+    const char* text;
+};
+enum class Mark { Name, NotKept, Common };
+
+inline void put(Setting& s, Range range) { s.low = range.low, s.high = range.high; }
+inline void put(Setting& s, Above range) { s.low = range.low, s.high = range.high, s.above = true; }
+inline void put(Setting& s, Unit unit) { s.unit = unit.text; }
+inline void put(Setting& s, Otherwise otherwise) { s.otherwise = otherwise.text; }
+inline void put(Setting& s, More more) { s.more = more.text; }
+inline void put(Setting& s, Choices choices) { s.choices = std::move(choices.names); }
+inline void put(Setting& s, On on) { s.verbs = on.verbs; }
+inline void put(Setting& s, Of of) { s.integrators = of.integrators; }
+inline void put(Setting& s, Needs needs) { s.needs = needs.text; }
+inline void put(Setting& s, Excludes excludes) { s.excludes = excludes.text; }
+inline void put(Setting& s, Recorded recorded) { s.recorded = recorded; }
+inline void put(Setting& s, Mark mark) {
+    if (mark == Mark::Name) s.is_name = true;
+    if (mark == Mark::NotKept) s.is_kept = false;
+    if (mark == Mark::Common) s.is_common = true;
+}
+
+/// A row; the parts stand in any order.
+template <class... Parts>
+Setting row(const char* name, const char* group, const char* form, SettingField (*field)(PictureOptions&),
+            const char* sentence, Parts... parts) {
+    Setting setting = {.name = name, .group = group, .form = form, .field = field, .sentence = sentence};
+    (put(setting, std::move(parts)), ...);
+    return setting;
+}
+
+} // namespace pertev

@@ -1,0 +1,119 @@
+#include "settings/settings_file.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/json_text.h"
+#include "formats/builtin_scenes.h"
+#include "formats/json/json_file.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint64_t kVersion = 1;
+
+using gltf::JsonValue;
+
+/// A value that means "not given" is none that could be given again.
+bool is_written(const PictureOptions& options, const Setting& setting) {
+    const bool is_recorded = setting.recorded != Recorded::No && has_setting(options.render.integrator, setting);
+    if (!setting.is_kept || !(is_recorded || options.is_given(setting.name))) return false;
+    const std::vector<std::string> texts = texts_of(options, setting);
+    return !texts.empty() &&
+           std::ranges::all_of(texts, [&](const std::string& text) { return why_no_value(setting, text).empty(); });
+}
+
+/// Returns the value in words: a number as it is written, an array of numbers as "1,2,3".
+std::string text_of(const JsonValue& value) {
+    const std::string json = value.to_json();
+    if (json.starts_with('"')) return std::string(value.to_string());
+    if (!json.starts_with('[')) return json;
+    std::string text;
+    for (const JsonValue& element : value.elements()) text += (text.empty() ? "" : ",") + element.to_json();
+    return text;
+}
+
+std::vector<std::string> texts_of(const Setting& setting, const JsonValue& value) {
+    std::vector<std::string> texts;
+    if (!is_list(setting)) return {text_of(value)};
+    for (const JsonValue& element : value.elements()) texts.push_back(text_of(element));
+    return texts;
+}
+
+void compare_scene(const JsonValue& root, const std::filesystem::path& file, const std::string& scene,
+                   Messages& messages) {
+    const std::optional<JsonValue> source = root.find("scene");
+    if (!source) return;
+    const std::string name = source->string_or("name", ""), hash = source->string_or("hash", "");
+    const std::string here = hash.empty() ? "" : scene_hash(scene);
+    if (here.empty() || here == hash) return;
+    messages.warn(fmt::format("{}: these are settings for {}, whose hash is {}; {} is another scene (hash {})",
+                              file.string(), name, hash, scene, here));
+}
+
+} // namespace
+
+std::string scene_hash(const std::string& scene) {
+    Hasher hasher;
+    if (const auto text = builtin_scene(scene)) {
+        hasher.add(*text);
+        return hasher.result().hex();
+    }
+    std::ifstream file(scene, std::ios::binary);
+    std::vector<char> part(1u << 20);
+    bool is_empty = true;
+    while (file) {
+        file.read(part.data(), static_cast<std::streamsize>(part.size()));
+        const auto count = static_cast<std::size_t>(file.gcount());
+        hasher.add(std::as_bytes(std::span(part).first(count)));
+        is_empty = is_empty && count == 0;
+    }
+    return is_empty ? "" : hasher.result().hex();
+}
+
+std::string settings_json(const PictureOptions& options, const std::string& hash_of_scene,
+                          std::span<const Setting> table) {
+    std::string members;
+    for (const Setting& setting : table) {
+        if (!is_written(options, setting)) continue;
+        members +=
+            fmt::format("{}{}:{}", members.empty() ? "" : ",", json_string(setting.name), json_of(options, setting));
+    }
+    return fmt::format(R"({{"version":{},"scene":{{"name":{},"hash":{}}},"settings":{{{}}}}})", kVersion,
+                       json_string(options.scene.scene), json_string(hash_of_scene), members);
+}
+
+void read_settings(const std::filesystem::path& file, uint32_t verbs, PictureOptions& options, Messages& messages) {
+    const JsonFile json(file);
+    const JsonValue& root = json.root();
+    if (const JsonValue version = root.at("version"); version.to_unsigned() != kVersion) {
+        throw version.error(fmt::format("{}; expected {}", version.to_unsigned(), kVersion));
+    }
+    compare_scene(root, file, options.scene.scene, messages);
+    const JsonValue settings = root.at("settings");
+    for (const auto& [name, value] : settings.members()) {
+        const Setting* const setting = find_setting(name);
+        if (setting == nullptr || !setting->is_kept || (setting->verbs & verbs) == 0) {
+            messages.leave_out(fmt::format(
+                "{}: {}", value.place(), setting == nullptr ? "no setting is named so" : "not a setting of this verb"));
+            continue;
+        }
+        try {
+            set_value(options, *setting, texts_of(*setting, value));
+        } catch (const Error& error) {
+            throw value.error(error);
+        }
+        options.given[name] = SettingOrigin::File;
+    }
+    for (const auto& [name, value] : root.members()) {
+        if (name != "version" && name != "scene" && name != "settings") {
+            messages.leave_out(fmt::format("{}: nothing is named so in a file of settings", value.place()));
+        }
+    }
+}
+
+} // namespace pertev

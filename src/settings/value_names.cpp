@@ -1,0 +1,38 @@
+#include "settings/value_names.h"
+
+#include <fmt/format.h>
+
+#include "base/json_text.h"
+
+namespace pertev {
+
+std::string_view integrator_name(const RenderSettings& settings) {
+    return settings.integrator == IntegratorKind::Path ? name_of(settings.path.light) : name_of(settings.integrator);
+}
+
+bool set_integrator(RenderSettings& settings, std::string_view name) {
+    const std::optional<PathLight> light = value_named<PathLight>(name);
+    const std::optional<IntegratorKind> kind = light ? IntegratorKind::Path : value_named<IntegratorKind>(name);
+    if (!kind) return false;
+    settings.integrator = *kind;
+    settings.path.light = light.value_or(PathLight::Path);
+    return true;
+}
+
+std::vector<std::string> integrator_names() {
+    std::vector<std::string> names = names_of<PathLight>();
+    for (const auto& [kind, name] : kIntegrators) {
+        if (kind != IntegratorKind::Path) names.emplace_back(name);
+    }
+    return names;
+}
+
+std::string json_of(const ReconstructionSettings& settings, const RestirSettings& restir) {
+    return fmt::format(
+        R"({{"history":{},"passes":{},"limit_fireflies":{},"limit_history":{},"follow_light":{},"anti_alias":{},"resolution_scale":{},"sample_order":{},"restir":{},"restir_history":{}}})",
+        settings.history, settings.passes, settings.limit_fireflies, settings.limit_history, settings.follow_light,
+        settings.anti_alias, json_number(static_cast<double>(settings.resolution_scale)), settings.orders_samples,
+        json_string(name_of(restir.light)), restir.history);
+}
+
+} // namespace pertev

@@ -1,0 +1,76 @@
+#pragma once
+
+// The names of settings' values, as they stand on the command line, in metadata, and wherever else a setting is text.
+// base/value_names.h has name_of, value_named and names_of for each. The names of auxiliary layers are in
+// render/film_channels.h, those of tone maps in image/tone_map_image.h.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/value_names.h"
+#include "denoise/reconstruction_settings.h"
+#include "image/tone_map_image.h"
+#include "radiosity/radiosity_settings.h"
+#include "restir/restir_settings.h"
+#include "settings/render_settings.h"
+
+namespace pertev {
+
+inline constexpr ValueName<PathLight> kPathLights[] = {
+    {PathLight::Path, "path"}, {PathLight::Direct, "direct"}, {PathLight::Indirect, "indirect"}};
+/// Path stands for each of kPathLights.
+inline constexpr ValueName<IntegratorKind> kIntegrators[] = {{IntegratorKind::Path, "path"},
+                                                             {IntegratorKind::Hybrid, "hybrid"},
+                                                             {IntegratorKind::Cast, "cast"},
+                                                             {IntegratorKind::Whitted, "whitted"},
+                                                             {IntegratorKind::Distributed, "distributed"},
+                                                             {IntegratorKind::Raster, "raster"},
+                                                             {IntegratorKind::Reyes, "reyes"},
+                                                             {IntegratorKind::Light, "light"},
+                                                             {IntegratorKind::Bidirectional, "bidirectional"},
+                                                             {IntegratorKind::PhotonMap, "photon_map"},
+                                                             {IntegratorKind::IrradianceCache, "irradiance_cache"},
+                                                             {IntegratorKind::Radiosity, "radiosity"}};
+inline constexpr ValueName<RasterShading> kRasterShadings[] = {
+    {RasterShading::Flat, "flat"}, {RasterShading::Gouraud, "gouraud"}, {RasterShading::Phong, "phong"}};
+inline constexpr ValueName<PhotonGather> kPhotonGathers[] = {{PhotonGather::Direct, "direct"},
+                                                             {PhotonGather::Final, "final"}};
+inline constexpr ValueName<PhotonSearch> kPhotonSearches[] = {
+    {PhotonSearch::Grid, "grid"}, {PhotonSearch::KdTree, "kd-tree"}, {PhotonSearch::Octree, "octree"}};
+/// SpaceTime is no choice: sample_order has it.
+inline constexpr ValueName<SamplerKind> kSamplers[] = {{SamplerKind::Sobol, "sobol"},
+                                                       {SamplerKind::Independent, "independent"}};
+inline constexpr ValueName<PixelFilter> kPixelFilters[] = {{PixelFilter::Box, "box"},
+                                                           {PixelFilter::Tent, "tent"},
+                                                           {PixelFilter::Gaussian, "gaussian"},
+                                                           {PixelFilter::BlackmanHarris, "blackman-harris"}};
+inline constexpr ValueName<RestirLight> kRestirLights[] = {
+    {RestirLight::Off, "off"}, {RestirLight::Direct, "di"}, {RestirLight::Indirect, "gi"}};
+inline constexpr ValueName<Denoise> kDenoisers[] = {{Denoise::None, "none"}, {Denoise::Svgf, "svgf"}};
+/// A camera that measures irradiance (Projection::Cosine) is no choice.
+inline constexpr ValueName<Projection> kProjections[] = {{Projection::Perspective, "perspective"},
+                                                         {Projection::Orthographic, "orthographic"}};
+
+constexpr const auto& names_of_all(PathLight) { return kPathLights; }
+constexpr const auto& names_of_all(IntegratorKind) { return kIntegrators; }
+constexpr const auto& names_of_all(RasterShading) { return kRasterShadings; }
+constexpr const auto& names_of_all(PhotonGather) { return kPhotonGathers; }
+constexpr const auto& names_of_all(PhotonSearch) { return kPhotonSearches; }
+constexpr const auto& names_of_all(SamplerKind) { return kSamplers; }
+constexpr const auto& names_of_all(PixelFilter) { return kPixelFilters; }
+constexpr const auto& names_of_all(RestirLight) { return kRestirLights; }
+constexpr const auto& names_of_all(Denoise) { return kDenoisers; }
+constexpr const auto& names_of_all(Projection) { return kProjections; }
+
+/// Returns the integrator's name; that of "path" is the name of the part of the light that it shows.
+std::string_view integrator_name(const RenderSettings& settings);
+/// Returns false, and does nothing, where there is no such integrator.
+bool set_integrator(RenderSettings& settings, std::string_view name);
+std::vector<std::string> integrator_names();
+
+/// Returns all that makes the bytes of a frame in real time, beside the picture's own settings, as a JSON object.
+std::string json_of(const ReconstructionSettings& settings, const RestirSettings& restir);
+
+} // namespace pertev

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""Files of settings, and what is made of the table of settings: help, completion, a page for man, docs/settings.md."""
+
+import json
+import os
+import re
+import subprocess
+
+from cli_run import CliTest, main, read_exr, write
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+SMALL = ["--size", "16x12", "--spp", "2", "--device", "cpu"]
+
+
+class SettingsFiles(CliTest):
+    def settings_of(self, picture, name="s.json"):
+        text = self.succeed("info", picture, "--settings").stdout
+        write(self.path(name), text)
+        return json.loads(text)
+
+    def test_a_picture_is_made_again_from_itself(self):
+        for flags in [["--aov", "normal,ids", "--seed", "7", "--max-depth", "3", "--eye", "0.1,0.3,1.2", "--fov", "50"],
+                      ["--integrator", "whitted", "--ambient", "0.1,0.2,0.3", "--filter", "box"],
+                      ["--integrator", "photon_map", "--photons", "200", "--transparent", "--radius", "0.05"],
+                      ["--environment", "1,0.5,0.25", "--clamp", "2", "--lpe", "d=LD+E", "--sampler", "independent"]]:
+            with self.subTest(flags=flags):
+                self.succeed("render", "cornell-box", "-o", "a.exr", *SMALL, *flags)
+                settings = self.settings_of("a.exr")
+                self.assertEqual((settings["version"], settings["scene"]["name"]), (1, "cornell-box"))
+                outcome = self.succeed("render", "cornell-box", "-o", "b.exr", "--settings", "s.json", "--device", "cpu")
+                self.assertNotIn("s.json", outcome.stderr)
+                a, b = self.info("a.exr"), self.info("b.exr")
+                for name in ["hash", "channels", "pertev.hash", "pertev.settings", "pertev.scene_hash", "width", "height"]:
+                    self.assertEqual(a[name], b[name], name)
+                self.assertEqual(read_exr(self.path("a.exr")), read_exr(self.path("b.exr")))  # each number of each layer
+
+    def test_flags_overrule_a_file_and_info_says_what_came_from_where(self):
+        write(self.path("s.json"), '{"version": 1, "settings": {"spp": 3, "seed": 5, "size": "8x8"}}')
+        self.succeed("render", "cornell-box", "-o", "a.exr", "--settings", "s.json", "--seed", "6", "--device", "cpu")
+        info = self.info("a.exr")
+        self.assertEqual((info["pertev.spp"], info["pertev.seed"], info["width"]), (3, "6", 8))
+        self.assertEqual(set(info["pertev.by_settings"].split()), {"spp", "size"})
+        self.assertEqual(set(info["pertev.by_flags"].split()), {"seed", "device"})
+
+    def test_what_is_no_setting_is_left_out_and_strict_refuses_it(self):
+        write(self.path("s.json"), '{"version": 1, "settings": {"sppp": 3}, "scene": {"name": "x", "hash": "0"}}')
+        outcome = self.succeed("render", "cornell-box", "-o", "a.exr", "--settings", "s.json", *SMALL)
+        self.assertIn("/settings/sppp", outcome.stderr)
+        self.assertIn("another scene", outcome.stderr)
+        self.refuse(2, "render", "cornell-box", "-o", "b.exr", "--settings", "s.json", "--strict", *SMALL, says=["sppp"])
+
+    def test_a_file_that_is_none_is_refused(self):
+        for text in ["", "[]", '{"version": 2, "settings": {}}', '{"version": 1, "settings": {"spp": "x"}}',
+                     '{"version": 1, "settings": {"photons": 5}}']:
+            write(self.path("s.json"), text)
+            self.refuse(2, "render", "cornell-box", "-o", "a.exr", "--settings", "s.json", *SMALL, says=[])
+        self.refuse(2, "render", "cornell-box", "-o", "a.exr", "--settings", "nowhere.json", *SMALL, says=["nowhere.json"])
+        self.succeed("render", "cornell-box", "-o", "a.png", *SMALL)
+        self.refuse(2, "info", "a.png", "--settings", says=["a.png"])
+        self.refuse(2, "info", "cornell-box", "--settings", says=["cornell-box"])
+
+
+class Documents(CliTest):
+    def test_help_fits_a_terminal_and_groups_have_the_rest(self):
+        lines = self.succeed("render", "--help").stdout.splitlines()
+        self.assertLessEqual(len(lines), 50)
+        self.assertLessEqual(max(map(len, lines)), 80)
+        everything = self.succeed("render", "--help", "all").stdout
+        shown = set(re.findall(r"(?m)^  (?:-\w,)?(--[a-z-]+)", everything))
+        of_groups = set()
+        for group in re.search(r"shows more: (.*), or all", " ".join(lines)).group(1).split(", "):
+            of_groups |= set(re.findall(r"(?m)^  (?:-\w,)?(--[a-z-]+)", self.succeed("render", "--help", group).stdout))
+        of_groups |= set(re.findall(r"(?m)^  (?:-\w,)?(--[a-z-]+)", "\n".join(lines)))
+        self.assertEqual(of_groups, shown)
+        self.assertGreater(len(shown), 90)
+        for verb in ["view", "measure", "lab", "bench frames", "solve radiosity"]:
+            self.assertLessEqual(max(map(len, self.succeed(*verb.split(), "--help", "all").stdout.splitlines())), 80, verb)
+
+    def test_the_document_of_settings_is_up_to_date(self):
+        with open(os.path.join(ROOT, "docs", "settings.md"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), self.succeed("--settings-document").stdout,
+                             "pertev --settings-document > docs/settings.md")
+
+    def test_bash_completes_verbs_flags_and_values(self):
+        write(self.path("complete.bash"), self.succeed("--completion", "bash").stdout)
+        for line, expected in [("pertev re", "render"), ("pertev render --max-d", "--max-depth"),
+                               ("pertev render --sampler s", "sobol"), ("pertev bench rays --cou", "--count")]:
+            words = line.split()
+            script = (f"source complete.bash; COMP_WORDS=({line}); COMP_CWORD={len(words) - 1}; _pertev; "
+                      'printf "%s\\n" "${COMPREPLY[@]}"')
+            outcome = subprocess.run(["bash", "-c", script], cwd=self.folder, capture_output=True, text=True, check=True)
+            self.assertEqual(outcome.stdout.split(), [expected], line)
+        self.refuse(2, "--completion", "tcsh", says=["tcsh"])
+        self.assertIn("--max-depth", self.succeed("--completion", "zsh").stdout)
+        self.assertIn("-l max-depth", self.succeed("--completion", "fish").stdout)
+
+    def test_the_page_for_man_names_every_flag_of_render(self):
+        page = self.succeed("--man").stdout.replace("\\-", "-")
+        for flag in re.findall(r"(?m)^  (?:-\w,)?(--[a-z-]+)", self.succeed("render", "--help", "all").stdout):
+            self.assertIn(flag, page)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,161 @@
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "base/error.h"
+#include "session/writing/picture_metadata.h"
+#include "settings/check_settings.h"
+#include "settings/settings_file.h"
+#include "tests/support/write_text.h"
+
+using namespace pertev;
+
+namespace {
+
+void set(PictureOptions& options, const char* name, std::vector<std::string> texts) {
+    set_value(options, *find_setting(name), texts);
+    options.given[name] = SettingOrigin::Flag;
+}
+
+std::optional<ErrorCode> code_of(const char* name, const std::string& text) {
+    PictureOptions options;
+    try {
+        set(options, name, {text});
+    } catch (const Error& error) {
+        return error.code();
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+TEST_CASE("each setting has a name of its own, a sentence, and rules that name settings") {
+    std::set<std::string> names;
+    for (const Setting& setting : all_settings()) {
+        INFO(setting.name);
+        CHECK(names.insert(setting.name).second);
+        const std::string sentence = setting.sentence;
+        CHECK(sentence.size() > 10);
+        CHECK((sentence.ends_with('.') || sentence.ends_with(").")));
+        CHECK(setting.verbs != 0);
+        PictureOptions options;
+        options.given[setting.name] = SettingOrigin::Flag;
+        CHECK_NOTHROW(find_conflict(options, ~0u)); // its rules name settings that there are
+    }
+    CHECK(find_setting("max-depth") == nullptr);
+}
+
+TEST_CASE("a setting's value in words leads back to the value") {
+    for (const Setting& setting : all_settings()) {
+        INFO(setting.name);
+        PictureOptions options;
+        const std::vector<std::string> now = texts_of(options, setting);
+        if (now.empty() || now.front().empty() || !why_no_value(setting, now.front()).empty()) continue;
+        set_value(options, setting, now);
+        CHECK(texts_of(options, setting) == now);
+        for (const std::string& choice : choices_of(setting)) {
+            set_value(options, setting, {&choice, 1});
+            CHECK(texts_of(options, setting) == std::vector{choice});
+        }
+    }
+}
+
+TEST_CASE("values that are none are refused, and those too large for every scene are over a limit") {
+    CHECK(code_of("spp", "0") == ErrorCode::BadInput);
+    CHECK(code_of("spp", "1.5") == ErrorCode::BadInput);
+    CHECK(code_of("fov", "180") == ErrorCode::BadInput);
+    CHECK(code_of("fov", "nan") == ErrorCode::BadInput);
+    CHECK(code_of("clamp", "0") == ErrorCode::BadInput);
+    CHECK(code_of("sampler", "halton") == ErrorCode::BadInput);
+    CHECK(code_of("integrator", "paths") == ErrorCode::BadInput);
+    CHECK(code_of("animation", "") == ErrorCode::BadInput);
+    CHECK(code_of("eye", "1,2") == ErrorCode::BadInput);
+    CHECK(code_of("size", "8") == ErrorCode::BadInput);
+    CHECK(code_of("eye", "1,2,2e12") == ErrorCode::OverLimit);
+    CHECK(code_of("size", "65537x1") == ErrorCode::OverLimit);
+    CHECK(!code_of("eye", "1,-2e0,.5"));
+    CHECK(!code_of("seed", "4294967295"));
+}
+
+TEST_CASE("settings that do not go together are found") {
+    PictureOptions options;
+    CHECK(!find_conflict(options, kRender));
+    set(options, "photons", {"4"});
+    auto conflict = find_conflict(options, kRender);
+    REQUIRE(conflict);
+    CHECK(conflict->kind == SettingConflict::Kind::Integrator);
+    CHECK(conflict->others == std::vector<std::string>{"photon_map"});
+    set(options, "integrator", {"photon_map"});
+    CHECK(!find_conflict(options, kRender));
+    set(options, "fps", {"30"});
+    conflict = find_conflict(options, kRender);
+    REQUIRE(conflict);
+    CHECK(conflict->setting->name == std::string("fps"));
+    CHECK(conflict->kind == SettingConflict::Kind::Needs);
+    CHECK(!find_conflict(options, kView)); // which has no frames to ask for
+    set(options, "frames", {"1-2"});
+    CHECK(!find_conflict(options, kRender));
+    set(options, "time", {"1"});
+    conflict = find_conflict(options, kRender);
+    REQUIRE(conflict);
+    CHECK(conflict->kind == SettingConflict::Kind::Excludes);
+}
+
+TEST_CASE("settings that are written as JSON are read back") {
+    const std::filesystem::path file = std::filesystem::temp_directory_path() / "pertev-settings-test.json";
+    PictureOptions options;
+    options.scene.scene = "cornell-box";
+    set(options, "spp", {"3"});
+    set(options, "eye", {"0.1,2,3.5"});
+    set(options, "aov", {"normal", "depth"});
+    set(options, "transparent", {"true"});
+    set(options, "no_anti_alias", {"true"});
+    set(options, "tone_map", {"aces"});
+    set(options, "lpe", {"a=LD+E", "b=L<'la\"mp'>.*E"});
+    set(options, "device", {"cpu"});
+    const std::string json = settings_json(options, scene_hash("cornell-box"));
+    CHECK(json.find("\"device\"") == std::string::npos); // the picture does not depend on it
+    CHECK(json.find("\"eye\":[0.1,2,3.5]") != std::string::npos);
+    test::write_text(file, json);
+    PictureOptions read;
+    read.scene.scene = "cornell-box";
+    Messages messages;
+    read_settings(file, kRender, read, messages);
+    CHECK(messages.all().empty());
+    CHECK(settings_json(read, scene_hash("cornell-box")) == json);
+    CHECK(read.given.at("spp") == SettingOrigin::File);
+
+    SUBCASE("another scene is told") {
+        read.scene.scene = "many-lights";
+        read_settings(file, kRender, read, messages);
+        CHECK(messages.all().size() == 1);
+    }
+    SUBCASE("what is no setting is left out with a warning, and a value that is none is refused") {
+        test::write_text(file, R"({"version":1,"settings":{"spp":5,"sppp":4,"device":"cpu"},"more":0})");
+        read_settings(file, kRender, read, messages);
+        CHECK(messages.left_out().size() == 3);
+        CHECK(read.render.samples == 5);
+        for (const char* text :
+             {R"({"version":1,"settings":{"spp":"many"}})", R"({"version":1,"settings":{"eye":[1,2]}})",
+              R"({"version":2,"settings":{}})", R"({"settings":{}})", "[]", "{"}) {
+            test::write_text(file, text);
+            CHECK_THROWS_AS(read_settings(file, kRender, read, messages), Error);
+        }
+    }
+}
+
+TEST_CASE("a picture's file records each setting that the table says, where the integrator has it") {
+    PictureOptions options;
+    set(options, "integrator", {"whitted"});
+    set(options, "ambient", {"0.5"});
+    const ExrMetadata metadata = recorded_settings(options, all_settings());
+    const auto has = [&](const std::string& name) {
+        return std::ranges::find(metadata, name, &ExrMetadata::value_type::first) != metadata.end();
+    };
+    CHECK(has("pertev.max_depth"));
+    CHECK(has("pertev.ambient"));
+    CHECK(!has("pertev.photons"));
+    CHECK(!has("pertev.denoise")); // which is the default
+}
