@@ -48,12 +48,6 @@ std::string words_of(const SettingConflict& conflict, const PictureOptions& opti
 
 } // namespace
 
-std::string flag_of(std::string_view setting) {
-    std::string flag = "--" + std::string(setting);
-    std::ranges::replace(flag, '_', '-');
-    return flag;
-}
-
 const Setting* setting_of(const CLI::Option& flag) {
     std::string name = flag.get_lnames().empty() ? "" : flag.get_lnames().front();
     std::ranges::replace(name, '-', '_');

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/cli/flag_phrases.h"
 #include "base/messages.h"
 #include "settings/setting_table.h"
 
@@ -18,8 +19,6 @@ class Option;
 
 namespace pertev {
 
-/// "--max-depth" for max_depth.
-std::string flag_of(std::string_view setting);
 /// The setting that a flag is made of; null where it is none.
 const Setting* setting_of(const CLI::Option& flag);
 

@@ -98,8 +98,9 @@ void read_settings(const std::filesystem::path& file, uint32_t verbs, PictureOpt
     for (const auto& [name, value] : settings.members()) {
         const Setting* const setting = find_setting(name);
         if (setting == nullptr || !setting->is_kept || (setting->verbs & verbs) == 0) {
-            messages.leave_out(fmt::format(
-                "{}: {}", value.place(), setting == nullptr ? "no setting is named so" : "not a setting of this verb"));
+            messages.leave_out(
+                fmt::format("{}: {}", text_of(value.place()),
+                            setting == nullptr ? "no setting is named so" : "not a setting of this verb"));
             continue;
         }
         try {
@@ -111,7 +112,7 @@ void read_settings(const std::filesystem::path& file, uint32_t verbs, PictureOpt
     }
     for (const auto& [name, value] : root.members()) {
         if (name != "version" && name != "scene" && name != "settings") {
-            messages.leave_out(fmt::format("{}: nothing is named so in a file of settings", value.place()));
+            messages.leave_out(fmt::format("{}: nothing is named so in a file of settings", text_of(value.place())));
         }
     }
 }

@@ -69,7 +69,7 @@ public:
 };
 
 /// A white floor that glows, in a bright sky.
-struct Place {
+struct LitFloor {
     Scene scene = glowing_floor();
     Messages messages;
     Queue queue = Queue::make_cpu();
@@ -85,7 +85,7 @@ struct Place {
         scene.environment.emplace();
         return scene;
     }
-    Place() : prepared(prepare_scene(scene, {}, messages)), device(queue, prepared) {
+    LitFloor() : prepared(prepare_scene(scene, {}, messages)), device(queue, prepared) {
         job.picture.scene = device.view();
         job.settings.sampler = SamplerKind::Independent;
     }
@@ -112,7 +112,7 @@ Features chosen(CompiledFor<kMasks...>, Features wanted) {
 } // namespace
 
 TEST_CASE("unit/path_vertex: a listener is told of a vertex in its order, and changes nothing of the light") {
-    const Place place;
+    const LitFloor place;
     PathState alone, heard = path_down();
     ShadowRay shadow_alone, shadow_heard;
     bool asks_alone = false, asks_heard = false;
@@ -154,7 +154,7 @@ TEST_CASE("unit/path_vertex: a listener is told of a vertex in its order, and ch
 }
 
 TEST_CASE("unit/path_vertex: light that a listener takes is not the path's, and others are told that none was added") {
-    const Place place;
+    const LitFloor place;
     PathState path = path_down();
     ShadowRay shadow;
     bool asks = true;
