@@ -95,7 +95,7 @@ struct Shade {
             if (path.depth == 0) {
                 listener.begins(path);
             } else {
-                typename Listener::Kept kept;
+                typename Listener::Kept kept{};
                 Listener::load(listened, place, kept);
                 listener.take_up(kept);
             }
@@ -109,13 +109,13 @@ struct Shade {
         } else {
             next.store_ended(places.path, path);
         }
-        typename Listener::Kept kept;
+        typename Listener::Kept kept{};
         listener.put_down(kept);
         Listener::store_next(listened, places.path, kept);
         if (!wants_shadow) return;
         shadows.store(places.shadow, shadow, places.path, here, key);
         if (kMoves && shadows.times != nullptr) shadows.times[places.shadow] = path.time;
-        typename Listener::Asked asked;
+        typename Listener::Asked asked{};
         listener.hand_over(asked);
         Listener::store_asked(listened, places.shadow, asked);
     }
@@ -134,8 +134,8 @@ struct AddLight {
         const Float4 c = shadows.contribution[i];
         const uint32_t path = bits_of(c.w);
         next.add_radiance(path, {c.x, c.y, c.z});
-        typename Listener::Kept kept;
-        typename Listener::Asked asked;
+        typename Listener::Kept kept{};
+        typename Listener::Asked asked{};
         Listener::load_next(listened, path, kept);
         Listener::load_asked(listened, i, asked);
         Listener(job).arrived(kept, asked, {c.x, c.y, c.z});
@@ -152,7 +152,7 @@ struct EndPaths {
     uint32_t last; // place of the first one
 
     HD void operator()(uint32_t i) const {
-        typename Listener::Kept kept;
+        typename Listener::Kept kept{};
         Listener::load_next(listened, last - i, kept);
         Listener(job).ended(next.load_pixel(last - i), next.load_radiance(last - i), kept);
     }
