@@ -179,29 +179,30 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
                                   output));
     }
     refuse_twins(flags.outputs, frames);
-    if (!flags.aovs.empty() && !writes_any(flags, {ImageFormat::Exr})) {
-        throw Error(ErrorCode::BadInput, "--aov: layers are kept in EXR files alone; add -o NAME.exr");
-    }
-    if (!flags.lpe.empty() && !writes_any(flags, {ImageFormat::Exr})) {
-        throw Error(ErrorCode::BadInput, "--lpe: layers are kept in EXR files alone; add -o NAME.exr");
-    }
-    if (flags.render.transparent && std::ranges::none_of(flags.outputs, keeps_alpha)) {
-        throw Error(ErrorCode::BadInput, "--transparent: alpha is kept in EXR and PNG alone; add -o NAME.exr or .png");
-    }
+    // A file of settings may be for other outputs: what they cannot keep is refused where a flag asks for it.
+    const auto by_flag = [&](std::string_view name) {
+        const auto given = flags.given.find(name);
+        return given != flags.given.end() && given->second == SettingOrigin::Flag;
+    };
+    refuse(by_flag("aov") && !writes_any(flags, {ImageFormat::Exr}),
+           "--aov: layers are kept in EXR files alone; add -o NAME.exr");
+    refuse(by_flag("lpe") && !writes_any(flags, {ImageFormat::Exr}),
+           "--lpe: layers are kept in EXR files alone; add -o NAME.exr");
+    refuse(by_flag("transparent") && std::ranges::none_of(flags.outputs, keeps_alpha),
+           "--transparent: alpha is kept in EXR and PNG alone; add -o NAME.exr or .png");
     for (const std::string& output : flags.outputs) {
         if (flags.render.transparent && !keeps_alpha(output)) {
             messages.warn(output + ": --transparent: this format has no alpha; the background becomes black");
         }
     }
-    refuse(flags.false_color == "luminance" && !writes_tone_mapped(flags),
+    refuse(by_flag("false_color") && flags.false_color == "luminance" && !writes_tone_mapped(flags),
            "--false-color luminance: numbers are shown in PNG and JPEG alone; add -o NAME.png");
     refuse(!flags.false_color.empty() && flags.false_color_range.empty() && frames && writes_tone_mapped(flags),
            "--false-color: frames of a sequence need one scale for all; say --false-color-range");
-    refuse(flags.f_number > 0 && !writes_tone_mapped(flags),
+    refuse(by_flag("f_number") && !writes_tone_mapped(flags),
            "--f-number: light is exposed in PNG and JPEG alone; add -o NAME.png or .jpg");
-    for (const char* name : {"exposure", "tone_map"}) { // a file of settings may be for other outputs
-        const auto given = flags.given.find(name);
-        refuse(given != flags.given.end() && given->second == SettingOrigin::Flag && !writes_tone_mapped(flags),
+    for (const char* name : {"exposure", "tone_map"}) {
+        refuse(by_flag(name) && !writes_tone_mapped(flags),
                flag_of(name) + ": light is mapped to tones in PNG and JPEG alone; add -o NAME.png or .jpg");
     }
 }

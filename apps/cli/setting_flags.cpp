@@ -85,7 +85,22 @@ void SettingFlags::add_file(CLI::App& verb) {
 }
 
 void SettingFlags::read(PictureOptions& options, Messages& messages) const {
-    if (!file_.empty()) read_settings(file_, verbs_, options, messages);
+    const PictureOptions start = options;
+    std::vector<std::string> overruled; // settings of the file that do not go with flags
+    Messages said_already;
+    while (true) {
+        if (!file_.empty())
+            read_settings(file_, verbs_, overruled, options, overruled.empty() ? messages : said_already);
+        read_flags(options);
+        const auto conflict = find_conflict(options, verbs_);
+        if (!conflict) return;
+        overruled.push_back(overruled_setting(*conflict, options));
+        if (overruled.back().empty()) throw Error(ErrorCode::BadInput, words_of(*conflict, options));
+        options = start;
+    }
+}
+
+void SettingFlags::read_flags(PictureOptions& options) const {
     for (const Flag& flag : flags_) {
         if (flag.option->count() == 0) continue;
         const Setting& setting = *flag.setting;
@@ -99,9 +114,6 @@ void SettingFlags::read(PictureOptions& options, Messages& messages) const {
             throw Error(error.code(), fmt::format("{} {}", flag_of(setting.name), error.what()));
         }
         options.given[setting.name] = SettingOrigin::Flag;
-    }
-    if (const auto conflict = find_conflict(options, verbs_)) {
-        throw Error(ErrorCode::BadInput, words_of(*conflict, options));
     }
 }
 

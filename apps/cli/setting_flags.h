@@ -46,6 +46,8 @@ private:
     std::list<Flag> flags_; // CLI11 writes into them
     std::string file_;
     uint32_t verbs_ = 0;
+
+    void read_flags(PictureOptions& options) const;
 };
 
 } // namespace pertev

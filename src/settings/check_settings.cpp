@@ -63,4 +63,25 @@ std::optional<SettingConflict> find_conflict(const PictureOptions& options, uint
     return std::nullopt;
 }
 
+std::string overruled_setting(const SettingConflict& conflict, const PictureOptions& options) {
+    const PictureOptions defaults;
+    const auto is_of = [&](const std::string& name, SettingOrigin origin) {
+        const auto given = options.given.find(name);
+        return given != options.given.end() && given->second == origin;
+    };
+    const auto yields_to = [&](const std::string& name, const std::string& other) {
+        const Setting& setting = *find_setting(name);
+        return is_of(name, SettingOrigin::File) &&
+               (is_of(other, SettingOrigin::Flag) || texts_of(options, setting) == texts_of(defaults, setting));
+    };
+    const std::string own = conflict.setting->name;
+    if (conflict.kind == SettingConflict::Kind::Integrator) return yields_to(own, "integrator") ? own : "";
+    for (const std::string& condition : conflict.others) {
+        const std::string other = setting_of(condition)->name;
+        if (yields_to(own, other)) return own;
+        if (conflict.kind == SettingConflict::Kind::Excludes && yields_to(other, own)) return other;
+    }
+    return "";
+}
+
 } // namespace pertev

@@ -25,4 +25,8 @@ struct SettingConflict {
 /// have are not asked for.
 std::optional<SettingConflict> find_conflict(const PictureOptions& options, uint32_t verbs);
 
+/// Returns the name of the setting that yields where settings do not go together: one of a file does to what was given
+/// otherwise, and where its value is the default, which a file may hold, too. Empty: neither does.
+std::string overruled_setting(const SettingConflict& conflict, const PictureOptions& options);
+
 } // namespace pertev

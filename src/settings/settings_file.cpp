@@ -87,7 +87,8 @@ std::string settings_json(const PictureOptions& options, const std::string& hash
                        json_string(options.scene.scene), json_string(hash_of_scene), members);
 }
 
-void read_settings(const std::filesystem::path& file, uint32_t verbs, PictureOptions& options, Messages& messages) {
+void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<const std::string> overruled,
+                   PictureOptions& options, Messages& messages) {
     const JsonFile json(file);
     const JsonValue& root = json.root();
     if (const JsonValue version = root.at("version"); version.to_unsigned() != kVersion) {
@@ -96,6 +97,7 @@ void read_settings(const std::filesystem::path& file, uint32_t verbs, PictureOpt
     compare_scene(root, file, options.scene.scene, messages);
     const JsonValue settings = root.at("settings");
     for (const auto& [name, value] : settings.members()) {
+        if (std::ranges::find(overruled, name) != overruled.end()) continue;
         const Setting* const setting = find_setting(name);
         if (setting == nullptr || !setting->is_kept || (setting->verbs & verbs) == 0) {
             messages.leave_out(

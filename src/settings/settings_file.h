@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "base/messages.h"
@@ -22,8 +23,9 @@ std::string settings_json(const PictureOptions& options, const std::string& hash
                           std::span<const Setting> table = all_settings());
 
 /// Gives `options` the settings of a file. What the file holds and the table or `verbs` do not have is left out with a
-/// warning; another scene than that of `options` is a warning, too. Throws Error(BadInput) for a file that is none, or
-/// of another version, and for a value that is none.
-void read_settings(const std::filesystem::path& file, uint32_t verbs, PictureOptions& options, Messages& messages);
+/// warning; another scene than that of `options` is a warning, too. Settings named in `overruled` are passed over.
+/// Throws Error(BadInput) for a file that is none, or of another version, and for a value that is none.
+void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<const std::string> overruled,
+                   PictureOptions& options, Messages& messages);
 
 } // namespace pertev

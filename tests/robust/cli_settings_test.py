@@ -42,6 +42,21 @@ class SettingsFiles(CliTest):
         self.assertEqual(set(info["pertev.by_settings"].split()), {"spp", "size"})
         self.assertEqual(set(info["pertev.by_flags"].split()), {"seed", "device"})
 
+    def test_the_file_of_every_integrator_is_read_back_and_yields_to_flags(self):
+        for flags in [["--integrator", "photon_map", "--photons", "100"], ["--integrator", "raster", "--wireframe"],
+                      ["--integrator", "raster", "--shading", "flat"], ["--integrator", "whitted"],
+                      ["--integrator", "irradiance_cache"], ["--integrator", "reyes"], ["--aov", "depth"]]:
+            with self.subTest(flags=flags):
+                self.succeed("render", "cornell-box", "-o", "a.exr", *SMALL, *flags)
+                self.settings_of("a.exr")
+                self.succeed("render", "cornell-box", "-o", "b.exr", "--settings", "s.json", "--device", "cpu")
+                self.assertEqual(self.info("a.exr")["hash"], self.info("b.exr")["hash"])
+                self.succeed("render", "cornell-box", "-o", "c.exr", "--settings", "s.json", "--integrator", "path")
+                self.succeed("render", "cornell-box", "-o", "c.png", "--settings", "s.json", "--integrator", "path")
+        self.succeed("render", "cornell-box", "-o", "a.exr", *SMALL, "--time", "1", "--exposure", "2")
+        self.settings_of("a.exr")
+        self.succeed("render", "cornell-box", "-o", "f-#.exr", "--settings", "s.json", "--frames", "0-0")
+
     def test_what_is_no_setting_is_left_out_and_strict_refuses_it(self):
         write(self.path("s.json"), '{"version": 1, "settings": {"sppp": 3}, "scene": {"name": "x", "hash": "0"}}')
         outcome = self.succeed("render", "cornell-box", "-o", "a.exr", "--settings", "s.json", *SMALL)

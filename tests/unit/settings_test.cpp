@@ -122,26 +122,26 @@ TEST_CASE("settings that are written as JSON are read back") {
     PictureOptions read;
     read.scene.scene = "cornell-box";
     Messages messages;
-    read_settings(file, kRender, read, messages);
+    read_settings(file, kRender, {}, read, messages);
     CHECK(messages.all().empty());
     CHECK(settings_json(read, scene_hash("cornell-box")) == json);
     CHECK(read.given.at("spp") == SettingOrigin::File);
 
     SUBCASE("another scene is told") {
         read.scene.scene = "many-lights";
-        read_settings(file, kRender, read, messages);
+        read_settings(file, kRender, {}, read, messages);
         CHECK(messages.all().size() == 1);
     }
     SUBCASE("what is no setting is left out with a warning, and a value that is none is refused") {
         test::write_text(file, R"({"version":1,"settings":{"spp":5,"sppp":4,"device":"cpu"},"more":0})");
-        read_settings(file, kRender, read, messages);
+        read_settings(file, kRender, {}, read, messages);
         CHECK(messages.left_out().size() == 3);
         CHECK(read.render.samples == 5);
         for (const char* text :
              {R"({"version":1,"settings":{"spp":"many"}})", R"({"version":1,"settings":{"eye":[1,2]}})",
               R"({"version":2,"settings":{}})", R"({"settings":{}})", "[]", "{"}) {
             test::write_text(file, text);
-            CHECK_THROWS_AS(read_settings(file, kRender, read, messages), Error);
+            CHECK_THROWS_AS(read_settings(file, kRender, {}, read, messages), Error);
         }
     }
 }

@@ -69,10 +69,11 @@ MetadataValue metadata_value(const PictureOptions& options, const Setting& setti
 
 ExrMetadata recorded_settings(const PictureOptions& options, std::span<const Setting> settings) {
     ExrMetadata metadata;
+    const PictureOptions defaults;
     for (const Setting& setting : settings) {
         const std::vector<std::string> texts = texts_of(options, setting);
         const bool is_used = setting.recorded != Recorded::WhereUsed || has_setting(options.render.integrator, setting);
-        const bool is_default = texts == texts_of(PictureOptions{}, setting);
+        const bool is_default = texts == texts_of(defaults, setting);
         if (setting.recorded == Recorded::No || texts.empty() || !is_used) continue;
         if (setting.recorded == Recorded::Changed && is_default) continue;
         metadata.emplace_back(fmt::format("pertev.{}", setting.name), metadata_value(options, setting));
