@@ -48,9 +48,11 @@ std::string text_of(const CLI::Option& option, bool is_short) {
     const Setting* const setting = setting_of(option);
     std::string text = option.get_description();
     if (setting != nullptr && is_short) text = text.substr(0, std::min(text.find(". "), text.size() - 1)) + ".";
-    if (setting != nullptr && is_short && *setting->otherwise != '\0') text += fmt::format(" ({})", setting->otherwise);
+    const bool has_default = !option.get_default_str().empty();
+    if (setting != nullptr && is_short && !has_default && *setting->otherwise != '\0')
+        text += fmt::format(" ({})", setting->otherwise);
     if (setting != nullptr && !is_short && *setting->more != '\0') text += fmt::format(" {}", setting->more);
-    if (!option.get_default_str().empty()) text += fmt::format(" ({})", option.get_default_str());
+    if (has_default) text += fmt::format(" ({})", option.get_default_str());
     return option.get_required() ? text + " Required." : text;
 }
 

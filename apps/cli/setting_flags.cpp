@@ -14,13 +14,14 @@
 namespace pertev {
 namespace {
 
-std::string described(const Setting& setting) {
+/// `has_own_default`: the verb has another default than pictures have.
+std::string described(const Setting& setting, bool has_own_default) {
     std::string text = setting.sentence;
     const std::vector<std::string> choices = choices_of(setting);
     if (!choices.empty() && std::string_view(setting.form).find('|') == std::string_view::npos) {
         text += fmt::format(" One of {}.", fmt::join(choices, ", "));
     }
-    if (*setting.otherwise != '\0') text += fmt::format(" Without it: {}.", setting.otherwise);
+    if (!has_own_default && *setting.otherwise != '\0') text += fmt::format(" Without it: {}.", setting.otherwise);
     return text;
 }
 
@@ -56,11 +57,14 @@ const Setting* setting_of(const CLI::Option& flag) {
 }
 
 void SettingFlags::add(CLI::App& verb, uint32_t verbs, const PictureOptions& options, std::span<const Setting> table) {
+    const PictureOptions defaults;
     verbs_ = verbs;
     for (const Setting& setting : table) {
         if ((setting.verbs & verbs) == 0) continue;
         Flag& flag = flags_.emplace_back(Flag{.setting = &setting});
-        const std::string name = flag_of(setting.name), text = described(setting);
+        const std::vector<std::string> now = texts_of(options, setting);
+        const bool has_own_default = now != texts_of(defaults, setting);
+        const std::string name = flag_of(setting.name), text = described(setting, has_own_default);
         if (is_switch(setting)) {
             flag.option = verb.add_flag(name, flag.is_on, text);
         } else if (is_list(setting)) {
@@ -73,8 +77,8 @@ void SettingFlags::add(CLI::App& verb, uint32_t verbs, const PictureOptions& opt
         if (is_switch(setting)) continue;
         flag.option->type_name(setting.form)
             ->check(CLI::Validator([&setting](const std::string& value) { return why_no_value(setting, value); }, ""));
-        const std::vector<std::string> now = texts_of(options, setting);
-        if (*setting.otherwise == '\0' && !is_list(setting) && !now.empty()) flag.option->default_str(now.front());
+        if ((has_own_default || *setting.otherwise == '\0') && !is_list(setting) && !now.empty())
+            flag.option->default_str(now.front());
     }
 }
 

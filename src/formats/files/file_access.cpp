@@ -16,8 +16,10 @@ namespace {
 fs::path canonical_folder(const fs::path& folder, const char* setting) {
     std::error_code ec;
     const fs::path canonical = fs::canonical(folder.empty() ? fs::path(".") : folder, ec);
-    if (!ec) return canonical;
-    throw Error(ErrorCode::BadInput, setting, folder.string(), "the folder cannot be opened: " + ec.message());
+    if (ec) throw Error(ErrorCode::BadInput, setting, folder.string(), "the folder cannot be opened: " + ec.message());
+    if (!fs::is_directory(canonical, ec))
+        throw Error(ErrorCode::BadInput, setting, folder.string(), "this is no folder");
+    return canonical;
 }
 
 /// By whole components: /scenes/a does not contain /scenes/ab.
