@@ -220,7 +220,7 @@ class WhatIsWritten(LabTest):
         for row, picture in zip(rows, pictures):
             self.assertIn(picture["shows"], text)
             self.assertIn(f"{picture['place']}: {picture['title']}", text)
-            self.assertIn(picture["command"] or "pertev lab --thesis", text)
+            self.assertIn(picture["command"] or "Made by the laboratory alone.", text)
             self.assertEqual((row["shows"], row["command"]), (picture["shows"], picture["command"] or ""))
             if picture["file"].endswith(".svg"):
                 ElementTree.parse(self.path("out/" + picture["file"]))
