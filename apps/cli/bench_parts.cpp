@@ -65,7 +65,9 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, Reporter& r
 }
 
 void add_picture_flags(CLI::App& verb, PictureFlags& flags, const std::string& sizes, const std::string& samples) {
-    verb.add_option("--size", flags.size_text, fmt::format("of the picture ({})", sizes))->type_name("WIDTHxHEIGHT");
+    verb.add_option("--size", flags.size_text, fmt::format("of the picture ({})", sizes))
+        ->type_name("WIDTHxHEIGHT")
+        ->check(picture_size());
     verb.add_option("--spp", flags.samples, fmt::format("samples a pixel ({})", samples))
         ->type_name("N")
         ->check(whole_between(1, kMaxSamplesPerPixel));

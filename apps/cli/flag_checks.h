@@ -31,6 +31,9 @@ CLI::Validator whole_between(uint32_t low, uint32_t high);
 /// The name of a file: not empty.
 CLI::Validator file_name();
 
+/// The size of a picture, which is read further where it is used: not empty.
+CLI::Validator picture_size();
+
 /// One of these names.
 CLI::Validator one_of(std::vector<std::string> names);
 

@@ -225,7 +225,8 @@ void add_lab_command(CLI::App& app, int& status) {
         ->capture_default_str();
     add_switch(verb, "--persistent", flags->persistent, "CUDA: rays from a pool");
     verb.add_option("--size", flags->size_text, "camera rays (1024x768; with --transport pictures of 256x256)")
-        ->type_name("WIDTHxHEIGHT");
+        ->type_name("WIDTHxHEIGHT")
+        ->check(picture_size());
     verb.add_option("--depths", flags->depths,
                     fmt::format("frames of paths of FIRST to LAST rays, LAST at most {}; LAST\nalone is 1-LAST (1-3; "
                                 "with --thesis 1-8)",

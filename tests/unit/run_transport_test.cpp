@@ -286,7 +286,7 @@ TEST_CASE("a reference that cannot be one is refused before anything is rendered
         small.settings.reference = std::move(reference);
         return test::bad_input_message([&] { small.run(); });
     };
-    CHECK(message({8, 16, 3, std::vector<float>(8 * 16 * 3)}).find("given.exr: it is 8x16") != std::string::npos);
+    CHECK(message({8, 16, 3, std::vector<float>(8 * 16 * 3)}).find("it is 8x16") != std::string::npos);
     Image bad = {16, 16, 3, std::vector<float>(16 * 16 * 3)};
     bad.pixels[5] = std::numeric_limits<float>::infinity();
     CHECK(message(bad).find("not finite") != std::string::npos);
