@@ -33,7 +33,7 @@ class Shape(CliTest):
             client.say(type="shape", width=3840, height=2160)
             client.picture()
             client.say(type="shape", width=2000, height=4000)
-            header, _ = client.picture(lambda h: h["full_width"] < 1280)
+            header, _ = client.picture(lambda h: h["full_height"] > h["full_width"])  # not one of the shape before
             self.assertLessEqual(header["full_width"] * header["full_height"], 1280 * 720)
             self.assertAlmostEqual(header["full_height"] / header["full_width"], 2, 2)
         with Viewer(size="64x48", spp=1) as viewer, Client(viewer) as client:
