@@ -6,10 +6,6 @@ namespace pertev {
 
 // Nothing of them stands in the help, because each flag's own text says it.
 
-CLI::Validator number_between(float low, float high) {
-    return {[low, high](const std::string& text) { return why_no_number(text, low, high); }, ""};
-}
-
 CLI::Validator number_above_zero(float high) {
     return {[high](const std::string& text) { return why_not_above(text, 0, high); }, ""};
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a flag takes. CLI11's own Range lets NaN through.
+// These validators say what a flag takes. CLI11's own Range lets NaN through.
 
 #include <cstdint>
 #include <limits>
@@ -10,7 +10,6 @@
 #include <CLI/CLI.hpp>
 
 #include "base/error.h"
-#include "base/limits.h"
 
 namespace pertev {
 
@@ -19,12 +18,8 @@ inline void refuse(bool is_wrong, const std::string& why) {
     if (is_wrong) throw Error(ErrorCode::BadInput, why);
 }
 
-/// A finite number in [low, high].
-CLI::Validator number_between(float low, float high);
 /// A finite number above 0 and at most `high`.
 CLI::Validator number_above_zero(float high = std::numeric_limits<float>::max());
-/// A length of a scene, metres: above 0 and at most kMaxCoordinate.
-inline CLI::Validator length_m() { return number_above_zero(kMaxCoordinate); }
 /// A whole number in [low, high], in decimal digits.
 CLI::Validator whole_between(uint32_t low, uint32_t high);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What verbs say of themselves, made of their flags: help, a page for man, completion for shells.
+// Verbs describe themselves by what is made of their flags: help, a page for man, completion for shells.
 
 #include <string>
 #include <vector>

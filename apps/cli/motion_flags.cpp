@@ -1,4 +1,4 @@
-// What moves, and at which times.
+// These flags say what moves, and at which times.
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What pertev render is asked for, and what follows from it. Its flags are made of the table of settings.
+// These are the flags of pertev render and what follows from them. They are made of the table of settings.
 
 #include <optional>
 #include <string>

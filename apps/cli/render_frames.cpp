@@ -13,7 +13,6 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/report_result.h"
-#include "base/hash.h"
 #include "base/message_text.h"
 #include "base/read_file.h"
 #include "base/stopwatch.h"
@@ -22,13 +21,6 @@
 
 namespace pertev {
 namespace {
-
-std::string hash_of_file(const std::string& file) {
-    if (std::error_code fault; !std::filesystem::is_regular_file(file, fault)) return ""; // none, or a built-in scene
-    Hasher hasher;
-    hasher.add(read_file(file));
-    return hasher.result().hex();
-}
 
 /// All that decides the pictures: what the first frame's metadata say, and how the others follow.
 SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequence& sequence,

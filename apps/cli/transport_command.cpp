@@ -70,7 +70,7 @@ std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const 
     return presets;
 }
 
-/// What the laboratory has written with settings, with flags.
+/// Puts flags in place of the settings that the laboratory names.
 void phrase_all(TransportScene& measured) {
     for (std::string& note : measured.notes) note = phrase(note);
     for (TransportRow& row : measured.rows) row.refused = phrase(row.refused);

@@ -1,4 +1,4 @@
-// What is made of all flags: a page for man, completion for shells, docs/settings.md.
+// A page for man, completion for shells and docs/settings.md are made of all flags.
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 #include "apps/cli/setting_flags.h"
 #include "base/error.h"
 #include "base/version.h"
-#include "settings/value_names.h"
+#include "settings/check_settings.h"
 
 namespace pertev {
 namespace {
@@ -48,7 +48,7 @@ std::vector<std::string> verbs_below(const CLI::App& verb) {
     return names;
 }
 
-/// What troff would take for more than text.
+/// Escapes what troff would take for more than text.
 std::string in_man(std::string text) {
     for (std::size_t at = 0; (at = text.find_first_of("\\-", at)) != std::string::npos; at += 2)
         text.insert(at, 1, '\\');
@@ -138,15 +138,6 @@ std::string verbs_with(const Setting& setting) {
     return names;
 }
 
-std::string integrators_with(const Setting& setting) {
-    std::string names;
-    for (const auto& [kind, name] : kIntegrators) {
-        if (setting.integrators != 0 && has_setting(kind, setting))
-            names += (names.empty() ? "" : ", ") + std::string(name);
-    }
-    return names;
-}
-
 std::string range_of(const Setting& setting) {
     const std::vector<std::string> choices = choices_of(setting);
     if (!choices.empty()) return fmt::format("{}", fmt::join(choices, ", "));
@@ -225,7 +216,7 @@ std::string settings_document() {
         }
         std::string says = setting.sentence;
         if (*setting.more != '\0') says += fmt::format(" {}", setting.more);
-        if (const std::string names = integrators_with(setting); !names.empty()) says += " Of " + names + ".";
+        if (setting.integrators != 0) says += fmt::format(" Of {}.", fmt::join(integrators_with(setting), ", "));
         if (!setting.needs.empty()) says += fmt::format(" Needs one of: {}.", setting.needs);
         if (!setting.excludes.empty()) says += fmt::format(" Not with: {}.", setting.excludes);
         says += fmt::format(" Verbs: {}.", verbs_with(setting));

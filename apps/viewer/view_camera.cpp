@@ -32,7 +32,8 @@ Pose pose_of(const CameraSource& source, const Scene& scene, float distance) {
     Pose pose = pose_of(source.camera, asked, source.up, distance);
     const Transform& placed = source.camera.world_from_camera;
     if (asked || look_at(pose.eye, pose.target, pose.up) == placed) return pose;
-    // Of the points near what is in focus, the first that leads back to these axes: most are off by a last digit.
+    // The first of the points near what is in focus that leads back to these axes is taken: most are off by a last
+    // digit.
     for (int i = 0; i < kMostTargets; ++i) {
         const float away = source.camera.focus_distance * (1 + static_cast<float>(i) / kMostTargets);
         const Vec3 target = told_in_file(scene, pose.eye - away * column(placed, 2));

@@ -3,30 +3,57 @@
 #include <cerrno>
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <system_error>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/hash.h"
 
 namespace pertev {
 
-std::vector<std::byte> read_file(const std::filesystem::path& path) {
-    const auto fail = [&](const std::string& why) -> Error {
-        return Error(ErrorCode::BadInput, Place{path.string()}, fmt::format("cannot read: {}", why));
-    };
+namespace {
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+Error failure(const std::filesystem::path& path, const std::string& why) {
+    return Error(ErrorCode::BadInput, Place{path.string()}, fmt::format("cannot read: {}", why));
+}
+
+File open_file(const std::filesystem::path& path) {
     std::error_code ec;
     const auto status = std::filesystem::status(path, ec);
-    if (!std::filesystem::exists(status)) throw fail(ec ? ec.message() : "no such file");
-    if (!std::filesystem::is_regular_file(status)) throw fail("it is not a regular file");
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-    if (!file) throw fail(std::generic_category().message(errno));
+    if (!std::filesystem::exists(status)) throw failure(path, ec ? ec.message() : "no such file");
+    if (!std::filesystem::is_regular_file(status)) throw failure(path, "it is not a regular file");
+    File file(std::fopen(path.c_str(), "rb"), &std::fclose);
+    if (!file) throw failure(path, std::generic_category().message(errno));
+    return file;
+}
+
+} // namespace
+
+std::vector<std::byte> read_file(const std::filesystem::path& path) {
+    const File file = open_file(path);
+    std::error_code ec;
     std::vector<std::byte> bytes(std::filesystem::file_size(path, ec));
-    if (ec) throw fail(ec.message());
+    if (ec) throw failure(path, ec.message());
     if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
-        throw fail("the file ended early or the disk failed");
+        throw failure(path, "the file ended early or the disk failed");
     }
     return bytes;
+}
+
+std::string hash_of_file(const std::filesystem::path& path) {
+    if (std::error_code ec; !std::filesystem::is_regular_file(path, ec)) return "";
+    const File file = open_file(path);
+    Hasher hasher;
+    std::vector<std::byte> part(std::size_t(1) << 20);
+    while (const std::size_t count = std::fread(part.data(), 1, part.size(), file.get())) {
+        hasher.add(std::span(part).first(count));
+    }
+    if (std::ferror(file.get()) != 0) throw failure(path, "the disk failed");
+    return hasher.result().hex();
 }
 
 } // namespace pertev

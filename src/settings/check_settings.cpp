@@ -5,6 +5,15 @@
 #include "settings/value_names.h"
 
 namespace pertev {
+
+std::vector<std::string> integrators_with(const Setting& setting) {
+    std::vector<std::string> names;
+    for (const auto& [kind, name] : kIntegrators) {
+        if (has_setting(kind, setting)) names.emplace_back(name);
+    }
+    return names;
+}
+
 namespace {
 
 std::vector<std::string> words_of(std::string_view text) {
@@ -28,14 +37,6 @@ bool holds(const PictureOptions& options, const std::string& condition) {
         return std::ranges::find(texts, condition.substr(equals + 1)) != texts.end();
     }
     return options.is_given(setting.name) && !texts.empty() && !(is_switch(setting) && texts.front() == "false");
-}
-
-std::vector<std::string> integrators_with(const Setting& setting) {
-    std::vector<std::string> names;
-    for (const auto& [kind, name] : kIntegrators) {
-        if (has_setting(kind, setting)) names.emplace_back(name);
-    }
-    return names;
 }
 
 std::optional<SettingConflict> conflict_of(const PictureOptions& options, const Setting& setting, uint32_t verbs) {

@@ -4,10 +4,14 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "settings/setting_table.h"
 
 namespace pertev {
+
+/// Returns the names of the integrators that have the setting.
+std::vector<std::string> integrators_with(const Setting& setting);
 
 struct SettingConflict {
     enum class Kind : uint8_t {

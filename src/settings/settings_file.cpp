@@ -1,13 +1,13 @@
 #include "settings/settings_file.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/json_text.h"
+#include "base/read_file.h"
 #include "formats/builtin_scenes.h"
 #include "formats/json/json_file.h"
 
@@ -58,21 +58,11 @@ void compare_scene(const JsonValue& root, const std::filesystem::path& file, con
 } // namespace
 
 std::string scene_hash(const std::string& scene) {
+    const auto text = builtin_scene(scene);
+    if (!text) return hash_of_file(scene);
     Hasher hasher;
-    if (const auto text = builtin_scene(scene)) {
-        hasher.add(*text);
-        return hasher.result().hex();
-    }
-    std::ifstream file(scene, std::ios::binary);
-    std::vector<char> part(1u << 20);
-    bool is_empty = true;
-    while (file) {
-        file.read(part.data(), static_cast<std::streamsize>(part.size()));
-        const auto count = static_cast<std::size_t>(file.gcount());
-        hasher.add(std::as_bytes(std::span(part).first(count)));
-        is_empty = is_empty && count == 0;
-    }
-    return is_empty ? "" : hasher.result().hex();
+    hasher.add(*text);
+    return hasher.result().hex();
 }
 
 std::string settings_json(const PictureOptions& options, const std::string& hash_of_scene,

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/hash.h"
 #include "base/json_text.h"
 #include "base/read_file.h"
 #include "base/write_file_atomically.h"
@@ -15,12 +14,6 @@
 
 namespace pertev {
 namespace {
-
-std::string hash_of(const std::filesystem::path& file) {
-    Hasher hasher;
-    hasher.add(read_file(file));
-    return hasher.result().hex();
-}
 
 /// Texts by name, as they stand in the record: what a string of JSON gives back.
 std::string json_object(const auto& entries) {
@@ -67,7 +60,7 @@ bool SequenceRecord::has(uint32_t frame) const {
         const auto known = hashes_.find(file.string());
         std::error_code fault;
         if (known == hashes_.end() || !std::filesystem::is_regular_file(file, fault)) return false;
-        if (hash_of(file) != known->second) return false;
+        if (hash_of_file(file) != known->second) return false;
     }
     return true;
 }
@@ -86,7 +79,7 @@ void SequenceRecord::add(uint32_t frame, const std::string& picture) {
     pictures_[frame] = picture;
     for (const std::string& output : outputs_) {
         const std::string file = frame_file(output, frame);
-        hashes_[file] = hash_of(file);
+        hashes_[file] = hash_of_file(file);
     }
     std::string text = fmt::format("{{\n  \"settings\": {},\n  \"files\": [", json_object(settings_));
     const char* comma = "";
