@@ -83,7 +83,7 @@ light-lens $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --integrator light --ape
 bidirectional $scenes/cornell-box-mcguire/CornellBox-Water.obj --integrator bidirectional
 photon_map $scenes/cornell-box-mcguire/CornellBox-Water.obj --integrator photon_map
 photon_map-direct $scenes/cornell-box-mcguire/CornellBox-Glass.obj --integrator photon_map --gather direct --nearest 50
-photon_map-sky $scenes/crytek-sponza/sponza.obj --integrator photon_map --photon-search kd-tree --max-depth 6
+photon_map-sky $scenes/crytek-sponza/sponza.obj --integrator photon_map --max-depth 6
 photon_map-crowded caustic --integrator photon_map --max-depth 8
 irradiance_cache cornell-box --integrator irradiance_cache
 irradiance_cache-mirror $scenes/cornell-box-mcguire/CornellBox-Mirror.obj --integrator irradiance_cache --accuracy 0.5
@@ -130,6 +130,5 @@ box-gi $work/box.gltf --frames 0-30 --restir gi
 helmet-gi $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --turntable 120 --frames 0-30 --restir gi
 sibenik-scaled $scenes/sibenik/sibenik.obj --camera-path $here/../bench/sequences/sibenik_turn.json --frames 0-30 --resolution-scale 0.5
 helmet-scaled $scenes/gltf/DamagedHelmet/DamagedHelmet.glb --turntable 120 --frames 0-30 --resolution-scale 0.5 --restir di
-box-ordered $work/box.gltf --frames 0-30 --sample-order
 LIST
 exit $status

@@ -125,10 +125,11 @@ int bench_frames(FramesFlags& flags) {
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, reporter);
     const auto& [queue, scene, settings, camera, prepared] = *benched;
     if (!makes_frames(settings.integrator) && ask_for_frames(flags.render.reconstruction)) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--integrator {}: its frames are samples as they are; --restir, --resolution-scale and "
-                                "--sample-order are for path and hybrid",
-                                integrator_name(settings)));
+        throw Error(
+            ErrorCode::BadInput,
+            fmt::format("--integrator {}: its frames are samples as they are; --restir and --resolution-scale are "
+                        "for path and hybrid",
+                        integrator_name(settings)));
     }
     Session session(*queue, prepared, camera, settings);
     const ToneMap tone_map = ToneMap::Agx;

@@ -12,7 +12,8 @@ namespace pertev {
 namespace {
 
 constexpr std::size_t kColumns = 80, kTextColumn = 27;
-constexpr const char* kOwnGroup = "Options"; // of flags that are no settings, as CLI11 names it
+constexpr const char* kOwnGroup = "Options";  // of flags that are no settings, as CLI11 names it
+constexpr const char* kSettings = "Settings"; // of a short help
 
 std::string small_letters(std::string text) {
     std::ranges::transform(text, text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
@@ -114,16 +115,18 @@ std::string Help::make_help(const CLI::App* verb, std::string, CLI::AppFormatMod
     }
     std::vector<std::string> groups = verb->get_groups();
     std::ranges::stable_partition(groups, [](const std::string& group) { return group == kOwnGroup; });
-    std::string heading; // of the last; a short help gathers all settings under one
+    std::string
+        heading; // of the last; a short help gathers all settings under one, the verb's own where these come before
     for (const std::string& group : groups) {
         if (group.empty() || !(has_all || small_letters(group) == group_)) continue;
         std::string entries;
         for (const CLI::Option* option : flags_of(*verb, group)) {
             if (!group_.empty() || !is_rare(*option)) entries += entry(*option, group_.empty());
         }
-        const bool is_joined = group_.empty() && !heading.empty() && is_of_settings(group);
-        if (!entries.empty() && !is_joined) text += group + ":\n";
-        if (!entries.empty()) heading = group;
+        if (entries.empty()) continue;
+        const std::string own = group_.empty() && is_of_settings(group) ? std::string(kSettings) : group;
+        const bool is_joined = own == kSettings && (heading == kSettings || heading == kOwnGroup);
+        if (!is_joined) text += (heading = own) + ":\n";
         text += entries;
     }
     const std::set<std::string> more = groups_with_more(*verb);

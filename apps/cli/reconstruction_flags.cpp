@@ -9,8 +9,7 @@ ReconstructionSettings reconstruction_settings(const ReconstructionOptions& opti
 }
 
 bool ask_for_frames(const ReconstructionOptions& options) {
-    return options.sharing.light != RestirLight::Off || options.settings.resolution_scale != 1 ||
-           options.settings.orders_samples;
+    return options.sharing.light != RestirLight::Off || options.settings.resolution_scale != 1;
 }
 
 std::string json_of(const ReconstructionOptions& options) {

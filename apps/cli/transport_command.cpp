@@ -100,6 +100,7 @@ TransportSettings settings_of(const TransportFlags& flags, const std::string& si
     std::tie(settings.picture.width, settings.picture.height) = parse_size("--size", size.empty() ? "256x256" : size);
     settings.picture.path.max_depth = flags.max_depth;
     settings.picture.path.seed = flags.seed;
+    settings.picture.photon_map.search = value_named<PhotonSearch>(flags.photon_search).value_or(PhotonSearch::Grid);
     settings.reference_samples = flags.reference_samples > 0 ? flags.reference_samples
                                  : is_cuda                   ? kReferenceSamplesCuda
                                                              : kReferenceSamples;
@@ -197,6 +198,10 @@ void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags&
         "NAME,...")
         ->delimiter(',')
         ->check(one_of(integrator_names()));
+    add(verb.add_option("--photon-search", flags.photon_search,
+                        "structure that finds the photons of photon_map; its picture is the same (grid)"),
+        "NAME")
+        ->check(one_of(names_of<PhotonSearch>()));
     add(verb.add_option("--seconds", flags.seconds, "of rendering for each integrator, all repetitions together"), "S")
         ->check(number_above_zero(1e6f))
         ->capture_default_str();

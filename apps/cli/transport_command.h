@@ -22,7 +22,7 @@ struct TransportFlags {
     std::vector<std::string> integrators;
     double seconds = 10;
     uint32_t repetitions = 4, max_samples = 1u << 16, max_depth = 8, seed = 0;
-    std::string reference, reference_integrator;
+    std::string reference, reference_integrator, photon_search;
     uint32_t reference_samples = 0; // 0: by the device
 };
 

@@ -210,10 +210,10 @@ int view(ViewFlags& flags) {
     check_shown_picture_flags(flags.render);
     const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, reporter);
     if (!makes_frames(ready->settings.integrator) && ask_for_frames(flags.render.reconstruction)) {
-        reporter.messages().note(
-            fmt::format("--integrator {}: its frames are samples as they are; --restir, --resolution-scale and "
-                        "--sample-order count once the panel's integrator is path or hybrid",
-                        integrator_name(ready->settings)));
+        reporter.messages().note(fmt::format(
+            "--integrator {}: its frames are samples as they are; --restir and --resolution-scale count once "
+            "the panel's integrator is path or hybrid",
+            integrator_name(ready->settings)));
     }
     if (flags.render.time_s) say_what_moves(flags.render, *ready->moving, reporter.messages());
     check_jpeg_size("--size", ready->settings.width, ready->settings.height); // that is how pictures are sent

@@ -205,8 +205,8 @@ std::string settings_document() {
                        "Such a file is `{\"version\":1,\"scene\":{\"name\":...,\"hash\":...},\"settings\":{...}}`. "
                        "What it holds that is no setting is\n"
                        "left out with a warning, and `--strict` refuses it. Settings that are marked \"not kept\" do "
-                       "not stand there, because the\n"
-                       "picture does not depend on them.\n";
+                       "not stand there: they are of\n"
+                       "the machine and the run, such as threads, folders to read from and a limit of time.\n";
     std::string_view group;
     for (const Setting& setting : all_settings()) {
         if (group != setting.group) {

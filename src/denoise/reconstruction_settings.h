@@ -21,10 +21,6 @@ struct ReconstructionSettings {
     /// the picture's resolution, and light is enlarged by what they meet. Biased: light between edges is coarse.
     float resolution_scale = 1;
 
-    /// Samples are drawn in an order that makes errors blue noise over space and time (math/frame_order.h). Unbiased.
-    /// Without effect where ReSTIR shares light. Off, as reconstructed frames are no better for it (docs/real_time.md).
-    bool orders_samples = false;
-
     bool operator==(const ReconstructionSettings&) const = default;
 };
 

@@ -18,7 +18,6 @@
 #include <cstdint>
 
 #include "base/host_device.h"
-#include "math/frame_order.h"
 #include "math/random.h"
 #include "math/scalar.h"
 #include "math/vec2.h"
@@ -27,7 +26,6 @@ namespace pertev {
 
 enum class SamplerKind : uint8_t {
     Sobol,       // low discrepancy over the samples of a pixel
-    SpaceTime,   // one sequence over all pixels and frames (math/frame_order.h): `pixel` is a morton_code
     Independent, // white noise: for tests and comparisons
 };
 
@@ -137,16 +135,7 @@ struct GroupKeys {
 };
 
 template <class Word>
-HD inline GroupKeys<Word> group_keys(SamplerKind kind, SampleKeyOf<Word> key, std::type_identity_t<Word> group) {
-    if (kind == SamplerKind::SpaceTime) {
-        constexpr uint32_t kTimes = (1u << kFrameBits) - 1;
-        const Hash3Of<Word> keys = hash_words<Word>(key.sample >> kFrameBits, group, Word{} + ~key.seed);
-        // Shuffled as below, each by itself: blocks of pixels and of frames stay blocks.
-        const Word place = reverse_bits(owen_scramble_reversed(reverse_bits(key.pixel), keys.x));
-        const Word first_bits = reverse_bits(key.sample & kTimes) >> (32 - kFrameBits);
-        const Word time = reverse_bits(owen_scramble_reversed(first_bits, hash_word(keys.x)) & kTimes);
-        return {place ^ frame_word(time >> (32 - kFrameBits)), keys};
-    }
+HD inline GroupKeys<Word> group_keys(SampleKeyOf<Word> key, std::type_identity_t<Word> group) {
     const Hash3Of<Word> keys = hash_words<Word>(key.pixel, group, Word{} + key.seed);
     // The order of the points is shuffled by scrambling the index.
     return {reverse_bits(owen_scramble_reversed(reverse_bits(key.sample), keys.x)), keys};
@@ -166,9 +155,8 @@ template <class Word = uint32_t>
 sample_bits(SamplerKind kind, std::type_identity_t<SampleKeyOf<Word>> key, std::type_identity_t<Word> group,
             Pair pair = Pair::First) {
     switch (kind) {
-    case SamplerKind::Sobol:
-    case SamplerKind::SpaceTime: {
-        const GroupKeys<Word> keys = group_keys(kind, key, group);
+    case SamplerKind::Sobol: {
+        const GroupKeys<Word> keys = group_keys(key, group);
         const uint32_t first = pair == Pair::First ? 0 : 2;
         return {scrambled_component(keys, first), scrambled_component(keys, first + 1)};
     }
@@ -189,8 +177,7 @@ HD inline Vec2 sample_2d(SamplerKind kind, SampleKey key, uint32_t group, Pair p
 HD inline float sample_1d(SamplerKind kind, SampleKey key, uint32_t group, uint32_t number = 0) {
     switch (kind) {
     case SamplerKind::Sobol:
-    case SamplerKind::SpaceTime:
-        return unit_interval(scrambled_component(group_keys(kind, key, group), number));
+        return unit_interval(scrambled_component(group_keys(key, group), number));
     case SamplerKind::Independent:
         break;
     }

@@ -3,7 +3,7 @@
 // The order in which paths, trees of rays and walks begin. All samples of a pixel come first, then those of the next
 // pixel. So what is under way at a time comes from few pixels that lie side by side, and meets the same nodes,
 // triangles and textures while caches hold them (docs/performance.md, "The order in which samples begin"). No picture
-// depends on this order; which random numbers a sample has is another matter (math/frame_order.h).
+// depends on this order; which random numbers a sample has is another matter (math/sampler.h).
 
 #include <cstdint>
 

@@ -7,43 +7,19 @@
 #include "render/film_stages.h"
 
 namespace pertev {
-namespace {
-
-/// Calls add(first, from, count) for a few elements at a time of `values`, which lie in `from` in memory of `queue`:
-/// where they are, or copied there from another queue's.
-template <class T, class Add>
-void visit_in(Queue& queue, Queue& theirs, const Buffer<T>& values, const Add& add) {
-    constexpr std::size_t kAtOnce = std::size_t(1) << 20; // 16 MiB of sums
-    const bool is_here = &queue == &theirs;
-    std::vector<T> on_host;
-    Buffer<T> copy;
-    if (!is_here) {
-        on_host.resize(std::min(kAtOnce, values.size()));
-        copy = Buffer<T>(queue, on_host.size(), "film to be added");
-    }
-    for (std::size_t first = 0; first < values.size(); first += kAtOnce) {
-        const std::size_t count = std::min(kAtOnce, values.size() - first);
-        const T* from = values.data() + first;
-        if (!is_here) {
-            theirs.copy_to_host(on_host.data(), from, count * sizeof(T));
-            copy.upload({on_host.data(), count});
-            from = copy.data();
-        }
-        add(first, from, static_cast<uint32_t>(count));
-    }
-    queue.wait(); // before the copy goes
-}
-
-} // namespace
-
 Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, uint32_t light_layers)
     : queue_(&queue), width_(width), height_(height), aovs_(aovs), light_layers_(light_layers),
-      channels_(film_channel_count(aovs) + 3 * light_layers),
-      sums_(queue, std::size_t(width) * height * channels_, "film"),
-      ids_(queue, (aovs & kAovIds) != 0 ? std::size_t(width) * height : 0, "film ids"),
-      invalid_(queue, 1, "invalid samples"),
-      resolved_(queue, std::size_t(width) * height * kFilmColorChannels, "resolved film") {
-    clear();
+      channels_(film_channel_count(aovs) + 3 * light_layers) {
+    const std::size_t pixels = std::size_t(width) * height;
+    const auto take = [&]<class Target>(std::size_t count, const char* name, const Target*& taken) {
+        auto target = std::make_unique<Target>(queue, count, name);
+        taken = target.get();
+        hold(std::move(target));
+    };
+    take(pixels * channels_, "film", sums_);
+    if ((aovs & kAovIds) != 0) take(pixels, "film ids", ids_);
+    take(1, "invalid samples", invalid_);
+    resolved_ = {queue, pixels * kFilmColorChannels, "resolved film"};
 }
 
 std::size_t Film::predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs, uint32_t light_layers) {
@@ -53,27 +29,26 @@ std::size_t Film::predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs
 }
 
 void Film::clear() {
-    sums_.zero();
-    ids_.fill(0xff); // kNoHit
-    invalid_.zero();
+    for (const auto& target : targets_) target->clear();
 }
 
 FilmView Film::view() const {
-    return {sums_.data(), ids_.data(), invalid_.data(), channels_, aovs_, width_, height_, {}, {}};
+    FilmView view = {nullptr, nullptr, nullptr, channels_, aovs_, width_, height_, {}, {}};
+    for (const auto& target : targets_) target->show(view);
+    return view;
 }
 
 void Film::add(const Film& other) {
     PERTEV_CHECK(other.width_ == width_ && other.height_ == height_ && other.aovs_ == aovs_ &&
-                 other.light_layers_ == light_layers_);
-    visit_in(*queue_, *other.queue_, other.sums_, [&](std::size_t first, const FixedSum* from, uint32_t count) {
-        launch(*queue_, "add_films", count, AddSums{from, sums_.data() + first});
-    });
-    visit_in(*queue_, *other.queue_, other.ids_, [&](std::size_t first, const PixelIds* from, uint32_t count) {
-        launch(*queue_, "add_film_ids", count, AddIds{from, ids_.data() + first});
-    });
-    const uint64_t invalid = invalid_samples() + other.invalid_samples();
-    invalid_.upload({&invalid, 1});
+                 other.light_layers_ == light_layers_ && other.targets_.size() == targets_.size());
+    for (std::size_t i = 0; i < targets_.size(); ++i) targets_[i]->add(*other.targets_[i]);
 }
+
+std::vector<PixelIds> Film::ids() const {
+    return ids_ != nullptr ? ids_->elements().download() : std::vector<PixelIds>();
+}
+
+uint64_t Film::invalid_samples() const { return invalid_->elements().download()[0]; }
 
 Image Film::resolve(uint32_t first, uint32_t channels, bool over_hits, uint64_t samples) const {
     launch(*queue_, "resolve_film", pixel_count(),

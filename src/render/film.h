@@ -1,18 +1,20 @@
 #pragma once
 
-// The film: exact sums of samples, on a device. The picture is a function of the sums and the number of samples. Means
-// and shown pixels are made on the device (render/film_stages.h), into room that the film has held from the start: a
-// long render never fails for want of it.
+// The film: targets (render/film_target.h) that samples are added to, on a device. The picture is a function of the
+// exact sums and the number of samples. Means and shown pixels are made on the device (render/film_stages.h), into room
+// that the film has held from the start: a long render never fails for want of it.
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "device/buffer.h"
 #include "image/image.h"
 #include "image/tone_map.h"
-#include "render/film_view.h"
+#include "render/film_stages.h"
+#include "render/film_target.h"
 
 namespace pertev {
 
@@ -23,6 +25,27 @@ struct FilmLayer {
     Image image;
 };
 
+/// Exact sums of the channels of render/film_channels.h.
+class SumTarget : public ElementTarget<FixedSum, AddSums, 0> {
+public:
+    using ElementTarget::ElementTarget;
+    void show(FilmView& view) const override { view.sums = elements().data(); }
+};
+
+/// What sample 0 of each pixel hit first.
+class IdTarget : public ElementTarget<PixelIds, AddIds, 0xff> { // kNoHit
+public:
+    using ElementTarget::ElementTarget;
+    void show(FilmView& view) const override { view.ids = elements().data(); }
+};
+
+/// One count of samples that were not finite or over kMaxSampleValue.
+class InvalidTarget : public ElementTarget<uint64_t, AddCounts, 0> {
+public:
+    using ElementTarget::ElementTarget;
+    void show(FilmView& view) const override { view.invalid = elements().data(); }
+};
+
 class Film {
 public:
     /// `aovs`: AovBits. `light_layers`: layers of three channels behind these (LightPathView). Starts at zero.
@@ -30,14 +53,18 @@ public:
 
     static std::size_t predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs, uint32_t light_layers = 0);
 
+    /// Another one, which is cleared, added and kept with the film's own.
+    void hold(std::unique_ptr<FilmTarget> target) { targets_.push_back(std::move(target)); }
+    std::span<const std::unique_ptr<FilmTarget>> targets() const { return targets_; }
+
     FilmView view() const;
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
     uint32_t light_layers() const { return light_layers_; }
     void clear();
 
-    /// Adds the samples of a film of the same size and layers, from any queue: then this one is as if it had taken them
-    /// itself. The two hold different samples; ids come from the one that holds sample 0.
+    /// Adds the samples of a film of the same size and targets, from any queue: then this one is as if it had taken
+    /// them itself. The two hold different samples; ids come from the one that holds sample 0.
     void add(const Film& other);
 
     /// The mean of `samples` samples a pixel: RGB, or RGBA (colour times coverage, coverage) with `transparent`.
@@ -52,8 +79,8 @@ public:
     /// Light layer `layer`: RGB.
     Image light_layer(uint32_t layer, uint64_t samples) const;
     /// Ids of sample 0, row by row; empty without kAovIds.
-    std::vector<PixelIds> ids() const { return ids_.download(); }
-    uint64_t invalid_samples() const { return invalid_.download()[0]; }
+    std::vector<PixelIds> ids() const;
+    uint64_t invalid_samples() const;
 
 private:
     uint32_t pixel_count() const { return width_ * height_; }
@@ -61,9 +88,10 @@ private:
 
     Queue* queue_;
     uint32_t width_, height_, aovs_, light_layers_, channels_;
-    Buffer<FixedSum> sums_;
-    Buffer<PixelIds> ids_;
-    Buffer<uint64_t> invalid_;
+    std::vector<std::unique_ptr<FilmTarget>> targets_; // the first of them those below
+    const SumTarget* sums_;
+    const IdTarget* ids_ = nullptr; // none without kAovIds
+    const InvalidTarget* invalid_;
     Buffer<float> resolved_; // kFilmColorChannels a pixel: what a picture, a layer or a display takes at most
     std::unique_ptr<HostCopy> display_; // none before it is asked for
 };

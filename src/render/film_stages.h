@@ -20,6 +20,14 @@ struct AddSums {
     HD void operator()(uint32_t i) const { to[i] = to[i] + from[i]; }
 };
 
+/// One count each.
+struct AddCounts {
+    const uint64_t* from;
+    uint64_t* to;
+
+    HD void operator()(uint32_t i) const { to[i] += from[i]; }
+};
+
 /// One pixel each. Ids belong to sample 0: a film that has not got it holds kNoHit, as where it hit nothing.
 struct AddIds {
     const PixelIds* from;

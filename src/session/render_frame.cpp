@@ -51,11 +51,7 @@ bool Session::render_frame(uint32_t number, const ReconstructionSettings& settin
     RenderSettings of_light = settings_of_frames(settings_);
     of_light.width = scaled_side(settings_.width, settings);
     of_light.height = scaled_side(settings_.height, settings);
-    if (settings.orders_samples && restir.light == RestirLight::Off && of_light.path.sampler == SamplerKind::Sobol) {
-        of_light.path.sampler = SamplerKind::SpaceTime;
-    }
     frame_number_ = number;
-    frame_sampler_ = of_light.path.sampler;
     NoisyFrame& frame = fit(noisy_frame_, of_light.width, of_light.height);
     if (!reconstruction_ || !light_change_ || !light_change_->fits(frame)) { // of another size, or of other signals
         light_change_.reset();
@@ -110,7 +106,7 @@ bool Session::render_frame(uint32_t number, const ReconstructionSettings& settin
 /// Renders sample `number` of each pixel of `frame`, at its size. While `*abandon` is true, pixels are left out.
 void Session::take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
                           const std::atomic<bool>* abandon) {
-    settings.width = settings.path.frame_width = frame.width();
+    settings.width = frame.width();
     settings.height = frame.height();
     Integrator& integrator = begin(camera, settings, 1);
     integrator.abandon_when(abandon);
@@ -162,8 +158,6 @@ RenderResult Session::frame_result() {
     of_layers.samples = 1;
     of_layers.light_paths = nullptr;
     of_layers.path.max_depth = 0;
-    of_layers.path.sampler = frame_sampler_;
-    of_layers.path.frame_width = settings_.width;
     RenderResult seen = look_aside(camera_, of_layers, frame_number_);
     result.layers = std::move(seen.layers);
     result.ids = std::move(seen.ids);

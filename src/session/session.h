@@ -206,7 +206,6 @@ private:
     RayCounts frame_rays_;
     SceneTracer::Seconds frame_kind_seconds_;
     uint32_t frame_number_ = 0;                          // of the last frame: its sample's
-    SamplerKind frame_sampler_ = PathSettings{}.sampler; // of that sample
     bool film_is_old_ = false;                           // holds samples of a picture that is no more asked for
     /// With the settings that it has.
     struct HeldIntegrator {

@@ -39,7 +39,6 @@ inline constexpr ValueName<PhotonGather> kPhotonGathers[] = {{PhotonGather::Dire
                                                              {PhotonGather::Final, "final"}};
 inline constexpr ValueName<PhotonSearch> kPhotonSearches[] = {
     {PhotonSearch::Grid, "grid"}, {PhotonSearch::KdTree, "kd-tree"}, {PhotonSearch::Octree, "octree"}};
-/// SpaceTime is no choice: sample_order has it.
 inline constexpr ValueName<SamplerKind> kSamplers[] = {{SamplerKind::Sobol, "sobol"},
                                                        {SamplerKind::Independent, "independent"}};
 inline constexpr ValueName<PixelFilter> kPixelFilters[] = {{PixelFilter::Box, "box"},

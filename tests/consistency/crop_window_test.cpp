@@ -38,7 +38,6 @@ Rendered render(Queue& queue, const PreparedScene& prepared, PathBody body, Samp
     settings.body = body;
     settings.batch = 500;
     settings.path.sampler = sampler;
-    if (sampler == SamplerKind::SpaceTime) settings.path.frame_width = kWidth;
     const auto integrator = make_integrator(queue, settings);
     integrator->begin({scene.view(), rays}, tracer, kSamples);
     const Film film(queue, is_window ? kWindow.width : kWidth, is_window ? kWindowHeight : kHeight, kAovs);
@@ -71,7 +70,7 @@ TEST_CASE("a film of a window has the bytes that the whole picture has there") {
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
-        for (const SamplerKind sampler : {SamplerKind::Sobol, SamplerKind::SpaceTime}) {
+        for (const SamplerKind sampler : {SamplerKind::Sobol, SamplerKind::Independent}) {
             CAPTURE(static_cast<int>(body));
             CAPTURE(static_cast<int>(sampler));
             Queue queue = test::queue_asked_for();

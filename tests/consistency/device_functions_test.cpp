@@ -94,7 +94,7 @@ void check_same_hits(const Scene& scene, uint32_t count) {
 } // namespace
 
 TEST_CASE("random numbers have the same bits on both devices") {
-    for (const SamplerKind kind : {SamplerKind::Sobol, SamplerKind::SpaceTime, SamplerKind::Independent}) {
+    for (const SamplerKind kind : {SamplerKind::Sobol, SamplerKind::Independent}) {
         check_same_bits(static_cast<uint32_t>(effort_of_two(1 << 18, 1 << 26)),
                         [&](Queue& queue, uint32_t* out, uint32_t count) {
                             launch(queue, "draw_samples", count, test::DrawSamples{kind, out});

@@ -122,9 +122,6 @@ TEST_CASE("layers of a frame are those of its own sample, whatever order samples
     }
     session.render_frame(kNumber + 1, {});
     CHECK(picture_hash(layer_named(session.frame_result(), "albedo")) != picture_hash(seen));
-    // Samples that are drawn in another order lie elsewhere in their pixels.
-    session.render_frame(kNumber, of_samples_alone({.orders_samples = true}));
-    CHECK(picture_hash(layer_named(session.frame_result(), "albedo")) != picture_hash(seen));
 }
 
 TEST_CASE("the bytes that are predicted of frames are those that a session takes") {

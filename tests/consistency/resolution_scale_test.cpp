@@ -26,7 +26,6 @@ RenderSettings settings_of(uint32_t width, uint32_t height) {
 ReconstructionSettings scaled(float scale) {
     ReconstructionSettings settings;
     settings.resolution_scale = scale;
-    settings.orders_samples = true; // which has the same bytes everywhere too
     return settings;
 }
 

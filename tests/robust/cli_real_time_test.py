@@ -110,7 +110,7 @@ class RealTime(CliTest):
         self.render("x", *motion)
         for flags in (["--passes", "4"], ["--history", "8"], ["--restir", "di"], ["--restir-history", "3"],
                       ["--resolution-scale", "0.5"], ["--no-anti-alias"], ["--no-firefly-limit"], ["--no-history-limit"],
-                      ["--no-follow-light"], ["--sample-order"], ["--no-reconstruction"]):
+                      ["--no-follow-light"], ["--no-reconstruction"]):
             self.refuse_to_render("x", *motion, "--continue", *flags, says=[flags[0], "--continue"])
         self.refuse(2, "render", "m.gltf", "-o", "x/f-##.png", *SMALL, "--spp", "1", *motion, "--continue",
                     says=['made with --real-time "true"'])

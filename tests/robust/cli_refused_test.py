@@ -120,11 +120,6 @@ class WhatIsRefused(CliTest):
                 outcome = self.refuse(code, "render", "cornell-box", "-o", "x.png", *flags.split(), says=[says])
                 self.assertEqual(len(outcome.stderr.strip().splitlines()), 1, outcome)
         self.refuse(2, "bench", "frames", "cornell-box", "--integrator", "distributed", "--restir", "di", says=["are for path"])
-        for shares in ("di", "gi"):
-            self.refuse(2, "bench", "frames", "cornell-box", "--sample-order", "--restir", shares,
-                        says=["--sample-order", f"--restir {shares}"])
-        self.refuse(2, "render", "cornell-box", "-o", "x-#.png", "--frames", "0-1", "--real-time", "--sample-order", "--sampler",
-                    "independent", says=["--sample-order", "--sampler independent"])
 
     def test_a_render_for_which_there_is_no_room_says_which_limit_that_is_and_what_weighs(self):
         with open("/proc/meminfo", encoding="ascii") as file:

@@ -20,9 +20,9 @@ FLAGS = {
               "--integrator --max-depth --ambient --shading --wireframe --seed --sampler --filter --filter-radius --clamp --device --threads "
               "--no-bvh-cache --build --structure --walk --rta --order --distribution --time --frames --fps --camera-path "
               "--turntable --continue --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
-              "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest --photon-search "
+              "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest "
               "--accuracy --hemisphere-rays --show-records --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube "
-              "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --sample-order --history --passes --no-anti-alias "
+              "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --history --passes --no-anti-alias "
               "--no-firefly-limit --no-follow-light --no-history-limit --no-reconstruction --animation --file-scene --ground --settings",
     "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --up-axis --unit --environment --environment-rotation "
                "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --animation --file-scene --strict --quiet -q --json",

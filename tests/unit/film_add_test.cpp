@@ -76,6 +76,58 @@ TEST_CASE("films that hold parts of the samples add up to the film that holds th
     }
 }
 
+TEST_CASE("a film is made again from the bytes of its targets, on whichever device it was and is to be") {
+    Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
+    Film whole(cpu, kWidth, kHeight, kAovs), part(cpu, kWidth, kHeight, kAovs), other(cpu, kWidth, kHeight, kAovs);
+    for (uint32_t sample = 0; sample < kSamples; ++sample) {
+        take_sample(whole, sample);
+        take_sample(sample < 2 ? part : other, sample);
+    }
+    Film again(asked, kWidth, kHeight, kAovs);
+    REQUIRE(again.targets().size() == 3);
+    for (std::size_t i = 0; i < again.targets().size(); ++i) {
+        again.targets()[i]->set_bytes(part.targets()[i]->bytes());
+        CHECK(again.targets()[i]->bytes() == part.targets()[i]->bytes());
+        CHECK_THROWS_AS(again.targets()[i]->set_bytes({}), std::logic_error);
+    }
+    again.add(other);
+    check_equal(again, whole);
+}
+
+/// Counts of a test alone: a kind of target that the film knows nothing of.
+class CountTarget : public ElementTarget<uint64_t, AddCounts, 0> {
+public:
+    using ElementTarget::ElementTarget;
+    void show(FilmView&) const override {}
+    void count(uint64_t more) {
+        std::vector<uint64_t> counts = elements().download();
+        for (uint64_t& c : counts) c += more;
+        set_bytes(std::as_bytes(std::span<const uint64_t>(counts)));
+    }
+};
+
+TEST_CASE("targets that a film is given are added and cleared with its own, and those of another kind are refused") {
+    Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
+    const auto with_counts = [](Queue& queue, std::size_t count, const char* name) {
+        Film film(queue, kWidth, kHeight, 0);
+        film.hold(std::make_unique<CountTarget>(queue, count, name));
+        return film;
+    };
+    Film a = with_counts(asked, 5, "counts");
+    const Film b = with_counts(cpu, 5, "counts");
+    const auto counts_of = [](const Film& film) -> CountTarget& {
+        return dynamic_cast<CountTarget&>(*film.targets().back());
+    };
+    counts_of(a).count(3), counts_of(b).count(4);
+    a.add(b);
+    CHECK(counts_of(a).elements().download() == std::vector<uint64_t>(5, 7));
+    CHECK_THROWS_AS(a.add(with_counts(cpu, 4, "counts")), std::logic_error);
+    CHECK_THROWS_AS(a.add(with_counts(cpu, 5, "other counts")), std::logic_error);
+    CHECK_THROWS_AS(a.add(Film(cpu, kWidth, kHeight, 0)), std::logic_error);
+    a.clear();
+    CHECK(counts_of(a).elements().download() == std::vector<uint64_t>(5, 0));
+}
+
 TEST_CASE("a film of another size or of other layers is refused") {
     Queue queue = Queue::make_cpu();
     Film film(queue, kWidth, kHeight, kAovDepth);

@@ -11,12 +11,10 @@ using namespace pertev;
 
 namespace {
 
-constexpr SamplerKind kKinds[] = {SamplerKind::Sobol, SamplerKind::SpaceTime, SamplerKind::Independent};
+constexpr SamplerKind kKinds[] = {SamplerKind::Sobol, SamplerKind::Independent};
 constexpr uint32_t kWidth = 1920;
 
-PathSettings settings_of(SamplerKind kind, uint32_t seed) {
-    return {.sampler = kind, .seed = seed, .frame_width = kind == SamplerKind::SpaceTime ? kWidth : 0};
-}
+PathSettings settings_of(SamplerKind kind, uint32_t seed) { return {.sampler = kind, .seed = seed}; }
 
 /// Eight paths that share nothing: every lane another pixel, sample and depth.
 PathState path_of(uint32_t lane, uint32_t round) {

@@ -6,9 +6,16 @@
 #include "integrators/path/host_shading.h"
 
 namespace pertev {
-/// All that it calls is in line: g++ by itself would leave a dozen calls, for a third more time of Bitterli's box.
+#if defined(PERTEV_KEEPS_CALLS)
+#define PERTEV_INLINE_ALL
+#else
+#define PERTEV_INLINE_ALL [[gnu::flatten]]
+#endif
+
+/// All that it calls is in line: g++ by itself would leave a dozen calls, for a third more time of Bitterli's box. That
+/// takes g++ twenty times as long, so that a build that only tests (src/CMakeLists.txt) does without.
 template <Features kFeatures, class Listener>
-[[gnu::flatten]] bool shade_on_host(const PathJob& job, PathState& path, typename Listener::Kept& kept, const Hit& hit,
+PERTEV_INLINE_ALL bool shade_on_host(const PathJob& job, PathState& path, typename Listener::Kept& kept, const Hit& hit,
                                     const DrawnNumbers& numbers, AskedByVertex<Listener>& asked, bool& goes_on) {
     Listener listener(job);
     if (path.depth == 0) {

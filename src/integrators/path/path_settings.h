@@ -41,7 +41,6 @@ struct PathSettings {
     float clamp = 0; // largest channel of one contribution, W/(sr m2), of light scattered twice or more; 0 = off
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
-    uint32_t frame_width = 0; // pixels, of a picture whose sampler is SpaceTime
 
     bool operator==(const PathSettings&) const = default;
 };
@@ -53,9 +52,7 @@ HD inline bool may_end_by_chance(const PathSettings& settings, uint32_t vertex) 
 
 /// What the random numbers of a path are drawn by.
 HD inline SampleKey sample_key(const PathSettings& settings, uint32_t pixel, uint32_t sample) {
-    const bool is_placed = settings.sampler == SamplerKind::SpaceTime;
-    return {is_placed ? morton_code(pixel % settings.frame_width, pixel / settings.frame_width) : pixel, sample,
-            settings.seed};
+    return {pixel, sample, settings.seed};
 }
 
 } // namespace pertev
