@@ -217,7 +217,7 @@ TEST_CASE("an overture tells how far it is, from nothing to all, and never less 
         for (auto now = told.begin(); now < samples; ++now) {
             const double share = now->made_share, done = static_cast<double>(now->rays.total()) / all_rays;
             if (now > told.begin()) CHECK(share >= now[-1].made_share);
-            CHECK(abs(static_cast<float>(share - done)) < 0.35f);
+            CHECK(pertev::abs(static_cast<float>(share - done)) < 0.35f);
             CHECK(share < 1);
             CHECK(now->made_seconds == now->seconds);
         }

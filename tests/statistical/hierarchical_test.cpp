@@ -216,7 +216,7 @@ TEST_CASE("what a cluster sends is known by direction") {
     std::vector<Vec3> normals;
     for (int i = 0; i < 200; ++i) {
         Vec3 normal = random.direction();
-        normal.z = abs(normal.z); // a hill
+        normal.z = pertev::abs(normal.z); // a hill
         normals.push_back(normal);
         sent.add(normal, {0.5f, 1, 0});
     }
