@@ -51,10 +51,13 @@ struct JobBytes {
 
 JobBytes bytes_of(const RenderSettings& settings, const PreparedScene& prepared, const Queue& queue) {
     JobBytes bytes;
-    const uint64_t pixels = uint64_t(settings.width) * settings.height;
     const TracerChoice tracers = tracers_of(settings, queue.is_cuda());
-    bytes.of_queues = predicted_bytes(settings, pixels, settings.samples, queue.is_cuda(),
-                                      can_walk_on_host(tracers, queue.is_cuda()));
+    bytes.of_queues = predicted_bytes(settings,
+                                      {.width = settings.width,
+                                       .height = settings.height,
+                                       .samples = settings.samples,
+                                       .walks_on_host = can_walk_on_host(tracers, queue.is_cuda())},
+                                      queue.is_cuda());
     if (queue.is_cuda() && prepared.triangles > 0) {
         bytes.of_structures =
             static_cast<double>(prepared.structures->device_bytes(tracers)) / static_cast<double>(prepared.triangles);

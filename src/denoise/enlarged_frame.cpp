@@ -18,11 +18,6 @@ EnlargedFrame::EnlargedFrame(Queue& queue, uint32_t width, uint32_t height)
       picture_(wide_.data() + std::size_t(2) * width * height),
       tones_(queue, float4s_of_tones(width, height), "enlarged frame") {}
 
-std::size_t EnlargedFrame::predicted_bytes(uint32_t width, uint32_t height) {
-    return std::size_t(width) * height * (kWideArrays * sizeof(Float4) + sizeof(Vec2)) +
-           float4s_of_tones(width, height) * sizeof(Float4);
-}
-
 Float4* EnlargedFrame::shown(uint32_t frame) const { return wide_.data() + frame % 2 * std::size_t(width_) * height_; }
 
 void EnlargedFrame::add(const NoisyFrame& features, const CameraView& camera, const CoarseLight& light,

@@ -15,8 +15,6 @@ public:
     /// Size of the picture.
     EnlargedFrame(Queue& queue, uint32_t width, uint32_t height);
 
-    static std::size_t predicted_bytes(uint32_t width, uint32_t height);
-
     /// `features`: a frame of this size, seen by `camera`, whose paths end at the first surface.
     void add(const NoisyFrame& features, const CameraView& camera, const CoarseLight& light, const SceneView& scene,
              const PreviousScene& before, const ReconstructionSettings& settings, bool has_history);

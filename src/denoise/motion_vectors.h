@@ -62,8 +62,16 @@ private:
     }
 };
 
-/// Of the device's memory, while motion_vectors is at work.
-std::size_t motion_vector_bytes(uint32_t width, uint32_t height);
+/// The memory that motion_vectors holds while it runs.
+struct MotionVectorMemory {
+    MotionVectorMemory(Queue& queue, uint32_t width, uint32_t height);
+
+    uint32_t most; // pixels of a batch
+    Buffer<Ray> rays;
+    Buffer<uint32_t> keys, instances;
+    Buffer<Float4> places;
+    Buffer<Vec2> motion;
+};
 
 /// Of the picture: two channels, pixels to the right and up. `camera_before` saw the frame before, of the same size, in
 /// which things stood as `before` says. Throws Error(OutOfMemory, DeviceFault).

@@ -40,10 +40,6 @@ PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
     guide_.object = objects_.data();
 }
 
-std::size_t PictureDenoiser::predicted_bytes(uint32_t width, uint32_t height) {
-    return std::size_t(width) * height * (kWideArrays * sizeof(Float4) + sizeof(Vec2) + sizeof(uint32_t));
-}
-
 void PictureDenoiser::begin(const NoisyFrame& centres, const CameraView& camera) {
     PERTEV_CHECK(centres.width() == width_ && centres.height() == height_);
     launch(*queue_, "begin_sums", width_ * height_, BeginSums{centres.view(), guide_, sums_});

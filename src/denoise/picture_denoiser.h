@@ -20,8 +20,6 @@ public:
 
     PictureDenoiser(Queue& queue, uint32_t width, uint32_t height);
 
-    static std::size_t predicted_bytes(uint32_t width, uint32_t height);
-
     /// Begins a picture. `centres`: a frame of this size, of rays through the pixels' centres, seen by `camera`.
     void begin(const NoisyFrame& centres, const CameraView& camera);
     /// What the camera rays of a sample meet: of samples 0 to kFeatures - 1 before any light, so that edges and

@@ -43,10 +43,6 @@ Reconstruction::Reconstruction(Queue& queue, uint32_t width, uint32_t height)
       wide_(queue, wide_count(width, height), "reconstruction"),
       narrow_(queue, narrow_count(width, height), "reconstruction") {}
 
-std::size_t Reconstruction::predicted_bytes(uint32_t width, uint32_t height) {
-    return wide_count(width, height) * sizeof(Float4) + narrow_count(width, height) * sizeof(Vec2);
-}
-
 LightChangeRoom Reconstruction::room_for_change() const {
     Float4* const signals = wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_;
     return {reinterpret_cast<Float4*>(places_before()), signals,

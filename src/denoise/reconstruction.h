@@ -33,8 +33,6 @@ class Reconstruction {
 public:
     Reconstruction(Queue& queue, uint32_t width, uint32_t height);
 
-    static std::size_t predicted_bytes(uint32_t width, uint32_t height);
-
     /// What follows has nothing to do with what was seen before.
     void cut() { frames_ = 0; }
     /// Makes the picture of `frame`, which has this size, seen by `camera` in `scene`. `before`: where things stood in

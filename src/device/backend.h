@@ -1,7 +1,8 @@
 #pragma once
 
-// What a kind of device must offer: the few calls that move memory, wait and tell the time. Two exist, the CPU
-// (queue.cpp) and CUDA (cuda/cuda_backend.cpp); a queue calls through this table.
+// What a kind of device must offer: the few calls that move memory, wait and tell the time. There are the CPU
+// (queue.cpp), CUDA (cuda/cuda_backend.cpp), and a dry run of either, which counts memory (queue.cpp); a queue calls
+// through this table.
 
 #include <cstddef>
 #include <cstdint>
@@ -45,6 +46,8 @@ public:
 
     virtual std::string name() const = 0;
     virtual bool is_cuda() const = 0;
+    /// Returns whether the device only counts bytes (Queue::make_dry_run).
+    virtual bool is_dry_run() const { return false; }
     virtual void* stream() const = 0; // the current one, a cudaStream_t; null on the CPU
     /// Later work goes to stream `index`. On the CPU there is but one.
     virtual void use_stream(int index) = 0;

@@ -40,6 +40,13 @@ public:
         return *this;
     }
 
+    /// Makes room for `count` elements. A smaller buffer is freed first, so that both need not fit into memory.
+    void grow(Queue& queue, std::size_t count, const std::string& name) {
+        if (count_ >= count) return;
+        *this = Buffer();
+        *this = Buffer(queue, count, name);
+    }
+
     T* data() const { return data_; }
     std::size_t size() const { return count_; }
 

@@ -30,7 +30,7 @@ __global__ void __launch_bounds__(Stage::kShape.threads, Stage::kShape.wanted)
 /// As launch(), with a queue of a GPU alone: the CPU's loop is not compiled.
 template <class Stage>
 void launch_on_gpu(Queue& queue, const char* name, WorkCount count, const Stage& stage) {
-    if (count.most == 0) return;
+    if (count.most == 0 || queue.is_dry_run()) return;
     const Queue::Scope scope(queue, name);
     const auto stream = static_cast<cudaStream_t>(queue.stream());
     const auto blocks_of = [&](uint64_t threads) { return uint32_t((uint64_t(count.most) + threads - 1) / threads); };
@@ -50,7 +50,7 @@ void launch(Queue& queue, const char* name, WorkCount count, const Stage& stage)
 #if defined(__CUDACC__)
     if (queue.is_cuda()) return launch_on_gpu(queue, name, count, stage);
 #endif
-    if (count.most == 0) return;
+    if (count.most == 0 || queue.is_dry_run()) return;
     const Queue::Scope scope(queue, name);
     parallel_for(count.value(), 256, [&](uint64_t i) {
         if constexpr (WholeBlockStage<Stage>) {

@@ -70,11 +70,44 @@ public:
     }
 };
 
+class DryRunBackend final : public DeviceBackend {
+public:
+    explicit DryRunBackend(bool is_cuda) : is_cuda_(is_cuda) {}
+    void make_current() const override { PERTEV_CHECK(false); } // there is nothing that work could run on
+    std::string name() const override { return "dry run"; }
+    bool is_cuda() const override { return is_cuda_; }
+    bool is_dry_run() const override { return true; }
+    void* stream() const override { return nullptr; }
+    void use_stream(int) override {}
+    void let_wait(int, int) override {}
+    std::size_t free_bytes() const override { return SIZE_MAX; }
+    void* allocate(std::size_t bytes) override {
+        const std::uintptr_t at = next_; // aligned, and no other's, as of memory
+        next_ += (bytes + kAlignment - 1) / kAlignment * kAlignment;
+        return reinterpret_cast<void*>(at);
+    }
+    void free(void*) noexcept override {}
+    void copy_to_device(void*, const void*, std::size_t) override {}
+    void copy_to_host(void* host, const void*, std::size_t bytes) override { std::memset(host, 0, bytes); }
+    void copy_on_device(void*, const void*, std::size_t) override {}
+    void fill(void*, unsigned char, std::size_t) override {}
+    void wait(const char*) override {}
+    void check_launch(const char*) override {}
+    std::unique_ptr<TimeMark> make_time_mark() override { return std::make_unique<CpuTimeMark>(); }
+    std::unique_ptr<HostCopy> make_host_copy(std::size_t) override { return std::make_unique<CpuHostCopy>(0); }
+
+private:
+    bool is_cuda_;
+    std::uintptr_t next_ = kAlignment;
+};
+
 double mebibytes(std::size_t bytes) { return static_cast<double>(bytes) / (1024.0 * 1024.0); }
 
 } // namespace
 
 Queue Queue::make_cpu() { return Queue(std::make_unique<CpuBackend>()); }
+
+Queue Queue::make_dry_run(bool is_cuda) { return Queue(std::make_unique<DryRunBackend>(is_cuda)); }
 
 Queue Queue::make_cuda(int index) { return Queue(make_cuda_backend(index)); }
 

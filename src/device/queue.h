@@ -23,10 +23,14 @@ public:
     static Queue make_cpu();
     /// Throws Error(BadInput) that says why when the device cannot be used.
     static Queue make_cuda(int index);
+    /// Returns a queue that counts the bytes that buffers ask for and gives no memory. Nothing may read a buffer's
+    /// address, and nothing is copied, filled or launched. The count predicts what the same code takes on a device.
+    static Queue make_dry_run(bool is_cuda);
     /// Buffers point to their queue: it may move only while it has given no memory.
     Queue(Queue&& other);
 
     bool is_cuda() const { return backend_->is_cuda(); }
+    bool is_dry_run() const { return backend_->is_dry_run(); }
     void* stream() const { return backend_->stream(); }
 
     static constexpr int kMaxStreams = 4;

@@ -29,7 +29,7 @@ Counts count(const PlacedScene& prepared) {
     return all;
 }
 
-/// What stages read: for the upload, and for the prediction of memory alike. `targets` outlives the list.
+/// What stages read. `targets` outlives the list.
 PartArrays list_rest(const PlacedScene& prepared, std::vector<DeformVertices>& stages,
                      std::vector<std::vector<MorphTargetView>>& targets) {
     PartArrays arrays;
@@ -101,16 +101,6 @@ DeformingMeshes::DeformingMeshes(Queue& queue, const PlacedScene& prepared, uint
         at.joints += prepared.poses[i].joints.size();
         at.weights += shape.targets.size();
     }
-}
-
-std::size_t DeformingMeshes::predicted_bytes(const PlacedScene& prepared) {
-    if (prepared.poses.empty()) return 0;
-    const Counts all = count(prepared);
-    std::vector<DeformVertices> stages;
-    std::vector<std::vector<MorphTargetView>> targets;
-    return list_rest(prepared, stages, targets).bytes() + (2 * all.positions + all.normals) * sizeof(Vec3) +
-           all.tangents * sizeof(Vec4) + all.joints * sizeof(Transform) + all.weights * sizeof(float) +
-           prepared.scene->meshes.size() * sizeof(MeshView);
 }
 
 void DeformingMeshes::point(std::vector<MeshView>& meshes) const {

@@ -21,7 +21,6 @@ public:
     /// Those that `prepared` has poses of; they have no vertices until set_poses. `version`: that of whoever was there
     /// before, so that none comes again. Throws Error(OutOfMemory).
     DeformingMeshes(Queue& queue, const PlacedScene& prepared, uint64_t version);
-    static std::size_t predicted_bytes(const PlacedScene& prepared);
 
     uint64_t version() const { return version_; } // the last of DeformedMesh's
     bool is_empty() const { return meshes_.empty(); }

@@ -143,10 +143,4 @@ void OpacityMicromaps::update(Queue& queue, const Scene& scene, const SceneView&
     made_for_ = std::move(wanted);
 }
 
-std::size_t OpacityMicromaps::predicted_bytes(const Scene& scene) {
-    std::size_t words = 0;
-    const bool are_there = !list_micromaps(scene, words).empty();
-    return are_there ? words * sizeof(uint32_t) + scene.instances.size() * sizeof(OpacityMicromapView) : 0;
-}
-
 } // namespace pertev

@@ -24,9 +24,6 @@ public:
     /// Of each instance; null where no instance has one.
     const OpacityMicromapView* of_instances() const { return of_instances_.data(); }
 
-    /// What they take.
-    static std::size_t predicted_bytes(const Scene& scene);
-
 private:
     std::vector<uint64_t> made_for_; // of each instance; empty: none made
     Buffer<uint32_t> states_;

@@ -7,8 +7,8 @@
 namespace pertev {
 namespace {
 
-// Each list below says what a part is made of, for the upload and for the prediction of memory alike. Arrays that are
-// made for the device alone stand in the arguments, so that they outlive the list.
+// Each list below says what a part is made of. Arrays that are made for the device alone stand in the arguments, so
+// that they outlive the list.
 
 /// Vertices of meshes with a pose are DeformingMeshes'.
 PartArrays list_geometry(const PlacedScene& prepared, std::vector<MeshView>& meshes, SceneView& view) {
@@ -214,17 +214,9 @@ void SceneOnDevice::update_environment(Queue& queue, const PlacedScene& prepared
 }
 
 std::size_t predicted_bytes(const PlacedScene& prepared, bool on_cuda) {
-    const Scene& scene = *prepared.scene;
-    SceneView view{};
-    std::vector<MeshView> meshes;
-    Instances instances;
-    std::vector<MaterialView> materials;
-    std::vector<TextureImageView> images;
-    const std::size_t micromaps = on_cuda ? OpacityMicromaps::predicted_bytes(scene) : 0;
-    return micromaps + DeformingMeshes::predicted_bytes(prepared) + list_geometry(prepared, meshes, view).bytes() +
-           list_instances(prepared, instances, view).bytes() + list_materials(scene, materials, view).bytes() +
-           list_textures(scene, images, view).bytes() + list_lights(prepared.lights, view.lights).bytes() +
-           list_environment(prepared.lights.environment.get(), view.lights.environment).bytes();
+    Queue queue = Queue::make_dry_run(on_cuda);
+    const SceneOnDevice scene(queue, prepared);
+    return queue.allocated_bytes();
 }
 
 } // namespace pertev

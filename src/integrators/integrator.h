@@ -23,13 +23,44 @@ inline RayCounts operator+(const RayCounts& a, const RayCounts& b) {
     return {a.camera + b.camera, a.bounce + b.bounce, a.shadow + b.shadow};
 }
 
+/// The sizes that decide, together with the settings, how much of a device's memory an integrator takes.
+struct WorkSize {
+    uint32_t width = 0, height = 0; // of the picture, in pixels
+    uint32_t samples = 1;           // of each pixel in one call of render()
+    uint64_t triangles = 0;         // in all instances of the scene
+    bool walks_on_host = false;     // threads of the CPU can trace rays without the tracer (SceneTracer::host_trees)
+    bool has_times = false;         // something moves while the shutter is open
+    bool splits_light = false;      // a frame (FilmView::frame) keeps diffuse light and the rest apart
+    bool tells_bounce = false;      // a frame records its first bounce
+
+    uint64_t pixels() const { return uint64_t(width) * height; }
+    uint64_t all() const { return pixels() * samples; }
+};
+inline WorkSize size_of(const PictureView& picture, const SceneTracer& tracer, uint32_t samples) {
+    return {.width = picture.camera.width,
+            .height = picture.camera.height,
+            .samples = samples,
+            .triangles = picture.scene.triangle_count,
+            .walks_on_host = tracer.host_trees() != nullptr,
+            .has_times = picture.scene.motions.is_there()};
+}
+
 class Integrator {
 public:
     virtual ~Integrator() = default;
 
+    /// Takes the memory for work of this size and keeps what it holds already if that is enough. begin() calls it. A
+    /// dry run (Queue::make_dry_run) calls it alone, to predict what begin() takes. Throws Error(OutOfMemory).
+    virtual void reserve(const WorkSize& size) = 0;
+    /// Returns an upper bound of the bytes that work of this size takes of the host's memory besides.
+    virtual std::size_t most_host_bytes(const WorkSize& size) const {
+        static_cast<void>(size);
+        return 0;
+    }
+
     /// From now on samples are of this picture, and `tracer` traces their rays. Both stay as they are until the next
-    /// begin(). Memory is taken for `samples` of each pixel, as far as they go into one piece of work; more may be
-    /// asked for. What is held already is kept: another camera takes no memory. Throws Error(OutOfMemory).
+    /// begin(). Memory is taken for `samples` of each pixel (WorkSize); more may be asked for. Another camera takes
+    /// none. Throws Error(OutOfMemory).
     virtual void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) = 0;
 
     /// Said before begin(): it will be given the picture of the begin() before it, unchanged, and so are the settings.
@@ -68,8 +99,6 @@ public:
 
     /// Since begin().
     virtual RayCounts rays() const = 0;
-    /// Of the device's memory, held now.
-    virtual std::size_t bytes() const = 0;
 };
 
 } // namespace pertev

@@ -34,12 +34,10 @@ RenderSettings settings_of(const TransportSettings& settings, const std::string&
     return picture;
 }
 
-/// Room on the host beside what is on the device, at most: the records of irradiance caching alone have some, and what
-/// is predicted for a CPU has it, for a GPU not.
+/// Returns an upper bound of the host's memory that the integrator takes besides the device's.
 std::size_t host_bytes_of(const RenderSettings& picture) {
-    if (picture.integrator != IntegratorKind::IrradianceCache) return 0;
-    const uint64_t pixels = uint64_t(picture.width) * picture.height;
-    return predicted_bytes(picture, pixels, 1, false, true) - predicted_bytes(picture, pixels, 1, true, true);
+    Queue queue = Queue::make_dry_run(false);
+    return make_integrator(queue, picture)->most_host_bytes({.width = picture.width, .height = picture.height});
 }
 
 /// Mean of two, which a picture of as many samples of each is.

@@ -25,10 +25,6 @@ NoisyFrame::NoisyFrame(Queue& queue, uint32_t width, uint32_t height, bool split
     begin();
 }
 
-std::size_t NoisyFrame::predicted_bytes(uint32_t width, uint32_t height, bool splits_light) {
-    return std::size_t(width) * height * arrays(splits_light) * sizeof(Float4) + sizeof(uint64_t);
-}
-
 FilmView NoisyFrame::film_view() const {
     FilmView view = {};
     view.invalid = invalid_.data();

@@ -18,8 +18,6 @@ public:
     /// What its samples leave to another, whose arrays these are, from now on.
     void leave(const FirstBounceView& first_bounce) { view_.first_bounce = first_bounce; }
 
-    static std::size_t predicted_bytes(uint32_t width, uint32_t height, bool splits_light);
-
     /// What an integrator adds a sample to.
     FilmView film_view() const;
     const NoisyFrameView& view() const { return view_; }

@@ -31,13 +31,6 @@ Restir::Restir(Queue& queue, uint32_t width, uint32_t height, RestirLight light)
     ray_counts_.zero();
 }
 
-std::size_t Restir::predicted_bytes(uint32_t width, uint32_t height, RestirLight light) {
-    std::size_t of_pixel = sizeof(LightPlace) + 2 * sizeof(LightReservoir) + 2 * sizeof(Float4) + sizeof(Neighbours) +
-                           sizeof(Shares) + sizeof(Ray) + 2 * sizeof(Uint2) + 2 * sizeof(uint32_t);
-    if (light == RestirLight::Indirect) of_pixel += 2 * sizeof(BounceReservoir) + kBounceArrays * sizeof(Float4);
-    return std::size_t(width) * height * of_pixel + kMostTraces * sizeof(uint32_t);
-}
-
 FirstBounceView Restir::first_bounce() const {
     if (light_ != RestirLight::Indirect) return {met_.data()};
     Float4* const numbers = bounce_numbers_.data();

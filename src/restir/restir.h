@@ -32,8 +32,6 @@ public:
     /// `queue` outlives it.
     Restir(Queue& queue, uint32_t width, uint32_t height, RestirLight light);
 
-    static std::size_t predicted_bytes(uint32_t width, uint32_t height, RestirLight light);
-
     /// What follows has nothing to do with what was seen before.
     void cut() { has_history_ = false; }
     /// What the samples of a frame are to leave.

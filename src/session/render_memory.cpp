@@ -37,9 +37,11 @@ std::string limit_text(std::size_t bytes, const RenderSettings& settings, const 
 /// What weighs, and the settings that make it less.
 std::string advice(const RenderSettings& settings, bool is_cuda) {
     const uint32_t layers = light_layers_of(settings);
-    const uint64_t pixels = uint64_t(settings.width) * settings.height;
     const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs, layers);
-    const std::size_t own = predicted_bytes(settings, pixels, settings.samples, is_cuda, !is_cuda);
+    const std::size_t own = predicted_bytes(
+        settings,
+        {.width = settings.width, .height = settings.height, .samples = settings.samples, .walks_on_host = !is_cuda},
+        is_cuda);
     if (settings.integrator == IntegratorKind::PhotonMap && own > film) {
         return fmt::format("Photons take {} (`photons={}`, `max_depth={}`): a smaller one of either takes less",
                            amount(own), settings.photon_map.photons, settings.path.max_depth);

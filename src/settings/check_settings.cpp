@@ -8,8 +8,8 @@ namespace pertev {
 
 std::vector<std::string> integrators_with(const Setting& setting) {
     std::vector<std::string> names;
-    for (const auto& [kind, name] : kIntegrators) {
-        if (has_setting(kind, setting)) names.emplace_back(name);
+    for (const IntegratorDescriptor& integrator : integrators()) {
+        if (has_setting(integrator.value, setting)) names.emplace_back(integrator.name);
     }
     return names;
 }

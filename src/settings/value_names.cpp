@@ -21,8 +21,8 @@ bool set_integrator(RenderSettings& settings, std::string_view name) {
 
 std::vector<std::string> integrator_names() {
     std::vector<std::string> names = names_of<PathLight>();
-    for (const auto& [kind, name] : kIntegrators) {
-        if (kind != IntegratorKind::Path) names.emplace_back(name);
+    for (const IntegratorDescriptor& integrator : integrators()) {
+        if (integrator.value != IntegratorKind::Path) names.emplace_back(integrator.name);
     }
     return names;
 }

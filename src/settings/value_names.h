@@ -2,7 +2,8 @@
 
 // The names of settings' values, as they stand on the command line, in metadata, and wherever else a setting is text.
 // base/value_names.h has name_of, value_named and names_of for each. The names of auxiliary layers are in
-// render/film_channels.h, those of tone maps in image/tone_map_image.h.
+// render/film_channels.h, those of tone maps in image/tone_map_image.h, those of integrators in
+// integrators/kinds/make_integrator.h, of which Path stands for each of kPathLights.
 
 #include <optional>
 #include <string>
@@ -20,19 +21,6 @@ namespace pertev {
 
 inline constexpr ValueName<PathLight> kPathLights[] = {
     {PathLight::Path, "path"}, {PathLight::Direct, "direct"}, {PathLight::Indirect, "indirect"}};
-/// Path stands for each of kPathLights.
-inline constexpr ValueName<IntegratorKind> kIntegrators[] = {{IntegratorKind::Path, "path"},
-                                                             {IntegratorKind::Hybrid, "hybrid"},
-                                                             {IntegratorKind::Cast, "cast"},
-                                                             {IntegratorKind::Whitted, "whitted"},
-                                                             {IntegratorKind::Distributed, "distributed"},
-                                                             {IntegratorKind::Raster, "raster"},
-                                                             {IntegratorKind::Reyes, "reyes"},
-                                                             {IntegratorKind::Light, "light"},
-                                                             {IntegratorKind::Bidirectional, "bidirectional"},
-                                                             {IntegratorKind::PhotonMap, "photon_map"},
-                                                             {IntegratorKind::IrradianceCache, "irradiance_cache"},
-                                                             {IntegratorKind::Radiosity, "radiosity"}};
 inline constexpr ValueName<RasterShading> kRasterShadings[] = {
     {RasterShading::Flat, "flat"}, {RasterShading::Gouraud, "gouraud"}, {RasterShading::Phong, "phong"}};
 inline constexpr ValueName<PhotonGather> kPhotonGathers[] = {{PhotonGather::Direct, "direct"},
@@ -53,7 +41,6 @@ inline constexpr ValueName<Projection> kProjections[] = {{Projection::Perspectiv
                                                          {Projection::Orthographic, "orthographic"}};
 
 constexpr const auto& names_of_all(PathLight) { return kPathLights; }
-constexpr const auto& names_of_all(IntegratorKind) { return kIntegrators; }
 constexpr const auto& names_of_all(RasterShading) { return kRasterShadings; }
 constexpr const auto& names_of_all(PhotonGather) { return kPhotonGathers; }
 constexpr const auto& names_of_all(PhotonSearch) { return kPhotonSearches; }

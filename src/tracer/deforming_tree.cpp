@@ -23,10 +23,8 @@ std::vector<BvhTriangle> read_triangles(Queue& queue, const DeformedMesh& mesh) 
 }
 
 DeformingCompressed::DeformingCompressed(Queue& queue, uint32_t triangles)
-    : queue_(queue), triangles_(queue, triangles, "triangles of a deforming mesh"), builder_(queue, triangles) {}
-
-std::size_t DeformingCompressed::predicted_bytes(uint32_t triangles, bool on_cuda) {
-    return triangles * sizeof(BvhTriangle) + DeviceBuilder::predicted_bytes(triangles, on_cuda);
+    : queue_(queue), triangles_(queue, triangles, "triangles of a deforming mesh"), builder_(queue, triangles) {
+    builder_.reserve_refit();
 }
 
 void DeformingCompressed::build() {
@@ -39,7 +37,7 @@ void DeformingCompressed::start(const DeformedMesh& mesh) {
     PERTEV_CHECK(mesh.triangles == triangles_.size());
     launch(queue_, "list triangles", mesh.triangles, ListTriangles{mesh, triangles_.data()});
     if (builds_ == 0) build();
-    builder_.start_refit(triangles_.data()); // after a build too: it takes the memory that later ones need
+    builder_.start_refit(triangles_.data());
 }
 
 Bounds3 DeformingCompressed::finish() {

@@ -27,7 +27,6 @@ class DeformingCompressed {
 public:
     using View = CompressedBvhView;
     DeformingCompressed(Queue& queue, uint32_t triangles);
-    static std::size_t predicted_bytes(uint32_t triangles, bool on_cuda);
 
     /// Gives the work to the queue.
     void start(const DeformedMesh& mesh);

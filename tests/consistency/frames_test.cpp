@@ -198,7 +198,7 @@ TEST_CASE("frames with ReSTIR have the same bytes on every device, by every body
     }
 }
 
-TEST_CASE("a frame with ReSTIR counts its rays, and takes the bytes that are said beforehand") {
+TEST_CASE("a frame with ReSTIR counts its rays") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -211,9 +211,6 @@ TEST_CASE("a frame with ReSTIR counts its rays, and takes the bytes that are sai
         session.render_frame(0, {}, {.light = light});
         CHECK(session.frame_rays().bounce == bounces);
         CHECK(session.frame_rays().shadow > settings.width * settings.height / 2);
-        const std::size_t before = queue.allocated_bytes();
-        const Restir restir(queue, settings.width, settings.height, light);
-        CHECK(queue.allocated_bytes() - before == Restir::predicted_bytes(settings.width, settings.height, light));
     }
 }
 

@@ -307,7 +307,7 @@ TEST_CASE("memory of irradiance caching is said beforehand") {
             settings.path.max_depth = 1; // room for records is taken, and none is made
             settings.batch = 1000;       // less than the rays of one record
             const uint64_t pixels = uint64_t(settings.width) * settings.height;
-            test::check_predicted_bytes(prepared, settings, false, RecordStore::predicted_host_bytes(pixels));
+            test::check_predicted_bytes(prepared, settings, false, RecordStore::most_host_bytes(pixels));
         }
     }
 }

@@ -89,7 +89,8 @@ TEST_CASE("memory of walks is said beforehand, and is a GiB at most") {
         test::check_predicted_bytes(prepared, settings);
         for (const uint32_t depth : {0u, 8u, 255u}) {
             settings.path.max_depth = depth;
-            CHECK(predicted_bytes(settings, uint64_t(1) << 26, 64, true, false) <= std::size_t(1) << 30);
+            CHECK(predicted_bytes(settings, {.width = 1 << 13, .height = 1 << 13, .samples = 64}, true) <=
+                  std::size_t(1) << 30);
         }
     }
 }

@@ -11,10 +11,10 @@ class DirectionIntegrator final : public Integrator {
 public:
     explicit DirectionIntegrator(Queue& queue) : queue_(queue) {}
 
+    void reserve(const WorkSize&) override {}
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
     RayCounts rays() const override { return rays_; }
-    std::size_t bytes() const override { return 0; }
 
 private:
     Queue& queue_;

@@ -154,7 +154,9 @@ TEST_CASE("motion vectors take the memory that is said beforehand, and have the 
     };
     const std::vector<float> expected = motion_on(cpu, PathBody::Loop);
     CHECK(motion_on(cpu, PathBody::Wavefront) == expected);
-    CHECK(motion_vector_bytes(64, 48) == 64 * 48 * 64);
+    Queue dry = Queue::make_dry_run(false);
+    const MotionVectorMemory memory(dry, 64, 48);
+    CHECK(dry.allocated_bytes() == 64 * 48 * 64);
     if (!test::cuda_requested()) return;
     Queue cuda = test::make_cuda_queue();
     CHECK(motion_on(cuda, PathBody::Wavefront) == expected);

@@ -108,9 +108,10 @@ struct PhotonRun {
         const PictureView picture = {device.view(),
                                      make_camera_rays(test::camera_down({0, 0.1f, 0}, 0.2f),
                                                       filter.set(PixelFilter::Box, 0.5f), 8, 8, prepared.centre)};
-        PhotonMapIntegrator integrator(queue, {.max_depth = max_depth},
-                                       {.photons = photons, .radius = radius, .nearest = nearest, .gather = gather},
-                                       in_loop, 1u << 20);
+        PhotonMapIntegrator integrator(
+            queue,
+            {{.max_depth = max_depth}, {.photons = photons, .radius = radius, .nearest = nearest, .gather = gather}},
+            in_loop, 1u << 20);
         integrator.begin(picture, tracer, 1);
         integrator.tell_energy(&energy);
         Film film(queue, 8, 8, 0);

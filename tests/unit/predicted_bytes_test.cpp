@@ -71,15 +71,24 @@ TEST_CASE("queues of paths have at most their bytes, and nearly those, whatever 
                                  .splits_light = (bits & 4) != 0,
                                  .tells_bounce = (bits & 8) != 0};
         for (const bool on_cuda : {false, true}) {
-            const auto bytes = [&](uint64_t samples, uint32_t batch) {
-                return PathIntegrator::wavefront_bytes(samples, batch, on_cuda, 16, parts);
+            const auto bytes = [&](uint32_t width, uint32_t height, uint32_t batch) {
+                Queue queue = Queue::make_dry_run(on_cuda);
+                PathRequest request;
+                if (parts.has_layers) request.layers = std::make_shared<const LightPathLayers>();
+                PathIntegrator(queue, request, false, batch)
+                    .reserve({.width = width,
+                              .height = height,
+                              .has_times = parts.has_times,
+                              .splits_light = parts.splits_light,
+                              .tells_bounce = parts.tells_bounce});
+                return queue.peak_bytes();
             };
-            CHECK(bytes(uint64_t(1) << 32, 1u << 31) <= kMost);
-            CHECK(bytes(uint64_t(1) << 32, 1u << 31) >= kMost - 100'000);
-            CHECK(bytes(3840 * 2160, RenderSettings{}.batch) <= kMost);
-            CHECK(bytes(3840 * 2160, RenderSettings{}.batch) >= kMost - 3'000'000);
-            CHECK(bytes(64, 1000) == bytes(1000, 64)); // the fewer of the two
-            CHECK(bytes(64, 1000) < 64 * 400);
+            CHECK(bytes(1 << 16, 1 << 16, 1u << 31) <= kMost);
+            CHECK(bytes(1 << 16, 1 << 16, 1u << 31) >= kMost - 100'000);
+            CHECK(bytes(3840, 2160, RenderSettings{}.batch) <= kMost);
+            CHECK(bytes(3840, 2160, RenderSettings{}.batch) >= kMost - 3'000'000);
+            CHECK(bytes(64, 1, 1000) == bytes(1000, 1, 64)); // the fewer of the two
+            CHECK(bytes(64, 1, 1000) < 64 * 400);
         }
     }
 }

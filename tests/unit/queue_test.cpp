@@ -3,7 +3,9 @@
 #include <doctest/doctest.h>
 
 #include "device/buffer.h"
+#include "device/launch.h"
 #include "device/readback.h"
+#include "integrators/ray_tree/tree_stages.h"
 #include "tests/support/render_scenes.h"
 
 using namespace pertev;
@@ -14,6 +16,33 @@ TEST_CASE("a queue moves while it has given no memory; after that its buffers ho
     {
         const Buffer<int> buffer(moved, 3, "numbers");
         CHECK_THROWS_AS(Queue(std::move(moved)), std::logic_error);
+    }
+}
+
+TEST_CASE("a dry run counts the bytes that a device gives, and gives none") {
+    const auto take = [](Queue& queue) {
+        Buffer<Float4> grown(queue, 10, "numbers");
+        grown.grow(queue, 5, "fewer");
+        CHECK(grown.size() == 10);
+        grown.grow(queue, 1000, "more");
+        grown.fill(1);
+        const std::vector<int> values(77, 3);
+        const Buffer<int> uploaded(queue, std::span<const int>(values), "values");
+        if (queue.is_dry_run()) CHECK(uploaded.download() == std::vector<int>(77));
+        CHECK(uploaded.data() != nullptr);
+        CHECK(static_cast<const void*>(uploaded.data()) != grown.data());
+        return queue.allocated_bytes();
+    };
+    Queue cpu = Queue::make_cpu();
+    for (const bool is_cuda : {false, true}) {
+        Queue dry = Queue::make_dry_run(is_cuda);
+        CHECK(dry.is_cuda() == is_cuda);
+        CHECK(take(dry) == take(cpu));
+        CHECK(dry.allocated_bytes() == 0);
+        CHECK(dry.peak_bytes() == cpu.peak_bytes());
+        const Buffer<std::byte> huge(dry, std::size_t(1) << 50, "more than any machine has");
+        CHECK(dry.allocated_bytes() == std::size_t(1) << 50);
+        launch(dry, "nothing", 1u << 31, BeginRounds{nullptr, 1}); // no stage runs
     }
 }
 

@@ -147,7 +147,7 @@ TEST_CASE("what irradiance caching may take of the host's memory stands beside t
     const TransportScene scene = small.run();
     const TransportRow cache = row_named(scene, "irradiance_cache");
     CHECK(cache.refused == "");
-    CHECK(cache.host_bytes == RecordStore::predicted_host_bytes(16 * 16));
+    CHECK(cache.host_bytes == RecordStore::most_host_bytes(16 * 16));
     CHECK(cache.host_bytes > 1000); // records have places
     CHECK(row_named(scene, "path").host_bytes == 0);
 }

@@ -140,6 +140,9 @@ TEST_CASE("a scene that was updated part by part gives the picture of the scene 
     scene.update(queue, new_scene, kPartInstances);
     changes("instances", &new_scene);
     CHECK(last == hash_afresh(new_scene));
-    const auto micromaps = [&](const Scene& of) { return queue.is_cuda() ? OpacityMicromaps::predicted_bytes(of) : 0; };
-    CHECK(queue.allocated_bytes() == bytes + micromaps(after) - micromaps(before)); // finer where textures repeat
+    const auto micromaps = [&](const PlacedScene& of) {
+        return queue.is_cuda() ? predicted_bytes(of, true) - predicted_bytes(of, false) : 0;
+    };
+    CHECK(queue.allocated_bytes() ==
+          bytes + micromaps(new_scene) - micromaps(old_scene)); // finer where textures repeat
 }

@@ -30,7 +30,7 @@ struct BothDirections {
         way.run("begin_walks", 1, BeginWalks{walks.counts, job.count});
         way.run("begin_eyes", job.count, BeginEyes{job.scene, walks, job.samples, job.first});
         way.begin_rounds(job.count);
-        for (uint32_t round = 0; round <= depth && way.has_rays_left(job); ++round) {
+        for (uint32_t round = 0; round <= depth && way.has_rays_left(walks.counts); ++round) {
             with_known(job.scene.picture.scene.known,
                        [&]<MaterialsKnown kKnown>() { run_round<kKnown>(way, job, round); });
         }

@@ -82,28 +82,27 @@ struct CacheWalksView {
     }
 };
 
-/// Places the arrays as lay_out of walk_memory.h does.
-inline std::size_t lay_out(CacheWalksView& view, std::byte* memory, uint32_t walks, uint32_t cells) {
-    std::size_t bytes = 0;
-    const auto place = [&]<class T>(T*& array, std::size_t count) {
-        array = memory != nullptr ? reinterpret_cast<T*>(memory + bytes) : nullptr;
-        bytes += (count * sizeof(T) + 15) / 16 * 16;
-    };
-    place(view.sights, walks);
-    place(view.paths, walks);
-    place(view.ways, walks);
-    place(view.aims, walks);
-    place(view.places, walks);
-    place(view.directions, walks);
-    place(view.throughputs, walks);
-    place(view.scatterings, walks);
-    place(view.light, std::size_t(cells) * 3);
-    place(view.cells, cells);
-    return bytes;
-}
-inline std::size_t cache_walk_bytes(uint32_t walks, uint32_t cells) {
-    CacheWalksView view;
-    return lay_out(view, nullptr, walks, cells);
+/// The sizes of the arrays.
+struct CacheRoom {
+    uint32_t count; // walks
+    uint32_t cells; // of hemispheres
+};
+
+/// Places the arrays in one piece of memory (lay_out_arrays).
+inline std::size_t lay_out(CacheWalksView& view, std::byte* memory, const CacheRoom& room) {
+    return lay_out_arrays(memory, [&](const auto& place) {
+        const std::size_t walks = room.count, cells = room.cells;
+        place(view.sights, walks);
+        place(view.paths, walks);
+        place(view.ways, walks);
+        place(view.aims, walks);
+        place(view.places, walks);
+        place(view.directions, walks);
+        place(view.throughputs, walks);
+        place(view.scatterings, walks);
+        place(view.light, 3 * cells);
+        place(view.cells, cells);
+    });
 }
 
 } // namespace pertev

@@ -22,44 +22,27 @@ std::span<T> on_host(Queue& queue, T* data, std::size_t count, std::vector<T>& c
 
 } // namespace
 
-std::size_t RecordStore::predicted_bytes(uint64_t pixels) {
-    const std::size_t each =
-        sizeof(IrradianceRecord) + sizeof(float) + 2 * sizeof(PointOctreeNode) + sizeof(Sphere) + sizeof(uint32_t);
-    return pixels * sizeof(RecordSite) + most_records(pixels) * each;
-}
-
-std::size_t RecordStore::predicted_host_bytes(uint64_t pixels) {
+std::size_t RecordStore::most_host_bytes(uint64_t pixels) {
     const uint64_t most = most_records(pixels);
     return most * (2 * sizeof(Sphere) + 2 * sizeof(float)) + most_octree_bytes(most);
 }
 
 void RecordStore::make_room(uint64_t pixels) {
     const std::size_t most = most_records(pixels);
-    const auto need = [&]<class T>(Buffer<T>& buffer, std::size_t count, const char* name) {
-        if (buffer.size() >= count) return;
-        buffer = {}; // before there is more
-        buffer = Buffer<T>(queue_, count, name);
-    };
-    need(sites_, pixels, "places of the overture");
-    need(records_, most, "irradiance records");
-    need(reaches_, most, "irradiance records");
-    need(nodes_, 2 * most, "octree over irradiance records");
-    need(tree_spheres_, most, "octree over irradiance records");
-    need(tree_indices_, most, "octree over irradiance records");
-    spheres_.reserve(most);
-    luminances_.reserve(most);
+    sites_.grow(queue_, pixels, "places of the overture");
+    records_.grow(queue_, most, "irradiance records");
+    reaches_.grow(queue_, most, "irradiance records");
+    nodes_.grow(queue_, 2 * most, "octree over irradiance records");
+    tree_spheres_.grow(queue_, most, "octree over irradiance records");
+    tree_indices_.grow(queue_, most, "octree over irradiance records");
     pixels_ = pixels;
-}
-
-std::size_t RecordStore::bytes() const {
-    return sites_.size() * sizeof(RecordSite) + records_.size() * sizeof(IrradianceRecord) +
-           reaches_.size() * sizeof(float) + nodes_.size() * sizeof(PointOctreeNode) +
-           tree_spheres_.size() * sizeof(Sphere) + tree_indices_.size() * sizeof(uint32_t);
 }
 
 void RecordStore::clear() {
     spheres_.clear();
     luminances_.clear();
+    spheres_.reserve(most_records(pixels_));
+    luminances_.reserve(most_records(pixels_));
     node_count_ = 0;
 }
 

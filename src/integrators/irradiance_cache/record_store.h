@@ -17,13 +17,10 @@ public:
     /// `queue` outlives it.
     explicit RecordStore(Queue& queue) : queue_(queue) {}
 
-    /// Bytes that make_room() takes.
-    static std::size_t predicted_bytes(uint64_t pixels);
     /// Bytes that it takes beside of the host's memory, for the octree and the spacing of records, at most.
-    static std::size_t predicted_host_bytes(uint64_t pixels);
+    static std::size_t most_host_bytes(uint64_t pixels);
     /// For a picture of so many pixels. Throws Error(OutOfMemory).
     void make_room(uint64_t pixels);
-    std::size_t bytes() const;
     /// The most that it has taken of the host's memory.
     std::size_t host_bytes() const { return host_bytes_; }
 

@@ -1,7 +1,8 @@
 #include "integrators/kinds/make_integrator.h"
 
-#include "base/limits.h"
-#include "integrators/bidirectional/most_joined_depth.h"
+#include <array>
+#include <type_traits>
+
 #include "integrators/irradiance_cache/irradiance_cache_integrator.h"
 #include "integrators/path/path_integrator.h"
 #include "integrators/photon_map/photon_map_integrator.h"
@@ -14,6 +15,12 @@
 namespace pertev {
 namespace {
 
+// Each function picks the settings of one integrator from the settings of all.
+
+PathRequest path_request(const IntegratorSettings& settings) {
+    return {settings.path, settings.light_paths, settings.irradiance, settings.integrator == IntegratorKind::Hybrid};
+}
+
 RayTreeSettings tree_settings(const IntegratorSettings& settings) {
     return {.max_depth = settings.path.max_depth,
             .sampler = settings.path.sampler,
@@ -23,6 +30,10 @@ RayTreeSettings tree_settings(const IntegratorSettings& settings) {
             .radiosity = {}}; // which its integrator adds
 }
 
+RadiosityIntegrator::Settings radiosity_settings(const IntegratorSettings& settings) {
+    return {tree_settings(settings), settings.radiosity};
+}
+
 SubpathSettings walk_settings(const IntegratorSettings& settings) {
     return {.max_depth = settings.path.max_depth,
             .roulette_depth = settings.path.roulette_depth,
@@ -30,15 +41,12 @@ SubpathSettings walk_settings(const IntegratorSettings& settings) {
             .seed = settings.path.seed};
 }
 
-template <class Algorithm>
-std::unique_ptr<Integrator> make_walks(Queue& queue, const IntegratorSettings& settings) {
-    return std::make_unique<WalksIntegrator<Algorithm>>(queue, walk_settings(settings), settings.body == PathBody::Loop,
-                                                        settings.batch);
+PhotonMapRequest photon_map_request(const IntegratorSettings& settings) {
+    return {walk_settings(settings), settings.photon_map};
 }
 
-template <class Algorithm>
-void set_walk_settings(Integrator& integrator, const IntegratorSettings& settings) {
-    static_cast<WalksIntegrator<Algorithm>&>(integrator).set_settings(walk_settings(settings));
+IrradianceCacheRequest irradiance_cache_request(const IntegratorSettings& settings) {
+    return {walk_settings(settings), settings.irradiance_cache};
 }
 
 RasterSettings raster_settings(const IntegratorSettings& settings) {
@@ -47,10 +55,6 @@ RasterSettings raster_settings(const IntegratorSettings& settings) {
             .seed = settings.path.seed,
             .has_ambient = settings.ambient.has_value(),
             .ambient = settings.ambient.value_or(Rgb{0, 0, 0})};
-}
-
-bool same_heights(const IntegratorSettings& a, const IntegratorSettings& b) {
-    return a.heights == b.heights || (a.heights && b.heights && *a.heights == *b.heights);
 }
 
 ReyesSettings reyes_settings(const IntegratorSettings& settings) {
@@ -63,69 +67,86 @@ ReyesSettings reyes_settings(const IntegratorSettings& settings) {
             .ambient = settings.ambient.value_or(Rgb{0, 0, 0})};
 }
 
-template <class Algorithm>
-std::unique_ptr<Integrator> make_ray_tree(Queue& queue, const IntegratorSettings& settings) {
-    return std::make_unique<RayTreeIntegrator<Algorithm>>(queue, tree_settings(settings),
-                                                          settings.body == PathBody::Loop, settings.batch);
+/// Adds the functions that make and change a `Made` with settings_of(settings) to the row.
+template <class Made, auto settings_of>
+constexpr IntegratorDescriptor row(IntegratorDescriptor of) {
+    of.make = [](Queue& queue, const IntegratorSettings& settings) -> std::unique_ptr<Integrator> {
+        const auto own = settings_of(settings);
+        if constexpr (std::is_constructible_v<Made, Queue&, decltype(own), bool, uint32_t>) {
+            return std::make_unique<Made>(queue, own, settings.body == PathBody::Loop, settings.batch);
+        } else {
+            return std::make_unique<Made>(queue, own);
+        }
+    };
+    of.change = [](Integrator& integrator, const IntegratorSettings& settings) {
+        static_cast<Made&>(integrator).set_settings(settings_of(settings));
+    };
+    return of;
 }
 
-template <class Algorithm>
-void set_tree_settings(Integrator& integrator, const IntegratorSettings& settings) {
-    static_cast<RayTreeIntegrator<Algorithm>&>(integrator).set_settings(tree_settings(settings));
+using Kind = IntegratorKind;
+constexpr std::array kIntegrators = {
+    row<PathIntegrator, path_request>({.value = Kind::Path,
+                                       .name = "path",
+                                       .makes_frames = true,
+                                       .has_light_path_layers = true,
+                                       .finds_all_light = true,
+                                       .has_shutter = true}),
+    row<PathIntegrator, path_request>({.value = Kind::Hybrid,
+                                       .name = "hybrid",
+                                       .makes_frames = true,
+                                       .has_light_path_layers = true,
+                                       .finds_all_light = true,
+                                       .rasterises_camera = true}),
+    row<RayTreeIntegrator<Cast>, tree_settings>({.value = Kind::Cast,
+                                                 .name = "cast",
+                                                 .has_shutter = true,
+                                                 .needs_punctual_lights = true,
+                                                 .most_depth = kMaxTreeDepth}),
+    row<RayTreeIntegrator<Whitted>, tree_settings>({.value = Kind::Whitted,
+                                                    .name = "whitted",
+                                                    .has_shutter = true,
+                                                    .needs_punctual_lights = true,
+                                                    .most_depth = kMaxTreeDepth}),
+    row<RayTreeIntegrator<Distributed>, tree_settings>(
+        {.value = Kind::Distributed, .name = "distributed", .has_shutter = true, .most_depth = kMaxTreeDepth}),
+    row<RasterIntegrator, raster_settings>(
+        {.value = Kind::Raster, .name = "raster", .rasterises_camera = true, .needs_punctual_lights = true}),
+    row<ReyesIntegrator, reyes_settings>({.value = Kind::Reyes,
+                                          .name = "reyes",
+                                          .rasterises_camera = true,
+                                          .needs_punctual_lights = true,
+                                          .samples_at_once = ReyesIntegrator::samples_at_once}),
+    row<WalksIntegrator<ParticlesAlone>, walk_settings>({.value = Kind::Light, .name = "light"}),
+    row<WalksIntegrator<BothDirections>, walk_settings>({.value = Kind::Bidirectional,
+                                                         .name = "bidirectional",
+                                                         .finds_all_light = true,
+                                                         .most_depth = kMostJoinedDepth}),
+    row<PhotonMapIntegrator, photon_map_request>(
+        {.value = Kind::PhotonMap, .name = "photon_map", .finds_all_light = true, .most_depth = kMostPhotonDepth}),
+    row<IrradianceCacheIntegrator, irradiance_cache_request>(
+        {.value = Kind::IrradianceCache, .name = "irradiance_cache", .finds_all_light = true}),
+    row<RadiosityIntegrator, radiosity_settings>(
+        {.value = Kind::Radiosity, .name = "radiosity", .most_depth = kMaxTreeDepth}),
+};
+
+constexpr bool are_in_order() {
+    for (std::size_t i = 0; i < kIntegrators.size(); ++i) {
+        if (kIntegrators[i].value != static_cast<IntegratorKind>(i)) return false;
+    }
+    return true;
+}
+static_assert(are_in_order() && kIntegrators.back().value == kLastIntegrator);
+
+bool same_heights(const IntegratorSettings& a, const IntegratorSettings& b) {
+    return a.heights == b.heights || (a.heights && b.heights && *a.heights == *b.heights);
 }
 
 } // namespace
 
-bool makes_frames(IntegratorKind kind) { return kind == IntegratorKind::Path || kind == IntegratorKind::Hybrid; }
+std::span<const IntegratorDescriptor> integrators() { return kIntegrators; }
 
-bool rasterises_camera(IntegratorKind kind) {
-    return kind == IntegratorKind::Hybrid || kind == IntegratorKind::Raster || kind == IntegratorKind::Reyes;
-}
-
-bool lists_tiles(IntegratorKind kind) { return kind == IntegratorKind::Hybrid; }
-
-bool finds_all_light(IntegratorKind kind) {
-    return makes_frames(kind) || kind == IntegratorKind::Bidirectional || kind == IntegratorKind::PhotonMap ||
-           kind == IntegratorKind::IrradianceCache;
-}
-
-bool has_light_path_layers(IntegratorKind kind) { return makes_frames(kind); }
-
-bool has_shutter(IntegratorKind kind) {
-    return kind == IntegratorKind::Path || kind == IntegratorKind::Cast || kind == IntegratorKind::Whitted ||
-           kind == IntegratorKind::Distributed;
-}
-
-uint32_t most_depth(IntegratorKind kind) {
-    switch (kind) {
-    case IntegratorKind::Path:
-    case IntegratorKind::Hybrid:
-    case IntegratorKind::Raster:
-    case IntegratorKind::Reyes:
-    case IntegratorKind::Light:
-    case IntegratorKind::IrradianceCache:
-        break;
-    case IntegratorKind::Cast:
-    case IntegratorKind::Whitted:
-    case IntegratorKind::Distributed:
-    case IntegratorKind::Radiosity:
-        return kMaxTreeDepth;
-    case IntegratorKind::Bidirectional:
-        return kMostJoinedDepth;
-    case IntegratorKind::PhotonMap:
-        return kMostPhotonDepth;
-    }
-    return kMaxPathDepth - 1;
-}
-
-bool needs_punctual_lights(IntegratorKind kind) {
-    return kind == IntegratorKind::Cast || kind == IntegratorKind::Whitted || kind == IntegratorKind::Raster ||
-           kind == IntegratorKind::Reyes;
-}
-
-uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pixels) {
-    return settings.integrator == IntegratorKind::Reyes ? ReyesIntegrator::samples_at_once(pixels) : 1;
-}
+const IntegratorDescriptor& describe(IntegratorKind kind) { return kIntegrators[static_cast<std::size_t>(kind)]; }
 
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
     return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient && a.look == b.look &&
@@ -135,130 +156,20 @@ bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
 }
 
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings) {
-    switch (settings.integrator) {
-    case IntegratorKind::Path:
-    case IntegratorKind::Hybrid:
-        break;
-    case IntegratorKind::Cast:
-        return make_ray_tree<Cast>(queue, settings);
-    case IntegratorKind::Whitted:
-        return make_ray_tree<Whitted>(queue, settings);
-    case IntegratorKind::Distributed:
-        return make_ray_tree<Distributed>(queue, settings);
-    case IntegratorKind::Raster:
-        return std::make_unique<RasterIntegrator>(queue, raster_settings(settings));
-    case IntegratorKind::Reyes:
-        return std::make_unique<ReyesIntegrator>(queue, reyes_settings(settings));
-    case IntegratorKind::Light:
-        return make_walks<ParticlesAlone>(queue, settings);
-    case IntegratorKind::Bidirectional:
-        return make_walks<BothDirections>(queue, settings);
-    case IntegratorKind::PhotonMap:
-        return std::make_unique<PhotonMapIntegrator>(queue, walk_settings(settings), settings.photon_map,
-                                                     settings.body == PathBody::Loop, settings.batch);
-    case IntegratorKind::IrradianceCache:
-        return std::make_unique<IrradianceCacheIntegrator>(queue, walk_settings(settings), settings.irradiance_cache,
-                                                           settings.body == PathBody::Loop, settings.batch);
-    case IntegratorKind::Radiosity:
-        return std::make_unique<RadiosityIntegrator>(queue, tree_settings(settings), settings.radiosity,
-                                                     settings.body == PathBody::Loop, settings.batch);
-    }
-    auto path = std::make_unique<PathIntegrator>(queue, settings.path, settings.body, settings.batch,
-                                                 lists_tiles(settings.integrator));
-    path->set_layers(settings.light_paths);
-    path->set_meter(settings.irradiance);
-    return path;
+    return describe(settings.integrator).make(queue, settings);
 }
 
 bool change_settings(Integrator& integrator, const IntegratorSettings& from, const IntegratorSettings& to) {
     if (from.integrator != to.integrator || from.body != to.body || from.batch != to.batch) return false;
-    switch (to.integrator) {
-    case IntegratorKind::Path:
-    case IntegratorKind::Hybrid:
-        static_cast<PathIntegrator&>(integrator).set_settings(to.path);
-        static_cast<PathIntegrator&>(integrator).set_layers(to.light_paths);
-        static_cast<PathIntegrator&>(integrator).set_meter(to.irradiance);
-        break;
-    case IntegratorKind::Cast:
-        set_tree_settings<Cast>(integrator, to);
-        break;
-    case IntegratorKind::Whitted:
-        set_tree_settings<Whitted>(integrator, to);
-        break;
-    case IntegratorKind::Distributed:
-        set_tree_settings<Distributed>(integrator, to);
-        break;
-    case IntegratorKind::Raster:
-        static_cast<RasterIntegrator&>(integrator).set_settings(raster_settings(to));
-        break;
-    case IntegratorKind::Reyes:
-        static_cast<ReyesIntegrator&>(integrator).set_settings(reyes_settings(to));
-        break;
-    case IntegratorKind::Light:
-        set_walk_settings<ParticlesAlone>(integrator, to);
-        break;
-    case IntegratorKind::Bidirectional:
-        set_walk_settings<BothDirections>(integrator, to);
-        break;
-    case IntegratorKind::PhotonMap:
-        static_cast<PhotonMapIntegrator&>(integrator).set_settings(walk_settings(to), to.photon_map);
-        break;
-    case IntegratorKind::IrradianceCache:
-        static_cast<IrradianceCacheIntegrator&>(integrator).set_settings(walk_settings(to), to.irradiance_cache);
-        break;
-    case IntegratorKind::Radiosity:
-        static_cast<RadiosityIntegrator&>(integrator).set_settings(tree_settings(to), to.radiosity);
-        break;
-    }
+    describe(to.integrator).change(integrator, to);
     return true;
 }
 
-std::size_t predicted_bytes(const IntegratorSettings& settings, uint64_t pixels, uint32_t samples, bool on_cuda,
-                            bool walks_itself, PathParts parts) {
-    if (settings.integrator == IntegratorKind::Raster) return RasterIntegrator::predicted_bytes(pixels);
-    if (settings.integrator == IntegratorKind::Reyes) {
-        return ReyesIntegrator::predicted_bytes(reyes_settings(settings), pixels, samples);
-    }
-    const std::size_t tables = settings.light_paths ? LightPathsOnDevice::predicted_bytes(*settings.light_paths) : 0;
-    const bool in_loop = walks_itself && settings.body == PathBody::Loop;
-    if (settings.integrator == IntegratorKind::PhotonMap) {
-        return PhotonMapIntegrator::predicted_bytes(walk_settings(settings), settings.photon_map, pixels,
-                                                    settings.batch, in_loop, on_cuda);
-    }
-    if (settings.integrator == IntegratorKind::IrradianceCache) {
-        return IrradianceCacheIntegrator::predicted_bytes(settings.irradiance_cache, pixels, settings.batch, in_loop,
-                                                          on_cuda);
-    }
-    const uint64_t all = pixels * samples;
-    if (settings.integrator == IntegratorKind::Radiosity) {
-        return RadiosityIntegrator::predicted_bytes(tree_settings(settings), settings.radiosity, all, settings.batch,
-                                                    in_loop);
-    }
-    if (in_loop) return tables;
-    switch (settings.integrator) {
-    case IntegratorKind::Path:
-    case IntegratorKind::Hybrid:
-    case IntegratorKind::Raster:
-    case IntegratorKind::Reyes:
-    case IntegratorKind::PhotonMap:
-    case IntegratorKind::IrradianceCache:
-    case IntegratorKind::Radiosity:
-        break;
-    case IntegratorKind::Cast:
-        return RayTreeIntegrator<Cast>::predicted_bytes(tree_settings(settings), all, settings.batch, parts.has_times);
-    case IntegratorKind::Whitted:
-        return RayTreeIntegrator<Whitted>::predicted_bytes(tree_settings(settings), all, settings.batch,
-                                                           parts.has_times);
-    case IntegratorKind::Distributed:
-        return RayTreeIntegrator<Distributed>::predicted_bytes(tree_settings(settings), all, settings.batch,
-                                                               parts.has_times);
-    case IntegratorKind::Light:
-        return WalksIntegrator<ParticlesAlone>::predicted_bytes(walk_settings(settings), all, settings.batch);
-    case IntegratorKind::Bidirectional:
-        return WalksIntegrator<BothDirections>::predicted_bytes(walk_settings(settings), all, settings.batch);
-    }
-    parts.has_layers = settings.light_paths != nullptr;
-    return tables + PathIntegrator::wavefront_bytes(all, settings.batch, on_cuda, settings.path.max_depth, parts);
+std::size_t predicted_bytes(const IntegratorSettings& settings, const WorkSize& size, bool on_cuda) {
+    Queue queue = Queue::make_dry_run(on_cuda);
+    const std::unique_ptr<Integrator> integrator = make_integrator(queue, settings);
+    integrator->reserve(size);
+    return queue.allocated_bytes() + (on_cuda ? 0 : integrator->most_host_bytes(size));
 }
 
 } // namespace pertev

@@ -1,5 +1,5 @@
 #include "integrators/light/light.h"
-#include "integrators/subpaths/walks_integrator_body.h"
+#include "integrators/subpaths/walks_integrator.h"
 
 namespace pertev {
 template class WalksIntegrator<ParticlesAlone>;

@@ -1,11 +1,9 @@
 #include "integrators/path/path_integrator.h"
 
 #include <algorithm>
-#include <atomic>
 #include <type_traits>
 
 #include "base/error.h"
-#include "base/parallel_for.h"
 #include "device/launch.h"
 #include "integrators/path/meter_light.h"
 #include "integrators/path/path_loop.h"
@@ -14,7 +12,6 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kLoopPixels = 256; // at least, that a thread of the loop takes at once
 // Paths that two wavefronts share at least: rounds of fewer are over before the host has given those of two. So are the
 // last of many rounds, which are most of what one wavefront does where it has room for all paths at once.
 constexpr uint64_t kSharedPaths = 500'000;
@@ -28,19 +25,19 @@ struct Size {
     uint32_t capacity;
 };
 
+constexpr uint64_t kRoundedUp = 128; // paths, more than capacities grow below, with the counts of rounds
+
+/// In all queues together.
+uint64_t most_paths(const PathParts& parts) {
+    return PathIntegrator::kMostQueueBytes / PathIntegrator::bytes_of_path(parts) - kRoundedUp;
+}
+
 Size size_for(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth, const PathParts& parts) {
-    constexpr std::size_t rounded_up = 128; // paths, more than capacities grow below, with the counts of rounds
-    const std::size_t fit = PathIntegrator::kMostQueueBytes / PathIntegrator::bytes_of_path(parts) - rounded_up;
-    const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>({samples, batch, fit}));
+    const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>({samples, batch, most_paths(parts)}));
     const bool does_one = !on_cuda || does_one_wavefront(paths, paths == samples ? max_depth : 0);
     const int wavefronts = does_one ? 1 : 2;
     const uint32_t each = (paths - 1) / static_cast<uint32_t>(wavefronts) + 1;
     return {wavefronts, (each + 31) / 32 * 32}; // rounds begin 32 paths at a time
-}
-
-std::size_t bytes_of(const Size& size, const PathParts& parts) {
-    const std::size_t of_wavefront = PathIntegrator::bytes_of_path(parts) * size.capacity + 2 * sizeof(RoundCounts);
-    return static_cast<std::size_t>(size.wavefronts) * of_wavefront + sizeof(RenderCounts);
 }
 
 /// What code has to know of the picture. A moving camera's depth is along its axis at the ray's time.
@@ -127,93 +124,77 @@ ListenerQueues PathIntegrator::Wavefront::listened(uint32_t of_round) const {
 }
 
 std::size_t PathIntegrator::bytes_of_path(const PathParts& parts) {
-    constexpr std::size_t always = 2 * (sizeof(Ray) + 2 * sizeof(Float4)) + // both sets
-                                   sizeof(Ray) + 3 * sizeof(Uint2) + 2 * sizeof(Float4) + 3 * sizeof(uint32_t);
-    return always + (parts.has_times ? 2 * sizeof(float) : 0) +
-           (parts.has_layers ? ListenerQueues::kBytesOfLayers : 0) + (parts.splits_light ? 3 * sizeof(Float4) : 0) +
-           (parts.tells_bounce ? sizeof(Float4) : 0);
+    Queue queue = Queue::make_dry_run(true);
+    Wavefront of_one(queue, 1);
+    of_one.take(queue, parts);
+    return queue.allocated_bytes() - 2 * sizeof(RoundCounts);
 }
 
-std::size_t PathIntegrator::wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth,
-                                            const PathParts& parts) {
-    return bytes_of(size_for(samples, batch, on_cuda, max_depth, parts), parts);
+PathIntegrator::PathIntegrator(Queue& queue, const PathRequest& settings, bool in_loop, uint32_t batch)
+    : IntegratorBase(queue, settings, in_loop, batch) {
+    if (settings.rasterises) raster_.emplace(queue);
 }
 
-std::size_t PathIntegrator::queue_bytes() const {
-    if (wavefronts_.empty()) return 0;
-    return bytes_of({static_cast<int>(wavefronts_.size()), wavefronts_.front().capacity}, parts_);
-}
-
-std::size_t PathIntegrator::bytes() const { return queue_bytes() + (raster_ ? raster_->bytes() : 0); }
-
-PathIntegrator::PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch,
-                               bool rasterises)
-    : queue_(queue), settings_(settings), body_(body), batch_(batch) {
-    if (rasterises) raster_.emplace(queue);
+void PathIntegrator::reserve(const WorkSize& size) {
+    if (raster_) raster_->reserve(size.triangles, size.width, size.height);
+    if (settings_.layers != uploaded_) {
+        layers_on_device_.reset();
+        uploaded_ = settings_.layers;
+        if (uploaded_) layers_on_device_.emplace(queue_, *uploaded_);
+    }
+    if (goes_by_loop(size)) return;
+    take_wavefronts(size.all(), {.has_times = size.has_times,
+                                 .has_layers = settings_.layers != nullptr,
+                                 .splits_light = size.splits_light,
+                                 .tells_bounce = size.tells_bounce});
 }
 
 void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
-    picture_ = picture;
-    tracer_ = &tracer;
-    rays_ = {};
+    IntegratorBase::begin(picture, tracer, samples);
     if (raster_) raster_->begin(picture);
-    if (layers_ && !layers_on_device_) layers_on_device_.emplace(queue_, *layers_);
-    if (trees_of_loop() != nullptr) return;
-    take_wavefronts(samples, {.has_times = picture.scene.motions.is_there(), .has_layers = layers_ != nullptr});
-}
-
-void PathIntegrator::set_layers(std::shared_ptr<const LightPathLayers> layers) {
-    if (layers == layers_) return;
-    layers_on_device_.reset();
-    layers_ = std::move(layers);
 }
 
 /// None for a film that has no layers.
 LightPathView PathIntegrator::layers_for(const FilmView& film) const {
     if (!layers_on_device_) return {};
-    PERTEV_CHECK(!film.frame.is_there() && film.channels == film_channel_count(film.aovs) + 3 * layers_->count());
+    PERTEV_CHECK(!film.frame.is_there() && film.channels == film_channel_count(film.aovs) + 3 * uploaded_->count());
     return layers_on_device_->view(film.aovs);
 }
 
-void PathIntegrator::take_wavefronts(uint32_t samples, const PathParts& parts) {
+void PathIntegrator::take_wavefronts(uint64_t samples, const PathParts& parts) {
     parts_.has_times |= parts.has_times;
     parts_.has_layers |= parts.has_layers;
     parts_.splits_light |= parts.splits_light;
     parts_.tells_bounce |= parts.tells_bounce;
-    const uint64_t all = uint64_t(picture_.camera.width) * picture_.camera.height * samples;
-    const Size size = size_for(all, batch_, queue_.is_cuda(), settings_.max_depth, parts_);
+    const Size size = size_for(samples, batch_, queue_.is_cuda(), settings_.path.max_depth, parts_);
     // Two serve for one, so that a picture's passes of few samples and of many go by the same memory.
     const uint64_t held = wavefronts_.empty() ? 0 : wavefronts_.size() * uint64_t(wavefronts_.front().capacity);
     const bool are_enough = wavefronts_.size() >= static_cast<std::size_t>(size.wavefronts) &&
                             held >= static_cast<uint64_t>(size.wavefronts) * size.capacity;
-    const bool are_too_many = queue_bytes() > kMostQueueBytes; // by new parts of each path
+    const bool are_too_many = held > most_paths(parts_) + kRoundedUp; // by new parts of each path
     if (!are_enough || are_too_many) {
         wavefronts_.clear(); // before there is more
-        if (render_counts_.size() == 0) render_counts_ = {queue_, 1, "path counts"};
+        render_counts_.grow(queue_, 1, "path counts");
         for (int i = 0; i < size.wavefronts; ++i) wavefronts_.emplace_back(queue_, size.capacity);
     }
     for (Wavefront& wavefront : wavefronts_) wavefront.take(queue_, parts_);
 }
 
-const HostTrees* PathIntegrator::trees_of_loop() const {
-    return body_ == PathBody::Loop ? tracer_->host_trees() : nullptr;
-}
-
 void PathIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
-    PERTEV_CHECK(!film.frame.is_there() || (count == 1 && !is_meter_));
+    PERTEV_CHECK(!film.frame.is_there() || (count == 1 && !settings_.is_meter));
     if (const HostTrees* trees = trees_of_loop()) {
         render_loop(first, count, film, *trees);
     } else {
         render_wavefront(first, count, film);
     }
     if (is_light_meter(picture_.camera.view.projection)) {
-        rays_.shadow += add_meter_lights(queue_, *tracer_, picture_, settings_, first, count, film);
+        rays_.shadow += add_meter_lights(queue_, *tracer_, picture_, settings_.path, first, count, film);
     }
 }
 
 /// What ReSTIR takes over from the first surface on goes through no roulette there.
 PathJob PathIntegrator::job_for(const FilmView& film) const {
-    PathJob job = {picture_, settings_, film, layers_for(film), is_meter_};
+    PathJob job = {picture_, settings_.path, film, layers_for(film), settings_.is_meter};
     if (film.frame.first_bounce.leaves_direct_light()) {
         job.settings.roulette_depth = std::max(job.settings.roulette_depth, 2u);
     }
@@ -224,30 +205,27 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
     const uint64_t pixels = uint64_t(film.width) * film.height;
     const PathJob job = job_for(film);
     const TileRasterView* const raster = raster_ ? &raster_->view() : nullptr;
-    std::atomic<uint64_t> bounces{0}, shadows{0};
-    parallel_for_ranges(pixels, kLoopPixels, [&](uint64_t begin, uint64_t end) {
-        if (abandon_ != nullptr && *abandon_) return;
+    share_out(pixels, kLoopCount, [&](uint64_t begin, uint64_t end) {
         RayCounts counts;
+        if (is_abandoned()) return counts;
         render_pixels(job, {trees, raster},
                       {static_cast<uint32_t>(begin), static_cast<uint32_t>(end - begin), first, count}, counts);
-        bounces += counts.bounce;
-        shadows += counts.shadow;
+        return counts;
     });
     rays_.camera += pixels * count;
-    rays_.bounce += bounces;
-    rays_.shadow += shadows;
 }
 
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
     take_wavefronts(
-        count, {.splits_light = film.frame.splits_light(), .tells_bounce = film.frame.first_bounce.tells_bounce()});
+        uint64_t(picture_.camera.width) * picture_.camera.height * count,
+        {.splits_light = film.frame.splits_light(), .tells_bounce = film.frame.first_bounce.tells_bounce()});
     const uint32_t pixels = film.width * film.height;
     const Work work = {{0, pixels, first, count}, job_for(film)};
     // Kinds of rays can be timed only one after the other.
     const bool in_turns = tracer_->times_kinds();
     const uint64_t all = work.samples.count();
     const bool fits_one = all <= wavefronts_.front().capacity;
-    const bool does_one = in_turns || (fits_one && does_one_wavefront(all, settings_.max_depth));
+    const bool does_one = in_turns || (fits_one && does_one_wavefront(all, settings_.path.max_depth));
     const int going = does_one ? 1 : static_cast<int>(wavefronts_.size());
     // Where all paths fit in at once, as in a frame, wavefronts have equal shares and end together.
     const uint64_t share = (all - 1) / static_cast<uint64_t>(going) + 1;

@@ -12,14 +12,13 @@
 // Source: Laine, Karras, Aila, "Megakernels Considered Harmful: Wavefront Path Tracing on GPUs", HPG 2013, whose pool
 // of paths is refilled as they end.
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "device/buffer.h"
 #include "device/readback.h"
-#include "integrators/integrator.h"
+#include "integrators/integrator_base.h"
 #include "integrators/path/path_listener.h"
 #include "integrators/path/path_queues.h"
 #include "integrators/path/path_settings.h"
@@ -29,39 +28,34 @@
 
 namespace pertev {
 
-class PathIntegrator final : public Integrator {
+/// The settings of a path-traced render.
+struct PathRequest {
+    PathSettings path;
+    // Light is added to these layers of the film too. They may be null. A film of render() has as many.
+    std::shared_ptr<const LightPathLayers> layers;
+    bool is_meter = false; // the picture shows the irradiance of what the camera sees (IrradianceMeter)
+    // Rasterisation finds what the camera sees (render/raster/camera_raster.h), which changes no sample. The camera
+    // then has no lens. Only the constructor reads this.
+    bool rasterises = false;
+};
+
+class PathIntegrator final : public IntegratorBase<PathRequest> {
 public:
-    /// `queue` outlives the integrator. `batch`: most paths in flight of the wavefronts together, rounded up to 32
-    /// each; fewer where their queues would pass kMostQueueBytes. `rasterises`: what the camera sees is found by
-    /// rasterisation (render/raster/camera_raster.h), which changes no sample; the camera has no lens then.
-    PathIntegrator(Queue& queue, const PathSettings& settings, PathBody body, uint32_t batch, bool rasterises = false);
+    /// `batch`: most paths in flight of the wavefronts together, rounded up to 32 each; fewer where their queues would
+    /// pass kMostQueueBytes.
+    PathIntegrator(Queue& queue, const PathRequest& settings, bool in_loop, uint32_t batch);
 
     static constexpr std::size_t kMostQueueBytes = 600'000'000;
     /// Of a path in flight in all queues, its shadow ray's and its hit's among them.
     static std::size_t bytes_of_path(const PathParts& parts);
-    /// Bytes that so many samples of all pixels together take by the wavefront, of at most `max_depth` scatterings;
-    /// those of a CameraRaster come on top.
-    static std::size_t wavefront_bytes(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth,
-                                       const PathParts& parts);
 
+    void reserve(const WorkSize& size) override;
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
-    /// The loop alone does.
-    void abandon_when(const std::atomic<bool>* flag) override { abandon_ = flag; }
-    RayCounts rays() const override { return rays_; }
-    std::size_t bytes() const override;
-
-    /// Counts from the next begin().
-    void set_settings(const PathSettings& settings) { settings_ = settings; }
-    /// Likewise. Light goes to these layers of the film too; null: there are none. A film of render() has as many.
-    void set_layers(std::shared_ptr<const LightPathLayers> layers);
-    /// Likewise. The picture is that of the irradiance of what the camera sees (IrradianceMeter).
-    void set_meter(bool is_meter) { is_meter_ = is_meter; }
 
 private:
     void render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees);
     void render_wavefront(uint32_t first, uint32_t count, const FilmView& film);
-    const HostTrees* trees_of_loop() const; // null where the body is the wavefront
 
     /// Samples that render() makes.
     struct Work {
@@ -70,20 +64,11 @@ private:
     };
     PathJob job_for(const FilmView& film) const;
     struct Wavefront;
-    void take_wavefronts(uint32_t samples, const PathParts& parts);
-    std::size_t queue_bytes() const;
+    void take_wavefronts(uint64_t samples, const PathParts& parts);
     LightPathView layers_for(const FilmView& film) const;
     void give_rounds(int going, const Work& work);
     void give_round(Wavefront& wavefront, const Work& work);
 
-    Queue& queue_;
-    PathSettings settings_;
-    PathBody body_;
-    uint32_t batch_;
-    PictureView picture_{};
-    RayCounts rays_;
-    SceneTracer* tracer_ = nullptr;
-    const std::atomic<bool>* abandon_ = nullptr;
     std::optional<CameraRaster> raster_; // where it rasterises
 
     // The queues of one wavefront, one element a path in flight.
@@ -127,9 +112,8 @@ private:
     std::vector<Wavefront> wavefronts_;
     PathParts parts_; // that they have: all that were ever asked for, so that frames and pictures in turns take none
     Buffer<RenderCounts> render_counts_;
-    bool is_meter_ = false;
-    std::shared_ptr<const LightPathLayers> layers_;
-    std::optional<LightPathsOnDevice> layers_on_device_; // those of `layers_`, from begin() on
+    std::shared_ptr<const LightPathLayers> uploaded_;    // the layers on the device
+    std::optional<LightPathsOnDevice> layers_on_device_; // where there are some
 };
 
 } // namespace pertev

@@ -23,7 +23,6 @@ struct ListenerQueues {
     Uint2 *states = nullptr, *next_states = nullptr; // LightPaths
     Float4* layer_diffuse = nullptr;
     Uint4* layer_parts = nullptr;
-    static constexpr std::size_t kBytesOfLayers = 2 * sizeof(Uint2) + sizeof(Float4) + sizeof(Uint4); // of a path
 };
 
 /// What is scattered at a vertex: light along `wi` to `wo`.

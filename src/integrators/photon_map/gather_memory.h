@@ -32,7 +32,7 @@ struct GatheredSums {
 
 /// How much there is room for.
 struct GatherRoom {
-    uint32_t walks;
+    uint32_t count;   // walks
     uint32_t nearest; // photons of each walk; 0: all within a radius count
     bool can_share;   // look-ups between several threads
 };
@@ -79,30 +79,20 @@ struct GatherView {
     }
 };
 
-/// Places the arrays as lay_out of walk_memory.h does.
+/// Places the arrays in one piece of memory (lay_out_arrays).
 inline std::size_t lay_out(GatherView& view, std::byte* memory, const GatherRoom& room) {
-    std::size_t bytes = 0;
-    const auto place = [&]<class T>(T*& array, std::size_t count) {
-        array = memory != nullptr ? reinterpret_cast<T*>(memory + bytes) : nullptr;
-        bytes += (count * sizeof(T) + 15) / 16 * 16;
-    };
-    const uint32_t walks = room.walks;
     view.nearest_count = room.nearest;
-    place(view.sights, walks);
-    place(view.marks, walks);
-    place(view.places, walks);
-    place(view.directions, walks);
-    place(view.throughputs, walks);
-    place(view.nearest, std::size_t(walks) * room.nearest);
-    view.crowded = nullptr;
-    if (!room.can_share) return bytes;
-    place(view.crowded, walks);
-    place(view.shared_sums, walks);
-    return bytes;
-}
-inline std::size_t bytes_of(const GatherRoom& room) {
-    GatherView view;
-    return lay_out(view, nullptr, room);
+    return lay_out_arrays(memory, [&](const auto& place) {
+        const std::size_t walks = room.count, shared = room.can_share ? walks : 0;
+        place(view.sights, walks);
+        place(view.marks, walks);
+        place(view.places, walks);
+        place(view.directions, walks);
+        place(view.throughputs, walks);
+        place(view.nearest, walks * room.nearest);
+        place(view.crowded, shared);
+        place(view.shared_sums, shared);
+    });
 }
 
 } // namespace pertev

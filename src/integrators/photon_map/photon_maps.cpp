@@ -26,64 +26,32 @@ std::size_t most_starts(uint64_t room) { return std::bit_ceil(room) + 1; }
 
 } // namespace
 
-std::size_t PhotonMaps::predicted_bytes(const PhotonMapSettings& settings, uint32_t max_depth, bool on_cuda) {
-    const uint64_t of_kind = room_of_kind(settings, max_depth), in_maps = room_of_maps(settings, max_depth);
-    std::size_t each = 3 * sizeof(Float4) + 2 * (sizeof(uint64_t) + sizeof(uint32_t));
-    if (on_cuda) each += sizeof(uint64_t) + sizeof(uint32_t); // a copy of what is sorted, about
-    const std::size_t bytes = 2 * of_kind * each + in_maps * 3 * sizeof(Float4) + sizeof(PhotonCounts) +
-                              (most_starts(in_maps - of_kind) + most_starts(of_kind)) * sizeof(uint32_t);
-    switch (settings.search) {
-    case PhotonSearch::Grid:
-        return bytes;
-    case PhotonSearch::KdTree:
-        return bytes + in_maps * sizeof(PointKdNode);
-    case PhotonSearch::Octree:
-        break;
-    }
-    return bytes + in_maps * (2 * sizeof(PointOctreeNode) + sizeof(Sphere) + sizeof(uint32_t));
-}
-
 void PhotonMaps::make_room(const PhotonMapSettings& settings, uint32_t max_depth) {
     const uint64_t of_kind = room_of_kind(settings, max_depth), room = 2 * of_kind;
     const uint64_t in_maps = room_of_maps(settings, max_depth);
     search_ = settings.search;
     most_kept_ = settings.nearest > 0 ? 0xffffffffu : kMostKept; // the nearest are to be those of all
     global_has_all_ = global_has_all(settings);
-    const auto need = [&]<class T>(Buffer<T>& buffer, std::size_t count, const char* name) {
-        if (buffer.size() >= count) return;
-        buffer = {}; // before there is more
-        buffer = Buffer<T>(queue_, count, name);
-    };
     for (int k = 0; k < 3; ++k) {
-        need(stored_[k], room, "photons as they come");
-        need(ordered_[k], in_maps, "photons");
+        stored_[k].grow(queue_, room, "photons as they come");
+        ordered_[k].grow(queue_, in_maps, "photons");
     }
     for (int k = 0; k < 2; ++k) {
-        need(keys_[k], room, "numbers of photons");
-        need(order_[k], room, "order of photons");
-        need(starts_[k], most_starts(k == 0 ? in_maps - of_kind : of_kind), "hash grid over photons");
+        keys_[k].grow(queue_, room, "numbers of photons");
+        order_[k].grow(queue_, room, "order of photons");
+        starts_[k].grow(queue_, most_starts(k == 0 ? in_maps - of_kind : of_kind), "hash grid over photons");
     }
     if (queue_.is_cuda()) {
-        need(scratch_, sort_scratch_bytes(queue_, static_cast<uint32_t>(room)), "room for sorting photons");
+        scratch_.grow(queue_, sort_scratch_bytes(queue_, static_cast<uint32_t>(room)), "room for sorting photons");
     }
-    need(counts_, 1, "counts of photons");
-    if (search_ == PhotonSearch::KdTree) need(kd_nodes_, in_maps, "kd-tree over photons");
+    counts_.grow(queue_, 1, "counts of photons");
+    if (search_ == PhotonSearch::KdTree) kd_nodes_.grow(queue_, in_maps, "kd-tree over photons");
     if (search_ == PhotonSearch::Octree) {
-        need(octree_nodes_, 2 * in_maps, "octree over photons");
-        need(octree_spheres_, in_maps, "octree over photons");
-        need(octree_indices_, in_maps, "octree over photons");
+        octree_nodes_.grow(queue_, 2 * in_maps, "octree over photons");
+        octree_spheres_.grow(queue_, in_maps, "octree over photons");
+        octree_indices_.grow(queue_, in_maps, "octree over photons");
     }
     room_ = room;
-}
-
-std::size_t PhotonMaps::bytes() const {
-    std::size_t bytes = scratch_.size() + counts_.size() * sizeof(PhotonCounts);
-    for (int k = 0; k < 3; ++k) bytes += (stored_[k].size() + ordered_[k].size()) * sizeof(Float4);
-    for (int k = 0; k < 2; ++k) {
-        bytes += keys_[k].size() * sizeof(uint64_t) + (order_[k].size() + starts_[k].size()) * sizeof(uint32_t);
-    }
-    return bytes + kd_nodes_.size() * sizeof(PointKdNode) + octree_nodes_.size() * sizeof(PointOctreeNode) +
-           octree_spheres_.size() * sizeof(Sphere) + octree_indices_.size() * sizeof(uint32_t);
 }
 
 StoredPhotonsView PhotonMaps::clear() {

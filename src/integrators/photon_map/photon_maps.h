@@ -16,11 +16,8 @@ public:
     /// `queue` outlives it.
     explicit PhotonMaps(Queue& queue) : queue_(queue) {}
 
-    /// Bytes that make_room() takes.
-    static std::size_t predicted_bytes(const PhotonMapSettings& settings, uint32_t max_depth, bool on_cuda);
     /// For passes of such settings. Throws Error(OutOfMemory).
     void make_room(const PhotonMapSettings& settings, uint32_t max_depth);
-    std::size_t bytes() const;
 
     /// A pass begins: no photons. Where they go.
     StoredPhotonsView clear();

@@ -16,40 +16,28 @@ uint64_t rows_for(uint64_t pixels) { return std::clamp<uint64_t>(pixels, 1u << 1
 
 } // namespace
 
-RasterIntegrator::RasterIntegrator(Queue& queue, const RasterSettings& settings)
-    : queue_(queue), settings_(settings), row_count_(queue, 1, "rows of triangles") {}
-
-std::size_t RasterIntegrator::predicted_bytes(uint64_t pixels) {
-    return (1 + pixels) * sizeof(uint64_t) + rows_for(pixels) * sizeof(Uint2);
+void RasterIntegrator::reserve(const WorkSize& size) {
+    row_count_.grow(queue_, 1, "rows of triangles");
+    depths_.grow(queue_, size.pixels(), "depth buffer");
+    rows_.grow(queue_, rows_for(size.pixels()), "rows of triangles");
 }
 
-void RasterIntegrator::begin(const PictureView& picture, SceneTracer&, uint32_t) {
+void RasterIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
     if (picture.scene.triangle_count >= kNoHit) {
         throw Error(ErrorCode::OverLimit, "integrator", "raster",
                     fmt::format("{} triangles in all instances of the scene; it draws {} at most",
                                 picture.scene.triangle_count, kNoHit - 1));
     }
-    picture_ = picture;
+    IntegratorBase::begin(picture, tracer, samples);
     camera_ = make_pinhole(picture.camera);
-    picture_settings_ = settings_;
     const LightSetView& lights = picture.scene.lights;
     if (!settings_.has_ambient && lights.has_environment()) picture_settings_.ambient = lights.environment.mean;
-    const uint64_t pixels = uint64_t(picture.camera.width) * picture.camera.height;
-    if (depths_.size() < pixels) {
-        depths_ = Buffer<uint64_t>(); // before the new one, so that both need not fit
-        depths_ = {queue_, pixels, "depth buffer"};
-    }
-    if (rows_.size() < rows_for(pixels)) {
-        rows_ = Buffer<Uint2>();
-        rows_ = {queue_, rows_for(pixels), "rows of triangles"};
-    }
 }
 
 void RasterIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
     const auto triangles = static_cast<uint32_t>(picture_.scene.triangle_count);
-    const uint32_t pixels = picture_.camera.width * picture_.camera.height;
     for (uint32_t sample = first; sample < first + count; ++sample) {
-        if (abandon_ != nullptr && *abandon_) return;
+        if (is_abandoned()) return;
         const RasterPass pass = {camera_,      picture_,          picture_settings_, depths_.data(),
                                  rows_.data(), row_count_.data(), rows_.size(),      sample};
         depths_.fill(0xff); // kNoDepth
@@ -60,7 +48,7 @@ void RasterIntegrator::render(uint32_t first, uint32_t count, const FilmView& fi
             launch(queue_, "scan_triangles", triangles, ScanTriangles{pass});
             launch(queue_, "scan_rows", static_cast<uint32_t>(rows_.size()), ScanRows{pass});
         }
-        launch(queue_, "shade_pixels", pixels, ShadePixels{pass, film});
+        launch(queue_, "shade_pixels", pixels(), ShadePixels{pass, film});
     }
     queue_.wait();
 }

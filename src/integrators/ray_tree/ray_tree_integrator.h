@@ -1,72 +1,66 @@
 #pragma once
 
-// An integrator whose samples are trees of rays (tree_memory.h): the one file that orders the stages. What differs from
-// one to the other is `Algorithm`, a few lines (integrators/cast/cast.h is the shortest):
+// An integrator whose samples are trees of rays (tree_memory.h). What differs from one to the other is `Algorithm`, a
+// few lines (integrators/cast/cast.h is the shortest):
 //   kMostBranches   rays that a vertex sends on, at most
 //   kHasShutter     whether its rays have a time
 //   shadow_rays     that a vertex may ask for
 //   ask_for_light   writes one of them
 //   follow          puts what the vertex sends on on the stack, and adds ambient light
 //   ambient         its ambient light where none was asked for
-//
-// Two bodies give the same bytes: on the CPU each thread takes some trees of its own from the camera to the film; else
-// every stage runs over all trees in flight, and their rays go through the scene's tracer.
-//
-// The functions stand in ray_tree_integrator_body.h, which each algorithm's .cpp includes.
+// The .cpp of each algorithm instantiates it.
 
-#include <cstddef>
-#include <cstdint>
-
-#include "device/buffer.h"
-#include "device/readback.h"
-#include "integrators/integrator.h"
 #include "integrators/ray_tree/ray_tree_settings.h"
-#include "integrators/ray_tree/tree_memory.h"
+#include "integrators/ray_tree/run_trees.h"
 
 namespace pertev {
 
 template <class Algorithm>
-class RayTreeIntegrator final : public Integrator {
+class RayTreeIntegrator : public TwoSchedules<RayTreeSettings, TreeJob> {
 public:
-    /// `queue` outlives the integrator. `in_loop`: on the CPU, where it can walk the scene's trees by itself, threads
-    /// take trees of their own. `batch`: most trees in flight else; their memory is kMostTreeBytes at most.
-    RayTreeIntegrator(Queue& queue, const RayTreeSettings& settings, bool in_loop, uint32_t batch);
+    using TwoSchedules::TwoSchedules;
 
-    /// Bytes that begin() takes for so many samples of all pixels together, where the trees are in flight all at once.
-    /// `has_times`: something moves while the shutter is open.
-    static std::size_t predicted_bytes(const RayTreeSettings& settings, uint64_t samples, uint32_t batch,
-                                       bool has_times);
-
+    void reserve(const WorkSize& size) override;
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
-    /// The loop alone does.
-    void abandon_when(const std::atomic<bool>* flag) override { abandon_ = flag; }
-    RayCounts rays() const override { return rays_; }
-    std::size_t bytes() const override { return memory_.size(); }
-
-    /// Counts from the next begin().
-    void set_settings(const RayTreeSettings& settings) { settings_ = settings; }
 
 private:
-    const HostTrees* trees_of_loop() const; // null: all at once
-    void render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees);
-    void render_all_at_once(uint32_t first, uint32_t count, const FilmView& film);
-    void give_rounds(uint32_t trees, const FilmView& film);
-    void shade(const WorkCount& rays, const FilmView& film, uint32_t round, uint32_t first, bool is_last);
-
-    Queue& queue_;
-    RayTreeSettings settings_, picture_settings_; // asked for; with the picture's own ambient light
-    bool in_loop_;
-    uint32_t batch_;
-    PictureView picture_{};
-    SceneTracer* tracer_ = nullptr;
-    const std::atomic<bool>* abandon_ = nullptr;
-    RayCounts rays_;
-
-    Buffer<std::byte> memory_;
-    TreesView trees_{}; // of memory_
-    Readback<TreeCounts> seen_;
+    static TreeRoom room_for(const RayTreeSettings& settings, bool has_times, std::size_t bytes, uint64_t most) {
+        // A tree holds the ray under way and, for each vertex above it, all branches but the one taken.
+        const uint32_t entries =
+            Algorithm::kMostBranches > 1 ? 1 + (Algorithm::kMostBranches - 1) * settings.max_depth : 1;
+        return room_within(bytes, most, [&](uint32_t trees) { return TreeRoom{trees, entries, has_times}; });
+    }
 };
+
+template <class Algorithm>
+void RayTreeIntegrator<Algorithm>::reserve(const WorkSize& size) {
+    if (goes_by_loop(size)) return;
+    take_room(room_for(settings_, size.has_times, kMostBytes, std::min<uint64_t>(size.all(), batch_)), "ray trees");
+}
+
+template <class Algorithm>
+void RayTreeIntegrator<Algorithm>::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
+    TwoSchedules::begin(picture, tracer, samples);
+    if (settings_.has_ambient) return;
+    const LightSetView& lights = picture.scene.lights;
+    picture_settings_.ambient = Algorithm::ambient(lights.has_environment() ? &lights.environment : nullptr);
+}
+
+template <class Algorithm>
+void RayTreeIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const FilmView& film) {
+    PERTEV_CHECK(!film.frame.is_there());
+    constexpr std::size_t kLoopBytes = std::size_t(1) << 19; // of a thread: what its cache holds
+    constexpr uint64_t kMostInLoop = 128;
+    const bool has_times = picture_.scene.motions.is_there();
+    const BeginOrder samples = {0, pixels(), first, count};
+    run_stages({.picture = picture_, .settings = picture_settings_, .film = film, .samples = samples}, 0,
+               samples.count(), room_for(picture_settings_, has_times, kLoopBytes, kMostInLoop), count,
+               [this](auto& schedule, const TreeJob& part) {
+                   if (!is_abandoned()) run_trees<Algorithm>(schedule, part);
+               });
+    rays_.camera += samples.count();
+}
 
 // Those that there are.
 struct Cast;

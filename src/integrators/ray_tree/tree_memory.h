@@ -5,13 +5,14 @@
 // the ray that every live tree has under way, through one queue of all; then each tree takes its next ray off its
 // stack.
 //
-// One piece of memory holds all arrays: lay_out() places them, for the device and for a thread of the CPU alike.
+// One piece of memory holds all arrays, for the device and for a thread of the CPU alike.
 
 #include <cstddef>
 #include <cstdint>
 
 #include "device_scene/accept_hit.h"
 #include "device_scene/ray_queue.h"
+#include "integrators/lay_out_arrays.h"
 #include "math/float4.h"
 #include "math/rgb.h"
 #include "trace/intersect/ray.h"
@@ -134,38 +135,40 @@ struct TreesView {
     }
 };
 
-/// Places the arrays of `capacity` trees with stacks of `entries` rays each one after the other from `memory` on, a
-/// multiple of 16. Returns the bytes that they take; with no memory that is all it does. `has_times`: rays have a time.
-inline std::size_t lay_out(TreesView& view, std::byte* memory, uint32_t capacity, uint32_t entries, bool has_times) {
-    std::size_t bytes = 0;
-    const auto place = [&]<class T>(T*& array, std::size_t count) {
-        array = memory != nullptr && count > 0 ? reinterpret_cast<T*>(memory + bytes) : nullptr;
-        bytes += (count * sizeof(T) + 15) / 16 * 16;
-    };
-    const std::size_t stacked = std::size_t(capacity) * entries, shadows = std::size_t(capacity) * kShadowsAtOnce;
-    view.capacity = capacity;
-    place(view.states, capacity);
-    place(view.origins, stacked);
-    place(view.directions, stacked);
-    place(view.weights, stacked);
-    place(view.primitives, stacked);
-    place(view.rays, capacity);
-    place(view.starts, capacity);
-    place(view.keys, capacity);
-    place(view.times, has_times ? capacity : 0);
-    place(view.owners[0], capacity);
-    place(view.owners[1], capacity);
-    place(view.hit_places, capacity);
-    place(view.hit_instances, capacity);
-    place(view.shadow_rays, shadows);
-    place(view.shadow_starts, shadows);
-    place(view.shadow_targets, shadows);
-    place(view.shadow_keys, shadows);
-    place(view.shadow_times, has_times ? shadows : 0);
-    place(view.contributions, shadows);
-    place(view.asked, capacity);
-    place(view.counts, 1);
-    return bytes;
+/// The sizes of the arrays.
+struct TreeRoom {
+    uint32_t count;   // trees
+    uint32_t entries; // rays of a stack
+    bool has_times;   // rays have a time
+};
+
+/// Places the arrays in one piece of memory (lay_out_arrays).
+inline std::size_t lay_out(TreesView& view, std::byte* memory, const TreeRoom& room) {
+    view.capacity = room.count;
+    return lay_out_arrays(memory, [&](const auto& place) {
+        const std::size_t trees = room.count, stacked = trees * room.entries, shadows = trees * kShadowsAtOnce;
+        place(view.states, trees);
+        place(view.origins, stacked);
+        place(view.directions, stacked);
+        place(view.weights, stacked);
+        place(view.primitives, stacked);
+        place(view.rays, trees);
+        place(view.starts, trees);
+        place(view.keys, trees);
+        place(view.times, room.has_times ? trees : 0);
+        place(view.owners[0], trees);
+        place(view.owners[1], trees);
+        place(view.hit_places, trees);
+        place(view.hit_instances, trees);
+        place(view.shadow_rays, shadows);
+        place(view.shadow_starts, shadows);
+        place(view.shadow_targets, shadows);
+        place(view.shadow_keys, shadows);
+        place(view.shadow_times, room.has_times ? shadows : 0);
+        place(view.contributions, shadows);
+        place(view.asked, trees);
+        place(view.counts, 1);
+    });
 }
 
 } // namespace pertev

@@ -46,13 +46,6 @@ uint64_t materials_of(const HeightMaps& maps) {
     return count;
 }
 
-template <class T>
-void fit(Queue& queue, Buffer<T>& buffer, uint64_t count, const char* name) {
-    if (buffer.size() >= count) return;
-    buffer = Buffer<T>(); // before the new one, so that both need not fit
-    buffer = Buffer<T>(queue, count, name);
-}
-
 /// Of scale (h - middle), in size.
 float reach_of(const HeightMap& map) {
     float reach = 0;
@@ -62,75 +55,53 @@ float reach_of(const HeightMap& map) {
 
 } // namespace
 
-ReyesIntegrator::ReyesIntegrator(Queue& queue, const ReyesSettings& settings)
-    : queue_(queue), settings_(settings), count_(queue, 2, "pieces of triangles") {}
-
-void ReyesIntegrator::set_settings(const ReyesSettings& settings) {
-    has_heights_ = has_heights_ && settings.heights == settings_.heights;
-    settings_ = settings;
-}
-
 uint32_t ReyesIntegrator::samples_at_once(uint64_t pixels) {
     return static_cast<uint32_t>(std::max<uint64_t>(kMostSamplesAtOnce / pixels, 1));
 }
 
-std::size_t ReyesIntegrator::predicted_bytes(const ReyesSettings& settings, uint64_t pixels, uint32_t samples) {
-    const uint64_t all = samples_held(pixels, samples);
-    std::size_t bytes = all * (sizeof(SamplePlace) + 2 * sizeof(uint64_t) + sizeof(uint32_t)) +
-                        pixels * (sizeof(uint32_t) + sizeof(float)) + 2 * sizeof(uint32_t) +
-                        (std::size_t(kStack) + kMostUnderWay) * sizeof(Piece);
-    if (settings.heights) {
-        bytes += texels(*settings.heights) * sizeof(float) + materials_of(*settings.heights) * sizeof(DisplacementView);
-    }
-    return bytes;
+void ReyesIntegrator::reserve(const WorkSize& size) {
+    const uint64_t all = samples_held(size.pixels(), size.samples);
+    count_.grow(queue_, 2, "pieces of triangles");
+    places_.grow(queue_, all, "places of samples");
+    nearest_.grow(queue_, all, "samples' nearest triangles");
+    ways_.grow(queue_, all, "samples' micropolygons");
+    next_.grow(queue_, all, "lists of samples");
+    heads_.grow(queue_, size.pixels(), "lists of samples");
+    far_.grow(queue_, size.pixels(), "farthest samples");
+    stack_.grow(queue_, kStack, "pieces of triangles");
+    under_way_.grow(queue_, kMostUnderWay, "pieces of triangles");
+    if (!settings_.heights || settings_.heights == uploaded_) return;
+    uploaded_ = nullptr;
+    heights_ = Buffer<float>(), displacements_ = Buffer<DisplacementView>(); // before the new ones
+    heights_ = Buffer<float>(queue_, texels(*settings_.heights), "heights");
+    displacements_ = Buffer<DisplacementView>(queue_, materials_of(*settings_.heights), "heights");
 }
 
-std::size_t ReyesIntegrator::bytes() const {
-    return places_.size() * sizeof(SamplePlace) + (nearest_.size() + ways_.size()) * sizeof(uint64_t) +
-           (next_.size() + heads_.size() + count_.size()) * sizeof(uint32_t) +
-           (stack_.size() + under_way_.size()) * sizeof(Piece) + (far_.size() + heights_.size()) * sizeof(float) +
-           displacements_.size() * sizeof(DisplacementView);
-}
-
-void ReyesIntegrator::begin(const PictureView& picture, SceneTracer&, uint32_t samples) {
+void ReyesIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
     if (picture.scene.triangle_count >= kNoHit) {
         throw Error(ErrorCode::OverLimit, "integrator", "reyes",
                     fmt::format("{} triangles in all instances of the scene; it dices {} at most",
                                 picture.scene.triangle_count, kNoHit - 1));
     }
-    picture_ = picture;
+    IntegratorBase::begin(picture, tracer, samples);
     camera_ = make_pinhole(picture.camera);
     light_ = {settings_.ambient, settings_.max_depth};
     const LightSetView& lights = picture.scene.lights;
     if (!settings_.has_ambient && lights.has_environment()) light_.ambient = lights.environment.mean;
-    const uint64_t pixels = uint64_t(picture.camera.width) * picture.camera.height;
-    const uint64_t all = samples_held(pixels, samples);
-    fit(queue_, places_, all, "places of samples");
-    fit(queue_, nearest_, all, "samples' nearest triangles");
-    fit(queue_, ways_, all, "samples' micropolygons");
-    fit(queue_, next_, all, "lists of samples");
-    fit(queue_, heads_, pixels, "lists of samples");
-    fit(queue_, far_, pixels, "farthest samples");
-    fit(queue_, stack_, kStack, "pieces of triangles");
-    fit(queue_, under_way_, kMostUnderWay, "pieces of triangles");
-    if (settings_.heights && !has_heights_) upload_heights();
+    if (settings_.heights && settings_.heights != uploaded_) upload_heights();
 }
 
 void ReyesIntegrator::upload_heights() {
-    const HeightMaps& maps = *settings_.heights;
-    heights_ = Buffer<float>();
-    displacements_ = Buffer<DisplacementView>();
-    heights_ = Buffer<float>(queue_, texels(maps), "heights");
-    std::vector<DisplacementView> views(materials_of(maps));
+    std::vector<DisplacementView> views(displacements_.size());
     uint64_t at = 0;
-    for (const HeightMap& map : maps) {
+    for (const HeightMap& map : *settings_.heights) {
         heights_.upload_at(at, map.heights.pixels);
         views[map.material] = {heights_.data() + at, map.heights.width, map.heights.height, map.scale,
                                map.middle,           reach_of(map)};
         at += map.heights.pixels.size();
     }
-    displacements_ = Buffer<DisplacementView>(queue_, views, "heights");
-    has_heights_ = true;
+    displacements_.upload(views);
+    uploaded_ = settings_.heights;
 }
 
 /// Heights that are large by the size of the scene fold its surfaces over each other without end. Since what is hidden

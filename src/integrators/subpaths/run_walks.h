@@ -1,38 +1,49 @@
 #pragma once
 
-// The two ways to run the stages of walks, with one face: all at once through a queue of the device's, or over a few
-// walks of one thread of the CPU's. What orders the stages is written once, for both.
+// This file defines both schedules of subpaths (integrators/two_schedules.h) and orders the stages of particles once.
 
 #include <memory>
 #include <vector>
 
-#include "device/launch.h"
-#include "device/readback.h"
 #include "device_scene/find_hits.h"
 #include "integrators/subpaths/particle_stages.h"
-#include "tracer/scene_tracer.h"
+#include "integrators/two_schedules.h"
 
 namespace pertev {
 
-/// What is to be done with the walks there is room for.
+class WalksWavefront;
+class WalksLoop;
+
+/// The job of TwoSchedules: a range of samples, each with a subpath from a light or the camera.
 struct WalkJob {
+    using Room = WalkRoom;
+    using Counts = WalkCounts;
+    using Loop = WalksLoop;
+    using Wavefront = WalksWavefront;
+
     WalkScene scene;
     FilmView film;
     WalksView walks;
     BeginOrder samples;
     uint64_t first; // of the samples
     uint32_t count; // of walks of each kind
+
+    WalkCounts* counts() const { return walks.counts; }
 };
+inline std::size_t lay_out(WalkJob& job, std::byte* memory, const WalkRoom& room) {
+    return lay_out(job.walks, memory, room);
+}
+inline RayCounts rays_of(const WalkCounts& counts) { return {0, counts.bounces, counts.all_asked}; }
 
-class WalksOnDevice {
+inline WorldSphere sphere_round(const Bounds3& bounds) {
+    if (bounds.is_empty()) return {};
+    return {bounds.centre(), 0.51f * length(bounds.size())}; // half the diagonal, and what rounding may take of it
+}
+
+class WalksWavefront : public WavefrontSchedule<WalkCounts> {
 public:
-    WalksOnDevice(Queue& queue, SceneTracer& tracer, Readback<WalkCounts>& seen)
-        : queue_(queue), tracer_(tracer), seen_(seen) {}
+    using WavefrontSchedule::WavefrontSchedule;
 
-    template <class Stage>
-    void run(const char* name, WorkCount count, const Stage& stage) {
-        launch(queue_, name, count, stage);
-    }
     void find_hits(RayKind kind, const WalkJob& job, WorkCount rays, uint32_t round) {
         tracer_.find_hits(kind, job.walks.query(round), rays, job.walks.hits());
     }
@@ -45,40 +56,14 @@ public:
         tracer_.find_hits(RayKind::Camera, job.walks.asked_query(), asked,
                           {job.walks.hit_places, job.walks.asked_keys});
     }
-
-    /// The bound of a first round's rays.
-    void begin_rounds(uint32_t most) {
-        if (is_pending_) seen_.wait();
-        is_pending_ = false;
-        most_ = most;
-    }
-    uint32_t most_rays() const { return most_; }
-    /// False once no ray is left: the host gives rounds without waiting for one, and looks one round late.
-    bool has_rays_left(const WalkJob& job) {
-        if (is_pending_) most_ = seen_.wait().rays;
-        is_pending_ = most_ > 0;
-        if (is_pending_) seen_.take(job.walks.counts);
-        return is_pending_;
-    }
-
-private:
-    Queue& queue_;
-    SceneTracer& tracer_;
-    Readback<WalkCounts>& seen_;
-    bool is_pending_ = false;
-    uint32_t most_ = 0;
 };
 
-class WalksInThread {
+class WalksLoop : public LoopSchedule<WalkCounts> {
 public:
-    WalksInThread(const HostTrees& trees, WalkRoom room)
-        : trees_(trees), hits_(std::size_t(room.walks) * room.connections),
-          met_(std::make_unique<bool[]>(std::size_t(room.walks) * room.connections)) {}
+    WalksLoop(const HostTrees& trees, const WalkJob& job)
+        : LoopSchedule(trees), hits_(std::size_t(job.walks.room.count) * job.walks.room.connections),
+          met_(std::make_unique<bool[]>(hits_.size())) {}
 
-    template <class Stage>
-    void run(const char*, WorkCount count, const Stage& stage) {
-        for (uint32_t i = 0; i < count.value(); ++i) stage(i);
-    }
     void find_hits(RayKind kind, const WalkJob& job, WorkCount rays, uint32_t round) {
         const WalksView& walks = job.walks;
         const SceneView& scene = job.scene.picture.scene;
@@ -117,23 +102,14 @@ public:
         for (uint32_t i = 0; i < asked.value(); ++i) walks.asked_keys[i] = met_[i] ? 0 : kNoHit;
     }
 
-    void begin_rounds(uint32_t most) { most_ = most; }
-    uint32_t most_rays() const { return most_; }
-    bool has_rays_left(const WalkJob& job) {
-        most_ = job.walks.counts->rays;
-        return most_ > 0;
-    }
-
 private:
     static AcceptHit accept_asked(const WalkJob& job, uint32_t i) {
         const Uint2 start = job.walks.asked_starts[i], target = job.walks.asked_targets[i];
         return {job.scene.picture.scene, {start.x, start.y}, {target.x, target.y}, job.walks.asked_keys[i]};
     }
 
-    const HostTrees& trees_;
     std::vector<Hit> hits_;
     std::unique_ptr<bool[]> met_;
-    uint32_t most_ = 0;
 };
 
 /// Calls run.operator()<kKnown>() with what is known of the materials, as far as walks have kernels for it.
@@ -151,7 +127,7 @@ void run_particles(Way& way, const WalkJob& job) {
     way.run("begin_particles", job.count, BeginParticles{job.scene, walks, job.samples, job.first});
     way.run("count_walks", 1, CountWalks{walks.counts, true, 0});
     way.begin_rounds(job.count);
-    for (uint32_t round = 0; round < job.scene.settings.max_depth && way.has_rays_left(job); ++round) {
+    for (uint32_t round = 0; round < job.scene.settings.max_depth && way.has_rays_left(walks.counts); ++round) {
         const WorkCount rays = {way.most_rays(), &walks.counts->rays};
         const WorkCount asked = {way.most_rays(), &walks.counts->asked};
         way.find_hits(RayKind::Bounce, job, rays, round);

@@ -20,6 +20,9 @@ struct SubpathSettings {
     bool operator==(const SubpathSettings&) const = default;
 };
 
+/// The largest max_depth of `integrator=bidirectional`: vertices of the walks from the lights are kept, 48 bytes each.
+inline constexpr uint32_t kMostJoinedDepth = 255;
+
 /// A sphere round all that rays can meet, the moved world: light from far away comes through its discs.
 struct WorldSphere {
     Vec3 centre;

@@ -9,6 +9,7 @@
 
 #include "device_scene/accept_hit.h"
 #include "device_scene/ray_queue.h"
+#include "integrators/lay_out_arrays.h"
 #include "integrators/subpaths/mis_walk.h"
 #include "math/float4.h"
 #include "math/rgb.h"
@@ -78,7 +79,7 @@ struct WalkCounts {
 
 /// How much there is room for.
 struct WalkRoom {
-    uint32_t walks;
+    uint32_t count;       // walks
     uint32_t kept;        // vertices of a walk from a light
     uint32_t connections; // of each walk at once
 };
@@ -116,7 +117,7 @@ struct WalksView {
         return {.rays = asked_rays, .starts = asked_starts, .targets = asked_targets, .keys = asked_keys};
     }
     HD HitQueueView hits() const { return {hit_places, hit_instances}; }
-    HD std::size_t kept_place(uint32_t walk, uint32_t number) const { return std::size_t(number) * room.walks + walk; }
+    HD std::size_t kept_place(uint32_t walk, uint32_t number) const { return std::size_t(number) * room.count + walk; }
 
     HD void queue_ray(uint32_t place, uint32_t walk, const Ray& ray, TriangleId start, uint32_t key,
                       uint32_t round) const {
@@ -134,47 +135,38 @@ struct WalksView {
     }
 };
 
-/// Places the arrays one after the other from `memory` on, a multiple of 16. Returns the bytes that they take; with no
-/// memory that is all it does.
-inline std::size_t lay_out(WalksView& view, std::byte* memory, WalkRoom room) {
-    std::size_t bytes = 0;
-    const auto place = [&]<class T>(T*& array, std::size_t count) {
-        array = memory != nullptr ? reinterpret_cast<T*>(memory + bytes) : nullptr;
-        bytes += (count * sizeof(T) + 15) / 16 * 16;
-    };
-    const auto place_vertices = [&](WalkVerticesView& vertices, std::size_t count) {
-        place(vertices.places, count);
-        place(vertices.directions, count);
-        place(vertices.throughputs, count);
-    };
-    const std::size_t walks = room.walks, joins = room.kept > 0 ? walks : 0, asked = walks * room.connections;
+/// Places the arrays in one piece of memory (lay_out_arrays).
+inline std::size_t lay_out(WalksView& view, std::byte* memory, const WalkRoom& room) {
     view.room = room;
-    place(view.states, walks);
-    place(view.squared_indices, walks);
-    place(view.rays[0], walks);
-    place(view.rays[1], walks);
-    place(view.starts, walks);
-    place(view.keys, walks);
-    place(view.owners[0], walks);
-    place(view.owners[1], walks);
-    place(view.hit_places, walks);
-    place(view.hit_instances, walks);
-    place_vertices(view.kept, walks * room.kept);
-    place(view.kept_counts, joins);
-    place_vertices(view.present, joins);
-    place(view.present_owners, joins);
-    place(view.asked_rays, asked);
-    place(view.asked_starts, asked);
-    place(view.asked_targets, asked);
-    place(view.asked_keys, asked);
-    place(view.asked_light, asked);
-    place(view.asked_rasters, walks);
-    place(view.counts, 1);
-    return bytes;
-}
-inline std::size_t bytes_of(WalkRoom room) {
-    WalksView view;
-    return lay_out(view, nullptr, room);
+    return lay_out_arrays(memory, [&](const auto& place) {
+        const auto place_vertices = [&](WalkVerticesView& vertices, std::size_t count) {
+            place(vertices.places, count);
+            place(vertices.directions, count);
+            place(vertices.throughputs, count);
+        };
+        const std::size_t walks = room.count, joins = room.kept > 0 ? walks : 0, asked = walks * room.connections;
+        place(view.states, walks);
+        place(view.squared_indices, walks);
+        place(view.rays[0], walks);
+        place(view.rays[1], walks);
+        place(view.starts, walks);
+        place(view.keys, walks);
+        place(view.owners[0], walks);
+        place(view.owners[1], walks);
+        place(view.hit_places, walks);
+        place(view.hit_instances, walks);
+        place_vertices(view.kept, walks * room.kept);
+        place(view.kept_counts, joins);
+        place_vertices(view.present, joins);
+        place(view.present_owners, joins);
+        place(view.asked_rays, asked);
+        place(view.asked_starts, asked);
+        place(view.asked_targets, asked);
+        place(view.asked_keys, asked);
+        place(view.asked_light, asked);
+        place(view.asked_rasters, walks);
+        place(view.counts, 1);
+    });
 }
 
 } // namespace pertev

@@ -1,4 +1,4 @@
-#include "integrators/ray_tree/ray_tree_integrator_body.h"
+#include "integrators/ray_tree/ray_tree_integrator.h"
 #include "integrators/whitted/whitted.h"
 
 namespace pertev {

@@ -21,13 +21,6 @@ LightPathsOnDevice::LightPathsOnDevice(Queue& queue, const LightPathLayers& laye
     queue.wait(); // the copies may go
 }
 
-std::size_t LightPathsOnDevice::predicted_bytes(const LightPathLayers& layers) {
-    const LightPathAutomaton& automaton = layers.automaton;
-    return sizeof(uint16_t) * (automaton.columns.size() + automaton.next.size() + layers.surface_tags.size() +
-                               layers.instance_lights.size() + layers.scene_lights.size()) +
-           sizeof(uint32_t) * automaton.layers.size();
-}
-
 LightPathView LightPathsOnDevice::view(uint32_t aovs) const {
     LightPathView view = view_;
     view.first_channel = film_channel_count(aovs);

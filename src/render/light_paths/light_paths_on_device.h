@@ -13,8 +13,6 @@ public:
     /// `queue` outlives it. Throws Error(OutOfMemory).
     LightPathsOnDevice(Queue& queue, const LightPathLayers& layers);
 
-    static std::size_t predicted_bytes(const LightPathLayers& layers);
-
     /// For a film of the auxiliary groups `aovs`.
     LightPathView view(uint32_t aovs) const;
 

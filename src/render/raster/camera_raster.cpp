@@ -25,28 +25,20 @@ Capacity capacity_for(uint64_t triangles, uint32_t width, uint32_t height) {
     return {most, 2 * most + pixels / 4, most + pixels / 16, tiles};
 }
 
-template <class T>
-void fit(Queue& queue, Buffer<T>& buffer, uint64_t count, const char* name) {
-    if (buffer.size() >= count) return;
-    buffer = Buffer<T>(); // before the new one, so that both need not fit
-    buffer = Buffer<T>(queue, count, name);
-}
-
 } // namespace
 
-std::size_t CameraRaster::predicted_bytes(uint64_t triangles, uint32_t width, uint32_t height, bool on_cuda) {
+void CameraRaster::reserve(uint64_t triangles, uint32_t width, uint32_t height) {
     const Capacity c = capacity_for(triangles, width, height);
-    constexpr std::size_t of_entry = 2 * sizeof(uint64_t) + 3 * sizeof(uint32_t);
-    const std::size_t sorting = on_cuda ? c.entries * (sizeof(uint64_t) + sizeof(uint32_t)) : 0;
-    return sizeof(TileCounts) + c.triangles * sizeof(BvhTriangle) + c.entries * of_entry +
-           (c.rows + c.tiles) * sizeof(Uint2) + sorting;
-}
-
-std::size_t CameraRaster::bytes() const {
-    return sizeof(TileCounts) + triangles_.size() * sizeof(BvhTriangle) +
-           (codes_.size() + sorted_codes_.size()) * sizeof(uint64_t) +
-           (order_.size() + sorted_order_.size() + entry_triangles_.size()) * sizeof(uint32_t) +
-           (rows_.size() + tiles_.size()) * sizeof(Uint2) + scratch_.size();
+    counts_.grow(queue_, 1, "tile counts");
+    triangles_.grow(queue_, c.triangles, "triangles in view");
+    codes_.grow(queue_, c.entries, "tile lists");
+    sorted_codes_.grow(queue_, c.entries, "tile lists");
+    order_.grow(queue_, c.entries, "tile lists");
+    sorted_order_.grow(queue_, c.entries, "tile lists");
+    entry_triangles_.grow(queue_, c.entries, "tile lists");
+    rows_.grow(queue_, c.rows, "rows of tiles");
+    tiles_.grow(queue_, c.tiles, "tiles");
+    scratch_.grow(queue_, sort_scratch_bytes(queue_, static_cast<uint32_t>(codes_.size())), "sorting of tile lists");
 }
 
 void CameraRaster::begin(const PictureView& picture) {
@@ -56,16 +48,7 @@ void CameraRaster::begin(const PictureView& picture) {
                     fmt::format("{} triangles in all instances of the scene; it rasterises {} at most",
                                 scene_.triangle_count, UINT32_MAX));
     }
-    const uint32_t width = picture.camera.width, height = picture.camera.height;
-    const Capacity c = capacity_for(scene_.triangle_count, width, height);
-    fit(queue_, triangles_, c.triangles, "triangles in view");
-    fit(queue_, codes_, c.entries, "tile lists");
-    fit(queue_, sorted_codes_, c.entries, "tile lists");
-    fit(queue_, order_, c.entries, "tile lists");
-    fit(queue_, sorted_order_, c.entries, "tile lists");
-    fit(queue_, entry_triangles_, c.entries, "tile lists");
-    fit(queue_, rows_, c.rows, "rows of tiles");
-    fit(queue_, tiles_, c.tiles, "tiles");
+    reserve(scene_.triangle_count, picture.camera.width, picture.camera.height);
     const Pinhole camera = make_pinhole(picture.camera);
     for (uint32_t shift = kLeastShift; !make_lists(camera, shift); ++shift) {
     }
@@ -101,8 +84,6 @@ bool CameraRaster::make_lists(const Pinhole& camera, uint32_t shift) {
     if (entries > codes_.size()) return false;
     const auto count = static_cast<uint32_t>(entries);
     if (count > 0) {
-        fit(queue_, scratch_, sort_scratch_bytes(queue_, static_cast<uint32_t>(codes_.size())),
-            "sorting of tile lists");
         sort_codes(queue_, scratch_, codes_.data(), order_.data(), sorted_codes_.data(), sorted_order_.data(), count);
         launch(
             queue_, "finish_tile_lists", count,

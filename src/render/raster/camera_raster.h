@@ -18,19 +18,17 @@ namespace pertev {
 class CameraRaster {
 public:
     /// `queue` outlives it.
-    explicit CameraRaster(Queue& queue) : queue_(queue), counts_(queue, 1, "tile counts") {}
+    explicit CameraRaster(Queue& queue) : queue_(queue) {}
 
-    /// From now on of this picture, whose camera has no lens (why_no_raster). Memory that is large enough is kept.
+    /// Takes the memory for a picture of this size if it is not held yet. begin() calls it. Throws Error(OutOfMemory).
+    void reserve(uint64_t triangles, uint32_t width, uint32_t height);
+    /// From now on of this picture, whose camera has no lens (why_no_raster).
     /// Throws Error(OutOfMemory, DeviceFault), and Error(OverLimit) for a scene with too many triangles, or too many in
     /// view.
     void begin(const PictureView& picture);
     const TileRasterView& view() const { return view_; }
     /// Of rays [0, count) of its picture as FindInTiles has them. Queued.
     void find_hits(const RayQueueView& rays, WorkCount count, const HitQueueView& hits);
-
-    std::size_t bytes() const;
-    /// That begin() takes; on a GPU but for what its sorting takes for tables.
-    static std::size_t predicted_bytes(uint64_t triangles, uint32_t width, uint32_t height, bool on_cuda);
 
 private:
     bool make_lists(const Pinhole& camera, uint32_t shift);

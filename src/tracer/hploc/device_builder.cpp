@@ -100,17 +100,19 @@ void DeviceBuilder::emit() {
     }
 }
 
+void DeviceBuilder::reserve_refit() {
+    parents_.grow(queue_, wide_.size(), "parents of wide nodes");
+    children_.grow(queue_, wide_.size(), "counts of wide nodes' children");
+    arrived_.grow(queue_, wide_.size(), "counts of children that are refitted");
+    boxes_.grow(queue_, wide_.size(), "boxes of wide nodes");
+    refitted_.grow(queue_, 1, "bounds and cost of a refitted tree");
+}
+
 void DeviceBuilder::start_refit(const BvhTriangle* moved) {
     PERTEV_CHECK(count_ == figures_.triangles);
     if (count_ == 0) return;
     const uint32_t nodes = figures_.nodes;
-    if (boxes_.size() < nodes) {
-        parents_ = Buffer<uint32_t>(queue_, wide_.size(), "parents of wide nodes");
-        children_ = Buffer<uint32_t>(queue_, wide_.size(), "counts of wide nodes' children");
-        arrived_ = Buffer<uint32_t>(queue_, wide_.size(), "counts of children that are refitted");
-        boxes_ = Buffer<NodeBox>(queue_, wide_.size(), "boxes of wide nodes");
-        refitted_ = Buffer<RefitResult>(queue_, 1, "bounds and cost of a refitted tree");
-    }
+    reserve_refit();
     if (!are_linked_) {
         launch(queue_, "link parents", nodes, hploc::LinkParents{wide_.data(), parents_.data(), children_.data()});
         are_linked_ = true;
@@ -123,17 +125,6 @@ void DeviceBuilder::start_refit(const BvhTriangle* moved) {
                UpwardLinks{parents_.data(), children_.data(), arrived_.data(), boxes_.data(), refitted_.data()},
                costs_.node_cost, costs_.triangle_cost});
     is_refitted_ = true;
-}
-
-std::size_t DeviceBuilder::predicted_bytes(uint32_t most, bool on_cuda) {
-    const std::size_t a_triangle = sizeof(uint64_t) * 2 + sizeof(uint32_t) * 4 + sizeof(hploc::ClusterNode) * 2 +
-                                   sizeof(hploc::CollapsePlan) + sizeof(hploc::CollapseSize) + sizeof(hploc::Cluster) +
-                                   sizeof(BvhTriangle);
-    const std::size_t a_node = sizeof(hploc::WideItem) + sizeof(uint32_t) + sizeof(CompressedBvhNode) +
-                               3 * sizeof(uint32_t) + sizeof(NodeBox) + (on_cuda ? 0 : 2 * sizeof(uint32_t));
-    const std::size_t a_sort = on_cuda ? sizeof(uint64_t) + sizeof(uint32_t) : 0; // a copy of what is sorted, about
-    return most * (a_triangle + a_sort) + most_nodes(most) * a_node + sizeof(hploc::OrderedBounds) +
-           sizeof(hploc::WideCounts) + sizeof(RefitResult) + (on_cuda ? 1 : 2) * sizeof(uint32_t);
 }
 
 DeviceBuilder::Figures DeviceBuilder::finish() {

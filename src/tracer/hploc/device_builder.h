@@ -40,8 +40,8 @@ public:
     /// Gives the queue the work of fitting the tree that finish() told of to triangles that have moved: as many, in the
     /// same order, anywhere. finish() then has their bounds and the cost of the tree now.
     void start_refit(const BvhTriangle* moved);
-    /// Of what the constructor takes and the first refit; on a GPU what sorting needs is an estimate.
-    static std::size_t predicted_bytes(uint32_t most, bool on_cuda);
+    /// Takes the memory for start_refit. Without this call the first start_refit takes it.
+    void reserve_refit();
 
     /// After finish(): where the tree lies, and a copy on the host.
     CompressedBvhView view() const;

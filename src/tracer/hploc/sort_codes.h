@@ -9,7 +9,7 @@
 
 namespace pertev {
 
-/// Bytes of `scratch` for so many codes.
+/// Returns the bytes of `scratch` for `count` codes. In a dry run it returns an estimate.
 std::size_t sort_scratch_bytes(Queue& queue, uint32_t count);
 
 /// Arrays of `count`, on the queue's device. What was in `codes` and `order`, where order[i] is i, lies sorted in

@@ -1,0 +1,67 @@
+#pragma once
+
+// This base class holds what every integrator has: its settings, the current picture and its tracer, the count of rays,
+// and the flag that abandons a render. Most integrators have a second schedule, the loop, in which each thread of the
+// CPU renders samples of its own (integrators/two_schedules.h).
+
+#include <atomic>
+
+#include "base/parallel_for.h"
+#include "integrators/integrator.h"
+
+namespace pertev {
+
+template <class Settings>
+class IntegratorBase : public Integrator {
+public:
+    /// `queue` outlives the integrator. `in_loop` asks for the loop, which runs if the tracer has host trees. `batch`
+    /// limits the samples in flight of a wavefront.
+    explicit IntegratorBase(Queue& queue, const Settings& settings, bool in_loop = false, uint32_t batch = 0)
+        : queue_(queue), settings_(settings), picture_settings_(settings), batch_(batch), in_loop_(in_loop) {}
+
+    void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override {
+        picture_ = picture;
+        tracer_ = &tracer;
+        rays_ = {};
+        picture_settings_ = settings_;
+        reserve(size_of(picture, tracer, samples));
+    }
+    void abandon_when(const std::atomic<bool>* flag) override { abandon_ = flag; }
+    RayCounts rays() const override { return rays_; }
+
+    /// The settings take effect at the next begin().
+    void set_settings(const Settings& settings) { settings_ = settings; }
+
+protected:
+    bool goes_by_loop(const WorkSize& size) const { return in_loop_ && size.walks_on_host; }
+    /// Returns the trees that the loop traverses for the current picture, or null if it does not run by the loop.
+    const HostTrees* trees_of_loop() const { return in_loop_ ? tracer_->host_trees() : nullptr; }
+    bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }
+    uint32_t pixels() const { return picture_.camera.width * picture_.camera.height; }
+
+    static constexpr uint32_t kLoopCount = 256; // least pixels that a thread of the loop takes at once
+    /// Calls work(begin, end) with ranges of [0, count) on all threads and adds up the rays that the calls return.
+    template <class Work>
+    void share_out(uint64_t count, uint64_t least, const Work& work) {
+        std::atomic<uint64_t> bounces{0}, shadows{0};
+        parallel_for_ranges(count, least, [&](uint64_t begin, uint64_t end) {
+            const RayCounts traced = work(begin, end);
+            bounces += traced.bounce;
+            shadows += traced.shadow;
+        });
+        rays_ = rays_ + RayCounts{0, bounces, shadows};
+    }
+
+    Queue& queue_;
+    Settings settings_, picture_settings_; // for the next begin(); of the current picture
+    uint32_t batch_;
+    PictureView picture_{};
+    SceneTracer* tracer_ = nullptr;
+    RayCounts rays_;
+
+private:
+    bool in_loop_;
+    const std::atomic<bool>* abandon_ = nullptr;
+};
+
+} // namespace pertev
