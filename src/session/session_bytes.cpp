@@ -4,6 +4,7 @@
 #include <set>
 
 #include "denoise/motion_vectors.h"
+#include "denoise/picture_denoiser.h"
 #include "render/raster/camera_raster.h"
 #include "session/session.h"
 
