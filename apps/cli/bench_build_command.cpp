@@ -10,7 +10,6 @@
 
 #include "accel/builders/builders.h"
 #include "apps/cli/bench_parts.h"
-#include "apps/cli/choose_device.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/reporter.h"
@@ -21,6 +20,7 @@
 #include "formats/read_scene.h"
 #include "lab/record_scenes.h"
 #include "lab/stored_figures.h"
+#include "session/machine.h"
 #include "tracer/hploc/device_builder.h"
 
 namespace pertev {

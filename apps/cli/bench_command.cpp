@@ -11,17 +11,17 @@
 
 #include "accel/builders/bvh_cache.h"
 #include "apps/cli/bench_parts.h"
-#include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/reporter.h"
-#include "apps/cli/tracer_flags.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "session/machine.h"
 #include "session/opening/choose_camera.h"
 #include "session/opening/open_scene.h"
 #include "session/session.h"
 #include "settings/parse_values.h"
+#include "settings/tracer_options.h"
 
 namespace pertev {
 namespace {

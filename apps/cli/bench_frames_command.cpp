@@ -11,7 +11,6 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_flags.h"
-#include "apps/cli/strictness.h"
 #include "base/error.h"
 #include "base/limits.h"
 #include "device/device_timer.h"
@@ -20,6 +19,7 @@
 #include "image/picture_hash.h"
 #include "image/write_png.h"
 #include "math/portable_math.h"
+#include "session/opening/strictness.h"
 #include "session/session.h"
 #include "settings/parse_values.h"
 
@@ -77,7 +77,7 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
         whole.push_back(timer.seconds());
         reconstruction.push_back(reconstructs ? session.frame().seconds() : 0);
         copy.push_back(reconstructs ? session.frame().copy_seconds() : 0);
-        figures.rays = figures.rays + (reconstructs ? session.frame_rays() : session.stats().rays);
+        figures.rays = figures.rays + (reconstructs ? session.frames().rays() : session.stats().rays);
         figures.seconds += whole.back();
     }
     figures.whole = summarize_runs(whole);

@@ -8,9 +8,9 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/render_flags.h"
-#include "apps/cli/strictness.h"
 #include "base/limits.h"
 #include "image/metrics.h"
+#include "session/opening/strictness.h"
 #include "session/session.h"
 #include "settings/parse_values.h"
 

@@ -5,13 +5,13 @@
 
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/strictness.h"
 #include "base/error.h"
 #include "formats/builtin_scenes.h"
 #include "formats/read_scene.h"
 #include "lab/record_scenes.h"
 #include "math/portable_math.h"
 #include "session/check_integrator.h"
+#include "session/opening/strictness.h"
 #include "settings/parse_values.h"
 
 namespace pertev {
@@ -50,6 +50,7 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, Reporter& r
     benched->scene = load_scene(flags.scene, SceneUse::Benchmark, messages);
     if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
     const RenderSettings& settings = benched->settings = render_settings(flags, benched->scene);
+    check_radiosity_flags(flags.radiosity, settings, flags.limits_memory);
     check_light(settings, benched->scene, messages);
     benched->camera =
         choose_camera(flags.scene.camera, benched->scene, aspect_of(settings.width, settings.height), messages);

@@ -13,12 +13,10 @@
 #include <fmt/format.h>
 
 #include "apps/cli/bench_parts.h"
-#include "apps/cli/choose_device.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
-#include "apps/cli/tracer_flags.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "formats/read_scene.h"
@@ -28,6 +26,8 @@
 #include "lab/record_scenes.h"
 #include "lab/stored_figures.h"
 #include "render/prepare_scene.h"
+#include "session/machine.h"
+#include "settings/tracer_options.h"
 
 namespace pertev {
 namespace {

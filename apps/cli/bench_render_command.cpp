@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "apps/cli/bench_parts.h"
-#include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
@@ -22,6 +21,7 @@
 #include "lab/isolated_rays.h"
 #include "lab/record_jobs.h"
 #include "lab/stored_figures.h"
+#include "session/machine.h"
 #include "settings/parse_values.h"
 
 namespace pertev {

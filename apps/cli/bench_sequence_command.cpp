@@ -10,16 +10,16 @@
 #include "apps/cli/bench_parts.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
+#include "apps/cli/make_ready.h"
 #include "apps/cli/pfm_file.h"
-#include "apps/cli/ready_scene.h"
 #include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
-#include "apps/cli/strictness.h"
 #include "base/limits.h"
 #include "image/flip.h"
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
 #include "image/write_png.h"
+#include "session/opening/strictness.h"
 #include "settings/parse_values.h"
 
 namespace pertev {
@@ -119,7 +119,7 @@ Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const
         reporter.progress((number + 1.0) / ready.sequence.count(),
                           fmt::format("frame {} of {}", number + 1, ready.sequence.count()));
         go_to_frame(frame, camera, *ready.moving, session, record, reporter.messages());
-        session.render_frame(FrameSequence::sample_of(frame), settings, restir);
+        session.render_frame(FrameRange::sample_of(frame), settings, restir);
         const Image ours = session.frame().picture();
         const auto shown = [&](const Image& picture) { return tone_map_image(picture, tone_map, exposure); };
         if (!flags.write.empty()) {
@@ -171,13 +171,14 @@ std::string text_of(const char* name, const Score& score) {
 int bench_sequence(SequenceFlags& flags) {
     Reporter reporter(flags.render.report);
     flags.render.settings.read(flags.render, reporter.messages());
-    if (!frame_sequence(flags.render)) {
+    if (!frame_range(flags.render)) {
         throw Error(ErrorCode::BadInput, "bench sequence: which frames? say --frames A-B or --turntable N");
     }
     if (flags.reference == 0 && (!flags.peer.empty() || !flags.strips.empty())) {
         throw Error(ErrorCode::BadInput, "--peer, --strips: against which pictures? say --reference SPP");
     }
     check_motion_flags(flags.render);
+    check_radiosity_flags(flags.render.radiosity, flags.render.render, flags.render.limits_memory);
     const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, reporter);
     reporter.say_messages();
     listen_for_interrupt();

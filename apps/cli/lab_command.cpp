@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/flag_phrases.h"
@@ -16,7 +15,6 @@
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
 #include "apps/cli/setting_flags.h"
-#include "apps/cli/strictness.h"
 #include "apps/cli/thesis_command.h"
 #include "apps/cli/transport_command.h"
 #include "base/error.h"
@@ -27,6 +25,8 @@
 #include "lab/record_scenes.h"
 #include "lab/run_lab.h"
 #include "lab/write_tables.h"
+#include "session/machine.h"
+#include "session/opening/strictness.h"
 #include "settings/parse_values.h"
 
 namespace pertev {

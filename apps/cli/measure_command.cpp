@@ -6,18 +6,19 @@
 #include <fmt/format.h>
 
 #include "accel/builders/bvh_cache.h"
-#include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
 #include "apps/cli/setting_flags.h"
-#include "apps/cli/strictness.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "session/machine.h"
 #include "session/measure_irradiance.h"
 #include "session/moving_scene.h"
+#include "session/opening/strictness.h"
+#include "session/pictures/choose_display.h"
 #include "settings/parse_values.h"
 
 namespace pertev {

@@ -6,13 +6,13 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "apps/cli/choose_display.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/ready_scene.h"
+#include "apps/cli/make_ready.h"
 #include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
+#include "apps/cli/report_display.h"
 #include "apps/cli/report_result.h"
 #include "base/byte_units.h"
 #include "base/error.h"
@@ -144,10 +144,10 @@ int render(RenderFlags& flags) {
     report_camera(record.camera, reporter);
     reporter.set_work("handing the scene to the device");
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
-    record.display = choose_display(flags, *session, reporter);
+    if (writes_tone_mapped(flags)) record.display = choose_and_report_display(flags, *session, reporter);
     reporter.set_work("rendering");
     if (flags.real_time) record.frame = reconstructed_frame(flags, ready->sequence);
-    if (frame_sequence(flags)) {
+    if (frame_range(flags)) {
         const FrameCamera camera = {*ready->camera, ready->sequence};
         return render_frames(flags, camera, *ready->moving, record, *session, reporter);
     }

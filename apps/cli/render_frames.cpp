@@ -13,6 +13,7 @@
 #include "apps/cli/interrupt.h"
 #include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/report_result.h"
+#include "base/error.h"
 #include "base/message_text.h"
 #include "base/read_file.h"
 #include "base/stopwatch.h"
@@ -23,7 +24,7 @@ namespace pertev {
 namespace {
 
 /// All that decides the pictures: what the first frame's metadata say, and how the others follow.
-SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameSequence& sequence,
+SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameRange& sequence,
                                      const PictureRecord& record) {
     SequenceRecord::Settings settings;
     const RenderSettings& picture = record.settings;
@@ -74,17 +75,13 @@ std::string kept_text(const Tally& tally) {
 }
 
 /// What every frame is rendered with, and for.
-struct SequenceRun {
+struct SequenceRun : SequenceOfFrames {
     const RenderFlags& flags;
-    const FrameCamera& camera;
-    MovingScene& moving;
-    PictureRecord& record;
-    Session& session;
     Reporter& reporter;
 };
 
 void show_progress(const SequenceRun& run, uint32_t frame, double share, const std::string& detail) {
-    const FrameSequence& sequence = run.camera.sequence;
+    const FrameRange& sequence = run.camera.sequence;
     const uint32_t number = frame - sequence.first;
     run.reporter.progress((number + share) / sequence.count(),
                           fmt::format("frame {} ({} of {}){}", frame, number + 1, sequence.count(), detail));
@@ -96,62 +93,8 @@ std::vector<std::string> files_of(const RenderFlags& flags, uint32_t frame) {
     return files;
 }
 
-/// Lets the camera of `frame` move while the shutter is open.
-void move_in_shutter(uint32_t frame, MovingScene& moving, const FrameCamera& camera, Camera& moved) {
-    const FrameSequence& sequence = camera.sequence;
-    // As large as what it looks at is far, or the scene is small: by that it may be off.
-    const Bounds3 bounds = bounds_of(moving.scene());
-    const float size = bounds.is_empty() ? 1.0f : 0.5f * max_component(bounds.size());
-    const float half = max(0x1p-30f, min(1.0f, min(moved.focus_distance, size)));
-    const PlacedBox about_eye = {moved.world_from_camera, {{-half, -half, -half}, {half, half, half}}};
-    const FittedMotions fitted = fit_motions({&about_eye, 1}, [&](double share) {
-        const double time_s = sequence.shutter->time_at(sequence.time_of(frame).value(), share);
-        Scene cameras; // nothing else of a scene moves a camera
-        cameras.cameras = moving.cameras_at(time_s);
-        cameras.origin_in_file = moving.scene().origin_in_file;
-        const CameraSource at = camera_at(camera.camera, cameras, time_s, sequence.turn_at(frame, share));
-        return std::vector{std::optional(at.camera.world_from_camera)};
-    });
-    moved.motion = fitted.motions.front().keys;
-}
-
-/// What motion vectors of a frame are from.
-void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
-                       Messages& messages) {
-    const std::optional<double> time_s = camera.sequence.time_before(frame);
-    go_to(time_s, moving, session, messages);
-    session.set_camera(camera_at(camera.camera, moving.scene(), time_s, camera.sequence.turn_before(frame)).camera);
-    session.keep_as_before();
-}
-
-/// The frame's picture; of fewer samples than were asked for where it was interrupted. The scene is at its time.
-RenderResult picture_of(const SequenceRun& run, uint32_t frame) {
-    Session& session = run.session;
-    const uint32_t samples = run.record.settings.samples;
-    session.render(samples, [&](const RenderProgress& now) {
-        const bool is_made = now.made_share >= 1;
-        show_progress(run, frame, static_cast<double>(now.samples_done) / now.samples,
-                      is_made ? fmt::format("  {}/{} spp", now.samples_done, now.samples)
-                              : fmt::format("  {:.0f} % before the first sample", 100 * now.made_share));
-        return !interrupted();
-    });
-    return session.result();
-}
-
-/// The same of a frame in real time. `is_there`: it is rendered for the history of those after it.
-RenderResult frame_of(const SequenceRun& run, uint32_t frame, bool is_there) {
-    ReconstructedFrame& made = *run.record.frame;
-    made.number = frame;
-    show_progress(run, frame, 0, is_there ? " again" : "");
-    const Stopwatch watch;
-    run.session.render_frame(FrameSequence::sample_of(frame), made.reconstruction, made.restir);
-    RenderResult result = run.session.frame_result();
-    result.render_seconds = watch.seconds();
-    return result;
-}
-
 /// Frames from the first one on that must be rendered: all of those in real time up to the last one that is missing.
-uint32_t count_frames_to_make(const FrameSequence& sequence, const SequenceRecord& done, bool goes_on) {
+uint32_t count_frames_to_make(const FrameRange& sequence, const SequenceRecord& done, bool goes_on) {
     uint32_t count = sequence.count();
     while (goes_on && count > 0 && done.has(sequence.first + count - 1)) --count;
     return count;
@@ -178,7 +121,7 @@ WrittenPicture write_frame(const SequenceRun& run, uint32_t frame, RenderResult&
 /// Renders and writes those frames that are not there yet, in their order, and counts in `tally` as it goes on. Throws
 /// Error where one cannot be made or written: those before it are whole.
 void make_frames(const SequenceRun& run, SequenceRecord& done, Tally& tally) {
-    const FrameSequence& sequence = run.camera.sequence;
+    const FrameRange& sequence = run.camera.sequence;
     const bool goes_on = run.flags.goes_on, in_real_time = run.record.frame.has_value();
     const uint32_t with_history = in_real_time ? count_frames_to_make(sequence, done, goes_on) : 0;
     if (in_real_time) run.session.cut();
@@ -193,13 +136,14 @@ void make_frames(const SequenceRun& run, SequenceRecord& done, Tally& tally) {
             run.reporter.event(fmt::format(R"({{"event":"frame","frame":{},"kept":true}})", frame));
             continue;
         }
-        const Stopwatch update;
-        if ((run.record.settings.aovs & kAovMotion) != 0) {
-            show_frame_before(frame, run.camera, run.moving, run.session, run.reporter.messages());
-        }
-        go_to_frame(frame, run.camera, run.moving, run.session, run.record, run.reporter.messages());
-        const double update_s = update.seconds();
-        RenderResult result = in_real_time ? frame_of(run, frame, is_there) : picture_of(run, frame);
+        if (in_real_time) show_progress(run, frame, 0, is_there ? " again" : "");
+        auto [result, update_s] = render_frame(frame, run, run.reporter.messages(), [&](const RenderProgress& now) {
+            show_progress(run, frame, static_cast<double>(now.samples_done) / now.samples,
+                          now.made_share >= 1
+                              ? fmt::format("  {}/{} spp", now.samples_done, now.samples)
+                              : fmt::format("  {:.0f} % before the first sample", 100 * now.made_share));
+            return !interrupted();
+        });
         if (result.samples < run.record.settings.samples) return; // interrupted: not whole, and not written
         tally.has_begun = true;
         const std::string hash = picture_hash(result.picture).hex();
@@ -224,36 +168,7 @@ void make_frames(const SequenceRun& run, SequenceRecord& done, Tally& tally) {
 
 } // namespace
 
-void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Messages& messages) {
-    if (!time_s) return;
-    if (const uint32_t parts = moving.set_time(*time_s, messages)) session.update_scene(moving.prepared(), parts);
-}
-
-CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::optional<double> time_s, double turn) {
-    const CameraChoice choice = camera.choice_at(time_s);
-    CameraSource source = source_of(choice, camera.at(scene, time_s), scene.origin_in_file);
-    if (turn == 0) return source;
-    source.camera = camera.turned(source.camera, turn);
-    source.target.reset(); // its words say where the camera began
-    source.up.reset();
-    return source;
-}
-
-void place_frame(uint32_t frame, MovingScene& moving, const FrameCamera& camera, PictureRecord& record) {
-    record.scene.time_s = camera.sequence.time_of(frame);
-    record.scene.shutter = camera.sequence.shutter;
-    record.camera = camera_at(camera.camera, moving.scene(), record.scene.time_s, camera.sequence.turn_of(frame));
-    if (camera.sequence.shutter) move_in_shutter(frame, moving, camera, record.camera.camera);
-}
-
-void go_to_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
-                 PictureRecord& record, Messages& messages) {
-    go_to(camera.sequence.time_of(frame), moving, session, messages);
-    place_frame(frame, moving, camera, record);
-    session.set_camera(record.camera.camera);
-}
-
-ReconstructedFrame reconstructed_frame(const RenderFlags& flags, const FrameSequence& sequence) {
+ReconstructedFrame reconstructed_frame(const RenderFlags& flags, const FrameRange& sequence) {
     return {sequence.first, sequence.first, reconstruction_settings(flags.reconstruction),
             flags.reconstruction.sharing};
 }
@@ -261,8 +176,8 @@ ReconstructedFrame reconstructed_frame(const RenderFlags& flags, const FrameSequ
 int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingScene& moving, PictureRecord& record,
                   Session& session, Reporter& reporter) {
     const Stopwatch watch;
-    const FrameSequence& sequence = camera.sequence;
-    const SequenceRun run = {flags, camera, moving, record, session, reporter};
+    const FrameRange& sequence = camera.sequence;
+    const SequenceRun run = {{camera, moving, record, session}, flags, reporter};
     SequenceRecord done(flags.outputs, settings_of(flags, sequence, record));
     if (flags.goes_on) done.load();
     Tally tally;

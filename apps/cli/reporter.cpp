@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "apps/cli/flag_phrases.h"
+#include "apps/cli/interrupt.h"
 #include "base/error.h"
 
 namespace pertev {
@@ -52,8 +53,8 @@ Reporter::~Reporter() {
 }
 
 void Reporter::say_messages() {
-    for (; said_ < messages_.all().size(); ++said_) {
-        const Message& message = messages_.all()[said_];
+    for (; said_ < messages().all().size(); ++said_) {
+        const Message& message = messages().all()[said_];
         if (flags_.json && !flags_.quiet) {
             event(fmt::format(R"({{"event":"{}","text":{},"times":{}{}}})", message.is_warning ? "warning" : "notice",
                               json_string(phrase(message.remark)), message.times, json_parts(message.remark)));
@@ -63,6 +64,8 @@ void Reporter::say_messages() {
         }
     }
 }
+
+bool Reporter::is_cancelled() { return interrupted(); }
 
 void Reporter::say(const std::string& line) {
     if (is_silent()) return;
@@ -90,7 +93,7 @@ void Reporter::event(const std::string& object) {
 
 void Reporter::result(const std::string& object) {
     std::vector<std::string> made_up, left_out;
-    for (const Message& message : messages_.all()) {
+    for (const Message& message : messages().all()) {
         if (message.is_made_up) made_up.push_back(phrase(message.remark));
         if (message.is_left_out) left_out.push_back(phrase(message.remark));
     }

@@ -9,7 +9,7 @@
 
 #include "base/heartbeat.h"
 #include "base/json_text.h"
-#include "base/messages.h"
+#include "session/sink.h"
 
 namespace CLI {
 class App;
@@ -24,23 +24,24 @@ struct ReportFlags {
 
 void add_report_flags(CLI::App& verb, ReportFlags& flags);
 
-class Reporter {
+class Reporter final : public Sink {
 public:
     explicit Reporter(const ReportFlags& flags);
-    ~Reporter();
+    ~Reporter() override;
     Reporter(const Reporter&) = delete;
     Reporter& operator=(const Reporter&) = delete;
 
-    /// What the verb's libraries have to say. The destructor says what was not said: before an error, it may tell why.
-    Messages& messages() { return messages_; }
-    void say_messages();
+    /// Says the messages. The destructor says what was not said: before an error, it may tell why.
+    void say_messages() override;
+    /// Returns whether Ctrl-C was heard.
+    bool is_cancelled() override;
     /// One line for people, on stderr.
     void say(const std::string& line);
     /// Share done in [0, 1], and what stands behind the bar. Redrawn in place on a terminal; where there is none, or a
     /// dumb one, a line every 10 s.
-    void progress(double share, const std::string& detail);
+    void progress(double share, const std::string& detail) override;
     /// What is being done from now on, for these lines: where there is no share yet.
-    void set_work(const std::string& work);
+    void set_work(const std::string& work) override;
     /// A JSON object ("{...}") of the given event; only with --json.
     void event(const std::string& object);
     /// The event that tells a verb's result: `object` with the lists `made_up` and `left_out` of all messages before
@@ -60,7 +61,6 @@ private:
     bool is_silent() const { return flags_.quiet || flags_.json; }
 
     ReportFlags flags_;
-    Messages messages_;
     bool redraws_; // a terminal that takes escapes
     bool drawn_ = false;
     std::size_t said_ = 0;

@@ -8,36 +8,9 @@
 #include "base/limits.h"
 #include "formats/builtin_scenes.h"
 #include "session/opening/open_scene.h"
-#include "session/photometry.h"
 #include "settings/parse_values.h"
 
 namespace pertev {
-
-OpenOptions open_options(const SceneOptions& options) {
-    OpenOptions open;
-    open.scene = options.scene;
-    open.allowed_paths = options.allowed_paths;
-    open.up_axis = options.up_axis;
-    open.unit = options.unit;
-    if (Rgb radiance; parse_rgb(options.environment, radiance)) {
-        open.environment_radiance = radiance;
-    } else {
-        open.environment = options.environment;
-    }
-    open.environment_rotation_deg = options.environment_rotation_deg;
-    open.environment_scale = options.environment_scale;
-    for (const std::string& lamp : options.lamps) open.lamps.push_back(parse_lamp(lamp));
-    open.efficacy = static_cast<double>(options.efficacy);
-    open.two_sided_lights = options.two_sided_lights;
-    open.show_back_faces = options.show_back_faces;
-    open.animation = options.animation;
-    open.file_scene = options.file_scene;
-    return open;
-}
-
-double efficacy_of(const SceneOptions& options) {
-    return lumens_per_watt(options.scene, static_cast<double>(options.efficacy));
-}
 
 void check_scene_options(const SceneOptions& options) {
     check_camera_choice(options.camera);

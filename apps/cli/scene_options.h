@@ -32,9 +32,6 @@ Scene read_any_scene(const SceneOptions& options, Messages& messages);
 // The rest is session/opening/open_scene.h and session/opening/choose_camera.h for flags as they stand on the command
 // line. Each throws Error(BadInput) also for text that is no value.
 
-/// Lumens that a watt of the scene counts as: --efficacy, or by the kind of file.
-double efficacy_of(const SceneOptions& options);
-OpenOptions open_options(const SceneOptions& options);
 Scene load_scene(const SceneOptions& options, SceneUse use, Messages& messages);
 
 } // namespace pertev

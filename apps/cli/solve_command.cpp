@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "accel/builders/bvh_cache.h"
-#include "apps/cli/choose_device.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
@@ -15,14 +14,15 @@
 #include "apps/cli/report_result.h"
 #include "apps/cli/scene_options.h"
 #include "apps/cli/setting_flags.h"
-#include "apps/cli/strictness.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
 #include "base/write_file_atomically.h"
 #include "image/image_format.h"
 #include "session/check_integrator.h"
+#include "session/machine.h"
 #include "session/moving_scene.h"
+#include "session/opening/strictness.h"
 
 namespace pertev {
 namespace {

@@ -13,14 +13,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "apps/cli/choose_display.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/ready_scene.h"
+#include "apps/cli/make_ready.h"
 #include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
-#include "apps/cli/strictness.h"
+#include "apps/cli/report_display.h"
 #include "apps/viewer/panel_phrases.h"
 #include "apps/viewer/session_frames.h"
 #include "apps/viewer/viewer.h"
@@ -31,6 +30,7 @@
 #include "image/write_jpeg.h"
 #include "scene/scene_origin.h"
 #include "session/check_integrator.h"
+#include "session/opening/strictness.h"
 
 extern char** environ;
 
@@ -234,9 +234,8 @@ int view(ViewFlags& flags) {
     if (!flags.render.size) {
         start.view.window_pixels = uint64_t(ready->settings.width) * ready->settings.height;
     }
-    start.view.display = choose_shown_display(flags.render, session, reporter);
-    start.view.finds_exposure =
-        (flags.render.exposure.empty() || flags.render.exposure == "auto") && !physical_exposure(flags.render);
+    start.view.display = choose_and_report_display(flags.render, session, reporter);
+    start.view.finds_exposure = is_metered(flags.render);
     start.view.dark = dark_integrators(ready->settings, ready->scene());
     start.view.lens = camera;
     start.view.on_cuda = on_cuda;

@@ -289,15 +289,15 @@ std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request
     shows_layer_ = shows_layer;
     reconstruction_.pixels.clear();
     ShownFrame frame;
-    frame.rays = session_.frame_rays();
-    frame.kind_seconds = session_.frame_kind_seconds();
-    const double reconstruction_s = session_.frame().seconds(), sharing_s = session_.sharing_seconds();
+    frame.rays = session_.frames().rays();
+    frame.kind_seconds = session_.frames().kind_seconds();
+    const double reconstruction_s = session_.frame().seconds(), sharing_s = session_.frames().sharing_seconds();
     frame.render_s = std::max(render.seconds() - reconstruction_s, 0.0);
     const Stopwatch display;
     if (is_growing) { // smaller ones keep the exposure: the meter takes longer than they do
         if (scale == 1 && !shows_layer) meter_still(request, false);
     } else if (request.view.finds_exposure && !shows_layer) {
-        exposure_.next(session_.frame_tones(), request.view.display.tone_map);
+        exposure_.next(session_.frames().tones(), request.view.display.tone_map);
         metered_.is_there = false;
     }
     expose(request, frame);

@@ -7,6 +7,7 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -36,18 +37,24 @@ private:
 
 int hardware_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
-std::atomic<int> g_threads{0};
+#if defined(PERTEV_STD_THREADS)
+
+/// The threads that work for the calling thread, which share it.
+struct Team {
+    int count = 0;               // 0: one a hardware thread
+    std::atomic<int> helpers{0}; // of parallel_invoke: nested calls of a recursive builder would start a thread each
+};
+
+thread_local Team t_own_team;
+thread_local Team* t_team = nullptr; // that of the thread which this one helps; null: its own
+
+Team& team() { return t_team != nullptr ? *t_team : t_own_team; }
 
 } // namespace
 
-int thread_count() {
-    const int count = g_threads.load();
-    return count > 0 ? count : hardware_threads();
-}
+int thread_count() { return team().count > 0 ? team().count : hardware_threads(); }
 
-#if defined(PERTEV_STD_THREADS)
-
-void set_thread_count(int count) { g_threads = count; }
+void set_thread_count(int count) { team().count = count; }
 
 void parallel_for_ranges(uint64_t count, uint64_t grain, const std::function<void(uint64_t, uint64_t)>& body) {
     if (count == 0) return;
@@ -70,24 +77,29 @@ void parallel_for_ranges(uint64_t count, uint64_t grain, const std::function<voi
         }
     };
     std::vector<std::thread> threads;
-    for (uint64_t i = 1; i < workers; ++i) threads.emplace_back(work);
+    for (uint64_t i = 1; i < workers; ++i) {
+        threads.emplace_back([&work, of = &team()] {
+            t_team = of;
+            work();
+        });
+    }
     work();
     for (std::thread& thread : threads) thread.join();
     if (error) std::rethrow_exception(error);
 }
 
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b) {
-    // Nested calls of a recursive builder would start a thread each; a bound on how many keeps that sane.
-    static std::atomic<int> running{0};
-    if (running.fetch_add(1) >= thread_count() - 1) {
-        running.fetch_sub(1);
+    std::atomic<int>& helpers = team().helpers;
+    if (helpers.fetch_add(1) >= thread_count() - 1) {
+        helpers.fetch_sub(1);
         const DefaultFloatingPoint control;
         a();
         b();
         return;
     }
     std::exception_ptr error;
-    std::thread other([&] {
+    std::thread other([&, of = &team()] {
+        t_team = of;
         const DefaultFloatingPoint control;
         try {
             b();
@@ -103,44 +115,59 @@ void parallel_invoke(const std::function<void()>& a, const std::function<void()>
         own_error = std::current_exception();
     }
     other.join();
-    running.fetch_sub(1);
+    helpers.fetch_sub(1);
     if (own_error) std::rethrow_exception(own_error);
     if (error) std::rethrow_exception(error);
 }
 
 #else
 
-namespace {
-std::unique_ptr<tbb::global_control> g_control;
+/// The threads that work for one thread, apart from those of others.
+struct Team {
+    explicit Team(int count) : arena(count) {
+        // TBB has a worker less than there are hardware threads, unless more are asked for.
+        if (count > hardware_threads())
+            control.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));
+    }
+    tbb::task_arena arena;
+    std::optional<tbb::global_control> control;
+};
+
+thread_local std::unique_ptr<Team> t_team; // null: one a hardware thread, or those that the thread works among
+
+template <class Work>
+void run_in_team(const Work& work) {
+    if (t_team == nullptr) return work();
+    t_team->arena.execute(work);
+}
+
 } // namespace
 
-void set_thread_count(int count) {
-    g_threads = count;
-    g_control.reset();
-    // TBB's default arena has a slot a hardware thread; a larger count only over-subscribes if asked for.
-    g_control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                      static_cast<std::size_t>(thread_count()));
+int thread_count() {
+    return t_team != nullptr ? t_team->arena.max_concurrency() : tbb::this_task_arena::max_concurrency();
 }
+
+void set_thread_count(int count) { t_team = count > 0 ? std::make_unique<Team>(count) : nullptr; }
 
 void parallel_for_ranges(uint64_t count, uint64_t grain, const std::function<void(uint64_t, uint64_t)>& body) {
     if (count == 0) return;
-    grain = std::max<uint64_t>(grain, 1);
-    tbb::parallel_for(tbb::blocked_range<uint64_t>(0, count, grain), [&](const tbb::blocked_range<uint64_t>& range) {
-        const DefaultFloatingPoint control;
-        body(range.begin(), range.end());
+    const tbb::blocked_range<uint64_t> all(0, count, std::max<uint64_t>(grain, 1));
+    run_in_team([&] {
+        tbb::parallel_for(all, [&](const tbb::blocked_range<uint64_t>& range) {
+            const DefaultFloatingPoint control;
+            body(range.begin(), range.end());
+        });
     });
 }
 
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b) {
-    tbb::parallel_invoke(
-        [&] {
+    const auto guarded = [](const std::function<void()>& work) {
+        return [&work] {
             const DefaultFloatingPoint control;
-            a();
-        },
-        [&] {
-            const DefaultFloatingPoint control;
-            b();
-        });
+            work();
+        };
+    };
+    run_in_team([&] { tbb::parallel_invoke(guarded(a), guarded(b)); });
 }
 
 #endif

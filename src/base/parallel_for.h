@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-/// Number of worker threads for all later calls; 0 means one a hardware thread.
+/// Sets how many threads work for the calling thread from now on; 0 means one a hardware thread.
 void set_thread_count(int count);
 int thread_count();
 

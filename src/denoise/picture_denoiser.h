@@ -7,31 +7,25 @@
 //
 // Sums are floats: past a hundred thousand samples a pixel they round visibly, long after there is noise to take out.
 
+#include "denoise/denoiser.h"
 #include "denoise/gather_samples.h"
 #include "device/buffer.h"
-#include "image/image.h"
-#include "render/noisy_frame.h"
 
 namespace pertev {
 
-class PictureDenoiser {
+class PictureDenoiser final : public Denoiser {
 public:
     static constexpr uint32_t kFeatures = 16;
 
     PictureDenoiser(Queue& queue, uint32_t width, uint32_t height);
 
-    /// Begins a picture. `centres`: a frame of this size, of rays through the pixels' centres, seen by `camera`.
-    void begin(const NoisyFrame& centres, const CameraView& camera);
-    /// What the camera rays of a sample meet: of samples 0 to kFeatures - 1 before any light, so that edges and
-    /// textures are smooth however few samples there will be. `frame` may be without light.
-    void add_features(const NoisyFrame& frame, const SceneView& scene);
-    /// The next sample of each pixel.
-    void add(const NoisyFrame& frame, const SceneView& scene);
-    /// RGB, linear, of the samples added since begin(): at least one.
-    Image picture();
-
-    uint32_t width() const { return width_; }
-    uint32_t height() const { return height_; }
+    void begin(const NoisyFrame& centres, const CameraView& camera) override;
+    /// Takes samples 0 to kFeatures - 1 before any light, so that edges and textures are smooth however few samples
+    /// there will be.
+    uint32_t feature_samples() const override { return kFeatures; }
+    void add_features(const NoisyFrame& frame, const SceneView& scene) override;
+    void add(const NoisyFrame& frame, const SceneView& scene) override;
+    Image picture() override;
 
 private:
     SampledSurfaces surfaces_of(const NoisyFrame& frame, const SceneView& scene) const;

@@ -1,30 +1,188 @@
 #include "session/frame_sequence.h"
 
-#include <cmath>
+#include <utility>
 
-#include <fmt/format.h>
+#include "base/error.h"
+#include "denoise/motion_vectors.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 
-bool names_frames(const std::string& pattern) { return pattern.find('#', pattern.rfind('/') + 1) != std::string::npos; }
-
-double FrameSequence::turn_at(uint32_t frame, double share) const {
-    if (turntable == 0) return 0;
-    const double of_frame = shutter && fps ? shutter->time_at(0, share) * *fps : 0;
-    const double turns = (frame % turntable + of_frame) / turntable;
-    return turns - std::floor(turns);
+void FrameSequence::cut() {
+    if (reconstruction_) reconstruction_->cut();
+    if (restir_) restir_->cut();
+    has_moved_ = scene_has_changed_ = false;
+    camera_before_.reset();
 }
 
-std::string frame_file(const std::string& pattern, uint32_t frame) {
-    const std::size_t name = pattern.rfind('/') + 1; // npos + 1: 0
-    std::string file = pattern.substr(0, name);
-    for (std::size_t at = name; at < pattern.size();) {
-        const std::size_t end = std::min(pattern.find_first_not_of('#', at), pattern.size());
-        if (end > at) file += fmt::format("{:0{}}", frame, end - at);
-        if (end < pattern.size()) file += pattern[end];
-        at = end + 1;
+void FrameSequence::scene_changes() {
+    scene_has_changed_ = true;
+    if (!reconstruction_ || reconstruction_->frames() == 0 || has_moved_ || camera_before_) return;
+    pictures_.scene().keep_places();
+    has_moved_ = true;
+}
+
+/// Returns the reservoirs of frames with these settings; null if samples keep all light. Others than those of the last
+/// frame begin anew.
+Restir* FrameSequence::restir_for(const RestirSettings& settings, const RenderSettings& of_light) {
+    const PathSettings& path = of_light.path;
+    const uint32_t width = of_light.width, height = of_light.height;
+    const bool has_light = path.light != PathLight::Indirect && path.strategy == LightStrategy::Mis;
+    if (settings.light == RestirLight::Off || !has_light || path.max_depth == 0) {
+        restir_.reset();
+        return nullptr;
     }
-    return file;
+    const bool fits =
+        restir_ && restir_->light() == settings.light && restir_->width() == width && restir_->height() == height;
+    if (!fits) {
+        restir_.reset(); // before the new one, so that two do not need to fit
+        restir_.emplace(pictures_.queue(), width, height, settings.light);
+    }
+    if (settings != restir_settings_) restir_->cut();
+    restir_settings_ = settings;
+    return &*restir_;
+}
+
+bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSettings& settings,
+                           const ReconstructionSettings& reconstruction, const RestirSettings& restir) {
+    DeviceScene& scene = pictures_.scene();
+    if (!makes_frames(settings.integrator)) {
+        throw Error(ErrorCode::BadInput, "integrator", std::string(integrator_name(settings)),
+                    "frames are reconstructed of path's samples alone");
+    }
+    if (!camera.motion.empty() || scene.view().motions.is_there()) {
+        throw Error(ErrorCode::BadInput, "shutter", "", "frames that are reconstructed are of one moment each");
+    }
+    RenderSettings of_light = settings_of_frames(settings);
+    of_light.width = scaled_side(settings.width, reconstruction);
+    of_light.height = scaled_side(settings.height, reconstruction);
+    number_ = number;
+    NoisyFrame& frame = fit_frame(scene, sample_, of_light.width, of_light.height);
+    if (!reconstruction_ || !light_change_ || !light_change_->fits(frame)) { // of another size, or of other signals
+        light_change_.reset();
+        reconstruction_.reset(); // before the new one, so that two do not need to fit
+        reconstruction_.emplace(pictures_.queue(), of_light.width, of_light.height);
+        light_change_.emplace(pictures_.queue(), of_light.width, of_light.height, frame.splits_light(),
+                              reconstruction_->room_for_change());
+    }
+    if (camera_before_) { // of another sequence
+        camera_before_.reset();
+        has_moved_ = false;
+    }
+    Restir* const shared = restir_for(restir, of_light);
+    rays_ = {};
+    kind_seconds_ = {};
+    const LightChangeView change = look_for_change(of_light, reconstruction);
+    frame.leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
+    take_sample(number, camera, of_light, frame, pictures_.abandon_flag());
+    if (pictures_.is_abandoned()) { // parts of the sample may be missing
+        cut();
+        return false;
+    }
+    const PictureView light = pictures_.view_of(camera, of_light);
+    const PreviousScene before = has_moved_ ? scene.before() : PreviousScene{light.scene.instances, light.scene.meshes};
+    if (shared != nullptr) {
+        const PathSettings& path = settings.path;
+        sharing_timer_.start();
+        shared->add(frame, light, {path.sampler, number, path.seed}, scene.tracer(), before, restir);
+        sharing_timer_.stop();
+    }
+    if (reconstruction.resolution_scale < 1) {
+        RenderSettings of_features = of_light;
+        of_features.width = settings.width;
+        of_features.height = settings.height;
+        of_features.path.max_depth = 0;
+        NoisyFrame& features = fit_frame(scene, features_, settings.width, settings.height);
+        take_sample(number, camera, of_features, features);
+        const CameraView feature_camera = pictures_.view_of(camera, of_features).camera.view;
+        reconstruction_->add_enlarged(frame, light.camera.view, features, feature_camera, light.scene, before, change,
+                                      reconstruction);
+    } else {
+        features_.reset();
+        reconstruction_->add(frame, light.camera.view, light.scene, before, change, reconstruction);
+    }
+    has_moved_ = false; // the frame is whole, whatever follows
+    const bool has_changed = std::exchange(scene_has_changed_, false);
+    keep_light(number, camera, of_light, reconstruction.follow_light && has_changed);
+    return true;
+}
+
+/// Renders sample `number` of each pixel of `frame`, at its size. While `*abandon` is true, pixels are left out.
+void FrameSequence::take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
+                                const std::atomic<bool>* abandon) {
+    settings.width = frame.width();
+    settings.height = frame.height();
+    Integrator& integrator = pictures_.begin(camera, settings, 1);
+    integrator.abandon_when(abandon);
+    frame.begin();
+    integrator.render(number, 1, frame.film_view());
+    rays_ = rays_ + integrator.rays();
+    const SceneTracer::Seconds& seconds = pictures_.scene().tracer().seconds();
+    kind_seconds_.camera += seconds.camera;
+    kind_seconds_.bounce += seconds.bounce;
+    kind_seconds_.shadow += seconds.shadow;
+}
+
+/// Returns how light has changed since the frame before, if that has left a small picture of the scene as it was.
+LightChangeView FrameSequence::look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings) {
+    // The picture serves once, because the frame takes its room.
+    const std::optional<LightBefore> before = std::exchange(light_before_, {});
+    const bool is_known = settings.follow_light && scene_has_changed_ && before && reconstruction_->frames() > 0 &&
+                          before->path == of_light.path;
+    if (!is_known) return {};
+    take_sample(before->number, before->camera, of_light, light_change_->after());
+    return light_change_->compare();
+}
+
+/// Leaves that picture for the next frame if `goes_on`, because what has moved once mostly goes on.
+void FrameSequence::keep_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on) {
+    light_before_.reset();
+    if (!goes_on) return;
+    take_sample(number, camera, of_light, light_change_->before());
+    light_before_ = {camera, number, of_light.path};
+}
+
+RenderResult FrameSequence::result(const Camera& camera, const RenderSettings& settings) {
+    RenderResult result;
+    result.samples = 1;
+    result.rays = rays();
+    result.invalid_samples = sample_.value().invalid_samples();
+    result.picture = reconstruction().picture();
+    if (settings.aovs == 0) return result;
+    RenderSettings of_layers = settings_of_frames(settings);
+    of_layers.samples = 1;
+    of_layers.light_paths = nullptr;
+    of_layers.path.max_depth = 0;
+    RenderResult seen = pictures_.render_aside(camera, of_layers, number_);
+    result.layers = std::move(seen.layers);
+    result.ids = std::move(seen.ids);
+    if (number_ == 0 || (settings.aovs & kAovIds) == 0) return result;
+    of_layers.aovs = kAovIds; // they are sample 0's
+    result.ids = pictures_.render_aside(camera, of_layers).ids;
+    return result;
+}
+
+FrameTones FrameSequence::tones() const {
+    return reconstruction_.value().tones(features_ ? *features_ : sample_.value());
+}
+
+void FrameSequence::keep_as_before(const Camera& camera) {
+    if (reconstruction_) reconstruction_->cut();
+    pictures_.scene().keep_places();
+    has_moved_ = true;
+    camera_before_ = camera;
+}
+
+Image FrameSequence::motion(const Camera& camera, const RenderSettings& settings) {
+    if (!camera_before_) {
+        Image none{settings.width, settings.height, 2, {}};
+        none.pixels.resize(std::size_t(2) * settings.width * settings.height);
+        return none;
+    }
+    const PictureView picture = pictures_.view_of(camera, settings);
+    const CameraView before = make_camera_view(*camera_before_, settings.width, settings.height, picture.scene.centre);
+    DeviceScene& scene = pictures_.scene();
+    return motion_vectors(pictures_.queue(), scene.tracer(), picture, before, scene.before());
 }
 
 } // namespace pertev

@@ -1,43 +1,87 @@
 #pragma once
 
-// The frames of a moving picture: their numbers, their times, their files.
+// The frames of a sequence in real time, of a scene on a device: each takes one sample of each pixel, and is
+// reconstructed with what the frames before it have seen. It has the history, the reservoirs of ReSTIR, the temporal
+// gradients of light, and what motion vectors compare with. A frame is a function of scene, camera, settings and number
+// of all frames since the last cut, on every device alike. It needs no session.
 
-#include <cstdint>
 #include <optional>
-#include <string>
 
-#include "base/limits.h"
-#include "session/shutter.h"
+#include "denoise/light_change.h"
+#include "denoise/reconstruction.h"
+#include "device/device_timer.h"
+#include "restir/restir.h"
+#include "session/picture_renderer.h"
 
 namespace pertev {
 
-struct FrameSequence {
-    uint32_t first = 0, last = 0;   // both are frames; first <= last
-    std::optional<double> fps;      // frames a second; none: all frames are of one time
-    std::optional<double> time_s;   // that time; none: at rest
-    uint32_t turntable = 0;         // frames that the camera takes to go round once; 0: it does not
-    std::optional<Shutter> shutter; // at each frame's time; none: a frame is of one moment
+class FrameSequence {
+public:
+    /// `pictures` outlives it.
+    explicit FrameSequence(PictureRenderer& pictures) : pictures_(pictures), sharing_timer_(pictures.queue()) {}
 
-    uint32_t count() const { return last - first + 1; }
-    /// Frame k of a moving scene is at k / fps seconds.
-    std::optional<double> time_of(uint32_t frame) const { return fps ? std::optional(frame / *fps) : time_s; }
-    /// The sample that a frame in real time takes of each pixel: the frame's number, as long as there are so many.
-    static uint32_t sample_of(uint32_t frame) { return frame % kMaxSamplesPerPixel; }
-    /// Share of a turn, in [0, 1).
-    double turn_of(uint32_t frame) const { return turntable == 0 ? 0 : double(frame % turntable) / turntable; }
-    /// The same after `share` in [0, 1] of the time that the shutter is open.
-    double turn_at(uint32_t frame, double share) const;
-    /// Of the frame before, also of the first one: motion vectors of a frame depend on no other that is rendered.
-    std::optional<double> time_before(uint32_t frame) const {
-        return fps ? std::optional((static_cast<double>(frame) - 1) / *fps) : time_s;
-    }
-    double turn_before(uint32_t frame) const { return turntable == 0 ? 0 : turn_of(frame % turntable + turntable - 1); }
+    /// Forgets what earlier frames have seen.
+    void cut();
+    /// To be called before each change of the scene, which is then in another state of the same sequence. Throws
+    /// Error(OutOfMemory).
+    void scene_changes();
+
+    /// Renders sample `number` of each pixel and reconstructs the picture. `restir` is off if the path settings ask for
+    /// indirect light alone, or find light by one strategy alone. Another resolution_scale is a cut. Returns false, and
+    /// the frames begin anew, if the renderer was abandoned. Throws Error(OutOfMemory, DeviceFault), and
+    /// Error(BadInput) for an integrator that makes no frames (makes_frames) or for an open shutter.
+    bool render(uint32_t number, const Camera& camera, const RenderSettings& settings,
+                const ReconstructionSettings& reconstruction, const RestirSettings& restir);
+
+    // These are about the last frame. All but rays() and the seconds throw as render().
+
+    Reconstruction& reconstruction() { return reconstruction_.value(); }
+    /// For its exposure (session/adaptive_exposure.h).
+    FrameTones tones() const;
+    /// Returns the frame as a picture of one sample, and the layers that the settings ask for of that sample alone,
+    /// without motion; ids are of sample 0, as those of any picture. It has no times and shares.
+    RenderResult result(const Camera& camera, const RenderSettings& settings);
+    RayCounts rays() const { return restir_ ? rays_ + RayCounts{0, 0, restir_->rays()} : rays_; }
+    /// Seconds of its rays by kind, without those of ReSTIR; all 0 unless the settings ask for them (time_kinds).
+    const SceneTracer::Seconds& kind_seconds() const { return kind_seconds_; }
+    /// Seconds that ReSTIR took; 0 without it.
+    double sharing_seconds() const { return restir_ ? sharing_timer_.seconds() : 0; }
+
+    /// From now on motion() compares with the scene as it is now, seen by `camera`. Reconstruction begins anew. Throws
+    /// Error(OutOfMemory).
+    void keep_as_before(const Camera& camera);
+    /// Returns how many pixels to the right and up each pixel of this picture has moved since keep_as_before(): 0 after
+    /// a cut (denoise/motion_vectors.h). Throws Error(OutOfMemory, DeviceFault).
+    Image motion(const Camera& camera, const RenderSettings& settings);
+
+private:
+    void take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
+                     const std::atomic<bool>* abandon = nullptr);
+    LightChangeView look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings);
+    void keep_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on);
+    Restir* restir_for(const RestirSettings& settings, const RenderSettings& of_light);
+
+    PictureRenderer& pictures_;
+    std::optional<NoisyFrame> sample_;
+    std::optional<NoisyFrame> features_; // if light is found at a lower resolution
+    std::optional<Reconstruction> reconstruction_;
+    std::optional<Restir> restir_;
+    RestirSettings restir_settings_;      // of the last frame
+    DeviceTimer sharing_timer_;           // of the last frame's reservoirs
+    bool has_moved_ = false;              // since the last frame: the scene has places before
+    std::optional<Camera> camera_before_; // of keep_as_before()
+    bool scene_has_changed_ = false;      // since the last frame
+    std::optional<LightChange> light_change_;
+    /// The frame whose scene light_change_ holds.
+    struct LightBefore {
+        Camera camera;
+        uint32_t number = 0;
+        PathSettings path;
+    };
+    std::optional<LightBefore> light_before_;
+    RayCounts rays_;
+    SceneTracer::Seconds kind_seconds_;
+    uint32_t number_ = 0;                          // of the last frame's sample
 };
-
-/// Whether `pattern` names a file for each frame: it has a '#'.
-bool names_frames(const std::string& pattern);
-/// The file of a frame: its number in place of each run of '#', with zeros before it up to the run's length. All '#'
-/// stand in the file's name, not in its folder's.
-std::string frame_file(const std::string& pattern, uint32_t frame);
 
 } // namespace pertev

@@ -70,4 +70,13 @@ float meter_exposure(const RenderSettings& settings, ToneMap tone_map,
     return auto_exposure_stops(settings.transparent ? light : render(meter), tone_map);
 }
 
+float Meter::stops(const Camera& camera, const RenderSettings& settings, ToneMap tone_map) {
+    return meter_exposure(settings, tone_map, [&](const RenderSettings& meter) {
+        Film& film = fit_film(pictures_.queue(), film_, meter);
+        film.clear();
+        pictures_.begin(camera, meter, meter.samples).render(0, meter.samples, film.view());
+        return film.picture(meter.samples, meter.transparent);
+    });
+}
+
 } // namespace pertev

@@ -2,12 +2,12 @@
 
 // The light meter: how a picture that is yet to be rendered should be exposed. It looks at small pictures of its own,
 // with samples of its own, so that neither the samples of the picture nor their noise, nor its size, move the exposure.
-// Session::meter is the meter over a scene that lies on a device.
+// Meter looks at a scene on a device; it needs no session.
 
 #include <functional>
 
 #include "image/tone_map.h"
-#include "settings/render_settings.h"
+#include "session/picture_renderer.h"
 
 namespace pertev {
 
@@ -26,5 +26,18 @@ inline constexpr double kFewestThatCount = 0.01;
 /// picture of the scene by the settings that it gets; it is asked for two or three, some 10^5 samples each.
 float meter_exposure(const RenderSettings& settings, ToneMap tone_map,
                      const std::function<Image(const RenderSettings&)>& render);
+
+/// The meter over a scene on a device. It uploads nothing, and keeps its small film.
+class Meter {
+public:
+    /// `pictures` outlives it.
+    explicit Meter(PictureRenderer& pictures) : pictures_(pictures) {}
+    /// Returns meter_exposure() of what `camera` sees. Throws Error(OutOfMemory, DeviceFault).
+    float stops(const Camera& camera, const RenderSettings& settings, ToneMap tone_map);
+
+private:
+    PictureRenderer& pictures_;
+    std::optional<Film> film_;
+};
 
 } // namespace pertev

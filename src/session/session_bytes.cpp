@@ -7,6 +7,7 @@
 
 #include "denoise/enlarged_frame.h"
 #include "denoise/motion_vectors.h"
+#include "denoise/picture_denoiser.h"
 #include "session/session.h"
 #include "tracer/deforming_tree.h"
 

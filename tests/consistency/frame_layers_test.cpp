@@ -42,9 +42,9 @@ SeenLayers look_at_frames(Queue& queue) {
         camera.world_from_camera.translation += 0.01f * column(camera.world_from_camera, 0);
         session.set_camera(camera);
         session.render_frame(k, {.keep_layers = true});
-        exposure.next(session.frame_tones(), ToneMap::Agx);
+        exposure.next(session.frames().tones(), ToneMap::Agx);
     }
-    const FrameTones tones = session.frame_tones();
+    const FrameTones tones = session.frames().tones();
     return {picture_hash(session.frame().picture()),
             picture_hash(tones.scattered),
             picture_hash(tones.all),
@@ -73,7 +73,7 @@ TEST_CASE("tones are the means of the shown picture; lamps that are seen do not 
     Session session(queue, prepared, mixed_scene_camera(), layer_settings());
     for (uint32_t k = 0; k < 3; ++k) session.render_frame(k, {});
     const Image picture = session.frame().picture();
-    const FrameTones tones = session.frame_tones();
+    const FrameTones tones = session.frames().tones();
     REQUIRE(tones.all.width == 40);
     REQUIRE(tones.all.height == 26); // 128 / 5, and the rest
     for (const uint32_t block : {0u, 41u, 25 * 40 + 7u}) {
@@ -99,7 +99,7 @@ TEST_CASE("tones are the means of the shown picture; lamps that are seen do not 
         return settings;
     }());
     dark.render_frame(0, {});
-    const FrameTones of_dark = dark.frame_tones();
+    const FrameTones of_dark = dark.frames().tones();
     for (std::size_t i = 3; i < of_dark.scattered.pixels.size(); i += 4) {
         const float* block = &of_dark.scattered.pixels[i - 3];
         CHECK(block[0] + block[1] + block[2] == 0);

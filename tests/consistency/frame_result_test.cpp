@@ -7,7 +7,7 @@
 #include "image/picture_hash.h"
 #include "render/update_scene.h"
 #include "scene/validate/validate.h"
-#include "session/frame_sequence.h"
+#include "session/frame_range.h"
 #include "session/moving_scene.h"
 #include "session/session.h"
 #include "tests/support/options.h"
@@ -41,7 +41,7 @@ Scene sliding_scene() {
 
 /// Hashes of the frames of a sequence, all that a program needs to make them; `before`: frames of it that somebody else
 /// has rendered with the session, and that a cut makes forgotten.
-std::vector<Hash128> hashes_of_sequence(Queue& queue, const FrameSequence& sequence, const RenderSettings& settings,
+std::vector<Hash128> hashes_of_sequence(Queue& queue, const FrameRange& sequence, const RenderSettings& settings,
                                         const RestirSettings& restir, uint32_t before = 0) {
     Messages messages;
     MovingScene moving(sliding_scene(), sequence.time_of(sequence.first), {}, messages);
@@ -50,7 +50,7 @@ std::vector<Hash128> hashes_of_sequence(Queue& queue, const FrameSequence& seque
         if (const uint32_t parts = moving.set_time(*sequence.time_of(frame), messages)) {
             session.update_scene(moving.prepared(), parts);
         }
-        session.render_frame(FrameSequence::sample_of(frame), {}, restir);
+        session.render_frame(FrameRange::sample_of(frame), {}, restir);
     };
     for (uint32_t k = 0; k < before; ++k) make(sequence.first + k);
     make(sequence.first);
@@ -60,7 +60,7 @@ std::vector<Hash128> hashes_of_sequence(Queue& queue, const FrameSequence& seque
         make(frame);
         const RenderResult result = session.frame_result();
         CHECK(picture_hash(result.picture) == picture_hash(session.frame().picture()));
-        CHECK(result.rays.camera == session.frame_rays().camera);
+        CHECK(result.rays.camera == session.frames().rays().camera);
         CHECK(result.samples == 1);
         hashes.push_back(picture_hash(result.picture));
     }
@@ -71,7 +71,7 @@ std::vector<Hash128> hashes_of_sequence(Queue& queue, const FrameSequence& seque
 
 TEST_CASE("frames of a moving sequence have the same bytes by every body, on every device, and after a cut") {
     Queue cpu = Queue::make_cpu();
-    const FrameSequence sequence = {.first = 3, .last = 7, .fps = 8.0};
+    const FrameRange sequence = {.first = 3, .last = 7, .fps = 8.0};
     const RenderSettings settings = result_settings();
     RenderSettings wavefront = settings;
     wavefront.body = PathBody::Wavefront;
@@ -83,7 +83,7 @@ TEST_CASE("frames of a moving sequence have the same bytes by every body, on eve
         CHECK(hashes_of_sequence(cpu, sequence, wavefront, restir) == expected);
         CHECK(hashes_of_sequence(cpu, sequence, settings, restir, 4) == expected);
         // A sequence that ends sooner has the same frames, one that begins later has not.
-        const FrameSequence shorter = {.first = 3, .last = 5, .fps = 8.0}, later = {.first = 4, .last = 7, .fps = 8.0};
+        const FrameRange shorter = {.first = 3, .last = 5, .fps = 8.0}, later = {.first = 4, .last = 7, .fps = 8.0};
         const std::vector<Hash128> of_shorter = hashes_of_sequence(cpu, shorter, settings, restir);
         CHECK(std::vector<Hash128>(expected.begin(), expected.begin() + 3) == of_shorter);
         CHECK(hashes_of_sequence(cpu, later, settings, restir)[0] != expected[1]);

@@ -206,11 +206,11 @@ TEST_CASE("a frame with ReSTIR counts its rays") {
     const RenderSettings settings = frame_settings();
     Session session(queue, prepared, mixed_scene_camera(), settings);
     session.render_frame(0, {});
-    const uint64_t bounces = session.frame_rays().bounce;
+    const uint64_t bounces = session.frames().rays().bounce;
     for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
         session.render_frame(0, {}, {.light = light});
-        CHECK(session.frame_rays().bounce == bounces);
-        CHECK(session.frame_rays().shadow > settings.width * settings.height / 2);
+        CHECK(session.frames().rays().bounce == bounces);
+        CHECK(session.frames().rays().shadow > settings.width * settings.height / 2);
     }
 }
 

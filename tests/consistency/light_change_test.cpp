@@ -202,7 +202,7 @@ TEST_CASE("a look at a frame in between leaves what follows as it is") {
         const ReconstructionSettings settings = {.follow_light = true, .keep_layers = true, .resolution_scale = scale};
         return dimming_frames(queue, 33, 17, settings, [&](Session& session) {
             if (!looks) return;
-            session.frame_tones();
+            session.frames().tones();
             session.frame().display(ToneMap::Agx, 0);
             session.frame().motion();
         });

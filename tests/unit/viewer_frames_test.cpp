@@ -246,7 +246,7 @@ TEST_CASE("what the exposure goes by is the frame as it is shown, whatever its l
             ReconstructionSettings settings;
             settings.resolution_scale = scale;
             session.render_frame(0, settings);
-            const FrameTones tones = session.frame_tones();
+            const FrameTones tones = session.frames().tones();
             const Image shown = session.frame().picture();
             CHECK(shown.width == width);
             double of_blocks = 0, of_pixels = 0, weights = 0;

@@ -15,6 +15,7 @@
 #include "session/survey/default_light.h"
 #include "session/survey/ground.h"
 #include "session/survey/lamp_fronts.h"
+#include "settings/parse_values.h"
 
 namespace pertev {
 namespace {
@@ -99,6 +100,28 @@ void say_which_scene(const Scene& scene, const std::string& file, Messages& mess
 }
 
 } // namespace
+
+OpenOptions open_options(const SceneOptions& options) {
+    OpenOptions open;
+    open.scene = options.scene;
+    open.allowed_paths = options.allowed_paths;
+    open.up_axis = options.up_axis;
+    open.unit = options.unit;
+    if (Rgb radiance; parse_rgb(options.environment, radiance)) {
+        open.environment_radiance = radiance;
+    } else {
+        open.environment = options.environment;
+    }
+    open.environment_rotation_deg = options.environment_rotation_deg;
+    open.environment_scale = options.environment_scale;
+    for (const std::string& lamp : options.lamps) open.lamps.push_back(parse_lamp(lamp));
+    open.efficacy = static_cast<double>(options.efficacy);
+    open.two_sided_lights = options.two_sided_lights;
+    open.show_back_faces = options.show_back_faces;
+    open.animation = options.animation;
+    open.file_scene = options.file_scene;
+    return open;
+}
 
 FileSpace file_space(const std::string& up_axis, const std::string& unit) {
     FileSpace space;

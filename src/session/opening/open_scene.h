@@ -14,6 +14,7 @@
 #include "scene/scene.h"
 #include "session/scene_use.h"
 #include "session/set_lamps.h"
+#include "settings/picture_options.h"
 
 namespace pertev {
 
@@ -38,6 +39,9 @@ struct OpenOptions {
     std::string animation;         // of the file, plays (formats/files/file_choices.h); empty: its first
     std::string file_scene;        // of the file, is shown; empty: the file's own choice
 };
+
+/// Returns the options of a scene as they stand in words. Throws Error(BadInput) for text that is no value.
+OpenOptions open_options(const SceneOptions& options);
 
 /// How the file's coordinates are meant, by the words of `up_axis` and `unit`. Throws Error(BadInput) for others.
 FileSpace file_space(const std::string& up_axis, const std::string& unit);

@@ -10,7 +10,7 @@
 #include "base/read_file.h"
 #include "base/write_file_atomically.h"
 #include "formats/json/json_file.h"
-#include "session/frame_sequence.h"
+#include "session/frame_range.h"
 
 namespace pertev {
 namespace {

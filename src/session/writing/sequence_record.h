@@ -19,7 +19,7 @@ class SequenceRecord {
 public:
     using Settings = std::vector<std::pair<std::string, std::string>>; // names and values
 
-    /// `outputs`: names with '#' (session/frame_sequence.h). `settings`: all that decides the frames' pictures.
+    /// `outputs`: names with '#' (session/frame_range.h). `settings`: all that decides the frames' pictures.
     SequenceRecord(std::vector<std::string> outputs, Settings settings);
 
     /// "frame-####.png" has its record in "frame-####.json".

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a verb renders on: --device auto, cpu, cuda or cuda:N, and --threads.
+// The device to render on, by the setting `device` (auto, cpu, cuda or cuda:N), and the threads of the CPU.
 
 #include <future>
 #include <memory>
@@ -17,15 +17,15 @@ namespace pertev {
 /// why; `cpu` never touches CUDA. Throws Error(BadInput) with the reason when the device named cannot be used.
 std::unique_ptr<Queue> choose_device(const std::string& name, Messages& messages);
 
-/// Sets the number of threads, and gives the device's queue as choose_device does.
-std::unique_ptr<Queue> take_machine(const MachineOptions& flags, Messages& messages);
+/// Sets the number of threads that work for the calling thread, and returns the device's queue as choose_device does.
+std::unique_ptr<Queue> take_machine(const MachineOptions& options, Messages& messages);
 
-/// The same for a verb that has a scene to read meanwhile: a GPU's driver takes as long to start as that does. Where
-/// there is no driver, a GPU that is named is refused at once; all else is known once it is asked for.
+/// Does the same while its user reads a scene, because a GPU's driver takes as long to start as that does. If there is
+/// no driver, a GPU that is named is refused at once; all else is known later.
 class ComingMachine {
 public:
     /// Throws as choose_device. `messages` outlives it.
-    ComingMachine(const MachineOptions& flags, Messages& messages);
+    ComingMachine(const MachineOptions& options, Messages& messages);
 
     /// Waits until that is known. Throws Error(BadInput) where a GPU that is named cannot be used.
     bool is_cuda();

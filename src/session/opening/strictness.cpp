@@ -1,4 +1,4 @@
-#include "apps/cli/strictness.h"
+#include "session/opening/strictness.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The flag --strict: what a scene lacks after it was read ends the verb instead of being left out.
+// The setting `strict`: what a scene lacks after it was read is an error.
 
 #include "base/messages.h"
 

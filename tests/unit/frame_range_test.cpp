@@ -1,6 +1,6 @@
 // The numbers, times and files of frames.
 
-#include "session/frame_sequence.h"
+#include "session/frame_range.h"
 
 #include <doctest/doctest.h>
 
@@ -17,22 +17,22 @@ TEST_CASE("each run of # in a file's name is the frame's number") {
 }
 
 TEST_CASE("frame k is at k / fps, and a turn ends where it began") {
-    const FrameSequence moving = {.first = 3, .last = 5, .fps = 24.0};
+    const FrameRange moving = {.first = 3, .last = 5, .fps = 24.0};
     CHECK(moving.count() == 3);
     CHECK(moving.time_of(3) == 3 / 24.0);
     CHECK(moving.turn_of(4) == 0);
-    const FrameSequence turning = {.last = 7, .time_s = 1.5, .turntable = 8};
+    const FrameRange turning = {.last = 7, .time_s = 1.5, .turntable = 8};
     CHECK(turning.time_of(6) == 1.5);
     CHECK(turning.turn_of(2) == 0.25);
     CHECK(turning.turn_of(8) == 0);
-    CHECK(!FrameSequence{}.time_of(9));
+    CHECK(!FrameRange{}.time_of(9));
 }
 
 TEST_CASE("the frame before one is a step back in time and in the turn, before the first too") {
-    const FrameSequence moving = {.first = 3, .last = 5, .fps = 24.0};
+    const FrameRange moving = {.first = 3, .last = 5, .fps = 24.0};
     CHECK(moving.time_before(5) == moving.time_of(4));
     CHECK(moving.time_before(0) == -1 / 24.0);
-    const FrameSequence turning = {.last = 7, .time_s = 1.5, .turntable = 8};
+    const FrameRange turning = {.last = 7, .time_s = 1.5, .turntable = 8};
     CHECK(turning.time_before(0) == 1.5);
     CHECK(turning.turn_before(0) == 0.875);
     CHECK(turning.turn_before(3) == turning.turn_of(2));

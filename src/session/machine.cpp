@@ -1,4 +1,4 @@
-#include "apps/cli/choose_device.h"
+#include "session/machine.h"
 
 #include <charconv>
 #include <chrono>
@@ -10,8 +10,11 @@
 #include "base/parallel_for.h"
 
 namespace pertev {
-
 namespace {
+
+[[noreturn]] void refuse_device(const std::string& name, const std::string& reason) {
+    throw Error(ErrorCode::BadInput, "device", name, reason);
+}
 
 /// Throws Error(BadInput).
 int cuda_index(const std::string& name) {
@@ -21,14 +24,9 @@ int cuda_index(const std::string& name) {
     const bool numbered = name.starts_with("cuda:");
     const auto parsed = numbered ? std::from_chars(name.data() + 5, end, index) : std::from_chars_result{end, {}};
     if (!numbered || parsed.ec != std::errc() || parsed.ptr != end) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--device {}: expected auto, cpu, cuda or cuda:N with N a device's number", name));
+        refuse_device(name, "expected auto, cpu, cuda or cuda:N with N a device's number");
     }
     return index;
-}
-
-[[noreturn]] void refuse_device(const std::string& name, const std::string& reason) {
-    throw Error(ErrorCode::BadInput, fmt::format("--device {}: {}", name, reason));
 }
 
 } // namespace
@@ -37,14 +35,14 @@ std::unique_ptr<Queue> choose_device(const std::string& name, Messages& messages
     return ComingMachine({.device = name}, messages).take();
 }
 
-std::unique_ptr<Queue> take_machine(const MachineOptions& flags, Messages& messages) {
-    if (flags.threads > 0) set_thread_count(static_cast<int>(flags.threads));
-    return choose_device(flags.device, messages);
+std::unique_ptr<Queue> take_machine(const MachineOptions& options, Messages& messages) {
+    if (options.threads > 0) set_thread_count(static_cast<int>(options.threads));
+    return choose_device(options.device, messages);
 }
 
-ComingMachine::ComingMachine(const MachineOptions& flags, Messages& messages)
-    : name_(flags.device), messages_(messages) {
-    if (flags.threads > 0) set_thread_count(static_cast<int>(flags.threads));
+ComingMachine::ComingMachine(const MachineOptions& options, Messages& messages)
+    : name_(options.device), messages_(messages) {
+    if (options.threads > 0) set_thread_count(static_cast<int>(options.threads));
     if (name_ == "cpu") {
         queue_ = std::make_unique<Queue>(Queue::make_cpu());
         is_cuda_ = false;

@@ -1,4 +1,4 @@
-#include "apps/cli/tracer_flags.h"
+#include "settings/tracer_options.h"
 
 #include <set>
 #include <span>
@@ -12,8 +12,8 @@ namespace {
 
 /// Calls set(combination, name) for each ray kind that each of `values` is for; set is false where nothing is named so.
 template <class Set>
-void apply(const char* flag, const std::vector<std::string>& values, TracerChoice& choice, const std::string& known,
-           const Set& set) {
+void apply(const std::string& setting, const std::vector<std::string>& values, TracerChoice& choice,
+           const std::string& known, const Set& set) {
     for (const std::string& value : values) {
         const std::size_t equals = value.find('=');
         const std::string name = equals == std::string::npos ? value : value.substr(equals + 1);
@@ -24,10 +24,10 @@ void apply(const char* flag, const std::vector<std::string>& values, TracerChoic
             good = good && set(choice[kind], name);
         }
         if (any && good) continue;
-        throw Error(ErrorCode::BadInput,
-                    any ? fmt::format("{} {}: expected {}", flag, value, known)
-                        : fmt::format("{} {}: rays are of the kinds camera, bounce and shadow, as in {} shadow={}",
-                                      flag, value, flag, name));
+        throw Error(
+            ErrorCode::BadInput, setting, value,
+            any ? "expected " + known
+                : fmt::format("rays are of the kinds camera, bounce and shadow, as in `{}=shadow={}`", setting, name));
     }
 }
 
@@ -57,17 +57,17 @@ bool set_on_off(bool& value, const std::string& name) {
 
 } // namespace
 
-std::optional<TracerChoice> tracer_choice(const TracerOptions& flags, bool on_cuda) {
-    if (flags.are_empty() && flags.default_build == kDefaultBuild) return std::nullopt;
-    TracerChoice choice = default_tracers(on_cuda, tree_build_named(flags.build).value_or(flags.default_build));
+std::optional<TracerChoice> tracer_choice(const TracerOptions& options, bool on_cuda) {
+    if (options.are_empty() && options.default_build == kDefaultBuild) return std::nullopt;
+    TracerChoice choice = default_tracers(on_cuda, tree_build_named(options.build).value_or(options.default_build));
     std::set<const Combination*> structure_named, walk_named;
-    apply("--structure", flags.structures, choice, list_of(all_structures()),
+    apply("structure", options.structures, choice, list_of(all_structures()),
           [&](Combination& c, const std::string& name) {
               const auto kind = pertev::structure_named(name);
               if (kind) c.structure = *kind, structure_named.insert(&c);
               return kind.has_value();
           });
-    apply("--walk", flags.walks, choice, list_of(all_walks()), [&](Combination& c, const std::string& name) {
+    apply("walk", options.walks, choice, list_of(all_walks()), [&](Combination& c, const std::string& name) {
         const auto kind = pertev::walk_named(name);
         // Switches and a distribution that the default has for its own walk are none of this one's.
         if (kind) c = {.structure = c.structure, .walk = *kind}, walk_named.insert(&c);
@@ -77,14 +77,14 @@ std::optional<TracerChoice> tracer_choice(const TracerOptions& flags, bool on_cu
         Combination& c = choice[kind];
         complete(c, structure_named.contains(&c), walk_named.contains(&c));
     }
-    apply("--rta", flags.rta, choice, "on, nodes or off", [](Combination& c, const std::string& name) {
-        const auto options = rta_named(name, c.options);
-        if (options) c.options = *options;
-        return options.has_value();
+    apply("rta", options.rta, choice, "on, nodes or off", [](Combination& c, const std::string& name) {
+        const auto switches = rta_named(name, c.options);
+        if (switches) c.options = *switches;
+        return switches.has_value();
     });
-    apply("--order", flags.order, choice, "on or off",
+    apply("order", options.order, choice, "on or off",
           [](Combination& c, const std::string& name) { return set_on_off(c.options.near_first, name); });
-    apply("--distribution", flags.distributions, choice, "one-a-thread, persistent or dynamic-fetch",
+    apply("distribution", options.distributions, choice, "one-a-thread, persistent or dynamic-fetch",
           [](Combination& c, const std::string& name) {
               const auto distribution = distribution_named(name);
               if (distribution) c.distribution = *distribution;

@@ -1,0 +1,79 @@
+#include "session/device_scene.h"
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+
+namespace pertev {
+
+void DeviceScene::set(const PreparedScene& scene, const RenderSettings& settings) {
+    tracer_.reset(); // with its trees, so that those of two scenes do not need to fit
+    upload(scene, kAllParts, settings);
+}
+
+void DeviceScene::update(const PreparedScene& scene, uint32_t parts, const RenderSettings& settings) {
+    upload(scene, parts, settings);
+}
+
+/// The other parts stay. A part keeps its memory where that is large enough.
+void DeviceScene::upload(const PreparedScene& scene, uint32_t parts, const RenderSettings& settings) {
+    const Stopwatch watch;
+    if ((parts & kPartTrees) != 0) structures_ = prepared_structures_ = scene.structures;
+    try {
+        if ((parts & kPartTrees) != 0 && tracer_) tracer_->set_structures(*structures_);
+        if (scene_) {
+            scene_->update(queue_, scene, parts);
+        } else {
+            scene_.emplace(queue_, scene);
+        }
+    } catch (...) {
+        scene_.reset(); // parts of it may be missing
+        tracer_.reset();
+        throw;
+    }
+    instance_count_ = static_cast<uint32_t>(scene.scene->instances.size());
+    placed_ = scene.placed;
+    has_poses_ = !scene.poses.empty();
+    deformed_ = scene_->deformed(scene);
+    if (tracer_) tracer_->set_surfaces(scene_->view());
+    if (!set_tracer(settings) && (parts & (kPartTrees | kPartPoses)) != 0) fit_trees();
+    queue_.wait();
+    upload_seconds_ = watch.seconds();
+}
+
+bool DeviceScene::set_tracer(const RenderSettings& settings) {
+    const TracerChoice choice = tracers_of(settings, queue_.is_cuda(), has_poses_);
+    if (!scene_ || (tracer_ && tracer_->choice() == choice)) return false;
+    tracer_.reset(); // before the new one, so that two do not need to fit
+    tracer_.emplace(queue_, *structures_, choice);
+    tracer_->set_surfaces(scene_->view());
+    fit_trees();
+    return true;
+}
+
+/// Fits the trees to the vertices that were moved on the device.
+void DeviceScene::fit_trees() {
+    if (!has_poses_) return;
+    try {
+        if (tracer_->can_deform()) return tracer_->deform(deformed_, placed_);
+        structures_ = deformed_.empty() ? prepared_structures_ : structures_->fitted(queue_, deformed_, placed_);
+        tracer_->set_structures(*structures_);
+    } catch (...) {
+        scene_.reset(); // its trees do not fit its vertices
+        tracer_.reset();
+        throw;
+    }
+}
+
+void DeviceScene::keep_places() {
+    PERTEV_CHECK(scene_.has_value());
+    if (places_before_.size() != instance_count_) places_before_ = {queue_, instance_count_, "instances before"};
+    queue_.copy_on_device(places_before_.data(), scene_->view().instances, instance_count_ * sizeof(InstanceView));
+    scene_->keep_positions();
+}
+
+const SceneView& DeviceScene::view() const {
+    PERTEV_CHECK(scene_.has_value() && tracer_.has_value()); // the last call that changes them threw
+    return scene_->view();
+}
+
+} // namespace pertev

@@ -1,0 +1,159 @@
+#include "session/film_render.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/limits.h"
+#include "base/stopwatch.h"
+#include "render/hidden_back_share.h"
+#include "session/check_integrator.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kFirstAtOnce = 16; // samples of a first pass
+
+/// Returns how many samples the next pass takes. It aims at a third of a second, so that progress moves and Ctrl-C is
+/// heard, at no cost that shows. If samples are cheaper together and there is no limit of time, as many as are done
+/// already go at once, as far as they do: progress is soon seen, and what a pass costs by itself is paid a few times.
+/// It never goes past the time that is left. `done` samples took `seconds`, `left` are to come.
+uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done, double seconds) {
+    if (settings.pass_samples > 0) return std::min(left, settings.pass_samples);
+    const uint64_t pixels = uint64_t(settings.width) * settings.height;
+    const uint32_t at_once =
+        settings.time_limit_s > 0 ? 1 : std::min(samples_at_once(settings, pixels), std::max(done, kFirstAtOnce));
+    if (done == 0) return std::min(left, at_once);
+    const double a_sample = std::max(seconds / done, 1e-9);
+    double budget = 1.0 / 3;
+    if (settings.time_limit_s > 0) budget = std::min(budget, settings.time_limit_s - seconds);
+    return std::min(left, std::max(at_once, static_cast<uint32_t>(std::clamp(budget / a_sample, 1.0, 65536.0))));
+}
+
+} // namespace
+
+FilmRender::FilmRender(PictureRenderer& pictures, const Camera& camera, const RenderSettings& settings)
+    : pictures_(pictures), camera_(camera), settings_(settings), steps_(pictures), number_(pictures.new_number()) {
+    check_integrator(settings);
+    check_camera(settings, camera);
+}
+
+bool FilmRender::set_camera(const Camera& camera) {
+    if (camera == camera_) return false;
+    camera_ = camera;
+    restart_for_scene();
+    return true;
+}
+
+bool FilmRender::set_settings(const RenderSettings& settings) {
+    const bool same = same_picture(settings_, settings);
+    if (settings.width != settings_.width || settings.height != settings_.height) hidden_back_share_.reset();
+    settings_ = settings;
+    if (film_ && !is_film_of(*film_, settings_)) film_.reset();
+    if (!same) restart();
+    return !same;
+}
+
+void FilmRender::restart() {
+    number_ = pictures_.new_number();
+    forget_samples();
+}
+
+/// The film itself is cleared when it is next looked at.
+void FilmRender::forget_samples() {
+    samples_ = {};
+    stats_ = {};
+    film_is_old_ = true;
+}
+
+void FilmRender::restart_for_scene() {
+    hidden_back_share_.reset();
+    restart();
+}
+
+Film& FilmRender::film() {
+    if (film_ && film_is_old_) film_->clear();
+    film_is_old_ = false;
+    return fit_film(pictures_.queue(), film_, settings_);
+}
+
+uint32_t FilmRender::render(SampleRange range, const KeepGoing& keep_going) {
+    PERTEV_CHECK(samples_.count() == 0 || range.first == samples_.end);
+    const uint32_t first = range.first, before = samples_.count();
+    const uint32_t count = std::min(range.count(), kMaxSamplesPerPixel - std::min(first, kMaxSamplesPerPixel));
+    if (count == 0) return 0;
+    const Stopwatch since_call;
+    Film& into_film = film();
+    const bool has_steps = settings_.denoise != Denoise::None;
+    if (has_steps && before == 0) steps_.begin(camera_, settings_);
+    Integrator& integrator = pictures_.begin(camera_, settings_, has_steps ? 1 : count, number_);
+    integrator.abandon_when(pictures_.abandon_flag());
+    const RayCounts rays_before = stats_.rays;
+    const double seconds_before = stats_.render_seconds;
+    const Stopwatch watch;
+    // The first sample has nothing before it that could be kept.
+    const bool is_apart = keeps_samples_ && pictures_.abandon_flag() != nullptr && before > 0 && !has_steps;
+    if (!is_apart) pass_film_.reset();
+    Film& into = is_apart ? fit_film(pictures_.queue(), pass_film_, settings_) : into_film;
+    bool makes = false;
+    const auto goes_on = [&](double made_share) {
+        makes = true;
+        const double seconds = watch.seconds();
+        if (pictures_.is_abandoned()) return false;
+        if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) return false;
+        return !keep_going || keep_going({before, before + count, seconds, integrator.rays(), made_share, seconds});
+    };
+    if (!integrator.make_ready(goes_on)) return 0;
+    const double made_seconds = makes ? watch.seconds() : 0;
+    for (uint32_t done = 0; done < count;) {
+        const auto now = [&] {
+            return RenderProgress{before + done, before + count, watch.seconds(), integrator.rays(), 1, made_seconds};
+        };
+        const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
+        uint32_t added = pass;
+        if (has_steps) {
+            steps_.add(integrator, first + done, pass, into_film);
+        } else {
+            if (is_apart) into.clear();
+            added = integrator.render_while(first + done, pass, into.view(),
+                                            [&] { return !keep_going || keep_going(now()); });
+        }
+        if (pictures_.is_abandoned()) { // parts of a sample may be missing
+            if (is_apart) break;
+            forget_samples();
+            return 0;
+        }
+        if (added == 0) break;
+        if (is_apart) into_film.add(into);
+        done += added;
+        const double seconds = watch.seconds();
+        samples_ = {first - before, first + done};
+        stats_.rays = rays_before + integrator.rays();
+        stats_.kind_seconds = pictures_.scene().tracer().seconds();
+        stats_.render_seconds = seconds_before + seconds;
+        if (before == 0 && done == added) stats_.first_pixel_seconds = since_call.seconds();
+        if (added < pass || (keep_going && !keep_going(now()))) break;
+        if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) break;
+    }
+    return samples_.count() - before;
+}
+
+std::optional<Image> FilmRender::denoised() {
+    if (settings_.denoise == Denoise::None || samples_.count() == 0) return std::nullopt;
+    return steps_.apply(picture());
+}
+
+RenderStats FilmRender::stats() {
+    if (!hidden_back_share_) {
+        const PictureView picture = pictures_.view_of(camera_, settings_); // first, it checks that there is a scene
+        hidden_back_share_ = hidden_back_share(pictures_.queue(), pictures_.scene().tracer(), picture);
+    }
+    RenderStats stats = stats_;
+    stats.samples = samples_.count();
+    stats.invalid_samples = film().invalid_samples();
+    stats.hidden_back_share = *hidden_back_share_;
+    stats.upload_seconds = pictures_.scene().upload_seconds();
+    stats.device_peak_bytes = pictures_.queue().peak_bytes();
+    return stats;
+}
+
+} // namespace pertev

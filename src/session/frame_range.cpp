@@ -1,0 +1,84 @@
+#include "session/frame_range.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "formats/files/parse_number.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kMostFrames = 1'000'000'000;
+
+constexpr double kMostShutter = 1e6; // seconds, either way
+
+/// Returns the number that `text` is; infinite if it is too large.
+std::optional<double> seconds_in(std::string_view text) {
+    const std::optional<double> value = parse_whole_float<double>(text);
+    return value && !std::isnan(*value) ? value : std::nullopt;
+}
+
+} // namespace
+
+bool names_frames(const std::string& pattern) { return pattern.find('#', pattern.rfind('/') + 1) != std::string::npos; }
+
+double FrameRange::turn_at(uint32_t frame, double share) const {
+    if (turntable == 0) return 0;
+    const double of_frame = shutter && fps ? shutter->time_at(0, share) * *fps : 0;
+    const double turns = (frame % turntable + of_frame) / turntable;
+    return turns - std::floor(turns);
+}
+
+std::string frame_file(const std::string& pattern, uint32_t frame) {
+    const std::size_t name = pattern.rfind('/') + 1; // npos + 1: 0
+    std::string file = pattern.substr(0, name);
+    for (std::size_t at = name; at < pattern.size();) {
+        const std::size_t end = std::min(pattern.find_first_not_of('#', at), pattern.size());
+        if (end > at) file += fmt::format("{:0{}}", frame, end - at);
+        if (end < pattern.size()) file += pattern[end];
+        at = end + 1;
+    }
+    return file;
+}
+
+std::optional<Shutter> shutter(const PictureOptions& options) {
+    if (options.shutter.empty()) return std::nullopt;
+    const std::size_t comma = options.shutter.find(',');
+    const std::optional<double> close = seconds_in(std::string_view(options.shutter).substr(comma + 1)); // npos + 1: 0
+    const auto open = comma == std::string::npos ? 0.0 : seconds_in(std::string_view(options.shutter).substr(0, comma));
+    if (open && close) {
+        if (std::fabs(*open) <= kMostShutter && std::fabs(*close) <= kMostShutter) return Shutter{*open, *close};
+        throw Error(ErrorCode::BadInput, "shutter", options.shutter,
+                    fmt::format("OPEN and CLOSE are {:g} s at most, either way", kMostShutter));
+    }
+    throw Error(ErrorCode::BadInput, "shutter", options.shutter,
+                "expected SECONDS, or OPEN,CLOSE, both counted from the picture's time");
+}
+
+std::optional<FrameRange> frame_range(const PictureOptions& options) {
+    FrameRange sequence;
+    sequence.shutter = shutter(options);
+    sequence.turntable = options.turntable;
+    sequence.time_s = options.time_s;
+    if (options.frames.empty()) {
+        if (options.turntable == 0) return std::nullopt;
+        sequence.last = options.turntable - 1;
+        return sequence;
+    }
+    const std::size_t dash = options.frames.find('-');
+    const auto first = parse_whole_number(options.frames.substr(0, dash));
+    const auto last = dash == std::string::npos ? first : parse_whole_number(options.frames.substr(dash + 1));
+    if (!first || !last || *first > *last || *last > kMostFrames) {
+        throw Error(ErrorCode::BadInput, "frames", options.frames,
+                    fmt::format("expected A-B, two whole numbers of which the second is not the smaller, up to {}",
+                                kMostFrames));
+    }
+    sequence.first = static_cast<uint32_t>(*first);
+    sequence.last = static_cast<uint32_t>(*last);
+    sequence.fps = options.fps > 0 ? options.fps : 24;
+    return sequence;
+}
+
+} // namespace pertev

@@ -1,0 +1,69 @@
+#include "session/opening/picture_settings.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "image/write_exr.h"
+#include "session/check_integrator.h"
+#include "session/height_maps.h"
+#include "session/opening/choose_camera.h"
+#include "settings/value_names.h"
+
+namespace pertev {
+namespace {
+
+/// Returns whether the picture's own channels or another layer have this name in files.
+bool is_layer_of_files(const std::string& name) {
+    return name == "noisy" ||
+           std::ranges::any_of(kAovTable, [&](const AovGroup& group) { return name == group.layer; });
+}
+
+/// Returns the layers of light paths without a scene. It checks what can be told before one is read.
+LightPathLayers light_paths(const PictureOptions& options) {
+    LightPathLayers layers;
+    for (const std::string& text : options.lpe) layers.expressions.push_back(parse_light_path(text));
+    check_layers(layers.expressions);
+    for (const LightPathExpression& expression : layers.expressions) {
+        if (!is_layer_of_files(expression.name)) continue;
+        throw Error(ErrorCode::BadInput, "lpe", expression.name, "files have another layer of this name");
+    }
+    return layers;
+}
+
+std::vector<HeightMapText> height_maps(const PictureOptions& options) {
+    std::vector<HeightMapText> maps;
+    for (const std::string& text : options.displacement) maps.push_back(parse_height_map(text));
+    return maps;
+}
+
+} // namespace
+
+RenderSettings light_settings(const PictureOptions& options) {
+    RenderSettings settings = options.render;
+    for (const std::string& name : options.aovs) settings.aovs |= *aov_named(name); // which has been checked
+    settings.irradiance = options.false_color == "illuminance";
+    if (!options.lpe.empty()) settings.light_paths = std::make_shared<const LightPathLayers>(light_paths(options));
+    check_integrator(settings);
+    height_maps(options);
+    return settings;
+}
+
+RenderSettings render_settings(const PictureOptions& options, const Scene& scene) {
+    RenderSettings settings = light_settings(options);
+    if (settings.light_paths) {
+        settings.light_paths =
+            std::make_shared<const LightPathLayers>(put_to_scene(settings.light_paths->expressions, scene));
+    }
+    settings.heights = read_height_maps(height_maps(options), scene);
+    if (options.size) {
+        settings.width = options.size->width, settings.height = options.size->height;
+    } else {
+        set_default_size(settings, scene_camera(options.scene.camera.camera, scene));
+    }
+    const std::size_t of_ids = (settings.aovs & kAovIds) != 0 ? 3 : 0;
+    check_exr_row(settings.width,
+                  film_channel_count(settings.aovs) + of_ids + std::size_t(3) * light_layers_of(settings));
+    return settings;
+}
+
+} // namespace pertev

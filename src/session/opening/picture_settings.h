@@ -1,0 +1,15 @@
+#pragma once
+
+// From what is asked for in words to the settings of a render.
+
+#include "scene/scene.h"
+#include "settings/picture_options.h"
+
+namespace pertev {
+
+/// Returns all settings but the size, before a scene is read. Throws Error if they do not go together.
+RenderSettings light_settings(const PictureOptions& options);
+/// Returns the settings for a scene. Throws Error.
+RenderSettings render_settings(const PictureOptions& options, const Scene& scene);
+
+} // namespace pertev

@@ -1,0 +1,105 @@
+#include "session/picture_renderer.h"
+
+#include "base/error.h"
+#include "session/check_integrator.h"
+
+namespace pertev {
+
+bool is_film_of(const Film& film, const RenderSettings& settings) {
+    return film.width() == settings.width && film.height() == settings.height && film.view().aovs == settings.aovs &&
+           film.light_layers() == light_layers_of(settings);
+}
+
+Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings) {
+    if (film && is_film_of(*film, settings)) return *film;
+    film.reset(); // before the new one, so that two do not need to fit
+    return film.emplace(queue, settings.width, settings.height, settings.aovs, light_layers_of(settings));
+}
+
+NoisyFrame& fit_frame(const DeviceScene& scene, std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height) {
+    const bool splits_light = scene.view().known == MaterialsKnown::Nothing;
+    if (frame && frame->width() == width && frame->height() == height && frame->splits_light() == splits_light) {
+        return *frame;
+    }
+    frame.reset(); // before the new one, so that two do not need to fit
+    return frame.emplace(scene.queue(), width, height, splits_light);
+}
+
+std::vector<FilmLayer> layers_of(const Film& film, const RenderSettings& settings, uint64_t samples) {
+    std::vector<FilmLayer> layers = film.layers(samples);
+    for (uint32_t i = 0; i < film.light_layers(); ++i) {
+        layers.push_back({settings.light_paths->expressions[i].name, {"R", "G", "B"}, film.light_layer(i, samples)});
+    }
+    return layers;
+}
+
+PictureView PictureRenderer::view_of(const Camera& camera, const RenderSettings& settings) {
+    const SceneView& scene = scene_.view();
+    PictureView picture = {scene,
+                           make_camera_rays(camera, filter_.set(settings.filter, filter_radius_of(settings)),
+                                            settings.width, settings.height, scene.centre),
+                           settings.transparent};
+    picture.camera.motion = motion_of(camera, scene.centre);
+    picture.camera.is_open = picture.camera.motion.moves() || scene.motions.is_there();
+    return picture;
+}
+
+/// Returns the camera's motion while the shutter is open, in the moved world and on the device.
+MotionTrack PictureRenderer::motion_of(const Camera& camera, Vec3 centre) {
+    if (camera.motion.empty()) return {};
+    std::vector<MotionKey> keys = camera.motion;
+    for (MotionKey& key : keys) key.place = key.place - centre;
+    if (camera_motion_.size() != keys.size()) camera_motion_ = {queue(), keys.size(), "camera"};
+    queue().wait();
+    camera_motion_.upload(std::span<const MotionKey>(keys));
+    return {camera_motion_.data(), camera.world_from_camera.translation - centre,
+            static_cast<uint32_t>(keys.size() - 1)};
+}
+
+Integrator& PictureRenderer::begin(const Camera& camera, const RenderSettings& settings, uint32_t samples,
+                                   uint64_t number) {
+    const PictureView picture = view_of(camera, settings); // first, because it checks that there is a scene
+    check_camera(settings, camera);
+    if (picture.camera.is_open) {
+        check_shutter(settings);
+        if (is_light_meter(camera.projection)) {
+            throw Error(ErrorCode::BadInput, "shutter", "", "light is measured at one moment");
+        }
+    }
+    const IntegratorSettings& wanted = settings;
+    const bool is_aside =
+        number == 0 && begun_number_ == last_number_ && main_.integrator && main_.integrator->has_made();
+    HeldIntegrator& held = is_aside ? aside_ : main_;
+    if (!is_aside) aside_ = {};
+    const bool stays = held.integrator && change_settings(*held.integrator, held.settings, wanted);
+    if (!stays) {
+        held.integrator.reset(); // with its queues
+        held.integrator = make_integrator(queue(), wanted);
+    }
+    held.settings = wanted;
+    Integrator& integrator = *held.integrator;
+    SceneTracer& tracer = scene_.tracer();
+    tracer.time_kinds(settings.time_kinds);
+    integrator.abandon_when(nullptr);
+    if (stays && number != 0 && number == begun_number_) integrator.expect_same_picture();
+    if (!is_aside) begun_number_ = 0; // in case the next line throws
+    integrator.begin(picture, tracer, samples);
+    if (!is_aside) begun_number_ = number;
+    queue().wait();
+    return integrator;
+}
+
+RenderResult PictureRenderer::render_aside(const Camera& camera, const RenderSettings& settings, uint32_t first) {
+    Film film(queue(), settings.width, settings.height, settings.aovs, light_layers_of(settings));
+    Integrator& integrator = begin(camera, settings, settings.samples);
+    integrator.render(first, settings.samples, film.view());
+    RenderResult result;
+    result.samples = settings.samples;
+    result.rays = integrator.rays();
+    result.picture = film.picture(settings.samples, settings.transparent);
+    result.layers = layers_of(film, settings, settings.samples);
+    result.ids = film.ids();
+    return result;
+}
+
+} // namespace pertev

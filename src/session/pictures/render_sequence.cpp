@@ -1,0 +1,88 @@
+#include "session/pictures/render_sequence.h"
+
+#include <utility>
+
+#include "base/stopwatch.h"
+
+namespace pertev {
+namespace {
+
+/// Lets the camera of `frame` move while the shutter is open.
+void move_in_shutter(uint32_t frame, MovingScene& moving, const FrameCamera& camera, Camera& moved) {
+    const FrameRange& sequence = camera.sequence;
+    // As large as what it looks at is far, or the scene is small: by that it may be off.
+    const Bounds3 bounds = bounds_of(moving.scene());
+    const float size = bounds.is_empty() ? 1.0f : 0.5f * max_component(bounds.size());
+    const float half = max(0x1p-30f, min(1.0f, min(moved.focus_distance, size)));
+    const PlacedBox about_eye = {moved.world_from_camera, {{-half, -half, -half}, {half, half, half}}};
+    const FittedMotions fitted = fit_motions({&about_eye, 1}, [&](double share) {
+        const double time_s = sequence.shutter->time_at(sequence.time_of(frame).value(), share);
+        Scene cameras; // nothing else of a scene moves a camera
+        cameras.cameras = moving.cameras_at(time_s);
+        cameras.origin_in_file = moving.scene().origin_in_file;
+        const CameraSource at = camera_at(camera.camera, cameras, time_s, sequence.turn_at(frame, share));
+        return std::vector{std::optional(at.camera.world_from_camera)};
+    });
+    moved.motion = fitted.motions.front().keys;
+}
+
+/// Shows the frame that motion vectors of `frame` are from.
+void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
+                       Messages& messages) {
+    const std::optional<double> time_s = camera.sequence.time_before(frame);
+    go_to(time_s, moving, session, messages);
+    session.set_camera(camera_at(camera.camera, moving.scene(), time_s, camera.sequence.turn_before(frame)).camera);
+    session.keep_as_before();
+}
+
+} // namespace
+
+void go_to(std::optional<double> time_s, MovingScene& moving, Session& session, Messages& messages) {
+    if (!time_s) return;
+    if (const uint32_t parts = moving.set_time(*time_s, messages)) session.update_scene(moving.prepared(), parts);
+}
+
+CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::optional<double> time_s, double turn) {
+    const CameraChoice choice = camera.choice_at(time_s);
+    CameraSource source = source_of(choice, camera.at(scene, time_s), scene.origin_in_file);
+    if (turn == 0) return source;
+    source.camera = camera.turned(source.camera, turn);
+    source.target.reset(); // its words say where the camera began
+    source.up.reset();
+    return source;
+}
+
+void place_frame(uint32_t frame, MovingScene& moving, const FrameCamera& camera, PictureRecord& record) {
+    record.scene.time_s = camera.sequence.time_of(frame);
+    record.scene.shutter = camera.sequence.shutter;
+    record.camera = camera_at(camera.camera, moving.scene(), record.scene.time_s, camera.sequence.turn_of(frame));
+    if (camera.sequence.shutter) move_in_shutter(frame, moving, camera, record.camera.camera);
+}
+
+void go_to_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
+                 PictureRecord& record, Messages& messages) {
+    go_to(camera.sequence.time_of(frame), moving, session, messages);
+    place_frame(frame, moving, camera, record);
+    session.set_camera(record.camera.camera);
+}
+
+RenderedFrame render_frame(uint32_t frame, const SequenceOfFrames& frames, Messages& messages,
+                           const FilmRender::KeepGoing& keep_going) {
+    auto& [camera, moving, record, session] = frames;
+    const Stopwatch update;
+    if ((record.settings.aovs & kAovMotion) != 0) show_frame_before(frame, camera, moving, session, messages);
+    go_to_frame(frame, camera, moving, session, record, messages);
+    const double update_s = update.seconds();
+    if (!record.frame) {
+        session.render(record.settings.samples, keep_going);
+        return {session.result(), update_s};
+    }
+    record.frame->number = frame;
+    const Stopwatch watch;
+    session.render_frame(FrameRange::sample_of(frame), record.frame->reconstruction, record.frame->restir);
+    RenderedFrame rendered = {session.frame_result(), update_s};
+    rendered.result.render_seconds = watch.seconds();
+    return rendered;
+}
+
+} // namespace pertev

@@ -1,0 +1,78 @@
+#include "session/post_steps.h"
+
+#include "denoise/picture_denoiser.h"
+#include "device/launch.h"
+#include "render/add_frame_to_film.h"
+
+namespace pertev {
+namespace {
+
+std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const RenderSettings& settings) {
+    std::vector<std::unique_ptr<Denoiser>> denoisers;
+    switch (settings.denoise) {
+    case Denoise::None:
+        break;
+    case Denoise::Svgf:
+        denoisers.push_back(std::make_unique<PictureDenoiser>(queue, settings.width, settings.height));
+        break;
+    }
+    return denoisers;
+}
+
+} // namespace
+
+void PostSteps::begin(const Camera& camera, const RenderSettings& settings) {
+    NoisyFrame& frame = fit_frame(pictures_.scene(), sample_, settings.width, settings.height);
+    if (made_for_ != std::tuple(settings.denoise, settings.width, settings.height)) {
+        denoisers_.clear(); // before the new ones, so that both do not need to fit
+        denoisers_ = make_denoisers(pictures_.queue(), settings);
+        made_for_ = {settings.denoise, settings.width, settings.height};
+    }
+    RenderSettings of_features = settings;
+    of_features.path.max_depth = 0;
+    RenderSettings of_centres = of_features;
+    of_centres.filter = PixelFilter::Box;
+    of_centres.filter_radius = 0x1p-20f; // pixels
+    Camera pinhole = camera;
+    pinhole.aperture_radius = 0;
+    Integrator& of_pinhole = pictures_.begin(pinhole, of_centres, 1);
+    frame.begin();
+    of_pinhole.render(0, 1, frame.film_view());
+    const CameraView centres = pictures_.view_of(pinhole, of_centres).camera.view;
+    for (const auto& denoiser : denoisers_) denoiser->begin(frame, centres);
+    Integrator& integrator = pictures_.begin(camera, of_features, 1);
+    const SceneView& scene = pictures_.scene().view();
+    for (const auto& denoiser : denoisers_) {
+        for (uint32_t sample = 0; sample < denoiser->feature_samples(); ++sample) {
+            integrator.render(sample, 1, frame.film_view());
+            denoiser->add_features(frame, scene);
+        }
+    }
+}
+
+void PostSteps::add(Integrator& integrator, uint32_t first, uint32_t count, const Film& film) {
+    const SceneView& scene = pictures_.scene().view();
+    FilmView into = sample_.value().film_view();
+    into.invalid = film.view().invalid;
+    for (uint32_t sample = first; sample < first + count; ++sample) {
+        integrator.render(sample, 1, into);
+        if (pictures_.is_abandoned()) return;
+        launch(pictures_.queue(), "add_frame_to_film", film.width() * film.height(),
+               AddFrameToFilm{sample_->view(), film.view(), scene, sample == 0});
+        for (const auto& denoiser : denoisers_) denoiser->add(*sample_, scene);
+    }
+    pictures_.queue().wait();
+}
+
+Image PostSteps::apply(Image picture) {
+    const std::size_t channels = picture.channels;
+    for (const auto& denoiser : denoisers_) {
+        const Image denoised = denoiser->picture();
+        for (std::size_t i = 0; i < denoised.pixels.size(); ++i) { // the picture keeps its alpha
+            picture.pixels[i / 3 * channels + i % 3] = denoised.pixels[i];
+        }
+    }
+    return picture;
+}
+
+} // namespace pertev

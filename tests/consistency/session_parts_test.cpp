@@ -1,0 +1,165 @@
+// The parts of a session stand alone: each renders without a Session, and gives the bytes that a Session gives. Two
+// sessions run side by side.
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include <doctest/doctest.h>
+
+#include "base/parallel_for.h"
+#include "image/picture_hash.h"
+#include "session/render_picture.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+/// A scene that is prepared once.
+struct MixedWorld {
+    Scene scene = test::make_mixed_scene();
+    PreparedScene prepared;
+    MixedWorld() {
+        Messages messages;
+        prepared = prepare_scene(scene, {}, messages);
+    }
+};
+
+RenderSettings part_settings() {
+    RenderSettings settings;
+    settings.width = 32, settings.height = 20, settings.samples = 5;
+    settings.aovs = kAovAlbedo | kAovNormal | kAovIds;
+    return settings;
+}
+
+/// What the parts of a session share.
+struct Parts {
+    DeviceScene scene;
+    PictureRenderer pictures;
+    Parts(Queue& queue, const MixedWorld& world, const RenderSettings& settings) : scene(queue), pictures(scene) {
+        scene.set(world.prepared, settings);
+    }
+};
+
+bool same_part_ids(const std::vector<PixelIds>& a, const std::vector<PixelIds>& b) {
+    return std::ranges::equal(a, b, [](const PixelIds& x, const PixelIds& y) {
+        return x.instance == y.instance && x.primitive == y.primitive && x.material == y.material;
+    });
+}
+
+/// Ends what goes on once it has heard `most` steps of it.
+struct EndingSink : Sink {
+    explicit EndingSink(int steps) : most(steps) {}
+    void progress(double share, const std::string&) override {
+        CHECK(share > last);
+        last = share;
+        ++heard;
+    }
+    bool is_cancelled() override { return heard >= most; }
+    int most, heard = 0;
+    double last = 0;
+};
+
+} // namespace
+
+TEST_CASE("films of two ranges of samples add up to the film of a session") {
+    const MixedWorld world;
+    Queue queue = test::queue_asked_for();
+    const RenderSettings settings = part_settings();
+    const Camera camera = test::mixed_scene_camera();
+    const RenderResult whole = render_picture(queue, world.prepared, camera, settings);
+    Parts parts(queue, world, settings);
+    FilmRender first(parts.pictures, camera, settings), second(parts.pictures, camera, settings);
+    CHECK(second.render({2, 4}) == 2);
+    CHECK(first.render({0, 2}) == 2);
+    CHECK(second.render({4, 5}) == 1);
+    CHECK(second.samples().first == 2);
+    CHECK(second.samples().count() == 3);
+    CHECK(picture_hash(second.picture()) != picture_hash(whole.picture));
+    first.film().add(second.film());
+    CHECK(picture_hash(first.film().picture(5, false)) == picture_hash(whole.picture));
+    CHECK(same_part_ids(first.film().ids(), whole.ids));
+    CHECK(picture_hash(first.film().layers(5)[1].image) == picture_hash(whole.layers[1].image));
+}
+
+TEST_CASE("frames, the meter and post steps work without a session") {
+    const MixedWorld world;
+    Queue queue = test::queue_asked_for();
+    RenderSettings settings = part_settings();
+    settings.denoise = Denoise::Svgf;
+    settings.transparent = true;
+    const Camera camera = test::mixed_scene_camera();
+    Session session(queue, world.prepared, camera, settings);
+    Parts parts(queue, world, settings);
+    FrameSequence frames(parts.pictures);
+    for (uint32_t number = 0; number < 3; ++number) {
+        REQUIRE(session.render_frame(number, {}));
+        REQUIRE(frames.render(number, camera, settings, {}, {}));
+    }
+    CHECK(picture_hash(frames.reconstruction().picture()) == picture_hash(session.frame().picture()));
+    CHECK(Meter(parts.pictures).stops(camera, settings, ToneMap::Agx) == session.meter(ToneMap::Agx));
+    FilmRender film(parts.pictures, camera, settings);
+    CHECK(!film.denoised());
+    session.render(3);
+    film.render({0, 3});
+    const Image denoised = film.denoised().value(), picture = film.picture();
+    CHECK(picture_hash(denoised) == picture_hash(session.denoised().value()));
+    CHECK(picture_hash(denoised) != picture_hash(picture));
+    CHECK(denoised.channels == 4);
+    for (std::size_t i = 3; i < denoised.pixels.size(); i += 4) {
+        REQUIRE(denoised.pixels[i] == picture.pixels[i]); // alpha is the film's
+    }
+}
+
+TEST_CASE("two sessions with different thread counts run at once on two threads, and give the same bytes") {
+    const MixedWorld world;
+    const RenderSettings settings = part_settings();
+    const auto run = [&](int threads, uint32_t repeats, int& counted) {
+        set_thread_count(threads);
+        std::vector<Hash128> hashes;
+        Queue queue = Queue::make_cpu();
+        Session session(queue, world.prepared, test::mixed_scene_camera(), settings);
+        for (uint32_t repeat = 0; repeat < repeats; ++repeat) {
+            session.cut();
+            session.render(settings.samples);
+            session.render_frame(repeat, {});
+            hashes.push_back(picture_hash(session.picture()));
+            hashes.push_back(picture_hash(session.frame().picture()));
+        }
+        std::atomic<int> in_body{0}; // a thread that helps has the count of the thread that it helps
+        parallel_for(64, 1, [&](uint64_t) { in_body = thread_count(); });
+        counted = thread_count() == in_body ? in_body.load() : -1;
+        return hashes;
+    };
+    constexpr uint32_t kRepeats = 6;
+    int alone = 0, of_one = 0, of_three = 0;
+    std::vector<Hash128> expected, by_one, by_three;
+    std::thread before([&] { expected = run(2, kRepeats, alone); });
+    before.join();
+    std::thread one([&] { by_one = run(1, kRepeats, of_one); });
+    std::thread three([&] { by_three = run(3, kRepeats, of_three); });
+    one.join();
+    three.join();
+    CHECK(by_one == expected);
+    CHECK(by_three == expected);
+    CHECK(alone == 2);
+    CHECK(of_one == 1);
+    CHECK(of_three == 3);
+}
+
+TEST_CASE("a sink hears how far a session is, and ends it at a whole sample") {
+    const MixedWorld world;
+    Queue queue = test::queue_asked_for();
+    RenderSettings settings = part_settings();
+    settings.pass_samples = 1;
+    Session session(queue, world.prepared, test::mixed_scene_camera(), settings);
+    EndingSink ends(2), never(1000);
+    CHECK(session.render(5, ends) == 2);
+    CHECK(ends.heard == 2);
+    CHECK(session.render(3, never) == 3);
+    CHECK(never.last == 1);
+    const RenderResult whole = render_picture(queue, world.prepared, test::mixed_scene_camera(), settings);
+    CHECK(picture_hash(session.picture()) == picture_hash(whole.picture));
+}
