@@ -7,7 +7,6 @@
 #include <exception>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <thread>
 #include <vector>
 
@@ -122,15 +121,17 @@ void parallel_invoke(const std::function<void()>& a, const std::function<void()>
 
 #else
 
+constexpr std::size_t kMostThreads = 4096;
+
 /// The threads that work for one thread, apart from those of others.
 struct Team {
     explicit Team(int count) : arena(count) {
-        // TBB has a worker less than there are hardware threads, unless more are asked for.
-        if (count > hardware_threads())
-            control.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));
+        // TBB has one worker less than there are hardware threads, unless it is allowed more. Several such permits
+        // count as the least of them, so there is one.
+        if (count <= hardware_threads()) return;
+        static const tbb::global_control permit(tbb::global_control::max_allowed_parallelism, kMostThreads);
     }
     tbb::task_arena arena;
-    std::optional<tbb::global_control> control;
 };
 
 thread_local std::unique_ptr<Team> t_team; // null: one a hardware thread, or those that the thread works among
