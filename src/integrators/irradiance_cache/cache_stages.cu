@@ -10,4 +10,6 @@ template void launch(Queue&, const char*, WorkCount, const CountMirroredLamps&);
 template void launch(Queue&, const char*, WorkCount, const BeginSeekers&);
 template void launch(Queue&, const char*, WorkCount, const StoreDistances&);
 template void launch(Queue&, const char*, WorkCount, const ReadCells&);
+template void launch(Queue&, const char*, WorkCount, const ShadeCacheWalks<MaterialsKnown::Nothing>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeCacheWalks<MaterialsKnown::PlainDiffuse>&);
 } // namespace pertev

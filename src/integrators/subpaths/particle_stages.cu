@@ -1,5 +1,5 @@
 #include "device/launch_body.h"
-#include "integrators/subpaths/begin_eyes.h"
+#include "integrators/subpaths/particle_stages.h"
 
 // Those that compile soon: shading has a file of its own.
 namespace pertev {
@@ -9,4 +9,6 @@ template void launch(Queue&, const char*, WorkCount, const AddSplats&);
 template void launch(Queue&, const char*, WorkCount, const AddConnections&);
 template void launch(Queue&, const char*, WorkCount, const CountWalks&);
 template void launch(Queue&, const char*, WorkCount, const BeginWalks&);
+template void launch(Queue&, const char*, WorkCount, const ShadeParticles<MaterialsKnown::Nothing>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeParticles<MaterialsKnown::PlainDiffuse>&);
 } // namespace pertev
