@@ -3,7 +3,6 @@
 #include "integrators/irradiance_cache/hemisphere_stages.h"
 #include "integrators/irradiance_cache/overture_grid.h"
 
-// Those that compile soon: shading has files of its own.
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const BeginCacheWalks&);
 template void launch(Queue&, const char*, WorkCount, const CountMirroredLamps&);

@@ -4,7 +4,6 @@
 #include "integrators/photon_map/photon_stages.h"
 #include "integrators/photon_map/photon_targets.h"
 
-// Those that compile soon: shading has files of its own.
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const FindSpecular&);
 template void launch(Queue&, const char*, WorkCount, const BeginPhotons&);

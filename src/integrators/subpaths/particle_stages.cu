@@ -1,7 +1,6 @@
 #include "device/launch_body.h"
 #include "integrators/subpaths/particle_stages.h"
 
-// Those that compile soon: shading has a file of its own.
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const BeginParticles&);
 template void launch(Queue&, const char*, WorkCount, const BeginEyes&);
