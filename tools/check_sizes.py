@@ -1,18 +1,34 @@
 #!/usr/bin/env python3
-"""Fails on a source file longer than 500 lines, and on a header that does not open with a comment that says what it is.
+"""Fails on a source file longer than 500 lines, on a header of fewer than 12 lines of code that serves one neighbour
+alone, and on a header that does not open with a comment that says what it is.
 
-A table of numbers may be as long as it is, in a file of its own whose name ends in _data.
+A table of numbers may be as long as it is, in a file of its own whose name ends in _data. A header with a source file
+of its name is an interface, which may be short.
 """
 
+import collections
 import pathlib
+import re
 import sys
 
 LIMIT = 500
+FLOOR = 12
 FOLDERS = ["src", "apps", "tests", "tools", "bench", "python", "cmake"]
 SUFFIXES = {".h", ".cpp", ".cu", ".py", ".js", ".cmake"}
 
 
+def users_of_headers(root):
+    users = collections.defaultdict(set)
+    for folder in FOLDERS:
+        for file in (root / folder).rglob("*"):
+            if file.suffix in {".h", ".cpp", ".cu"}:
+                for name in re.findall(r'^#include "([^"]+)"', file.read_text(encoding="utf-8"), re.MULTILINE):
+                    users[name].add(file.relative_to(root))
+    return users
+
+
 def faults_in(root):
+    users = users_of_headers(root)
     for folder in FOLDERS:
         for file in sorted((root / folder).rglob("*")):
             if file.suffix not in SUFFIXES:
@@ -22,6 +38,11 @@ def faults_in(root):
             if len(lines) > LIMIT and not file.stem.endswith("_data"):
                 yield f"{name}: {len(lines)} lines; the limit is {LIMIT}: which two ideas does it hold?"
             if folder == "src" and file.suffix == ".h":
+                code = [line for line in lines if line.strip() and not line.strip().startswith("//")]
+                using = users[str(name.relative_to("src"))]
+                is_interface = any(file.with_suffix(suffix).exists() for suffix in (".cpp", ".cu"))
+                if len(code) < FLOOR and len(using) == 1 and not is_interface:
+                    yield f"{name}: {len(code)} lines of code, for {min(using)} alone: they belong there"
                 text = [line for line in lines if line.strip()]
                 if not text or text[0].strip() != "#pragma once":
                     yield f"{name}:1: a header starts with #pragma once"

@@ -9,9 +9,9 @@
 
 #include "device/launch.h"
 #include "device_scene/scene_on_device.h"
-#include "integrators/photon_map/find_targets.h"
 #include "integrators/photon_map/order_photons.h"
 #include "integrators/photon_map/photon_map_integrator.h"
+#include "integrators/photon_map/photon_targets.h"
 #include "render/film.h"
 #include "render/filter_table.h"
 #include "session/check_integrator.h"

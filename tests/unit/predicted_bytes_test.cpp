@@ -2,8 +2,13 @@
 
 #include <doctest/doctest.h>
 
+#include <sys/resource.h>
+
+#include <algorithm>
+
 #include "device_scene/scene_on_device.h"
 #include "integrators/path/path_integrator.h"
+#include "settings/value_names.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tracer/scene_tracer.h"
@@ -91,4 +96,27 @@ TEST_CASE("queues of paths have at most their bytes, and nearly those, whatever 
             CHECK(bytes(64, 1, 1000) < 64 * 400);
         }
     }
+}
+
+TEST_CASE("every integrator predicts its memory for a picture that no machine holds, and the host gives none of it") {
+    const WorkSize huge = {.width = 1 << 16, .height = 1 << 15, .samples = 4, .triangles = 1'000'000};
+    const auto peak_kib = [] {
+        rusage usage = {};
+        ::getrusage(RUSAGE_SELF, &usage);
+        return usage.ru_maxrss;
+    };
+    const long before = peak_kib();
+    for (const IntegratorDescriptor& integrator : integrators()) {
+        CAPTURE(integrator.name);
+        CHECK(&describe(integrator.value) == &integrator);
+        CHECK(value_named<IntegratorKind>(integrator.name) == integrator.value);
+        RenderSettings settings;
+        settings.integrator = integrator.value;
+        settings.path.max_depth = std::min(settings.path.max_depth, integrator.most_depth);
+        CHECK(predicted_bytes(settings, huge, true) > 100'000'000);
+        WorkSize small = huge;
+        small.width = small.height = 8;
+        CHECK(predicted_bytes(settings, small, true) < predicted_bytes(settings, huge, true));
+    }
+    CHECK(peak_kib() - before < 50'000);
 }

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "integrators/subpaths/splat.h"
+#include "integrators/subpaths/particle_stages.h"
 #include "render/filter_table.h"
 #include "render/see_vertex.h"
 #include "tests/support/flat_scenes.h"

@@ -113,4 +113,10 @@ HD inline void visit_within(const PointOctreeView& tree, Vec3 at, float radius, 
     search_points(tree, at, within);
 }
 
+/// Bytes of the host's memory that build_point_octree takes for so many spheres at most: the tree, and while it is
+/// built two lists of numbers.
+inline std::size_t most_octree_bytes(uint64_t spheres) {
+    return spheres * (2 * sizeof(PointOctreeNode) + sizeof(Sphere) + 3 * sizeof(uint32_t));
+}
+
 } // namespace pertev

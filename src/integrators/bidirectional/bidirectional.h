@@ -5,7 +5,7 @@
 // scatterings is found in k + 2 ways; each way's share is weighted by how densely it finds that path.
 //
 // Sources: Lafortune, Willems, "Bi-Directional Path Tracing", Compugraphics 1993; Veach, "Robust Monte Carlo Methods
-// for Light Transport Simulation", 1997, chapter 10. Weights: integrators/subpaths/mis_walk.h.
+// for Light Transport Simulation", 1997, chapter 10. Weights: integrators/subpaths/walk_memory.h.
 //
 // All light that path tracing finds, L(D|G|S)*E, with less noise where light comes to what the camera sees by narrow
 // ways. What both do not find: a point light seen by clear glass or mirrors alone, L S* D S* E with no end to draw.

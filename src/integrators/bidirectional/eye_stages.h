@@ -3,7 +3,7 @@
 // The stages of walks from the camera that are joined to particles: shade where their rays have met something, then
 // join that to the vertices that the sample's particle has left behind, some at a time.
 
-#include "integrators/subpaths/begin_eyes.h"
+#include "integrators/subpaths/particle_stages.h"
 
 namespace pertev {
 

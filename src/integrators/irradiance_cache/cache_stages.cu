@@ -3,11 +3,12 @@
 #include "integrators/irradiance_cache/hemisphere_stages.h"
 #include "integrators/irradiance_cache/overture_grid.h"
 
-// Those that compile soon: shading has files of its own.
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const BeginCacheWalks&);
 template void launch(Queue&, const char*, WorkCount, const CountMirroredLamps&);
 template void launch(Queue&, const char*, WorkCount, const BeginSeekers&);
 template void launch(Queue&, const char*, WorkCount, const StoreDistances&);
 template void launch(Queue&, const char*, WorkCount, const ReadCells&);
+template void launch(Queue&, const char*, WorkCount, const ShadeCacheWalks<MaterialsKnown::Nothing>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeCacheWalks<MaterialsKnown::PlainDiffuse>&);
 } // namespace pertev

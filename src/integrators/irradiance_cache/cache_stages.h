@@ -11,8 +11,8 @@
 // Source: Ward, Rubinstein, Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988, section 2.
 
 #include "integrators/irradiance_cache/cache_memory.h"
-#include "integrators/irradiance_cache/cached_surface.h"
-#include "integrators/subpaths/begin_eyes.h"
+#include "integrators/irradiance_cache/irradiance_record.h"
+#include "integrators/subpaths/particle_stages.h"
 #include "shading/may_be_specular.h"
 #include "shading/power_heuristic.h"
 

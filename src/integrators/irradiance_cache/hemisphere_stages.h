@@ -3,12 +3,111 @@
 // The stages that make records of places: a walk from each cell of a place's hemisphere, then the sum over the cells.
 
 #include "integrators/irradiance_cache/cache_memory.h"
-#include "integrators/irradiance_cache/cached_surface.h"
-#include "integrators/irradiance_cache/hemisphere.h"
+#include "integrators/irradiance_cache/irradiance_cache_settings.h"
+#include "integrators/irradiance_cache/irradiance_record.h"
 #include "integrators/irradiance_cache/lookup_stages.h"
 #include "integrators/subpaths/walk_vertex.h"
+#include "math/frame.h"
+#include "math/portable_inverse_trig.h"
+#include "math/portable_trig.h"
+#include "math/rgb.h"
+#include "math/vec2.h"
 
 namespace pertev {
+
+// What a place learns from the rays of its hemisphere: the light that comes, how it changes with a turn and with a
+// step, and how near all is. Any light may be asked for it, cell by cell, so this can be held to closed forms.
+//
+// Sources: Ward, Heckbert, "Irradiance Gradients", EGWR 1992, section 3 (the gradients; by a turn the mean of the
+// tangent over a row is in closed form here); Ward et al. 1988 (the harmonic mean of distances). A turn's gradient is
+// kept as the vector g of dE = g (n' - n).
+
+/// In cell `cell` (row by row), at `u` in its unit square; unit, about +z.
+HD inline Vec3 direction_in_cell(const HemisphereGrid& grid, uint32_t cell, Vec2 u) {
+    const float sine_squared = (static_cast<float>(cell / grid.columns) + u.x) / static_cast<float>(grid.rows);
+    const float turns = (static_cast<float>(cell % grid.columns) + u.y) / static_cast<float>(grid.columns);
+    float sine, cosine;
+    sin_cos_2pi(turns, sine, cosine);
+    const float radius = sqrt(sine_squared);
+    return {radius * cosine, radius * sine, safe_sqrt(1.0f - sine_squared)};
+}
+
+struct HemisphereCell {
+    Rgb light;      // radiance, W/(sr m2)
+    float distance; // metres; may be infinite
+};
+
+/// See IrradianceRecord.
+struct HemisphereSum {
+    Rgb light;
+    Vec3 by_turn[3], by_move[3];
+    float radius; // harmonic mean of the distances; infinite where nothing is met
+};
+
+namespace hemisphere {
+
+/// Integral of tan from the normal to where the squared sine is `s`, over the cosine-weighted hemisphere.
+HD inline float tangents_to(float s) { return asin(sqrt(s)) - sqrt(s * (1.0f - s)); }
+
+HD inline void add(Vec3 (&sums)[3], Rgb light, Vec3 direction) {
+    sums[0] += light.r * direction;
+    sums[1] += light.g * direction;
+    sums[2] += light.b * direction;
+}
+
+} // namespace hemisphere
+
+/// `cell_of(cell)`: its HemisphereCell. `frame`: its tangent and bitangent are x and y of direction_in_cell.
+template <class CellOf>
+HD inline HemisphereSum sum_hemisphere(const HemisphereGrid& grid, const Frame& frame, const CellOf& cell_of) {
+    const float rows = static_cast<float>(grid.rows), columns = static_cast<float>(grid.columns);
+    HemisphereSum sum = {};
+    float nearness = 0; // sum of 1 / distance
+    for (uint32_t row = 0; row < grid.rows; ++row) {
+        const float from = static_cast<float>(row) / rows, to = static_cast<float>(row + 1) / rows;
+        const float tangent = rows * (hemisphere::tangents_to(to) - hemisphere::tangents_to(from));
+        const float across_row = 2.0f * sqrt(from) * (1.0f - from) / columns; // 2 pi / columns sin cos^2 over pi
+        const float across_column = kInvPi * (sqrt(to) - sqrt(from));
+        for (uint32_t column = 0; column < grid.columns; ++column) {
+            const uint32_t cell = row * grid.columns + column;
+            const HemisphereCell here = cell_of(cell);
+            float sine, cosine;
+            sin_cos_2pi((static_cast<float>(column) + 0.5f) / columns, sine, cosine);
+            const Vec3 outwards = cosine * frame.tangent + sine * frame.bitangent;
+            sum.light += here.light;
+            nearness += 1.0f / here.distance;
+            hemisphere::add(sum.by_turn, tangent * here.light, outwards);
+            if (row > 0) {
+                const HemisphereCell inner = cell_of(cell - grid.columns);
+                const float change = across_row / min(here.distance, inner.distance);
+                hemisphere::add(sum.by_move, change * (here.light - inner.light), outwards);
+            }
+            const HemisphereCell before = cell_of(column > 0 ? cell - 1 : cell + grid.columns - 1);
+            sin_cos_2pi(static_cast<float>(column) / columns, sine, cosine);
+            const Vec3 round = cosine * frame.bitangent - sine * frame.tangent; // at the border between the two
+            const float change = across_column / min(here.distance, before.distance);
+            hemisphere::add(sum.by_move, change * (here.light - before.light), round);
+        }
+    }
+    const float share = 1.0f / (rows * columns);
+    sum.light = share * sum.light;
+    for (Vec3& gradient : sum.by_turn) gradient = share * gradient;
+    sum.radius = 1.0f / (share * nearness);
+    return sum;
+}
+
+/// How far a record may serve, metres: no less than `least` and no more than `most`, and no further than its light
+/// changes by as much as it is (Ward and Heckbert 1992, section 4). Where the least is more than that, the gradient
+/// is made as much smaller.
+HD inline void limit_radius(HemisphereSum& sum, float least, float most) {
+    const Vec3 gradient = 0.2126f * sum.by_move[0] + 0.7152f * sum.by_move[1] + 0.0722f * sum.by_move[2];
+    const float change = length(gradient), light = luminance(sum.light);
+    if (sum.radius * change > light) sum.radius = light / change;
+    if (sum.radius < least) {
+        for (Vec3& g : sum.by_move) g = (sum.radius / least) * g;
+    }
+    sum.radius = clamp(sum.radius, least, most);
+}
 
 /// Records of a picture that are to be made.
 struct HemisphereJob {

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "integrators/irradiance_cache/do_in_parts.h"
 #include "integrators/irradiance_cache/overture_progress.h"
 
 namespace pertev {

@@ -4,7 +4,7 @@
 // sent on as a path; in the overture, before there is a picture, a record is asked for where there is none.
 
 #include "integrators/irradiance_cache/cache_memory.h"
-#include "integrators/irradiance_cache/cached_surface.h"
+#include "integrators/irradiance_cache/irradiance_record.h"
 #include "integrators/subpaths/walk_vertex.h"
 #include "render/film_view.h"
 #include "render/first_hit.h"

@@ -12,7 +12,7 @@
 
 #include "integrators/irradiance_cache/cache_memory.h"
 #include "integrators/irradiance_cache/lookup_stages.h"
-#include "integrators/subpaths/begin_eyes.h"
+#include "integrators/subpaths/particle_stages.h"
 
 namespace pertev {
 

@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "accel/octree/point_octree.h"
 #include "device/buffer.h"
 #include "integrators/irradiance_cache/irradiance_record.h"
 #include "integrators/irradiance_cache/lookup_stages.h"
@@ -57,5 +59,15 @@ private:
     Buffer<Sphere> tree_spheres_;
     Buffer<uint32_t> tree_indices_;
 };
+
+// How far records serve, once all of a round are there: neighbour clamping. Where a record has near walls, those near
+// it cannot be much farther from them, whatever their own rays have met: by the triangle inequality a radius is at most
+// a neighbour's plus the way there. Of all records at once, so no order matters.
+//
+// Source: Krivanek, Bouatouch, Pattanaik, Zara, "Making Radiance and Irradiance Caching Practical: Adaptive Caching and
+// Neighbor Clamping", EGSR 2006, section 5.
+
+/// Of spheres round records, of their own radii: the least of radius_j + distance to j over all j, themselves too.
+std::vector<float> clamp_by_neighbours(std::span<const Sphere> records);
 
 } // namespace pertev

@@ -10,7 +10,7 @@
 // seen in a mirror or through clear glass, for no ray from a particle to the camera goes the one way that such a
 // surface sends light.
 
-#include "integrators/subpaths/begin_eyes.h"
+#include "integrators/subpaths/particle_stages.h"
 #include "integrators/subpaths/run_walks.h"
 
 namespace pertev {

@@ -10,4 +10,8 @@ template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<Noth
 template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<PlainDiffuse, Search::Grid>&);
 template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<PlainDiffuse, Search::KdTree>&);
 template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<PlainDiffuse, Search::Octree>&);
+template void launch(Queue&, const char*, WorkCount, const ShareLookups<Nothing>&);
+template void launch(Queue&, const char*, WorkCount, const ShareLookups<PlainDiffuse>&);
+template void launch(Queue&, const char*, WorkCount, const AddSharedLookups<Nothing>&);
+template void launch(Queue&, const char*, WorkCount, const AddSharedLookups<PlainDiffuse>&);
 } // namespace pertev

@@ -15,7 +15,7 @@
 // Source: Jensen, "Global Illumination using Photon Maps", 1996, section 5.
 
 #include "integrators/photon_map/estimate_radiance.h"
-#include "integrators/subpaths/begin_eyes.h"
+#include "integrators/subpaths/particle_stages.h"
 #include "shading/power_heuristic.h"
 
 namespace pertev {

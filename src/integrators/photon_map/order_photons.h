@@ -9,8 +9,7 @@
 // left out to its neighbours; here chance chooses, so that the mean is that of all.
 
 #include "device/buffer.h"
-#include "integrators/photon_map/photon_grid.h"
-#include "integrators/photon_map/photons.h"
+#include "integrators/photon_map/photon_map_view.h"
 #include "math/random.h"
 
 namespace pertev {

@@ -1,8 +1,11 @@
 #include "integrators/photon_map/photon_map_integrator.h"
 
-#include "integrators/photon_map/find_targets.h"
+#include "integrators/photon_map/photon_map_settings.h"
+#include "integrators/photon_map/photon_targets.h"
+#include "math/scalar.h"
 
 namespace pertev {
+
 namespace {
 
 /// `in_loop`: of a thread of the CPU's, which has other look-ups to do when this one is long.
@@ -91,6 +94,13 @@ void PhotonMapIntegrator::render_pass(uint32_t pass, const FilmView& film) {
         if (!is_abandoned()) run_sights(schedule, part);
     });
     rays_.camera += pixels();
+}
+
+float radius_of_pass(uint32_t pass) {
+    constexpr double kAlpha = 2.0 / 3.0;
+    double squared = 1; // a product of doubles in a fixed order: the same everywhere
+    for (uint32_t i = 1; i <= pass; ++i) squared *= (i + kAlpha) / (i + 1.0);
+    return sqrt(static_cast<float>(squared));
 }
 
 } // namespace pertev

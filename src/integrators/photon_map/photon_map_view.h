@@ -1,14 +1,164 @@
 #pragma once
 
-// A map that light is looked up in: photons and the structure that finds them.
+// Photons that a pass has left on diffuse surfaces, the hash grid over them, and both maps as device code sees them.
+
+#include <cstddef>
+#include <cstdint>
 
 #include "accel/kd_tree/point_kd_tree.h"
+#include "accel/nearest_points.h"
 #include "accel/octree/point_octree.h"
-#include "integrators/photon_map/photon_grid.h"
+#include "device/atomic_add.h"
 #include "integrators/photon_map/photon_map_settings.h"
-#include "integrators/photon_map/photons.h"
+#include "math/float4.h"
+#include "math/random.h"
+#include "math/rgb.h"
+#include "math/scalar.h"
+#include "math/vec3.h"
 
 namespace pertev {
+
+struct Photon {
+    Vec3 position; // moved world, metres
+    Vec3 wi;       // unit, to where it came from
+    Vec3 normal;   // unit, of the triangle, on the side where it came from
+    Rgb power;     // W, of all that the lights send in the pass, over the square of the refractive index there
+    uint32_t path, scatterings;
+};
+
+/// Components by 10 bits each.
+HD inline uint32_t pack_normal(Vec3 normal) {
+    const auto part = [](float x) { return static_cast<uint32_t>(to_int((x + 1.0f) * 511.5f, 0, 1023)); };
+    return part(normal.x) << 20 | part(normal.y) << 10 | part(normal.z);
+}
+HD inline Vec3 unpack_normal(uint32_t bits) {
+    const auto part = [](uint32_t x) { return static_cast<float>(x & 1023u) * (1.0f / 511.5f) - 1.0f; };
+    return {part(bits >> 20), part(bits >> 10), part(bits)};
+}
+
+/// Their number in the order of (path, scatterings).
+HD inline uint64_t photon_key(uint32_t path, uint32_t scatterings) { return uint64_t(path) << 8 | scatterings; }
+
+struct PhotonsView {
+    // Position, in a map then 1, or 0 of one that is left out (order_photons.h); wi, bits of the normal; power, bits of
+    // the scatterings.
+    Float4 *places, *ways, *powers;
+
+    HD void store(std::size_t at, const Photon& photon) const {
+        const Vec3 p = photon.position, wi = photon.wi;
+        places[at] = {p.x, p.y, p.z, 0};
+        ways[at] = {wi.x, wi.y, wi.z, float_of(pack_normal(photon.normal))};
+        powers[at] = {photon.power.r, photon.power.g, photon.power.b, float_of(photon.scatterings)};
+    }
+    HD PhotonsView from(uint32_t first) const { return {places + first, ways + first, powers + first}; }
+};
+
+struct PhotonCounts {
+    uint32_t stored, caustic; // in both maps; of these in the caustic map
+};
+
+/// Photons as they are stored, in whatever order they come.
+struct StoredPhotonsView {
+    PhotonsView photons;
+    uint64_t* keys; // photon_key
+    PhotonCounts* counts;
+
+    HD void add(const Photon& photon, bool is_caustic) const {
+        const uint32_t at = atomic_add(&counts->stored, 1u);
+        if (is_caustic) atomic_add(&counts->caustic, 1u);
+        photons.store(at, photon);
+        keys[at] = photon_key(photon.path, photon.scatterings);
+    }
+};
+
+/// Cells, and what it takes to be sure: places are rounded by up to 2^-24 of the largest coordinate.
+struct PhotonCells {
+    float reach;      // metres round a place, more than the radius
+    float per_metre;  // 1 / a cell's side
+    uint32_t buckets; // a power of two
+
+    HD int cell(float x) const { return to_int(floor(x * per_metre), -(1 << 30), 1 << 30); }
+    HD uint32_t bucket(int x, int y, int z) const {
+        return hash_words(static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(z)).x &
+               (buckets - 1);
+    }
+    HD uint32_t bucket_of(Vec3 p) const { return bucket(cell(p.x), cell(p.y), cell(p.z)); }
+};
+
+/// `largest`: |coordinate| of any photon and place. At most two cells an axis: a side is more than twice the reach, and
+/// x * per_metre is rounded by less than the hundredth of a cell that is left.
+inline PhotonCells make_photon_cells(float radius, float largest, uint32_t count) {
+    const float side = 2.05f * radius + 0x1p-17f * largest;
+    uint32_t buckets = 1;
+    while (buckets < count && buckets < 1u << 30) buckets *= 2;
+    return {1.0001f * radius + 0x1p-20f * largest, min(1.0f / side, 0x1p100f), buckets};
+}
+
+struct PhotonGridView {
+    PhotonCells cells;
+    const Float4* points = nullptr;   // by buckets: position, bits of the photon's number
+    const uint32_t* starts = nullptr; // [buckets + 1] in `points`
+    uint32_t most_kept = 0xffffffffu; // of a bucket's points: the first ones
+};
+
+/// Calls visit(begin, end) for each bucket, a part of grid.points, that may hold a photon near `at`.
+template <class Visit>
+HD inline void visit_buckets(const PhotonGridView& grid, Vec3 at, Visit&& visit) {
+    const PhotonCells& cells = grid.cells;
+    const auto low = [&](float x) { return cells.cell(x - cells.reach); };
+    const int x0 = low(at.x), y0 = low(at.y), z0 = low(at.z);
+    const int x_more = cells.cell(at.x + cells.reach) > x0 ? 1 : 0,
+              y_more = cells.cell(at.y + cells.reach) > y0 ? 1 : 0,
+              z_more = cells.cell(at.z + cells.reach) > z0 ? 1 : 0;
+    uint32_t seen[8]; // two cells may share a bucket
+    int seen_count = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
+        if (x > x_more || y > y_more || z > z_more) continue;
+        const uint32_t bucket = cells.bucket(x0 + x, y0 + y, z0 + z);
+        bool is_new = true;
+        for (int k = 0; k < seen_count; ++k) is_new = is_new && seen[k] != bucket;
+        if (!is_new) continue;
+        seen[seen_count++] = bucket;
+        const uint32_t begin = grid.starts[bucket];
+        visit(begin, begin + min(grid.starts[bucket + 1] - begin, grid.most_kept));
+    }
+}
+
+/// Photons that a search has to look at, at most.
+HD inline uint32_t count_near(const PhotonGridView& grid, Vec3 at) {
+    uint32_t count = 0;
+    visit_buckets(grid, at, [&](uint32_t begin, uint32_t end) { count += end - begin; });
+    return count;
+}
+
+/// One of `of` equal shares of a search.
+struct Share {
+    uint32_t number = 0, of = 1;
+};
+
+/// Offers `found` each photon of a share that may be within its limit; see accel/kd_tree/point_kd_tree.h.
+template <class Found>
+HD inline void search_points(const PhotonGridView& grid, Vec3 at, Found& found, Share share = {}) {
+    visit_buckets(grid, at, [&](uint32_t begin, uint32_t end) {
+        for (uint32_t i = begin + share.number; i < end; i += share.of) {
+            const Float4 point = grid.points[i];
+            found.offer({squared_distance({point.x, point.y, point.z}, at), bits_of(point.w)});
+        }
+    });
+}
+
+/// As those of accel/: see point_kd_tree.h.
+HD inline uint32_t find_nearest(const PhotonGridView& grid, Vec3 at, float radius, uint32_t k, NearPoint* found) {
+    NearestPoints nearest(found, k, square_of_radius(radius));
+    search_points(grid, at, nearest);
+    return nearest.sort();
+}
+template <class Visit>
+HD inline void visit_within(const PhotonGridView& grid, Vec3 at, float radius, Visit&& visit, Share share = {}) {
+    PointsWithin<Visit> within = {square_of_radius(radius), visit};
+    search_points(grid, at, within, share);
+}
 
 struct PhotonMapView {
     PhotonsView photons; // in the order of (path, scatterings)

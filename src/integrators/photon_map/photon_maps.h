@@ -7,7 +7,7 @@
 
 #include "device/buffer.h"
 #include "integrators/photon_map/estimate_radiance.h"
-#include "integrators/photon_map/photons.h"
+#include "integrators/photon_map/photon_map_view.h"
 
 namespace pertev {
 

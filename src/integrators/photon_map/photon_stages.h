@@ -11,8 +11,8 @@
 // Source: Jensen, "Global Illumination using Photon Maps", 1996, section 4.1.
 
 #include "integrators/photon_map/gather_memory.h"
+#include "integrators/photon_map/photon_map_view.h"
 #include "integrators/photon_map/photon_targets.h"
-#include "integrators/photon_map/photons.h"
 #include "integrators/subpaths/walk_vertex.h"
 #include "render/film_view.h"
 

@@ -1,4 +1,5 @@
 #include "device/launch_body.h"
+#include "integrators/reyes/shade_samples.h"
 #include "integrators/reyes/split_stages.h"
 
 namespace pertev {
@@ -7,4 +8,5 @@ template void launch(Queue&, const char*, WorkCount, const FindFar&);
 template void launch(Queue&, const char*, WorkCount, const TakePieces&);
 template void launch(Queue&, const char*, WorkCount, const SplitPieces<HidingPass::FindNearest>&);
 template void launch(Queue&, const char*, WorkCount, const SplitPieces<HidingPass::FindMicropolygon>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeSamples&);
 } // namespace pertev

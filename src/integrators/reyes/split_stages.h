@@ -7,9 +7,52 @@
 // Source: Cook, Carpenter, Catmull, "The Reyes Image Rendering Architecture", SIGGRAPH 1987.
 
 #include "device/atomic_add.h"
-#include "integrators/reyes/hidden_piece.h"
+#include "integrators/reyes/hide_micropolygon.h"
 
 namespace pertev {
+
+// What need not be split further, since nothing of it would show: backs that are hidden, and what lies behind all that
+// the samples there show already. Such a piece has no nearest micropolygon, so when it is found out changes nothing.
+
+/// Behind what is seen in all pixels that it may touch. Looked at where those are few: else its children will be.
+HD inline bool is_behind(const ReyesPass& pass, const DicedTriangle& triangle, const DicedPoint (&p)[3]) {
+    constexpr int32_t kMostSamplesOnce = 64;
+    const Pinhole& camera = pass.camera;
+    const double reach = triangle.reach, per_w = camera.is_perspective ? reach : 0;
+    const double off_x = reach + per_w * camera.x_of(camera.width + camera.filter_radius + 2);
+    const double off_y = reach + per_w * camera.y_of(camera.height + camera.filter_radius + 2);
+    double left = 0, right = 0, up = 0, down = 0, nearest = 0;
+    for (int i = 0; i < 3; ++i) {
+        const PinholePoint& q = p[i].base;
+        if (q.depth < kNearest || (camera.is_perspective && !(q.w > 4 * reach))) return false;
+        const double inv = 1 / q.w, x_lo = (q.x - off_x) * inv, x_hi = (q.x + off_x) * inv;
+        const double y_lo = (q.y - off_y) * inv, y_hi = (q.y + off_y) * inv;
+        left = i == 0 ? x_lo : min(left, x_lo), right = i == 0 ? x_hi : max(right, x_hi);
+        up = i == 0 ? y_lo : min(up, y_lo), down = i == 0 ? y_hi : max(down, y_hi);
+        nearest = i == 0 ? q.depth : min(nearest, q.depth);
+    }
+    const SampleLists& samples = pass.samples;
+    const int32_t first_column = samples.column_of(to_subpixels(camera.column_of(left)) - 1);
+    const int32_t last_column = samples.column_of(to_subpixels(camera.column_of(right)) + 1);
+    const int32_t first_row = samples.row_of(to_subpixels(camera.row_of(up)) - 1);
+    const int32_t last_row = samples.row_of(to_subpixels(camera.row_of(down)) + 1);
+    if (int64_t(last_column - first_column + 1) * (last_row - first_row + 1) > kMostSamplesOnce) return false;
+    const auto depth = static_cast<float>((nearest - reach) * (1 - 0x1p-20)); // rounding allowed for
+    for (int32_t row = first_row; row <= last_row; ++row) {
+        for (int32_t column = first_column; column <= last_column; ++column) {
+            if (!(depth > samples.far_of(column, row))) return false;
+        }
+    }
+    return true;
+}
+
+HD inline bool is_hidden_piece(const ReyesPass& pass, const DicedTriangle& triangle, const DicedPoint (&p)[3]) {
+    if (triangle.placed->hides_back != 0 && triangle.displacement == nullptr) {
+        const PinholePoint corners[3] = {p[0].base, p[1].base, p[2].base};
+        if (is_hidden_back(*triangle.placed, plane_of(corners, pass.camera.is_perspective))) return true;
+    }
+    return is_behind(pass, triangle, p);
+}
 
 struct PiecesView {
     Piece* stack;     // [capacity]

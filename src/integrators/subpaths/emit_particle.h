@@ -9,8 +9,8 @@
 
 #include "device_scene/scene_view.h"
 #include "device_scene/surface.h"
-#include "integrators/subpaths/mis_walk.h"
 #include "integrators/subpaths/subpath_settings.h"
+#include "integrators/subpaths/walk_memory.h"
 #include "math/frame.h"
 
 namespace pertev {

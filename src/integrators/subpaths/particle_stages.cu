@@ -1,7 +1,6 @@
 #include "device/launch_body.h"
-#include "integrators/subpaths/begin_eyes.h"
+#include "integrators/subpaths/particle_stages.h"
 
-// Those that compile soon: shading has a file of its own.
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const BeginParticles&);
 template void launch(Queue&, const char*, WorkCount, const BeginEyes&);
@@ -9,4 +8,6 @@ template void launch(Queue&, const char*, WorkCount, const AddSplats&);
 template void launch(Queue&, const char*, WorkCount, const AddConnections&);
 template void launch(Queue&, const char*, WorkCount, const CountWalks&);
 template void launch(Queue&, const char*, WorkCount, const BeginWalks&);
+template void launch(Queue&, const char*, WorkCount, const ShadeParticles<MaterialsKnown::Nothing>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeParticles<MaterialsKnown::PlainDiffuse>&);
 } // namespace pertev

@@ -8,12 +8,62 @@
 
 #include "device/atomic_add.h"
 #include "integrators/subpaths/emit_particle.h"
-#include "integrators/subpaths/splat.h"
 #include "integrators/subpaths/walk_vertex.h"
 #include "render/begin_order.h"
+#include "render/film_view.h"
+#include "render/first_hit.h"
+#include "render/pixel_filter.h"
 #include "render/see_vertex.h"
 
 namespace pertev {
+
+// Adds what a particle brings to the picture. The camera's rays of a pixel are drawn from the pixel filter about its
+// centre (render/pixel_filter.h), so the pixel's value is a mean over the filter's density; what a particle brings to
+// a place of the picture therefore counts for each pixel about it times that very density, in 1/pixel^2. By integers,
+// whose sums do not depend on their order.
+
+/// Density, 1/pixel, with which sample_filter_axis gives `x`, pixels from the pixel's centre.
+HD inline float filter_density(const PixelFilterView& filter, float x) {
+    const float at = x / filter.radius;
+    if (!(abs(at) < 1)) return 0;
+    switch (filter.kind) {
+    case PixelFilter::Box:
+        return 0.5f / filter.radius;
+    case PixelFilter::Tent:
+        return pdf_tent(at) / filter.radius;
+    case PixelFilter::Gaussian:
+    case PixelFilter::BlackmanHarris:
+        break;
+    }
+    int low = 0, high = kFilterTableSize; // table[low] <= at < table[high]
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        (filter.table[middle] <= at ? low : high) = middle;
+    }
+    const float width = filter.table[high] - filter.table[low];
+    if (!(width > 0)) return 0;
+    const float part = 1.0f / static_cast<float>(kFilterTableSize);
+    const float u = (static_cast<float>(low) + (at - filter.table[low]) / width) * part;
+    return pdf_tent(2.0f * u - 1.0f) * (2.0f * part) / (width * filter.radius);
+}
+
+/// `light` at `raster`, in pixels from the upper left corner.
+HD inline void add_splat(const FilmView& film, const PixelFilterView& filter, Vec2 raster, Rgb light) {
+    constexpr int kFar = 1 << 30;
+    const float left = raster.x - 0.5f - filter.radius, top = raster.y - 0.5f - filter.radius;
+    const int first_x = to_int(floor(left) + 1.0f, 0, kFar), first_y = to_int(floor(top) + 1.0f, 0, kFar);
+    const int last_x = to_int(raster.x - 0.5f + filter.radius, 0, static_cast<int>(film.width) - 1);
+    const int last_y = to_int(raster.y - 0.5f + filter.radius, 0, static_cast<int>(film.height) - 1);
+    for (int y = first_y; y <= last_y; ++y) {
+        const float row = filter_density(filter, raster.y - 0.5f - static_cast<float>(y));
+        if (!(row > 0)) continue;
+        for (int x = first_x; x <= last_x; ++x) {
+            const float share = row * filter_density(filter, raster.x - 0.5f - static_cast<float>(x));
+            if (!(share > 0)) continue;
+            add_radiance(film, static_cast<uint32_t>(y) * film.width + static_cast<uint32_t>(x), share * light);
+        }
+    }
+}
 
 /// The state of a walk that begins for the sample `number`.
 HD inline WalkState state_of_sample(const BeginOrder& samples, uint64_t number, const CameraRays& camera) {
@@ -217,5 +267,43 @@ struct BeginWalks {
         counts->next = counts->asked = counts->vertices = counts->pairs = counts->crowded = 0;
     }
 };
+
+// Walks from the camera begin: as path tracing's do, by the same numbers, so that layers of the first surface are
+// the same.
+
+/// Walks 0, 1, ... become the camera's of samples `first`, first + 1, ... of `samples`.
+struct BeginEyes {
+    WalkScene scene;
+    WalksView walks;
+    BeginOrder samples;
+    uint64_t first;
+
+    HD void operator()(uint32_t i) const {
+        const CameraRays& camera = scene.picture.camera;
+        WalkState state = state_of_sample(samples, first + i, camera);
+        const SampleKey key = {state.pixel, state.sample, scene.settings.seed};
+        const Ray ray = camera.ray(state.pixel, scene.settings.sampler, key);
+        state.throughput = {1, 1, 1};
+        state.mis = {min(square(1.0f / camera_density(camera, ray.direction)), kMostOdds), 0};
+        state.is_from_far = has_parallel_rays(camera.view.projection) ? 1 : 0;
+        walks.states[i] = state;
+        walks.queue_ray(i, i, ray, {}, coin_key(key, 0, false), 0);
+    }
+};
+
+/// What the camera's own rays say of the first surface, and the light that comes straight from it.
+HD INLINE_ON_DEVICE void add_seen(const PictureView& picture, const FilmView& film, const WalkState& state,
+                                  const Ray& ray, const Hit& hit, const Surface& surface) {
+    add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, picture);
+    if (!is_black(surface.emission)) add_radiance(film, state.pixel, surface.emission);
+}
+/// Of one that met nothing.
+HD inline void add_seen_background(const PictureView& picture, const FilmView& film, const WalkState& state,
+                                   const Ray& ray) {
+    add_no_first_hit(film, state.pixel, state.sample);
+    const LightSetView& lights = picture.scene.lights;
+    if (!lights.has_environment() || picture.hide_background) return;
+    add_radiance(film, state.pixel, environment_radiance(lights.environment, ray.direction));
+}
 
 } // namespace pertev

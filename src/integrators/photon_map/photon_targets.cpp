@@ -1,4 +1,4 @@
-#include "integrators/photon_map/find_targets.h"
+#include "integrators/photon_map/photon_targets.h"
 
 namespace pertev {
 namespace {

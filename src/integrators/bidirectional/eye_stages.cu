@@ -4,4 +4,6 @@
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const ShadeEyes<MaterialsKnown::Nothing>&);
 template void launch(Queue&, const char*, WorkCount, const ShadeEyes<MaterialsKnown::PlainDiffuse>&);
+template void launch(Queue&, const char*, WorkCount, const JoinWalks<MaterialsKnown::Nothing>&);
+template void launch(Queue&, const char*, WorkCount, const JoinWalks<MaterialsKnown::PlainDiffuse>&);
 } // namespace pertev

@@ -1,7 +1,0 @@
-#include "device/launch_body.h"
-#include "integrators/irradiance_cache/lookup_stages.h"
-
-namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const SeekPlaces<MaterialsKnown::Nothing>&);
-template void launch(Queue&, const char*, WorkCount, const SeekPlaces<MaterialsKnown::PlainDiffuse>&);
-} // namespace pertev
