@@ -48,6 +48,8 @@ int solve(SolveFlags& flags) {
         fmt::format("--output {}: a solution is no picture; -o {} keeps it, and pertev render --integrator radiosity "
                     "--solution {} shows it",
                     flags.output, solution_name(flags.output), solution_name(flags.output)));
+    refuse_list(flags.output);
+    note_number_signs(flags.output, "in names of pictures alone", messages);
     check_writable(flags.output);
     set_thread_count(static_cast<int>(flags.machine.threads));
     const Stopwatch total_time;
