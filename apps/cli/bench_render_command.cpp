@@ -99,7 +99,11 @@ int bench_job(JobFlags& flags) {
     const RecordJob& job = *find_record_job(flags.job);
     const std::string& file = flags.picture.scenes.front();
     RenderSettings settings = settings_of(job, flags);
-    if (!flags.output.empty()) check_image_output(flags.output, settings.width, settings.height);
+    if (!flags.output.empty()) {
+        refuse_list(flags.output);
+        note_number_signs(flags.output, "with pertev render --frames A-B alone", messages);
+        check_image_output(flags.output, settings.width, settings.height);
+    }
     check_bench_scene(file);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.picture.machine, messages);

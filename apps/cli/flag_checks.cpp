@@ -1,5 +1,11 @@
 #include "apps/cli/flag_checks.h"
 
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "image/image_format.h"
+#include "session/frame_sequence.h"
 #include "settings/parse_values.h"
 
 namespace pertev {
@@ -24,6 +30,23 @@ CLI::Validator picture_size() {
 
 CLI::Validator one_of(std::vector<std::string> names) {
     return {[names = std::move(names)](const std::string& text) { return why_no_choice(text, names); }, ""};
+}
+
+void refuse_list(const std::string& output) {
+    const std::size_t comma = output.find(',');
+    if (comma == std::string::npos) return;
+    const std::string first = output.substr(0, comma);
+    if (!is_picture_name(first) && std::filesystem::path(first).extension() != ".rad") return;
+    std::string each = output;
+    for (std::size_t at = 0; (at = each.find(',', at)) != std::string::npos; at += 4) each.replace(at, 1, " -o ");
+    throw Error(ErrorCode::BadInput,
+                fmt::format("-o {}: this is the name of one file; each has a -o of its own: -o {}", output, each));
+}
+
+void note_number_signs(const std::string& output, const char* when, Messages& messages) {
+    if (!names_frames(output)) return;
+    messages.note(
+        fmt::format("-o {}: # stands for a frame's number {}; this is one file, which is called so", output, when));
 }
 
 } // namespace pertev

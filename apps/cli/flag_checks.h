@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "base/error.h"
+#include "base/messages.h"
 
 namespace pertev {
 
@@ -17,6 +18,12 @@ namespace pertev {
 inline void refuse(bool is_wrong, const std::string& why) {
     if (is_wrong) throw Error(ErrorCode::BadInput, why);
 }
+
+/// "a.png,b.exr" is one file's name, which hardly anybody means. Throws Error(BadInput).
+void refuse_list(const std::string& output);
+
+/// Says, where an output that is one file has # in its name, `when` that stands for a number.
+void note_number_signs(const std::string& output, const char* when, Messages& messages);
 
 /// A finite number above 0 and at most `high`.
 CLI::Validator number_above_zero(float high = std::numeric_limits<float>::max());

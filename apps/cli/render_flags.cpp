@@ -28,26 +28,6 @@ bool writes_any(const RenderFlags& flags, std::initializer_list<ImageFormat> for
     });
 }
 
-bool is_picture(const std::string& name) {
-    try {
-        image_format_for(name);
-        return true;
-    } catch (const Error&) {
-        return false;
-    }
-}
-
-/// "a.png,b.exr" is one file's name, which hardly anybody means. Throws Error(BadInput).
-void refuse_list(const std::string& output) {
-    const std::size_t comma = output.find(',');
-    if (comma == std::string::npos || !is_picture(output.substr(0, comma))) return;
-    std::string each = output;
-    for (std::size_t at = 0; (at = each.find(',', at)) != std::string::npos; at += 4) each.replace(at, 1, " -o ");
-    throw Error(
-        ErrorCode::BadInput,
-        fmt::format("-o {}: this is the name of one file; each picture has a -o of its own: -o {}", output, each));
-}
-
 /// The file that is written, however it is named: without links, also one to a file that is not there yet, "." and
 /// "..".
 std::filesystem::path place_of(const std::string& file) {
@@ -106,10 +86,7 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
     for (const std::string& output : flags.outputs) {
         refuse_list(output);
         check_image_output(frames ? frame_file(output, frames->first) : output, size.width, size.height);
-        if (frames || !names_frames(output)) continue;
-        messages.note(fmt::format("-o {}: # stands for a frame's number with --frames A-B or --turntable N alone; this "
-                                  "is one picture, whose file is called so",
-                                  output));
+        if (!frames) note_number_signs(output, "with --frames A-B or --turntable N alone", messages);
     }
     refuse_twins(flags.outputs, frames);
     // A file of settings may be for other outputs: what they cannot keep is refused where a flag asks for it.

@@ -48,11 +48,13 @@ int solve(SolveFlags& flags) {
         fmt::format("--output {}: a solution is no picture; -o {} keeps it, and pertev render --integrator radiosity "
                     "--solution {} shows it",
                     flags.output, solution_name(flags.output), solution_name(flags.output)));
+    refuse_list(flags.output);
+    note_number_signs(flags.output, "in names of pictures alone", messages);
     check_writable(flags.output);
     set_thread_count(static_cast<int>(flags.machine.threads));
     const Stopwatch total_time;
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
-    Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
+    Scene scene = load_scene(flags.scene, SceneUse::Picture, messages); // render shows it under the same sky
     if (flags.strict) refuse_what_is_left_out(messages, "nothing is solved");
     check_light(flags.render, scene, messages);
     PrepareOptions prepare = prepare_options(flags.render, false);

@@ -170,7 +170,7 @@ std::string welcome_text(const ViewerStart& start) {
     const SceneSource& scene = start.record.scene;
     for (const auto& [label, list] : {std::pair{"made up", &scene.made_up}, {"left out", &scene.left_out}}) {
         for (const std::string& text : *list)
-            append(about, row_json("Scene", label, without_folder(panel_phrase(text), scene.scene)));
+            append(about, row_json("Scene", label, without_folders(panel_phrase(text), scene.scene)));
     }
     return fmt::format(
         R"({{"type":"welcome","scene":{},"device":{},"width":{},"height":{},"cameras":[{}],"about":[{}],"settings":[{}]}})",

@@ -196,7 +196,7 @@ void RenderLoop::let_time_pass() {
 /// `client`: who asked for it; 0: all are told.
 void RenderLoop::tell_error(uint32_t client, const Error& error) {
     audience_.tell(client,
-                   notice_text("error", without_folder(panel_phrase(error.remark()), start_.record.scene.scene)));
+                   notice_text("error", without_folders(panel_phrase(error.remark()), start_.record.scene.scene)));
 }
 
 /// Scene and camera to the clock's time, as far as it moves them. Throws as FrameSource::set_time.
@@ -308,7 +308,7 @@ PictureRecord RenderLoop::record() const {
     PictureRecord record = start_.record;
     // Where the files lie is nobody's business but the machine's.
     for (std::vector<std::string>* list : {&record.scene.made_up, &record.scene.left_out}) {
-        for (std::string& text : *list) text = without_folder(std::move(text), record.scene.scene);
+        for (std::string& text : *list) text = without_folders(std::move(text), record.scene.scene);
     }
     record.scene.scene = file_name(record.scene.scene);
     record.scene.environment = file_name(record.scene.environment);

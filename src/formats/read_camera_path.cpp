@@ -26,7 +26,7 @@ DoubleVec3 read_vec3(const JsonValue& value) {
 CameraKey read_key(const JsonValue& source, const CameraPath& before) {
     CameraKey key;
     const JsonValue time = source.at("time");
-    key.time_s = static_cast<double>(time.to_float());
+    key.time_s = time.to_double();
     if (key.time_s < 0) throw time.error(fmt::format("{}; expected seconds, at least 0", key.time_s));
     if (!before.keys.empty() && key.time_s <= before.keys.back().time_s) {
         throw time.error(fmt::format("{}; expected more than {}, the time of the key before", key.time_s,

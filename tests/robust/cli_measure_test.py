@@ -34,6 +34,22 @@ class Light(CliTest):
         words = self.succeed("measure", "floor.obj", "--at", "0,0,0", "--normal", "0,1,0", "--device", "cpu", "--spp", "1")
         self.assertRegex(words.stdout, r"irradiance +[0-9.]+ ± [0-9.e-]+ W/m2[^\n]*\nilluminance +[0-9.]+ ± [0-9.e-]+ lx")
 
+    def test_lamps_count_as_they_are_set_and_no_sky_is_added(self):
+        gltf = json.loads(gltf_with_cameras())
+        gltf["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 0, "name": "L"}]}}
+        gltf["nodes"].append({"translation": [5, 2, 5], "extensions": {"KHR_lights_punctual": {"light": 0}}})
+        gltf["scenes"][0]["nodes"].append(3)
+        write(self.path("dark.gltf"), json.dumps(gltf))
+        dark = ["dark.gltf", "--at", "5,0,5", "--max-depth", "0"]
+        self.assertEqual(len(self.measure(*dark)["made_up"]), 1)  # a sky
+        told = self.measure(*dark, "--lamp", "L=120cd")
+        self.assertEqual(told["made_up"], [])
+        self.assertAlmostEqual(told["illuminance"]["value"], 30, delta=1e-3)
+        gltf["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = 9
+        write(self.path("lit.gltf"), json.dumps(gltf))
+        told = self.measure("lit.gltf", *dark[1:], "--lamp", "L=0cd")
+        self.assertEqual((told["made_up"], told["illuminance"]["value"]), ([], 0))
+
     def test_a_meter_that_faces_nowhere_is_refused_before_the_scene_is_read(self):
         for normal in ["0,0,0", "up", "nan,0,1", "1e-30,0,0"]:
             self.refuse(2, "measure", "nowhere.obj", "--at", "0,0,0", "--normal", normal, says=["--normal", normal])

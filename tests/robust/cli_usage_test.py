@@ -84,6 +84,12 @@ class Flags(CliTest):
             self.refuse(2, "render", "nowhere.obj", "-o", given, says=[f"-o {given}: ", meant])
         self.assertNotIn("-o", self.succeed("render", "cornell-box", "-o", "one,two.png", *SMALL).stderr)
 
+    def test_every_verb_that_writes_one_file_refuses_a_list_and_tells_of_number_signs(self):
+        self.refuse(2, "solve", "radiosity", "nowhere.obj", "-o", "x.rad,y.rad", says=["-o x.rad -o y.rad"])
+        self.refuse(2, "bench", "render", "--scene", "nowhere.obj", "-o", "a.png,b.exr", says=["-o a.png -o b.exr"])
+        for line in [["solve", "radiosity", "nowhere.obj", "-o", "x-##.rad"], ["bench", "render", "--scene", "nowhere.obj", "-o", "a-##.png"]]:
+            self.assertIn("# stands for", self.refuse(2, *line, says=["nowhere.obj"]).stderr)
+
     def test_one_file_named_twice_is_refused_before_the_scene_is_read(self):
         os.mkdir(self.path("f"))
         os.symlink("b.png", self.path("link.png"))

@@ -23,9 +23,10 @@ HEADER = struct.Struct("<BBHIIIHHHHII")
 class Viewer:
     """A viewer of a small picture, on a port of its own; ends with the block."""
 
-    def __init__(self, *arguments, scene="cornell-box", size="64x48", spp=4, device="cpu", desktop=""):
-        """`desktop`: a folder with a desktop's programs; it may then open a browser. `size`: empty: the window's shape."""
-        self.device, self.desktop = device, desktop
+    def __init__(self, *arguments, scene="cornell-box", size="64x48", spp=4, device="cpu", desktop="", folder=None):
+        """`desktop`: a folder with a desktop's programs; it may then open a browser. `size`: empty: the window's shape.
+        `folder`: it runs there, not in one of its own."""
+        self.device, self.desktop, self.folder = device, desktop, folder
         self.arguments = ["view", scene, *(["--size", size] if size else []), "--spp", str(spp), "--port", "0", "--device", device, *arguments]
         if not desktop:
             self.arguments.append("--no-browser")
@@ -40,7 +41,7 @@ class Viewer:
         if self.desktop:
             environment.update(DISPLAY=":0", PATH=f"{self.desktop}:{environment['PATH']}")
         self.process = subprocess.Popen([PROGRAM, *self.arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                        env=environment, cwd=self.scratch.name)
+                                        env=environment, cwd=self.folder or self.scratch.name)
         self.address = ""
         while not self.address:
             line = self.process.stdout.readline().decode()

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Clients of `pertev view` together, and what their links do: who steers, and that no client harms another."""
 
+import json
+import os
 import socket
 import threading
 import time
 
-from cli_run import main
-from viewer_client import Client, Closed, Tunnel
+from cli_run import CliTest, main, write
+from viewer_client import Client, Closed, Tunnel, Viewer
 from viewer_test import WithViewer
 
 
@@ -136,6 +138,29 @@ class SlowLink(WithViewer):
         # Under load fewer pictures come, and better ones again.
         self.assertTrue(max(coarse) > 1.2 * AT_FIRST or min(sizes) < WIDTH, (coarse, sizes))
         self.assertLess(max(delays[-third:]), max(1.0, 1.5 * max(delays[:third])), delays)
+
+
+class Paths(CliTest):
+    def test_no_client_learns_where_a_file_lies_however_the_scene_was_named(self):
+        home = os.path.realpath(self.path("home of a user"))
+        os.makedirs(os.path.join(home, "scene", "textures"))
+        write(os.path.join(home, "red.png"), "no picture")
+        write(os.path.join(home, "scene", "textures", "bad.png"), "no picture")
+        lost = "".join(f"newmtl {name}\nmap_Kd {name}\n" for name in ["../red.png", "textures/bad.png", home + "/red.png", "gone/x.png"])
+        write(os.path.join(home, "scene", "a.mtl"), "newmtl a\nKe 9 9 9\n" + lost)
+        faces = "".join(f"usemtl {name}\nf 1 2 3\n" for name in ["a", "../red.png", "textures/bad.png", home + "/red.png", "gone/x.png"])
+        write(os.path.join(home, "scene", "a.obj"), "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n" + faces)
+        for folder, scene in [("scene", "a.obj"), ("", "scene/a.obj"), ("scene/textures", "../a.obj"), ("", home + "/scene/a.obj"),
+                              ("", "./scene/../scene/a.obj")]:
+            with self.subTest(scene=scene), Viewer("--allow-path", home, scene=scene, size="16x16", spp=1,
+                                                   folder=os.path.join(home, folder)) as viewer, Client(viewer) as client:
+                welcome = client.text("welcome")
+                left_out = [value for _, label, value in welcome["about"] if label == "left out"]
+                self.assertGreater(len(left_out), 1, welcome["about"])
+                told = json.dumps([welcome, client.done()]) + viewer.get("/save?format=exr")[2].decode("latin-1")
+                for secret in [home, "home of a user", os.path.dirname(home), "../a.obj"]:
+                    self.assertNotIn(secret, told)
+                self.assertTrue(any("textures/bad.png" in text for text in left_out), left_out)
 
 
 WIDTH = 320

@@ -4,6 +4,11 @@
 
 #include <doctest/doctest.h>
 
+#include "base/error.h"
+#include "formats/read_camera_path.h"
+#include "tests/support/options.h"
+#include "tests/support/write_text.h"
+
 using namespace pertev;
 
 namespace {
@@ -51,4 +56,17 @@ TEST_CASE("speed does not jump at a key, and the angle of view stays one") {
         CHECK(sample_path(path, t).fov_deg >= 0.01f);
         CHECK(sample_path(path, t).fov_deg <= 179);
     }
+}
+
+TEST_CASE("a file's times are read as doubles, and numbers beyond doubles in it cost nothing") {
+    const auto read = [](const std::string& keys) {
+        return read_camera_path(test::write_text(test::scratch_folder() / "path.json", "{\"keys\":[" + keys + "]}"));
+    };
+    const std::string place = R"(,"eye":[0,0,5],"target":[0,0,0],"extras":[1e400,123456789012345678901234567890]})";
+    const CameraPath path =
+        read(R"({"time":0.1)" + place + R"(,{"time":86400.0001)" + place + R"(,{"time":86400.0002)" + place);
+    REQUIRE(path.keys.size() == 3);
+    CHECK(path.keys[0].time_s == 0.1);
+    CHECK(path.keys[2].time_s == 86400.0002);
+    CHECK_THROWS_AS(read(R"({"time":NaN)" + place), Error); // in files of ours nothing is mended that is no JSON
 }

@@ -52,6 +52,18 @@ TEST_CASE("a name chooses before a number does, and the first plays without a ch
     CHECK(choose_file_scene("a.glb", Names{"walk", "all"}, "all") == 1);
 }
 
+TEST_CASE("each of several can be chosen, also where the number of one is the name of another") {
+    for (const Names& names : {Names{"walk", "walk", "1"}, Names{"2", "", "1", "0"}, Names{"1", "1", "0", "3"}}) {
+        std::vector<bool> plays(names.size());
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            plays[i] = true;
+            CHECK(chosen(names, clip_choice(clips(names, plays))) == i);
+            plays[i] = false;
+        }
+    }
+    CHECK(chosen({"walk", "walk", "1"}, "1") == 1); // which no name stands for
+}
+
 TEST_CASE("a choice that stands for none, or for two, is an error that lists what there is") {
     CHECK(refusal({"walk", "run"}, "jump") == "a.glb: no animation \"jump\"; the file has:\n  walk\n  run");
     CHECK(refusal({"walk", "", "walk"}, "walk") ==

@@ -106,6 +106,129 @@ TEST_CASE("a number beyond the largest float is the largest, and a range of that
     CHECK(bright.intensity.b == 0);
 }
 
+TEST_CASE("numbers beyond 64 bits and beyond doubles, and what others write for them, cost nothing but themselves") {
+    const std::string whole = "340282346638528859811704183484516925440"; // C#'s largest float
+    for (const std::string& range : {whole, std::string("1e400"), std::string("Infinity")}) {
+        CAPTURE(range);
+        const Light light =
+            lamp("\"range\":" + range + ",\"intensity\":7,\"extras\":[123456789012345678901234567890,-1e999]");
+        CHECK(light.range == std::numeric_limits<float>::max());
+        CHECK(light.intensity == grey(7));
+    }
+    CHECK(lamp("\"range\":NaN,\"intensity\":7").range == 0);
+    CHECK(lamp("\"range\":-1e400").range == 0);
+    CHECK(lamp("\"range\":-1").intensity == grey(1));
+    CHECK(lamp("\"range\":\"far\",\"intensity\":3").intensity == grey(3));
+    CHECK(lamp("\"intensity\":-2,\"range\":5").range == 5);
+    CHECK(lamp("\"color\":[1,-1,2],\"intensity\":2").intensity == Rgb{2, 0, 4});
+    CHECK(lamp("\"color\":[1,1],\"intensity\":2").intensity == grey(2));
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0},
+                ",\"min\":[NaN,0,0],\"max\":[-Infinity,1.#QNAN,0]");
+    Messages messages;
+    CHECK(
+        test::read_gltf_text(builder.json(std::string(kMesh) + R"("nodes":[{"mesh":0}])"), messages).instances.size() ==
+        1);
+    CHECK(messages.all().size() == 1);
+    CHECK(messages.left_out().empty());
+}
+
+TEST_CASE("texts that are not Unicode are read with U+FFFD, and zero bytes after a document are padding") {
+    for (const auto& [name, read] : {std::pair("K\xfc"
+                                               "che",
+                                               "K\xef\xbf\xbd"
+                                               "che"),
+                                     {"\\ud800", "\xef\xbf\xbd"},
+                                     {"a\tb", "a\tb"},
+                                     {"\\udc00\\ud83d\\ude00", "\xef\xbf\xbd\xf0\x9f\x98\x80"}}) {
+        CAPTURE(name);
+        Messages messages;
+        const Scene scene = test::read_gltf_text(
+            triangle_with(R"("nodes":[{"mesh":0,"name":")" + std::string(name) + "\"}]"), messages);
+        CHECK(scene.nodes.at(0).name == read);
+        CHECK(messages.all().size() == 1);
+    }
+    const std::string text = triangle_with(R"("nodes":[{"mesh":0}])");
+    CHECK(test::read_gltf_text(text + std::string(3, '\0')).instances.size() == 1);
+}
+
+TEST_CASE("a version that is a number, and extensions that are no object, cost nothing") {
+    std::string text = triangle_with(R"("nodes":[{"mesh":0}],"extensions":{"KHR_lights_punctual":[]})");
+    text.replace(text.find("\"2.0\""), 5, "2.0");
+    Messages messages;
+    CHECK(test::read_gltf_text(text, messages).instances.size() == 1);
+    CHECK(messages.all().size() == 1);
+}
+
+TEST_CASE("an extension that is not supported is told once where the file does not list it either") {
+    const std::vector<std::string> told = told_of(triangle().json(
+        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0,"extras":)"
+        R"({"extensions":{"EXT_private":{}}}},{"extensions":{"EXT_none":null}}],"materials":[{"extensions":)"
+        R"({"KHR_materials_clearcoat":{"clearcoatFactor":1},"KHR_materials_ior":{}}},{"extensions":)"
+        R"({"KHR_materials_clearcoat":{}}}])"));
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].find("model.gltf: /materials/0/extensions/KHR_materials_clearcoat: ") != std::string::npos);
+}
+
+TEST_CASE("a node keeps what of its transform can be read") {
+    const auto pose = [](const std::string& members) {
+        return std::get<NodePose>(
+            test::read_gltf_text(triangle_with(R"("nodes":[{"mesh":0,)" + members + "}]")).nodes.at(0).pose);
+    };
+    const NodePose turned = pose(R"("translation":[1,2,3],"rotation":[0,0,0,0],"scale":[2,2,2])");
+    CHECK(turned.translation == DoubleVec3{1, 2, 3});
+    CHECK(turned.rotation == std::array<double, 4>{0, 0, 0, 1});
+    CHECK(turned.scale == DoubleVec3{2, 2, 2});
+    CHECK(pose(R"("translation":[1,2],"scale":[2,2,2])").scale == DoubleVec3{2, 2, 2});
+    CHECK(pose(R"("matrix":[1,2],"scale":[2,2,2])").scale == DoubleVec3{2, 2, 2});
+}
+
+TEST_CASE("a camera keeps what of it can be read") {
+    const auto camera = [](const std::string& members) {
+        return test::read_gltf_text(triangle_with(R"("cameras":[{"type":"perspective","perspective":{)" + members +
+                                                  R"(}}],"nodes":[{"mesh":0},{"camera":0}])"))
+            .cameras.at(0);
+    };
+    CHECK(camera(R"("yfov":1,"aspectRatio":0)").fov_y == 1);
+    CHECK(camera(R"("yfov":1,"aspectRatio":0)").aspect == 0);
+    CHECK(camera(R"("yfov":45,"aspectRatio":2)").aspect == 2);
+    CHECK(camera(R"("yfov":45)").fov_y == Camera().fov_y);
+}
+
+TEST_CASE("a skin without weights, or with matrices that are not finite, leaves the mesh") {
+    GltfBuilder builder = triangle();
+    builder.add("VEC4", std::vector<uint16_t>(12));
+    builder.add("VEC4", std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+    std::vector<float> matrix(16);
+    matrix[0] = matrix[5] = matrix[10] = matrix[15] = 1;
+    matrix[13] = std::numeric_limits<float>::quiet_NaN();
+    builder.add("MAT4", matrix);
+    const auto positions = [&](const std::string& weights, const std::string& matrices) {
+        Messages messages;
+        Scene scene = test::read_gltf_text(
+            builder.json(R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":1)" + weights +
+                         R"(}}]}],"skins":[{"joints":[1])" + matrices + R"(}],"nodes":[{"mesh":0,"skin":0},{}])"),
+            messages);
+        validate(scene, "model.gltf", messages);
+        CHECK(messages.left_out().size() == 1);
+        return scene.meshes.at(0).positions;
+    };
+    const std::vector<Vec3> as_in_file = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    CHECK(positions("", "") == as_in_file);
+    CHECK(positions(R"(,"WEIGHTS_0":2)", R"(,"inverseBindMatrices":3)") == as_in_file);
+}
+
+TEST_CASE("triangles that stray beyond all bounds are left out, and the others shown") {
+    GltfBuilder builder;
+    builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1e30f, 0});
+    Messages messages;
+    Scene scene = test::read_gltf_text(builder.json(std::string(kMesh) + R"("nodes":[{"mesh":0}])"), messages);
+    validate(scene, "model.gltf", messages);
+    CHECK(scene.meshes.at(0).triangle_count() == 1);
+    CHECK(messages.left_out().size() == 1);
+    CHECK(length(bounds_of(scene).size()) < 2);
+}
+
 TEST_CASE("what lies out of all bounds is left out, and the rest is shown") {
     Messages messages;
     Scene scene = test::read_gltf_text(
@@ -142,6 +265,19 @@ TEST_CASE("a GLB's JSON may be padded with zero bytes, and its header may give a
         CHECK(read_glb(wrong, messages).instances.size() == 1);
         CHECK(messages.left_out().empty());
     }
+    for (const int off : {-4, -1, 1, 4, 8, 1 << 24}) { // of the JSON: what it holds tells where it ends
+        CAPTURE(off);
+        std::vector<std::byte> wrong = good;
+        set_u32(wrong, 12, u32_at(good, 12) + static_cast<uint32_t>(off));
+        Messages messages;
+        CHECK(read_glb(wrong, messages).instances.size() == 1);
+        CHECK(messages.left_out().empty());
+        CHECK(messages.all().size() == 1);
+    }
+    std::vector<std::byte> short_binary = good;
+    set_u32(short_binary, json_end, 10);
+    CHECK(read_glb(short_binary, silent).instances.size() == 1);
+    CHECK(silent.left_out().empty());
     std::vector<std::byte> cut_off(good.begin(), good.end() - 4);
     Messages messages;
     CHECK(read_glb(cut_off, messages).instances.empty());
@@ -180,6 +316,18 @@ TEST_CASE("a texture with a picture of another kind alone is left out with the c
             std::string(extension) + R"(":{"source":0}}}],"images":[{"uri":"a.ktx2"}])"));
         REQUIRE(told.size() == 1);
         CHECK(told[0].find("/textures/0") != std::string::npos);
+        CHECK(told[0].find(command) != std::string::npos);
+    }
+}
+
+TEST_CASE("a picture of a kind that is not decoded is left out with the command, wherever it stands") {
+    const std::string webp = "UklGRiQAAABXRUJQVlA4IAAAAAA=", ktx = "q0tUWCAyMLsNChoKAAAAAA==";
+    for (const auto& [bytes, command] : {std::pair(webp, "cli png "), {ktx, "cli ktxdecompress "}}) {
+        const std::vector<std::string> told = told_of(triangle().json(
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0}],"materials":[)"
+            R"({"emissiveTexture":{"index":0}}],"textures":[{"source":0}],"images":[{"uri":"data:;base64,)" +
+            bytes + "\"}]"));
+        REQUIRE(told.size() == 1);
         CHECK(told[0].find(command) != std::string::npos);
     }
 }
@@ -246,6 +394,16 @@ TEST_CASE("of a material only the property that cannot be read is left out") {
     CHECK(material.alpha_mode == AlphaMode::Opaque);
     CHECK(material.double_sided);
     CHECK(messages.left_out().size() == 3);
+
+    const Scene other = test::read_gltf_text(
+        triangle().json(
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0}],"materials":[)"
+            R"({"alphaMode":"BLEND","alphaCutoff":"high","pbrMetallicRoughness":{"baseColorFactor":[1,0,0],)"
+            R"("metallicFactor":[],"roughnessFactor":0.25}}])"),
+        messages);
+    CHECK(other.materials.at(0).roughness == 0.25f);
+    CHECK(other.materials.at(0).base_color == grey(1));
+    CHECK(other.materials.at(0).alpha_mode == AlphaMode::Blend);
 }
 
 } // namespace read_gltf_left_out_test

@@ -354,9 +354,10 @@ TEST_CASE("mtl: textures with options, spaces, backslashes and alpha") {
                                        "newmtl fade\nKd 1 1 1\nmap_d fade.png\nmap_Bump -bm 0.2 normal.png\n"
                                        "newmtl offset\nKd 1 1 1\nmap_Kd -clamp on -o 0.25 fade.png\nbump fade.png\n"
                                        "newmtl missing\nKd 0.3 0.3 0.3\nmap_Kd none.png\n"
+                                       "newmtl uri\nKd 1 1 1\nmap_Kd file:///C:/x/my%20maps/leaf%20one.png\n"
                                        "newmtl broken\nKd 0.3 0.3 0.3\nmap_Kd broken.png\nnorm normal.png\n");
     std::string obj = "mtllib a.mtl\n" + kTriangle;
-    for (const char* name : {"leaf", "fade", "offset", "missing", "broken"}) {
+    for (const char* name : {"leaf", "fade", "offset", "missing", "broken", "uri"}) {
         obj += std::string("usemtl ") + name + "\nf 1 2 3\n";
     }
     const Loaded l = load(test::write_text(folder / "a.obj", obj));
@@ -383,6 +384,7 @@ TEST_CASE("mtl: textures with options, spaces, backslashes and alpha") {
     CHECK(!offset.normal_texture.has_image());
     CHECK(l.said("height map"));
 
+    CHECK(l.material("uri").base_color_texture.image == leaf.base_color_texture.image);
     CHECK(!l.material("missing").base_color_texture.has_image());
     CHECK(l.said("there is no texture none.png"));
     CHECK(!l.material("broken").base_color_texture.has_image());

@@ -66,6 +66,15 @@ TEST_CASE("ply: a comment TextureFile is the texture of vertices with texture co
     }
 }
 
+TEST_CASE("ply: the name of a texture may stand between quotes, and be a file: URI") {
+    for (const std::string name : {"\"blue one.png\"", "file:///C:/scans/blue%20one.png"}) {
+        CAPTURE(name);
+        const Loaded l = load(kStart + "comment TextureFile " + name + "\n" + kVertices + kVertexUv +
+                              "element face 1\n" + kList + "end_header\n" + kSquareUv + "4 0 1 2 3\n");
+        CHECK(l.texel(0) == std::array<int, 3>{0, 0, 255});
+    }
+}
+
 TEST_CASE("ply: texture coordinates of faces split the vertices that have several, and those alone") {
     // The vertices 0 and 2 have one place in the texture for both triangles, 1 and 3 are of one triangle each.
     const Loaded joined = load(kStart + kRed + kVertices + "element face 2\n" + kList + kFaceUv + "end_header\n" +
@@ -152,7 +161,9 @@ TEST_CASE("ply: the line of Blender 2.4 and old Assimp without the word comment 
     const Loaded l = load(kStart + "Created by Blender3D 241 - www.blender.org, source file: bust.blend\n" + rest);
     CHECK(l.mesh(0).triangle_count() == 2);
     CHECK(l.said("a.ply:3: a header line that is not understood"));
-    CHECK_THROWS_AS(load(kStart + kVertices + "Created by nobody\n" + rest), Error); // it could be a property
+    const std::string binary = "ply\nformat binary_little_endian 1.0\n" + kVertices + "Created by nobody\n";
+    CHECK_THROWS_AS(load(binary + "element face 1\n" + kList + "end_header\n" + std::string(65, '\0')),
+                    Error); // a property?
 }
 
 } // namespace read_ply_textures_test

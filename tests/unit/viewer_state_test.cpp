@@ -1,6 +1,8 @@
 // Settings that a page may change (view_state.h), what it is told (panel_text.h), colours of layers (layer_colors.h),
 // and the bytes of pictures (frame_header.h, packer.h).
 
+#include <filesystem>
+
 #include <doctest/doctest.h>
 
 #include <simdjson.h>
@@ -12,6 +14,7 @@
 #include "apps/viewer/panel_text.h"
 #include "apps/viewer/view_state.h"
 #include "device_scene/ray_queue.h"
+#include "tests/support/options.h"
 
 using namespace pertev;
 
@@ -144,9 +147,22 @@ TEST_CASE("clients are told names of files, never where they lie") {
     CHECK(file_name("../d.gltf") == "d.gltf");
     CHECK(file_name("cornell-box") == "cornell-box");
     CHECK(file_name("a/") == "a/");
-    CHECK(without_folder("/a/b/d.gltf: no such texture: /a/b/e.png", "/a/b/d.gltf") ==
+    CHECK(without_folders("/a/b/d.gltf: no such texture: /a/b/e.png", "/a/b/d.gltf") ==
           "d.gltf: no such texture: e.png");
-    CHECK(without_folder("d.gltf: /x", "d.gltf") == "d.gltf: /x");
+    CHECK(without_folders("d.gltf: /x", "d.gltf") == "d.gltf: /x");
+    CHECK(without_folders("a/d.gltf: in data/e.png", "a/d.gltf") == "d.gltf: in data/e.png");
+    CHECK(without_folders("b/a: files", "b/a/d.gltf") == "a: files");
+    const auto outer = std::filesystem::canonical(test::scratch_folder());
+    const std::string folder = (outer / "a b").string();
+    std::filesystem::create_directories(folder + "/scene/textures");
+    const std::string scene = folder + "/scene/d.gltf";
+    CHECK(without_folders(scene + ": /nodes/0: " + folder + "/scene/textures/e.png", scene) ==
+          "d.gltf: /nodes/0: textures/e.png");
+    CHECK(without_folders("\"" + folder + "/other/e.png\"", scene) == "\"other/e.png\""); // there is no such folder
+    CHECK(without_folders("`allow_path=" + folder + "/scene`", scene) == "`allow_path=scene`");
+    CHECK(without_folders(folder + "/scene: (" + folder + "/e.png," + folder + ")", scene).find(outer.string()) ==
+          std::string::npos);
+    CHECK(without_folders("/tmp is full", scene) == "tmp is full");
 }
 
 TEST_CASE("layers have the colours that they are described by") {

@@ -84,6 +84,21 @@ TEST_CASE("a lamp that lights what is seen gets no sky, with an emission texture
     CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::None);
 }
 
+TEST_CASE("a light that an animation brightens is a light of the file") {
+    Scene scene;
+    scene.materials.push_back({.name = "floor"});
+    add_quad(scene, {}, {0, 1, 0}, 2, 0);
+    scene.lights.push_back({.name = "lamp", .position = {0, 2, 0}, .intensity = {}});
+    CHECK(lacks_light(scene));
+    AnimationChannel channel{.part = AnimatedPart::LightIntensity, .times = {0, 1}, .values = {0, 0, 0, 0, 0, 0}};
+    scene.animations.push_back({.channels = {channel}});
+    CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::Sky);
+    scene.animations[0].channels[0].values[4] = 1;
+    CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::None);
+    CHECK(light_added(scene, SceneUse::Benchmark) == DefaultLight::None);
+    CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky); // at time 0 it shows nothing
+}
+
 TEST_CASE("a lamp whose texture is black gives no light, so there is a sky") {
     Scene scene = make_lit_floor();
     add_emission_texture(scene, 0);

@@ -1,6 +1,7 @@
 #include "formats/files/file_choices.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <string_view>
 
@@ -25,17 +26,36 @@ constexpr Kind kClip = {"animation", true}, kFileScene = {"scene", false};
 
 bool is_name(const Kind& kind, const std::string& text) { return !text.empty() && !(kind.has_all && text == kAll); }
 
-/// The choice that stands for one of them: its name where no other has it, else its number.
-std::string choice_of(const Kind& kind, std::span<const std::string> names, std::size_t i) {
-    const bool is_one = is_name(kind, names[i]) && std::ranges::count(names, names[i]) == 1;
-    return is_one ? names[i] : fmt::format("{}", i);
+/// Of each, whether its number alone stands for it: no name, or one that others have too, or one that is the number of
+/// another such.
+std::vector<bool> are_numbered(const Kind& kind, std::span<const std::string> names) {
+    std::map<std::string_view, std::size_t> counts;
+    for (const std::string& name : names) ++counts[name];
+    std::vector<bool> numbered;
+    for (const std::string& name : names) numbered.push_back(!is_name(kind, name) || counts[name] > 1);
+    for (bool is_new = true; is_new;) {
+        is_new = false;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            const auto number = numbered[i] ? std::nullopt : parse_whole_number<std::size_t>(names[i]);
+            if (!number || *number == i || *number >= names.size() || !numbered[*number]) continue;
+            numbered[i] = is_new = true;
+        }
+    }
+    return numbered;
+}
+
+/// The choices that stand for each.
+std::vector<std::string> choices_of(const Kind& kind, std::span<const std::string> names) {
+    const std::vector<bool> numbered = are_numbered(kind, names);
+    std::vector<std::string> choices;
+    for (std::size_t i = 0; i < names.size(); ++i) choices.push_back(numbered[i] ? fmt::format("{}", i) : names[i]);
+    return choices;
 }
 
 std::vector<std::string> list_of(const Kind& kind, std::span<const std::string> names) {
-    std::vector<std::string> list;
+    std::vector<std::string> list = choices_of(kind, names);
     for (std::size_t i = 0; i < names.size(); ++i) {
-        std::string choice = choice_of(kind, names, i);
-        list.push_back(choice == names[i] || names[i].empty() ? choice : fmt::format("{} ({})", choice, names[i]));
+        if (list[i] != names[i] && !names[i].empty()) list[i] = fmt::format("{} ({})", list[i], names[i]);
     }
     return list;
 }
@@ -44,16 +64,18 @@ std::vector<std::string> list_of(const Kind& kind, std::span<const std::string> 
 std::string text_of(const Kind& kind, std::span<const std::string> names) {
     constexpr std::size_t kMost = 20;
     std::string text;
-    const std::vector<std::string> list = list_of(kind, names.first(std::min(names.size(), kMost)));
-    for (const std::string& one : list) text += "\n  " + shortened(one);
+    const std::vector<std::string> list = list_of(kind, names);
+    for (std::size_t i = 0; i < std::min(list.size(), kMost); ++i) text += "\n  " + shortened(list[i]);
     if (names.size() > kMost) text += fmt::format("\n  and {} more (pertev info)", names.size() - kMost);
     return text;
 }
 
 std::size_t choose(const Kind& kind, const std::string& file, std::span<const std::string> names,
                    const std::string& choice) {
+    const std::vector<std::string> choices = choices_of(kind, names);
+    const auto chosen = std::ranges::find(choices, choice);
+    if (chosen != choices.end()) return static_cast<std::size_t>(chosen - choices.begin());
     const auto same = is_name(kind, choice) ? std::ranges::count(names, choice) : 0;
-    if (same == 1) return static_cast<std::size_t>(std::ranges::find(names, choice) - names.begin());
     const auto number = parse_whole_number<std::size_t>(choice);
     if (number && *number < names.size()) return *number;
     const std::string wanted = fmt::format("{} \"{}\"", kind.name, shortened(choice));
@@ -93,11 +115,11 @@ std::string clip_choice(std::span<const Clip> clips) {
     if (std::ranges::count(clips, true, &Clip::plays) > 1) return std::string(kAll);
     const auto playing = std::ranges::find(clips, true, &Clip::plays);
     if (playing == clips.end()) return {};
-    return choice_of(kClip, names_of(clips), static_cast<std::size_t>(playing - clips.begin()));
+    return choices_of(kClip, names_of(clips))[static_cast<std::size_t>(playing - clips.begin())];
 }
 
 std::string file_scene_choice(const Scene& scene) {
-    return scene.file_scenes.size() < 2 ? "" : choice_of(kFileScene, scene.file_scenes, scene.file_scene);
+    return scene.file_scenes.size() < 2 ? "" : choices_of(kFileScene, scene.file_scenes)[scene.file_scene];
 }
 
 std::vector<std::string> list_clips(std::span<const Clip> clips) { return list_of(kClip, names_of(clips)); }

@@ -96,6 +96,15 @@ TextureImage texture_of(std::variant<Rgba8Image, Image> image, bool is_png, Uses
     return to;
 }
 
+/// The glTF extension of a kind of picture that this program does not decode; empty for another.
+std::string_view extension_of(std::span<const std::byte> picture) {
+    const std::string_view bytes(reinterpret_cast<const char*>(picture.data()),
+                                 std::min<std::size_t>(picture.size(), 12));
+    if (bytes.starts_with("RIFF") && bytes.ends_with("WEBP")) return "EXT_texture_webp";
+    if (bytes.starts_with("\xabKTX 20")) return "KHR_texture_basisu";
+    return bytes.ends_with("ftypavif") ? "EXT_texture_avif" : "";
+}
+
 } // namespace
 
 int32_t TextureLoader::add_file(const Place& from, const std::string& reference) {
@@ -141,9 +150,10 @@ void TextureLoader::check_budget(uint64_t limit) const {
 
 /// Decodes it, unless it and all pictures seen before, which take `all_bytes`, would take more than `limit`.
 void TextureLoader::read(Source& source, uint64_t limit, std::atomic<uint64_t>& all_bytes) const {
+    const bool is_embedded = source.path.empty();
+    std::vector<std::byte> file;
     try {
-        const bool is_embedded = source.path.empty();
-        const std::vector<std::byte> file = is_embedded ? std::vector<std::byte>() : read_file(source.path);
+        if (!is_embedded) file = read_file(source.path);
         const std::span<const std::byte> bytes = is_embedded ? source.bytes : file;
         const std::string name = is_embedded ? source.name : source.path.string();
         source.texture_bytes = texture_bytes(read_image_header(bytes, name));
@@ -152,7 +162,9 @@ void TextureLoader::read(Source& source, uint64_t limit, std::atomic<uint64_t>& 
         source.color_matrix = color_matrix_of(bytes, name, &source.said);
         source.image = decode_image(bytes, name, &source.said);
     } catch (const Error& error) {
+        const std::string_view extension = extension_of(is_embedded ? source.bytes : file);
         source.fault = error.remark();
+        if (advice_ && !extension.empty()) source.fault = source.fault->and_then(advice_(extension));
     }
 }
 

@@ -7,10 +7,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -28,6 +31,10 @@ public:
     TextureLoader(const FileAccess& access, Messages& messages) : access_(access), messages_(&messages) {}
     /// From now on to others, which outlive it.
     void say_to(Messages& messages) { messages_ = &messages; }
+
+    /// From now on `advice` says, after what is wrong with a picture that is not decoded, how it is converted; it is
+    /// given the glTF extension that the kind of picture has.
+    void advise_by(std::function<std::string(std::string_view extension)> advice) { advice_ = std::move(advice); }
 
     /// Image index of the file `reference`, as written at `from` (see FileAccess::resolve); the same file, however
     /// spelled, is one image. kNoImage after a warning where there is no such file. Throws Error(BadInput) when access
@@ -68,6 +75,7 @@ private:
 
     const FileAccess& access_;
     Messages* messages_;
+    std::function<std::string(std::string_view)> advice_;
     std::vector<Source> sources_;
     std::map<std::filesystem::path, int32_t> by_path_;
     std::size_t missing_ = 0; // only the first few are named

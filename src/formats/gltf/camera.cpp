@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/limits.h"
+#include "formats/gltf/leave_out.h"
 
 namespace pertev::gltf {
 namespace {
@@ -18,14 +19,20 @@ float positive(const JsonValue& value, float below) {
 
 } // namespace
 
-Camera read_camera(const JsonValue& source) {
+Camera read_camera(const JsonValue& source, Messages& messages) {
     Camera camera;
-    camera.name = source.string_or("name", "");
+    const auto attempt = [&](const char* what, const auto& read) {
+        read_or_leave_out(fmt::format("{} of {}", what, source.pointer()), messages, read);
+    };
+    attempt("the name", [&] { camera.name = source.string_or("name", ""); });
     const std::string type = source.string_or("type", "");
     if (type == "perspective") {
         const JsonValue perspective = source.at("perspective");
-        camera.fov_y = positive(perspective.at("yfov"), kPi);
-        if (const auto aspect = perspective.find("aspectRatio")) camera.aspect = positive(*aspect, kInfinity);
+        // Without an angle that makes sense it is that of cameras without any.
+        attempt("the angle", [&] { camera.fov_y = positive(perspective.at("yfov"), kPi); });
+        attempt("the aspect", [&] {
+            if (const auto aspect = perspective.find("aspectRatio")) camera.aspect = positive(*aspect, kInfinity);
+        });
     } else if (type == "orthographic") {
         const JsonValue orthographic = source.at("orthographic");
         camera.projection = Projection::Orthographic;

@@ -34,6 +34,38 @@ uint32_t read_u32(std::span<const std::byte> bytes, std::size_t at) {
     return value;
 }
 
+/// Bytes up to the end of the object that a text begins with; all where it does not end.
+std::size_t json_size(std::string_view text) {
+    std::size_t depth = 0;
+    bool is_in_string = false;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const char c = text[at];
+        if (is_in_string) {
+            if (c == '\\') ++at;
+            is_in_string = c != '"';
+        } else if (c == '"') {
+            is_in_string = true;
+        } else if (c == '{' || c == '[') {
+            ++depth;
+        } else if ((c == '}' || c == ']') && (depth == 0 || --depth == 0)) {
+            return at + 1;
+        }
+    }
+    return text.size();
+}
+
+bool is_padding(char c) { return c == '\0' || c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// "2.0", also where the version is a number.
+std::string version_text(const JsonValue& value) {
+    const std::string json = value.to_json();
+    return json.starts_with('"') ? std::string(value.to_string()) : json;
+}
+
 } // namespace
 
 Document::Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Messages& messages)
@@ -47,12 +79,12 @@ Document::Document(const std::filesystem::path& path, std::vector<std::byte> byt
         throw Error(ErrorCode::BadInput, Place{file_},
                     "byte 0: expected the letters glTF, with which a GLB file starts");
     }
-    parse(json_chunk_);
+    parse(json_chunk_, messages);
     check_version(messages);
     for (const std::string_view name : kTables) read_table(name, root(), messages);
-    std::optional<JsonValue> lights;
-    read_or_leave_out("/extensions", messages, [&] { lights = root().extension("KHR_lights_punctual"); });
-    if (lights) read_table("lights", *lights, messages);
+    read_or_leave_out("/extensions/KHR_lights_punctual", messages, [&] {
+        if (const auto lights = root().extension("KHR_lights_punctual")) read_table("lights", *lights, messages);
+    });
     check_extensions(messages);
 }
 
@@ -71,6 +103,44 @@ std::size_t Document::glb_end(Messages& messages) const {
     return bytes_.size();
 }
 
+/// Where the chunk of JSON that begins at byte `begin` ends, and where the next begins. Some exporters count the
+/// padding wrongly; then the text itself says where it ends, and the binary chunk follows.
+Document::ChunkEnd Document::json_chunk_end(std::size_t begin, std::size_t size, Messages& messages) const {
+    const std::span<const std::byte> glb(bytes_);
+    const auto begins_binary = [&](std::size_t at) {
+        return at + kChunkHeaderBytes <= glb.size() && read_u32(glb, at + 4) == kBinaryChunk;
+    };
+    const std::size_t declared = begin + std::min(size, glb.size() - begin);
+    if (begins_binary(declared)) return {declared, declared};
+    const std::string_view rest = text_of(glb.subspan(begin));
+    const std::size_t end = begin + json_size(rest);
+    std::size_t next = end;
+    while (!begins_binary(next) && next < glb.size() && is_padding(rest[next - begin])) ++next;
+    const bool is_whole = end <= declared && std::ranges::all_of(rest.substr(end - begin, declared - end), is_padding);
+    if (!begins_binary(next)) {
+        if (is_whole || end == glb.size()) return {declared, declared};
+        next = end;
+    }
+    messages.warn(
+        {Place{file_}, fmt::format("byte {}: the chunk says {} bytes, but its text ends after {}; that is read",
+                                   begin - kChunkHeaderBytes, size, end - begin)});
+    return {end, next};
+}
+
+/// Where the binary chunk ends: before another chunk, else with the file.
+std::size_t Document::binary_chunk_end(std::size_t begin, std::size_t size, Messages& messages) const {
+    const std::span<const std::byte> glb(bytes_);
+    const std::size_t declared = begin + std::min(size, glb.size() - begin), left = glb.size() - declared;
+    const auto is_letter = [](std::byte c) { return c > std::byte{' '} && c < std::byte{0x7f}; };
+    const bool is_chunk = size % 4 == 0 && left >= kChunkHeaderBytes &&
+                          read_u32(glb, declared) <= left - kChunkHeaderBytes &&
+                          std::ranges::all_of(glb.subspan(declared + 4, 3), is_letter);
+    if (is_chunk || std::ranges::all_of(text_of(glb.subspan(declared)), is_padding)) return declared;
+    messages.warn({Place{file_}, fmt::format("byte {}: the chunk says {} bytes, and no other follows; all {} are read",
+                                             begin - kChunkHeaderBytes, size, glb.size() - begin)});
+    return glb.size();
+}
+
 void Document::split_glb(Messages& messages) {
     const auto fail = [&](std::size_t at, const std::string& what) {
         return Error(ErrorCode::BadInput, Place{file_}, fmt::format("byte {}: {}", at, what));
@@ -87,36 +157,42 @@ void Document::split_glb(Messages& messages) {
         if (at >= end && (type != kBinaryChunk || binary_chunk_)) break;
         const std::size_t begin = at + kChunkHeaderBytes, available = glb.size() - begin;
         if (!has_json && type != kJsonChunk) throw fail(at, "the first chunk of a GLB file must be JSON");
-        if (size > available) {
+        ChunkEnd end_of_chunk = {begin + std::min<std::size_t>(size, available)};
+        end_of_chunk.next = end_of_chunk.end;
+        if (!has_json) {
+            end_of_chunk = json_chunk_end(begin, size, messages);
+        } else if (type == kBinaryChunk && !binary_chunk_) {
+            end_of_chunk.end = end_of_chunk.next = binary_chunk_end(begin, size, messages);
+        }
+        if (size > available && end_of_chunk.end == glb.size()) {
             messages.leave_out(
                 {Place{file_}, fmt::format("byte {}: the chunk says {} bytes, but {} are left; the file is cut off "
                                            "or damaged, and what is missing is left out",
                                            at, size, available)});
         }
-        const std::span<const std::byte> chunk = glb.subspan(begin, std::min<std::size_t>(size, available));
+        const std::span<const std::byte> chunk = glb.subspan(begin, end_of_chunk.end - begin);
         if (!has_json)
             json_chunk_ = chunk;
         else if (type == kBinaryChunk && !binary_chunk_)
             binary_chunk_ = chunk;
         has_json = true;
-        at = begin + chunk.size();
+        at = end_of_chunk.next;
     }
     if (!has_json) throw fail(kHeaderBytes, "there is no JSON chunk");
-    // Spaces fill the chunk up; some exporters write zero bytes.
-    while (!json_chunk_.empty() && json_chunk_.back() == std::byte{}) {
-        json_chunk_ = json_chunk_.first(json_chunk_.size() - 1);
-    }
 }
 
-void Document::parse(std::span<const std::byte> json) {
+void Document::parse(std::span<const std::byte> json, Messages& messages) {
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    std::string_view text(reinterpret_cast<const char*>(json.data()), json.size());
+    std::string_view text = text_of(json);
     if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-    // The parser reads past the end in whole vectors: it gets a copy with room for that.
-    const simdjson::padded_string padded(text);
+    while (text.ends_with('\0')) text.remove_suffix(1); // some exporters fill up with zero bytes
     simdjson::dom::element element;
-    if (const simdjson::error_code failure = parser_.parse(padded).get(element)) {
-        throw bad_json(text, failure);
+    // The parser reads past the end in whole vectors: it gets a copy with room for that.
+    if (const simdjson::error_code failure = parser_.parse(simdjson::padded_string(text)).get(element)) {
+        std::vector<std::string> said;
+        const std::string mended = mend_json(text, MendJson::All, &said);
+        if (failure == simdjson::DEPTH_ERROR || parser_.parse(mended).get(element)) throw bad_json(text, failure);
+        for (const std::string& what : said) messages.warn({Place{file_}, what});
     }
     root_.emplace(file_, "", element);
 }
@@ -126,7 +202,7 @@ Error Document::bad_json(std::string_view text, simdjson::error_code failure) co
         fmt::format("not valid JSON: {}; expected a glTF 2.0 document", simdjson::error_message(failure));
     if (failure == simdjson::DEPTH_ERROR) {
         what = fmt::format("JSON nested more than {} levels deep; expected a glTF 2.0 document", parser_.max_depth());
-    } else if (const std::optional<JsonFault> fault = find_json_fault(text)) {
+    } else if (const std::optional<JsonFault> fault = find_json_fault(text, MendJson::All)) {
         const auto start = static_cast<std::size_t>(text.data() - reinterpret_cast<const char*>(bytes_.data()));
         what = fmt::format("not valid JSON: {} (byte {} of the file): expected {}", line_and_column(text, fault->byte),
                            start + fault->byte, fault->expected);
@@ -136,7 +212,7 @@ Error Document::bad_json(std::string_view text, simdjson::error_code failure) co
 
 void Document::check_version(Messages& messages) const {
     const auto parts = [&](const JsonValue& value) {
-        const std::string_view text = value.to_string();
+        const std::string text = version_text(value);
         std::array<unsigned, 2> numbers = {0, 0}; // major, minor
         const char *begin = text.data(), *end = begin + text.size();
         const auto major = std::from_chars(begin, end, numbers[0]);
@@ -159,12 +235,12 @@ void Document::check_version(Messages& messages) const {
         return;
     }
     if (parts(*version)[0] != 2) {
-        throw version->error(fmt::format("glTF {}; this reader knows 2.0", version->to_string()));
+        throw version->error(fmt::format("glTF {}; this reader knows 2.0", version_text(*version)));
     }
     const std::optional<JsonValue> least = asset->find("minVersion");
     if (least && parts(*least) > std::array<unsigned, 2>{2, 0}) {
         messages.leave_out({least->place(), fmt::format("the file needs glTF {}; what 2.0 does not have is left out",
-                                                        least->to_string())});
+                                                        version_text(*least))});
     }
 }
 
@@ -187,6 +263,13 @@ void Document::check_extensions(Messages& messages) const {
     };
     check("extensionsRequired", "requires");
     check("extensionsUsed", "uses");
+    const auto is_news = [&](std::string_view name) { return !is_known_extension(name) && !told.contains(name); };
+    for (const auto& [name, place] : root().extensions_within(is_news)) {
+        if (!told.insert(name).second) continue;
+        messages.leave_out({place.place(), fmt::format("the extension {}, which is not supported and which "
+                                                       "\"extensionsUsed\" does not list: it is left out",
+                                                       shortened(name))});
+    }
 }
 
 const std::vector<JsonValue>& Document::table(std::string_view name) const {

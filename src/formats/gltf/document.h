@@ -48,7 +48,12 @@ private:
     void split_glb(Messages& messages);
     void read_table(std::string_view name, const JsonValue& holder, Messages& messages);
     std::size_t glb_end(Messages& messages) const;
-    void parse(std::span<const std::byte> json);
+    struct ChunkEnd {
+        std::size_t end, next = 0; // bytes of the file: where its data end, and where another chunk begins
+    };
+    ChunkEnd json_chunk_end(std::size_t begin, std::size_t size, Messages& messages) const;
+    std::size_t binary_chunk_end(std::size_t begin, std::size_t size, Messages& messages) const;
+    void parse(std::span<const std::byte> json, Messages& messages);
     Error bad_json(std::string_view text, simdjson::error_code failure) const;
     void check_version(Messages& messages) const;
     void check_extensions(Messages& messages) const;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "formats/gltf/leave_out.h"
 #include "math/portable_math.h"
 
 namespace pertev::gltf {
@@ -35,17 +36,26 @@ void read_cone(const JsonValue& spot, Light& light, Messages& messages) {
     set_cone(inner, outer, light);
 }
 
-// What a light's strength is made of.
-void check_not_negative(const JsonValue& number) {
-    if (number.to_float() < 0)
-        throw number.error(fmt::format("{}; expected a number of at least 0", number.to_float()));
+/// What a light's strength is made of; 0 where it is negative.
+float not_negative(const JsonValue& number, Messages& messages) {
+    const float value = number.to_float();
+    if (value < 0) messages.warn({number.place(), fmt::format("{}; expected at least 0, which is taken", value)});
+    return max(value, 0.0f);
+}
+
+/// Of which a member that cannot be read counts as one that is not there.
+template <class Read>
+void attempt(const JsonValue& light, std::string_view key, Messages& messages, const Read& read) {
+    if (const std::optional<JsonValue> member = light.find(key)) {
+        read_or_leave_out(*member, messages, [&] { read(*member); });
+    }
 }
 
 } // namespace
 
 Light read_light(const JsonValue& source, Messages& messages) {
     Light light;
-    light.name = source.string_or("name", "");
+    attempt(source, "name", messages, [&](const JsonValue& name) { light.name = name.to_string(); });
     const std::string type = source.string_or("type", "");
     if (type == "point")
         light.kind = LightKind::Point;
@@ -56,22 +66,28 @@ Light read_light(const JsonValue& source, Messages& messages) {
     else
         throw source.error(fmt::format("type \"{}\"; expected point, spot or directional", type));
 
-    if (const std::optional<JsonValue> intensity = source.find("intensity")) check_not_negative(*intensity);
-    for (const JsonValue& channel : source.elements_of("color")) check_not_negative(channel);
-    const std::array<float, 3> color = source.floats_or<3>("color", {1, 1, 1});
+    Rgb color = {1, 1, 1};
+    float intensity = 1;
+    attempt(source, "color", messages, [&](const JsonValue& member) {
+        (void)member.to_floats<3>(); // throws
+        const std::vector<JsonValue> channels = member.elements();
+        color = {not_negative(channels[0], messages), not_negative(channels[1], messages),
+                 not_negative(channels[2], messages)};
+    });
+    attempt(source, "intensity", messages,
+            [&](const JsonValue& member) { intensity = not_negative(member, messages); });
     constexpr float largest = std::numeric_limits<float>::max();
-    const float intensity = source.float_or("intensity", 1);
-    light.intensity = {min(intensity * color[0], largest), min(intensity * color[1], largest),
-                       min(intensity * color[2], largest)};
-    light.range = source.float_or("range", 0);
-    if (light.range < 0) throw source.at("range").error("expected a number above 0");
+    light.intensity = {min(intensity * color.r, largest), min(intensity * color.g, largest),
+                       min(intensity * color.b, largest)};
+    attempt(source, "range", messages, [&](const JsonValue& member) {
+        const float range = member.to_float();
+        if (range < 0) throw member.error(fmt::format("{}; expected a number above 0", range));
+        light.range = range;
+    });
     if (light.kind != LightKind::Spot) return light;
 
-    if (const std::optional<JsonValue> spot = source.find("spot")) {
-        read_cone(*spot, light, messages);
-    } else {
-        set_cone(0, kPi / 4, light);
-    }
+    set_cone(0, kPi / 4, light);
+    attempt(source, "spot", messages, [&](const JsonValue& spot) { read_cone(spot, light, messages); });
     return light;
 }
 

@@ -11,6 +11,7 @@
 namespace pertev::gltf {
 
 /// The light without its place. A cone of equal angles (exporters write it for a sharp edge) is one after a warning.
+/// A strength below 0 is 0, and any other member that cannot be read is left out.
 Light read_light(const JsonValue& light, Messages& messages);
 
 } // namespace pertev::gltf

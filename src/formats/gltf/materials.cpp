@@ -48,16 +48,21 @@ uint32_t Materials::add(Material material) {
     return static_cast<uint32_t>(scene_.materials.size() - 1);
 }
 
+/// Where a member of `source` cannot be read, it alone is left out.
+template <class Read>
+void Materials::attempt_at(const JsonValue& source, const Read& read) const {
+    read_or_leave_out(fmt::format("this property of {}", source.pointer()), messages_, read);
+}
+
 Material Materials::read(const JsonValue& source) {
     Material material = make_default_material();
     material.origin = source.pointer();
-    const std::string what = fmt::format("this property of {}", source.pointer());
-    const auto attempt = [&](const auto& part) { read_or_leave_out(what, messages_, part); };
+    const auto attempt = [&](const auto& part) { attempt_at(source, part); };
     attempt([&] { material.name = source.string_or("name", ""); });
-    if (const std::optional<JsonValue> pbr = source.find("pbrMetallicRoughness")) {
-        read_or_leave_out(*pbr, messages_, [&] { read_metallic_roughness(*pbr, material); });
-    }
-    attempt([&] { read_alpha(source, material); });
+    attempt([&] {
+        if (const auto pbr = source.find("pbrMetallicRoughness")) read_metallic_roughness(*pbr, material);
+    });
+    read_alpha(source, material);
     attempt([&] { material.ior = read_ior(source); });
     attempt([&] { read_specular(source, material); });
     attempt([&] { read_transmission(source, material); });
@@ -67,8 +72,8 @@ Material Materials::read(const JsonValue& source) {
     });
     attempt([&] { read_emission(source, material); });
     attempt([&] { material.double_sided = material.two_sided_emission = source.bool_or("doubleSided", false); });
+    attempt([&] { material.normal_texture = read_texture(source, "normalTexture", false); });
     attempt([&] {
-        material.normal_texture = read_texture(source, "normalTexture", false);
         if (const std::optional<JsonValue> normal = source.find("normalTexture")) {
             material.normal_scale = normal->float_or("scale", 1);
         }
@@ -77,8 +82,10 @@ Material Materials::read(const JsonValue& source) {
 }
 
 void Materials::read_emission(const JsonValue& source, Material& material) {
-    const std::array<float, 3> emission = source.floats_or<3>("emissiveFactor", {0, 0, 0});
-    material.emission = Rgb{emission[0], emission[1], emission[2]};
+    attempt_at(source, [&] {
+        const std::array<float, 3> emission = source.floats_or<3>("emissiveFactor", {0, 0, 0});
+        material.emission = Rgb{emission[0], emission[1], emission[2]};
+    });
     material.emission_texture = read_texture(source, "emissiveTexture", true);
     const std::optional<JsonValue> extension = source.extension("KHR_materials_emissive_strength");
     if (!extension) return;
@@ -92,11 +99,14 @@ void Materials::read_emission(const JsonValue& source, Material& material) {
 void Materials::read_specular_glossiness(const JsonValue& source, Material& material) {
     const std::optional<JsonValue> extension = source.extension("KHR_materials_pbrSpecularGlossiness");
     if (!extension) return;
-    const std::array<float, 4> diffuse = extension->floats_or<4>("diffuseFactor", {1, 1, 1, 1});
-    const std::array<float, 3> specular = extension->floats_or<3>("specularFactor", {1, 1, 1});
-    const SpecularGlossiness factors = {{diffuse[0], diffuse[1], diffuse[2]},
-                                        {specular[0], specular[1], specular[2]},
-                                        clamp(extension->float_or("glossinessFactor", 1), 0.0f, 1.0f)};
+    std::array<float, 4> diffuse = {1, 1, 1, 1};
+    std::array<float, 3> specular = {1, 1, 1};
+    float glossiness = 1;
+    attempt_at(*extension, [&] { diffuse = extension->floats_or<4>("diffuseFactor", diffuse); });
+    attempt_at(*extension, [&] { specular = extension->floats_or<3>("specularFactor", specular); });
+    attempt_at(*extension, [&] { glossiness = extension->float_or("glossinessFactor", glossiness); });
+    const SpecularGlossiness factors = {
+        {diffuse[0], diffuse[1], diffuse[2]}, {specular[0], specular[1], specular[2]}, clamp(glossiness, 0.0f, 1.0f)};
     bool is_exact = false;
     const MetallicRoughness converted = metallic_roughness_of(factors, is_exact);
     material.base_color = converted.base_color;
@@ -124,12 +134,14 @@ void Materials::read_specular_glossiness(const JsonValue& source, Material& mate
 void Materials::convert_textures(uint64_t limit) { gltf::convert_textures(pending_, limit, scene_, messages_); }
 
 void Materials::read_metallic_roughness(const JsonValue& pbr, Material& material) {
-    const std::array<float, 4> color = pbr.floats_or<4>("baseColorFactor", {1, 1, 1, 1});
-    material.base_color = {color[0], color[1], color[2]};
-    material.alpha = color[3];
+    attempt_at(pbr, [&] {
+        const std::array<float, 4> color = pbr.floats_or<4>("baseColorFactor", {1, 1, 1, 1});
+        material.base_color = {color[0], color[1], color[2]};
+        material.alpha = color[3];
+    });
     material.base_color_texture = read_texture(pbr, "baseColorTexture", true);
-    material.metallic = pbr.float_or("metallicFactor", 1);
-    material.roughness = pbr.float_or("roughnessFactor", 1);
+    attempt_at(pbr, [&] { material.metallic = pbr.float_or("metallicFactor", 1); });
+    attempt_at(pbr, [&] { material.roughness = pbr.float_or("roughnessFactor", 1); });
     const TextureRef both = read_texture(pbr, "metallicRoughnessTexture", false);
     material.metallic_texture = material.roughness_texture = both;
     material.roughness_texture.channel = 1;
@@ -137,15 +149,17 @@ void Materials::read_metallic_roughness(const JsonValue& pbr, Material& material
 }
 
 void Materials::read_alpha(const JsonValue& source, Material& material) const {
-    const std::string mode = source.string_or("alphaMode", "OPAQUE");
-    if (mode == "MASK")
-        material.alpha_mode = AlphaMode::Mask;
-    else if (mode == "BLEND")
-        material.alpha_mode = AlphaMode::Blend;
-    else if (mode != "OPAQUE") {
-        throw source.at("alphaMode").error(fmt::format("\"{}\"; expected OPAQUE, MASK or BLEND", mode));
-    }
-    material.alpha_cutoff = source.float_or("alphaCutoff", 0.5f);
+    attempt_at(source, [&] {
+        const std::string mode = source.string_or("alphaMode", "OPAQUE");
+        if (mode == "MASK")
+            material.alpha_mode = AlphaMode::Mask;
+        else if (mode == "BLEND")
+            material.alpha_mode = AlphaMode::Blend;
+        else if (mode != "OPAQUE") {
+            throw source.at("alphaMode").error(fmt::format("\"{}\"; expected OPAQUE, MASK or BLEND", mode));
+        }
+    });
+    attempt_at(source, [&] { material.alpha_cutoff = source.float_or("alphaCutoff", 0.5f); });
 }
 
 void Materials::read_specular(const JsonValue& material, Material& result) const {

@@ -34,6 +34,8 @@ public:
     void convert_textures(uint64_t limit);
 
 private:
+    template <class Read>
+    void attempt_at(const JsonValue& source, const Read& read) const;
     uint32_t add(Material material);
     Material read(const JsonValue& material);
     void read_metallic_roughness(const JsonValue& pbr, Material& material);

@@ -127,7 +127,7 @@ void Meshes::add_shape(const JsonValue& primitive, uint32_t node, std::vector<Mo
     std::span<const Transform> joints;
     if (shape.skin != kNoSkin) {
         joints = joints_of(shape.skin);
-        read_joint_weights(document_, buffers_, primitive.at("attributes"), joints.size(), shape);
+        read_joint_weights(document_, buffers_, primitive.at("attributes"), joints.size(), shape, messages_);
     }
     shape_mesh(shape, scene_.nodes[node].morph_weights, joints, mesh);
 }

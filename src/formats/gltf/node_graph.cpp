@@ -11,17 +11,30 @@
 namespace pertev::gltf {
 namespace {
 
-std::variant<NodePose, DoubleTransform> pose_of(const JsonValue& node) {
-    if (const std::optional<JsonValue> matrix = node.find("matrix")) {
-        const std::array<double, 16> m = matrix->to_doubles<16>(); // by columns
-        return DoubleTransform{{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}, {m[12], m[13], m[14]}};
+/// A member that cannot be read is left out alone.
+std::variant<NodePose, DoubleTransform> pose_of(const JsonValue& node, Messages& messages) {
+    std::optional<std::array<double, 16>> m; // by columns
+    const auto attempt = [&](const char* key, const auto& read) {
+        if (const std::optional<JsonValue> member = node.find(key)) {
+            read_or_leave_out(*member, messages, [&] { read(*member); });
+        }
+    };
+    attempt("matrix", [&](const JsonValue& matrix) { m = matrix.to_doubles<16>(); });
+    if (m) {
+        const std::array<double, 16>& a = *m;
+        return DoubleTransform{{a[0], a[4], a[8]}, {a[1], a[5], a[9]}, {a[2], a[6], a[10]}, {a[12], a[13], a[14]}};
     }
-    const std::array<double, 3> t = node.doubles_or<3>("translation", {0, 0, 0});
-    const std::array<double, 4> r = node.doubles_or<4>("rotation", {0, 0, 0, 1});
-    const std::array<double, 3> s = node.doubles_or<3>("scale", {1, 1, 1});
-    if (std::ranges::all_of(r, [](double x) { return static_cast<float>(x) == 0; })) {
-        throw node.at("rotation").error("expected a unit quaternion");
-    }
+    std::array<double, 3> t = {0, 0, 0}, s = {1, 1, 1};
+    std::array<double, 4> r = {0, 0, 0, 1};
+    attempt("translation", [&](const JsonValue& translation) { t = translation.to_doubles<3>(); });
+    attempt("rotation", [&](const JsonValue& rotation) {
+        const std::array<double, 4> read = rotation.to_doubles<4>();
+        if (std::ranges::all_of(read, [](double x) { return static_cast<float>(x) == 0; })) {
+            throw rotation.error("expected a unit quaternion");
+        }
+        r = read;
+    });
+    attempt("scale", [&](const JsonValue& scale) { s = scale.to_doubles<3>(); });
     return NodePose{{t[0], t[1], t[2]}, r, {s[0], s[1], s[2]}};
 }
 
@@ -89,7 +102,7 @@ void NodeGraph::place_nodes(const Document& document, Messages& messages) {
             read_or_leave_out(fmt::format("{} of {}", what, nodes[node].pointer()), messages, read);
         };
         attempt("the name", [&] { nodes_[node].name = nodes[node].string_or("name", ""); });
-        attempt("the transform", [&] { nodes_[node].pose = pose_of(nodes[node]); });
+        attempt("the transform", [&] { nodes_[node].pose = pose_of(nodes[node], messages); });
     }
     places_ = places_of(nodes_, order);
     world_from_node_ = world_from_nodes(places_, {0, 0, 0});

@@ -106,7 +106,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
 
     const auto place_camera = [&](const JsonValue& node, const JsonValue& reference, uint32_t index,
                                   const Transform& world_from_node) {
-        Camera camera = read_camera(document.item("cameras", reference));
+        Camera camera = read_camera(document.item("cameras", reference), messages);
         if (camera.name.empty()) camera.name = scene.nodes[index].name;
         camera.origin = node.pointer();
         camera.node = index;

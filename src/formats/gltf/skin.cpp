@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "formats/gltf/leave_out.h"
+
 namespace pertev::gltf {
 namespace {
 
@@ -51,15 +53,20 @@ std::vector<Transform> read_inverse_bind_matrices(const Document& document, Buff
         float columns[16];
         std::copy_n(matrices.begin() + static_cast<std::ptrdiff_t>(16 * i), 16, columns);
         transforms.push_back(transform_from_columns(columns));
+        if (!is_finite(transforms.back())) throw reference->error(fmt::format("matrix {} is not finite", i));
     }
     return transforms;
 }
 
 void read_joint_weights(const Document& document, Buffers& buffers, const JsonValue& attributes,
-                        std::size_t joint_count, MeshShape& shape) {
+                        std::size_t joint_count, MeshShape& shape, Messages& messages) {
     const std::size_t vertices = shape.positions.size();
     std::vector<JointSet> sets;
-    while (auto set = read_set(document, buffers, attributes, sets.size(), joint_count, vertices)) {
+    for (;;) {
+        std::optional<JointSet> set;
+        read_or_leave_out(fmt::format("JOINTS_{} of {}", sets.size(), attributes.pointer()), messages,
+                          [&] { set = read_set(document, buffers, attributes, sets.size(), joint_count, vertices); });
+        if (!set) break;
         sets.push_back(*std::move(set));
     }
     shape.joints_per_vertex = static_cast<uint32_t>(4 * sets.size());

@@ -16,8 +16,9 @@ std::vector<Transform> read_inverse_bind_matrices(const Document& document, Buff
                                                   std::size_t joint_count);
 
 /// Fills the joints and weights of `shape`, which has its positions, by the JOINTS_n and WEIGHTS_n of `attributes`.
-/// Throws Error(BadInput) for a joint that the skin, which has `joint_count`, does not have.
+/// A set that cannot be read, as one of a joint that the skin, which has `joint_count`, does not have, is left out with
+/// those after it.
 void read_joint_weights(const Document& document, Buffers& buffers, const JsonValue& attributes,
-                        std::size_t joint_count, MeshShape& shape);
+                        std::size_t joint_count, MeshShape& shape, Messages& messages);
 
 } // namespace pertev::gltf

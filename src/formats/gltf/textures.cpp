@@ -55,6 +55,13 @@ void read_transform(const JsonValue& transform, TextureRef& texture) {
 
 } // namespace
 
+Textures::Textures(const Document& document, Buffers& buffers, TextureLoader& loader, Messages& messages)
+    : document_(document), buffers_(buffers), loader_(loader), messages_(messages),
+      images_(document.table("images").size()) {
+    loader.advise_by(
+        [path = document.path()](std::string_view extension) { return conversion_advice(extension, path); });
+}
+
 TextureRef Textures::read(const JsonValue& info) {
     const JsonValue& source = document_.item("textures", info.at("index"));
     TextureRef texture;

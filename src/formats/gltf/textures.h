@@ -19,9 +19,7 @@ namespace pertev::gltf {
 
 class Textures {
 public:
-    Textures(const Document& document, Buffers& buffers, TextureLoader& loader, Messages& messages)
-        : document_(document), buffers_(buffers), loader_(loader), messages_(messages),
-          images_(document.table("images").size()) {}
+    Textures(const Document& document, Buffers& buffers, TextureLoader& loader, Messages& messages);
 
     /// The texture that `info`, a textureInfo, describes. Without an image (missing, of a kind that is not supported,
     /// over a third set of texture coordinates) after a warning. Throws Error(BadInput) for one that is not described

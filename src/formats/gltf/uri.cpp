@@ -139,6 +139,10 @@ std::optional<std::string> decode_path_uri(std::string_view uri) {
     return path;
 }
 
+std::string plain_file_name(const std::string& name) {
+    return starts_with_in_any_case(name, kFile) ? decode_path_uri(name).value_or(name) : name;
+}
+
 std::optional<std::string> file_name_of_uri(std::string_view uri, const std::filesystem::path& from) {
     const std::optional<std::string> decoded = decode_path_uri(uri);
     if (!decoded || *decoded == uri || uri.find('%') == std::string_view::npos) return decoded;

@@ -23,6 +23,10 @@ std::optional<std::vector<std::byte>> decode_data_uri(std::string_view uri);
 /// itself. Returns nothing for a URI of another scheme (http:) or one that holds a NUL.
 std::optional<std::string> decode_path_uri(std::string_view uri);
 
+/// The path of a file: URI, as decode_path_uri gives it; any other name as it stands. Of formats whose names are no
+/// URIs.
+std::string plain_file_name(const std::string& name);
+
 /// The name that FileAccess::find takes for the file that `uri`, which stands in `from`, means: decode_path_uri, or the
 /// text as it stands where a file has that name alone. Nothing where decode_path_uri has nothing.
 std::optional<std::string> file_name_of_uri(std::string_view uri, const std::filesystem::path& from);

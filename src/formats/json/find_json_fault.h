@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "formats/json/mend_json.h"
+
 namespace pertev::gltf {
 
 struct JsonFault {
@@ -17,8 +19,8 @@ struct JsonFault {
     std::string expected; // there, for messages
 };
 
-/// The first fault of `text`; nothing when it is JSON.
-std::optional<JsonFault> find_json_fault(std::string_view text);
+/// The first fault of `text`; nothing when it is JSON once it is mended.
+std::optional<JsonFault> find_json_fault(std::string_view text, MendJson mend);
 
 /// "line 3, column 14", both from 1, columns in characters.
 std::string line_and_column(std::string_view text, std::size_t byte);

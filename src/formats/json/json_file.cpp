@@ -14,11 +14,15 @@ namespace pertev {
 JsonFile::JsonFile(const std::filesystem::path& path) : name_(path.string()) {
     const std::vector<std::byte> bytes = read_file(path);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const simdjson::padded_string padded(text);
     simdjson::dom::element element;
-    if (const simdjson::error_code failure = parser_.parse(padded).get(element)) {
+    if (!parser_.parse(simdjson::padded_string(text)).get(element)) {
+        root_.emplace(name_, "", element);
+        return;
+    }
+    const std::string mended = gltf::mend_json(text, gltf::MendJson::Numbers);
+    if (const simdjson::error_code failure = parser_.parse(mended).get(element)) {
         std::string what = simdjson::error_message(failure);
-        if (const auto fault = gltf::find_json_fault(text)) {
+        if (const auto fault = gltf::find_json_fault(text, gltf::MendJson::Numbers)) {
             what = fmt::format("{}: expected {}", gltf::line_and_column(text, fault->byte), fault->expected);
         }
         throw Error(ErrorCode::BadInput, Place{name_}, fmt::format("not valid JSON: {}", what));

@@ -78,6 +78,39 @@ std::optional<JsonValue> JsonValue::extension(std::string_view name) const {
     return extensions ? extensions->find(name) : std::nullopt;
 }
 
+std::vector<std::pair<std::string, JsonValue>>
+JsonValue::extensions_within(const std::function<bool(std::string_view)>& is_wanted) const {
+    std::vector<std::pair<std::string, JsonValue>> found;
+    std::string pointer = pointer_;
+    // The parser has refused what is nested so deeply that this recursion could not follow.
+    const auto look = [&](const auto& self, simdjson::dom::element element, bool is_extensions) -> void {
+        const auto below = [&](std::string_view key, simdjson::dom::element value, bool are_extensions) {
+            const std::size_t size = pointer.size();
+            pointer += '/';
+            pointer += escape(key);
+            if (is_extensions && !value.is_null() && is_wanted(key)) {
+                found.emplace_back(std::string(key), JsonValue(*file_, pointer, value));
+            }
+            self(self, value, are_extensions);
+            pointer.resize(size);
+        };
+        if (element.is_object()) {
+            for (const auto& [key, value] : simdjson::dom::object(element)) {
+                const bool may_hold = value.is_object() || value.is_array();
+                if ((may_hold || is_extensions) && key != "extras") below(key, value, key == "extensions");
+            }
+        } else if (element.is_array()) {
+            std::size_t i = 0;
+            for (const simdjson::dom::element value : simdjson::dom::array(element)) {
+                if (value.is_object() || value.is_array()) below(std::to_string(i), value, false);
+                ++i;
+            }
+        }
+    };
+    look(look, element_, false);
+    return found;
+}
+
 std::vector<JsonValue> JsonValue::elements() const {
     simdjson::dom::array array;
     if (element_.get(array)) throw error(fmt::format("{}; expected an array", type_name(element_)));

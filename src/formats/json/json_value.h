@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -39,6 +40,10 @@ public:
     JsonValue at(std::string_view key) const;
     /// /extensions/NAME of an object.
     std::optional<JsonValue> extension(std::string_view name) const;
+    /// Every member, with its name, of an object "extensions" anywhere in this value, "extras" left out, whose name
+    /// `is_wanted`.
+    std::vector<std::pair<std::string, JsonValue>>
+    extensions_within(const std::function<bool(std::string_view)>& is_wanted) const;
     /// All values of an array, in order.
     std::vector<JsonValue> elements() const;
     /// The values of member `key`, an array; none when it is missing.

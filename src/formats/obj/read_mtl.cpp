@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/read_file.h"
+#include "formats/gltf/uri.h"
 #include "formats/obj/parse_mtl.h"
 #include "math/vec3.h"
 
@@ -44,7 +45,7 @@ private:
         TextureRef ref;
         if (from.name.empty()) return ref;
         try {
-            ref.image = loader_.add_file(Place{path_.string(), from.line}, from.name);
+            ref.image = loader_.add_file(Place{path_.string(), from.line}, gltf::plain_file_name(from.name));
         } catch (const Error& error) { // it may not be read
             if (error.code() != ErrorCode::BadInput) throw;
             messages_.leave_out(error.remark().and_then("; its factor alone is used"));

@@ -7,13 +7,16 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -70,14 +73,23 @@ public:
         return 0;
     }
 
-    /// Count of a list, checked against what is left.
+    /// Count of a list, checked against what is left. A bad one spoils its line, where elements have a line each; it is
+    /// then 0.
     uint64_t list_count(const PlyProperty& property) {
         const double count = value(property.count_type);
-        if (!(count >= 0 && count < 0x1p32)) throw fault("a list's count is not within 0 and 2^32 - 1");
-        const auto whole = static_cast<uint64_t>(count);
+        const bool is_count = count >= 0 && count < 0x1p32;
+        const auto whole = is_count ? static_cast<uint64_t>(count) : 0;
+        if (has_lines_ && !(is_count && whole <= static_cast<uint64_t>(end_ - at_))) {
+            if (!std::isnan(count)) note_bad_value("a list's count does not fit what follows");
+            is_line_bad_ = true;
+            return 0;
+        }
+        if (!is_count) throw fault("a list's count is not within 0 and 2^32 - 1");
         expect(whole, least_size(property.type), "entries of a list");
         return whole;
     }
+    /// Whether what follows on this line means nothing, up to end_element().
+    bool is_line_bad() const { return is_line_bad_; }
 
     void skip(const PlyProperty& property) {
         uint64_t values = property.is_list ? list_count(property) : 1;
@@ -93,11 +105,17 @@ public:
     void end_element() {
         if (!has_lines_) return;
         while (at_ != end_ && (*at_ == ' ' || *at_ == '\t')) ++at_;
+        const bool was_bad = std::exchange(is_line_bad_, false);
         if (at_ == end_ || *at_ == '\n' || *at_ == '\r') return;
-        if (long_lines_++ == 0) first_long_line_ = line();
+        if (!was_bad && long_lines_++ == 0) first_long_line_ = line();
         while (at_ != end_ && *at_ != '\n' && *at_ != '\r') ++at_;
     }
-    void warn_of_long_lines(Messages& messages) const {
+    void warn(Messages& messages) const {
+        if (bad_values_ > 0) {
+            messages.leave_out(first_bad_value_->and_then(
+                bad_values_ == 1 ? "; it is left out"
+                                 : fmt::format("; this and {} more are left out", bad_values_ - 1)));
+        }
         if (long_lines_ == 0) return;
         messages.leave_out(
             {Place{file_, first_long_line_}, fmt::format("{} with more numbers than the header says: the rest left out",
@@ -139,18 +157,23 @@ private:
         return {begin, static_cast<std::size_t>(at_ - begin)};
     }
 
+    void note_bad_value(const std::string& what) {
+        if (bad_values_++ == 0) first_bad_value_ = fault(what).remark();
+    }
+
+    /// NaN, with a warning, for a word that is no number: what has it is left out, and nothing else.
     double text_value(PlyType type) {
         const std::string_view text = word();
         std::string_view rest = text;
-        if (type == PlyType::Float32 || type == PlyType::Float64) {
-            const std::optional<double> number = parse_float<double>(rest);
-            if (number && rest.empty()) return *number;
-        } else {
+        if (type != PlyType::Float32 && type != PlyType::Float64) {
             int64_t number = 0;
             const auto [after, ec] = std::from_chars(text.data(), text.data() + text.size(), number);
             if (ec == std::errc{} && after == text.data() + text.size()) return static_cast<double>(number);
         }
-        throw fault(fmt::format("\"{}\" is not a number of the property's type", text.substr(0, 40)));
+        const std::optional<double> number = parse_float<double>(rest); // some write 255.0 for a uchar
+        if (number && rest.empty()) return *number;
+        note_bad_value(fmt::format("\"{}\" is not a number", text.substr(0, 40)));
+        return std::numeric_limits<double>::quiet_NaN();
     }
 
     template <class T, bool big_endian>
@@ -183,6 +206,10 @@ private:
             return load<float, big_endian>();
         case PlyType::Float64:
             return load<double, big_endian>();
+        case PlyType::Int64:
+            return load<int64_t, big_endian>();
+        case PlyType::UInt64:
+            return load<uint64_t, big_endian>();
         }
         return 0;
     }
@@ -194,6 +221,9 @@ private:
     const std::string& file_;
     std::string element_ = "header";
     uint64_t number_ = 0;
+    bool is_line_bad_ = false;
+    uint64_t bad_values_ = 0;
+    std::optional<Remark> first_bad_value_;
     bool has_lines_ = false;
     uint64_t long_lines_ = 0;
     std::size_t first_long_line_ = 0;

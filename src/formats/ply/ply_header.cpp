@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/message_text.h"
 
 namespace pertev {
 namespace {
@@ -21,7 +23,7 @@ constexpr TypeName kTypeNames[] = {
     {"ushort", PlyType::UInt16},   {"uint16", PlyType::UInt16},   {"int", PlyType::Int32},
     {"int32", PlyType::Int32},     {"uint", PlyType::UInt32},     {"uint32", PlyType::UInt32},
     {"float", PlyType::Float32},   {"float32", PlyType::Float32}, {"double", PlyType::Float64},
-    {"float64", PlyType::Float64},
+    {"float64", PlyType::Float64}, {"int64", PlyType::Int64},     {"uint64", PlyType::UInt64},
 };
 
 std::vector<std::string_view> words_of(std::string_view line) {
@@ -51,11 +53,18 @@ public:
         if (words_of(next_line()) != std::vector<std::string_view>{"ply"}) {
             throw fault("a PLY file starts with the line 'ply'");
         }
-        const auto format = next_words();
-        if (format.size() != 3 || format[0] != "format" || format[2] != "1.0") {
-            throw fault("after 'ply' comes the line 'format ascii|binary_little_endian|binary_big_endian 1.0'");
+        auto format = next_words();
+        for (; format[0] != "format"; format = next_words()) {
+            if (is_one_of_elements(format[0])) {
+                throw fault("after 'ply' comes the line 'format ascii|binary_little_endian|binary_big_endian 1.0'");
+            }
+            take_as_comment();
         }
+        if (format.size() < 2) throw fault("the format is ascii, binary_little_endian or binary_big_endian");
         header_.format = format_of(format[1]);
+        if (format.size() != 3 || format[2] != "1.0") {
+            repaired(fmt::format("version {}; it is read as 1.0", format.size() > 2 ? format[2] : "is missing"));
+        }
         for (;;) {
             const auto words = next_words();
             if (words[0] == "end_header") break;
@@ -63,11 +72,8 @@ public:
                 element(words);
             } else if (words[0] == "property") {
                 property(words);
-            } else if (header_.elements.empty()) {
-                // Blender 2.4 wrote "Created by Blender3D ...", and old Assimp its own name, without the word comment.
-                if (header_.unknown_line == 0) header_.unknown_line = line_number_;
             } else {
-                throw fault("a header line is element, property, comment, obj_info or end_header");
+                take_as_comment();
             }
         }
         header_.size = at_;
@@ -76,6 +82,22 @@ public:
 
 private:
     Error fault(const std::string& what) const { return Error(ErrorCode::BadInput, Place{file_, line_number_}, what); }
+
+    static bool is_one_of_elements(std::string_view word) {
+        return word == "element" || word == "property" || word == "end_header";
+    }
+
+    void repaired(std::string what) { header_.repairs.emplace_back(Place{file_, line_number_}, std::move(what)); }
+
+    /// Blender 2.4 wrote "Created by Blender3D ...", and old Assimp its own name, without the word comment.
+    void take_as_comment() {
+        if (!header_.elements.empty() && header_.format != PlyFormat::Ascii) { // it may stand for bytes of the body
+            throw fault("a header line is element, property, comment, obj_info or end_header");
+        }
+        if (!std::exchange(has_unknown_line_, true)) {
+            repaired("a header line that is not understood is taken as a comment");
+        }
+    }
 
     std::string_view next_line() {
         ++line_number_;
@@ -96,7 +118,10 @@ private:
             if (words.size() >= 3 && words[0] == "comment" && is_texture_file(words[1])) {
                 const auto begin = static_cast<std::size_t>(words[2].data() - line.data()); // a name may hold spaces
                 const auto end = static_cast<std::size_t>(words.back().data() + words.back().size() - line.data());
-                header_.textures.push_back({std::string(line.substr(begin, end - begin)), line_number_});
+                std::string_view name = line.substr(begin, end - begin);
+                if (name.size() > 2 && name.front() == '"' && name.back() == '"')
+                    name = name.substr(1, name.size() - 2);
+                header_.textures.push_back({std::string(name), line_number_});
             }
         }
     }
@@ -108,9 +133,13 @@ private:
         throw fault("the format is ascii, binary_little_endian or binary_big_endian");
     }
 
-    PlyType type_of(std::string_view name) const {
+    PlyType type_of(std::string_view name) {
         for (const TypeName& known : kTypeNames) {
             if (known.name == name) return known.type;
+        }
+        if (header_.format == PlyFormat::Ascii) { // where a value is a word, however many bytes it would have
+            repaired(fmt::format("\"{}\" is no type; its values are read as numbers", shortened(name)));
+            return PlyType::Float64;
         }
         throw fault(fmt::format("\"{}\" is no type; types are char uchar short ushort int uint float double", name));
     }
@@ -154,6 +183,7 @@ private:
     PlyHeader header_;
     std::size_t at_ = 0;
     std::size_t line_number_ = 0;
+    bool has_unknown_line_ = false;
 };
 
 } // namespace
@@ -171,6 +201,8 @@ std::size_t size_of(PlyType type) {
     case PlyType::Float32:
         return 4;
     case PlyType::Float64:
+    case PlyType::Int64:
+    case PlyType::UInt64:
         return 8;
     }
     return 0;

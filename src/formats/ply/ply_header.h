@@ -8,10 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "base/remark.h"
+
 namespace pertev {
 
 enum class PlyFormat : uint8_t { Ascii, LittleEndian, BigEndian };
-enum class PlyType : uint8_t { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
+enum class PlyType : uint8_t { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64, Int64, UInt64 };
 
 struct PlyProperty {
     std::string name;
@@ -36,8 +38,8 @@ struct PlyHeader {
     PlyFormat format = PlyFormat::Ascii;
     std::vector<PlyElement> elements;
     std::vector<PlyTexture> textures;
-    std::size_t unknown_line = 0; // the first before the elements that is no header line, taken as a comment; 0: none
-    std::size_t size = 0;         // bytes up to the body
+    std::vector<Remark> repairs; // what is not as the format has it and is read all the same, for warnings
+    std::size_t size = 0;        // bytes up to the body
 };
 
 /// Bytes of one value in a binary file.

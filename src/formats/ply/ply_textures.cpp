@@ -8,6 +8,7 @@
 
 #include "base/key_numbers.h"
 #include "base/message_text.h"
+#include "formats/gltf/uri.h"
 #include "formats/mesh/vertex_key.h"
 
 namespace pertev {
@@ -109,7 +110,8 @@ Scene make_ply_scene(Mesh mesh, const std::vector<uint32_t>& sizes, const PlyFac
         if (has_uv && part.texture != kNoPlyTexture && !header.textures.empty()) {
             const PlyTexture& texture = header.textures[static_cast<std::size_t>(part.texture)];
             if (header.textures.size() > 1) material.name = fmt::format("{} {}", name, texture.name);
-            material.base_color_texture.image = loader.add_file(Place{file, texture.line}, texture.name);
+            material.base_color_texture.image =
+                loader.add_file(Place{file, texture.line}, gltf::plain_file_name(texture.name));
             material.base_color_texture.is_srgb = true;
         }
         const auto number = static_cast<uint32_t>(scene.meshes.size());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -35,6 +36,7 @@ bool is_float(PlyType type) { return type == PlyType::Float32 || type == PlyType
 /// Colour channel of a file's type to [0, 1], linear; a float one as it stands.
 float colour(double value, PlyType type, bool is_alpha) {
     if (is_float(type)) return static_cast<float>(value);
+    if (std::isnan(value)) return 1; // could not be read
     const double full = type == PlyType::UInt16 ? 65535.0 : 255.0;
     const float encoded = static_cast<float>(value / full);
     return is_alpha ? encoded : srgb_decode(encoded);
@@ -92,7 +94,7 @@ public:
         if (!of_faces_.uvs.empty()) split_vertices(of_faces_.uvs, corners_, mesh_);
         triangulate();
         warn_of_face_properties(messages);
-        body_.warn_of_long_lines(messages);
+        body_.warn(messages);
         if (bad_indices_ > 0) {
             messages.leave_out(first_bad_index_->and_then(fmt::format(
                 "; what {} left out",
@@ -145,6 +147,10 @@ private:
     static void read_values(PlyBody& body, const PlyElement& element, const std::vector<std::size_t>& slots,
                             VertexValues& values) {
         for (std::size_t k = 0; k < slots.size(); ++k) {
+            if (body.is_line_bad()) {
+                values.fill(std::numeric_limits<double>::quiet_NaN());
+                return;
+            }
             if (slots[k] == kSlots) {
                 body.skip(element.properties[k]);
             } else {
@@ -214,6 +220,7 @@ private:
             face_uvs_.clear();
             double texture = 0;
             for (const PlyProperty& p : element.properties) {
+                if (body_.is_line_bad()) break;
                 if ((is_face || is_strip) && !taken && is_indices(p)) {
                     taken = true;
                     corners = is_face ? face(p) : strip(p);
@@ -225,10 +232,19 @@ private:
                     body_.skip(p);
                 }
             }
+            if (body_.is_line_bad()) corners = drop_face(corners);
             body_.end_element();
             if (corners >= 3 && has_uv) add_face_uvs(corners, texture);
             if (corners >= 3 && (has_uv || has_numbers)) of_faces_.textures.push_back(texture_of(texture));
         }
+    }
+
+    /// Takes back the last face, of so many corners. Returns 0.
+    uint64_t drop_face(uint64_t corners) {
+        if (corners == 0) return 0;
+        corners_.resize(corners_.size() - corners);
+        sizes_.pop_back();
+        return 0;
     }
 
     static bool is_texture_number(const PlyProperty& p) { return !p.is_list && p.name == "texnumber"; }
@@ -261,6 +277,7 @@ private:
         if (value >= 0 && value < static_cast<double>(vertex_count_) && value == static_cast<uint32_t>(value)) {
             return static_cast<uint32_t>(value);
         }
+        if (std::isnan(value)) return std::nullopt; // told where it was read
         if (bad_indices_++ == 0) {
             first_bad_index_ =
                 body_
@@ -274,7 +291,7 @@ private:
     /// Returns the number of corners, 0 of a face that is left out.
     uint64_t face(const PlyProperty& property) {
         const uint64_t count = body_.list_count(property);
-        if (count < 3) ++strays_;
+        if (count < 3 && !body_.is_line_bad()) ++strays_;
         const std::size_t before = corners_.size();
         for (uint64_t i = 0; i < count; ++i) {
             const std::optional<uint32_t> corner = vertex_of(body_.value(property.type));
@@ -376,9 +393,7 @@ Scene read_ply(const fs::path& path, const FileAccess& access, const ReadOptions
     const std::string file = path.string();
     const std::vector<std::byte> bytes = read_file(path);
     PlyHeader header = parse_ply_header(bytes, file);
-    if (header.unknown_line > 0) {
-        messages.warn({Place{file, header.unknown_line}, "a header line that is not understood is taken as a comment"});
-    }
+    for (const Remark& repair : header.repairs) messages.warn(repair);
     if (options.geometry_only) header.textures.clear();
     Reader reader(bytes, header, file);
     Mesh mesh = reader.run(messages);

@@ -43,6 +43,7 @@ public:
                             fmt::format("{}; scale the scene down", first_misplaced_));
             }
             if (!first_misplaced_.empty()) throw bad(first_misplaced_);
+            if (repairs_.too_far > 0) throw too_far("every triangle");
             throw no_geometry(all - with_triangles, with_triangles);
         }
         for (std::size_t i = 0; i < scene_.cameras.size(); ++i) camera(i);
@@ -131,6 +132,10 @@ private:
         };
         if (repairs_.not_finite > 0) {
             messages_.leave_out(text(repairs_.not_finite, "triangle", "with a vertex that is not finite", "left out"));
+        }
+        if (repairs_.too_far > 0) {
+            messages_.leave_out(
+                text(repairs_.too_far, "triangle", "that reaches further out than 2^40 metres", "left out"));
         }
         warn(repairs_.without_area, "triangle", "without area", "left out");
         warn(repairs_.normals, "normal", "of length zero or not finite", "replaced by the surface's own");

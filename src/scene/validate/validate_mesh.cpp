@@ -64,18 +64,20 @@ void check_sizes(const Mesh& mesh, const std::string& of) {
     });
 }
 
+bool is_place(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
+
 enum class Fault : uint8_t { None, NotFinite, TooFar, WithoutArea };
 
 Fault fault_of(const Mesh& mesh, uint64_t triangle) {
     const uint32_t* i = mesh.indices.data() + 3 * triangle;
     const Vec3 a = mesh.positions[i[0]], b = mesh.positions[i[1]], c = mesh.positions[i[2]];
     if (!(is_finite(a) && is_finite(b) && is_finite(c))) return Fault::NotFinite;
-    if (max_component(max(abs(a), max(abs(b), abs(c)))) > kMaxCoordinate) return Fault::TooFar;
+    if (!(is_place(a) && is_place(b) && is_place(c))) return Fault::TooFar;
     const DoubleVec3 area = area_vector(a, b, c);
     return area.x == 0 && area.y == 0 && area.z == 0 ? Fault::WithoutArea : Fault::None;
 }
 
-void drop_triangles(Mesh& mesh, bool reshaped, const std::string& of, MeshRepairs& repairs) {
+void drop_triangles(Mesh& mesh, bool reshaped, MeshRepairs& repairs) {
     const uint64_t count = mesh.indices.size() / 3;
     std::vector<Fault> faults(count);
     const uint64_t bad = count_in_parallel(count, [&](uint64_t i) {
@@ -86,10 +88,7 @@ void drop_triangles(Mesh& mesh, bool reshaped, const std::string& of, MeshRepair
     if (bad == 0) return;
     uint64_t kept = 0;
     for (uint64_t i = 0; i < count; ++i) {
-        if (faults[i] == Fault::TooFar) {
-            throw Error(ErrorCode::OverLimit,
-                        fmt::format("{}: triangle {} lies further out than 2^40 metres; scale the scene down", of, i));
-        }
+        repairs.too_far += faults[i] == Fault::TooFar;
         repairs.not_finite += faults[i] == Fault::NotFinite;
         repairs.without_area += faults[i] == Fault::WithoutArea;
         if (faults[i] != Fault::None) continue;
@@ -160,6 +159,12 @@ void check_shape_sizes(const MeshShape& shape, const Mesh& mesh, const std::stri
     }
 }
 
+void put_zeros_for_no_places(std::vector<Vec3>& positions) {
+    parallel_for(positions.size(), kGrain, [&](uint64_t i) {
+        if (!is_place(positions[i])) positions[i] = {};
+    });
+}
+
 void put_zeros_for_not_finite(std::vector<Vec3>& values) {
     parallel_for(values.size(), kGrain, [&](uint64_t i) {
         if (!is_finite(values[i])) values[i] = {};
@@ -169,6 +174,7 @@ void put_zeros_for_not_finite(std::vector<Vec3>& values) {
 } // namespace
 
 MeshRepairs& MeshRepairs::operator+=(const MeshRepairs& other) {
+    too_far += other.too_far;
     not_finite += other.not_finite;
     without_area += other.without_area;
     normals += other.normals;
@@ -181,8 +187,8 @@ MeshRepairs& MeshRepairs::operator+=(const MeshRepairs& other) {
 MeshRepairs repair_mesh(Mesh& mesh, bool reshaped, const std::string& of) {
     check_sizes(mesh, of);
     MeshRepairs repairs;
-    drop_triangles(mesh, reshaped, of, repairs);
-    put_zeros_for_not_finite(mesh.positions);
+    drop_triangles(mesh, reshaped, repairs);
+    put_zeros_for_no_places(mesh.positions);
     repairs.normals = repair_normals(mesh);
     repairs.tangents = repair_tangents(mesh);
     for (std::vector<Vec2>& uv : mesh.uv) {
@@ -211,7 +217,7 @@ MeshRepairs repair_shape(MeshShape& shape, const Mesh& mesh, std::size_t joint_c
                                                      "the skin's joints",
                                                      of, i / shape.joints_per_vertex, shape.joints[i], joint_count));
     }
-    put_zeros_for_not_finite(shape.positions);
+    put_zeros_for_no_places(shape.positions);
     for (MorphTarget& target : shape.targets) {
         for (std::vector<Vec3>* offsets : {&target.positions, &target.normals, &target.tangents}) {
             put_zeros_for_not_finite(*offsets);

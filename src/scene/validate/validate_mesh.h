@@ -12,7 +12,7 @@ namespace pertev {
 
 /// How many things were repaired.
 struct MeshRepairs {
-    uint64_t not_finite = 0, without_area = 0; // triangles dropped
+    uint64_t not_finite = 0, too_far = 0, without_area = 0; // triangles dropped
     uint64_t normals = 0, tangents = 0, texture_coordinates = 0, colors = 0;
 
     MeshRepairs& operator+=(const MeshRepairs& other);
@@ -21,7 +21,7 @@ struct MeshRepairs {
 /// After it: indices in range, positions finite and within kMaxCoordinate, normals and tangents unit, texture
 /// coordinates finite, colours in [0, 1], no triangle without area, but for a mesh that is `reshaped` over time: such
 /// a triangle may have one later. Vertices keep their numbers; one that is not finite
-/// is then used by no triangle and set to 0. Throws Error(BadInput or OverLimit) that starts with `of`.
+/// or too far is then used by no triangle and set to 0. Throws Error(BadInput or OverLimit) that starts with `of`.
 MeshRepairs repair_mesh(Mesh& mesh, bool reshaped, const std::string& of);
 
 /// What shape_mesh reads of the shape of `mesh`, of a scene whose nodes and skins are valid: every array has its size,

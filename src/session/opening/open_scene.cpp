@@ -1,6 +1,7 @@
 #include "session/opening/open_scene.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "formats/files/file_choices.h"
 #include "formats/read_environment.h"
 #include "math/scalar.h"
+#include "scene/names.h"
 #include "session/degrees.h"
 #include "session/photometry.h"
 #include "session/survey/default_light.h"
@@ -51,6 +53,17 @@ void turn_and_scale(const OpenOptions& options, Scene& scene, Messages& messages
     };
     if (options.environment_rotation_deg != 0) warn("environment_rotation");
     if (options.environment_scale != 1) warn("environment_scale");
+}
+
+/// Whether such a lamp is set before anything is made up. An environment is set last, after it was scaled, and so are
+/// lamps that have been made up.
+bool names_lamp_of_file(const Scene& scene, const LampStrength& lamp) {
+    if (scene.environment) return false;
+    const auto is_called_so = [&](const auto& thing) { return has_name(names_of(scene, thing), lamp.name); };
+    return std::ranges::any_of(scene.lights, is_called_so) ||
+           std::ranges::any_of(scene.instances, [&](const Instance& instance) {
+               return scene.materials[instance.material].is_lamp() && is_called_so(instance);
+           });
 }
 
 void show_back_faces(Scene& scene, Messages& messages) {
@@ -176,14 +189,23 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
     }
     if (options.show_back_faces) show_back_faces(scene, messages);
     if (auto environment = environment_of(options, messages)) scene.environment = *std::move(environment);
+    const double efficacy = lumens_per_watt(options.scene, options.efficacy);
+    const bool has_light = !lacks_light(scene);
+    std::vector<LampStrength> of_file, others;
+    std::ranges::partition_copy(options.lamps, std::back_inserter(of_file), std::back_inserter(others),
+                                [&](const LampStrength& lamp) { return names_lamp_of_file(scene, lamp); });
+    set_lamps(scene, of_file, efficacy);
     Surroundings around;
-    const DefaultLight light = add_default_light(scene, options.use, messages, &around);
+    // Who turns the last lamp of a file off wants it dark.
+    const bool is_turned_off = has_light && lacks_light(scene);
+    const DefaultLight light =
+        is_turned_off ? DefaultLight::None : add_default_light(scene, options.use, messages, &around);
     if (wants_ground(options, scene, light, around)) {
         add_ground(scene);
         messages.make_up("a made-up ground catches the shadow; `ground=off` leaves it out");
     }
     turn_and_scale(options, scene, messages);
-    set_lamps(scene, options.lamps, lumens_per_watt(options.scene, options.efficacy));
+    set_lamps(scene, others, efficacy);
     return scene;
 }
 

@@ -33,11 +33,19 @@ enum class OwnLight {
     None,
 };
 
+/// Whether an animation that plays gives a light an intensity above 0 at some time.
+bool brightens_a_light(const Animation& animation) {
+    return std::ranges::any_of(animation.channels, [](const AnimationChannel& channel) {
+        return channel.part == AnimatedPart::LightIntensity &&
+               std::ranges::any_of(channel.values, [](float value) { return value > 0; });
+    });
+}
+
 OwnLight own_light(const Scene& scene) {
     if (scene.environment) return OwnLight::Enough;
-    const bool is_lit = std::any_of(scene.lights.begin(), scene.lights.end(),
-                                    [](const Light& light) { return max_component(light.intensity) > 0; });
-    if (is_lit) return OwnLight::Punctual;
+    const bool is_lit =
+        std::ranges::any_of(scene.lights, [](const Light& light) { return max_component(light.intensity) > 0; });
+    if (is_lit || std::ranges::any_of(scene.animations, brightens_a_light)) return OwnLight::Punctual;
     std::vector<bool> is_used(scene.materials.size());
     for (const Instance& instance : scene.instances) is_used[instance.material] = true; // hidden or not: it may come
     bool is_all_unlit = true;
@@ -71,6 +79,8 @@ void add_lamps(Scene& scene, const Surroundings& room) {
 }
 
 } // namespace
+
+bool lacks_light(const Scene& scene) { return own_light(scene) == OwnLight::None; }
 
 DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages, Surroundings* seen) {
     const OwnLight own = own_light(scene);
