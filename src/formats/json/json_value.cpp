@@ -81,28 +81,35 @@ std::optional<JsonValue> JsonValue::extension(std::string_view name) const {
 std::vector<std::pair<std::string, JsonValue>>
 JsonValue::extensions_within(const std::function<bool(std::string_view)>& is_wanted) const {
     std::vector<std::pair<std::string, JsonValue>> found;
-    std::string pointer = pointer_;
+    std::vector<std::pair<std::string_view, std::size_t>> path; // keys, or without one indices
+    const auto pointer = [&] {
+        std::string text = pointer_;
+        for (const auto& [key, index] : path) text += "/" + (key.empty() ? std::to_string(index) : escape(key));
+        return text;
+    };
     // The parser has refused what is nested so deeply that this recursion could not follow.
     const auto look = [&](const auto& self, simdjson::dom::element element, bool is_extensions) -> void {
-        const auto below = [&](std::string_view key, simdjson::dom::element value, bool are_extensions) {
-            const std::size_t size = pointer.size();
-            pointer += '/';
-            pointer += escape(key);
-            if (is_extensions && !value.is_null() && is_wanted(key)) {
-                found.emplace_back(std::string(key), JsonValue(*file_, pointer, value));
-            }
-            self(self, value, are_extensions);
-            pointer.resize(size);
-        };
+        std::size_t i = 0;
         if (element.is_object()) {
             for (const auto& [key, value] : simdjson::dom::object(element)) {
                 const bool may_hold = value.is_object() || value.is_array();
-                if ((may_hold || is_extensions) && key != "extras") below(key, value, key == "extensions");
+                if (!(may_hold || is_extensions) || key == "extras") continue;
+                path.emplace_back(key, 0);
+                if (is_extensions && !value.is_null() && is_wanted(key)) {
+                    found.emplace_back(std::string(key), JsonValue(*file_, pointer(), value));
+                }
+                self(self, value, key == "extensions");
+                path.pop_back();
             }
         } else if (element.is_array()) {
-            std::size_t i = 0;
             for (const simdjson::dom::element value : simdjson::dom::array(element)) {
-                if (value.is_object() || value.is_array()) below(std::to_string(i), value, false);
+                if (value.is_object()) {
+                    path.emplace_back(std::string_view(), i);
+                    self(self, value, false);
+                    path.pop_back();
+                } else if (value.is_number() || value.is_string()) {
+                    break; // so are all
+                }
                 ++i;
             }
         }
