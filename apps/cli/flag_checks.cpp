@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "image/image_format.h"
-#include "session/frame_sequence.h"
+#include "session/frame_range.h"
 #include "settings/parse_values.h"
 
 namespace pertev {
