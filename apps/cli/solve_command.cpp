@@ -54,7 +54,7 @@ int solve(SolveFlags& flags) {
     set_thread_count(static_cast<int>(flags.machine.threads));
     const Stopwatch total_time;
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
-    Scene scene = load_scene(flags.scene, SceneUse::Picture, messages); // render shows it under the same sky
+    Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
     if (flags.strict) refuse_what_is_left_out(messages, "nothing is solved");
     check_light(flags.render, scene, messages);
     PrepareOptions prepare = prepare_options(flags.render, false);

@@ -5,8 +5,8 @@
 namespace pertev {
 
 enum class SceneUse {
-    Picture,     // `render`, `view`, `solve`, whose light pictures show: a sky where it has too little light to see by
-    Measurement, // `measure`: a sky where the file has no emitter at all
+    Picture,     // `render`, `view`: a sky where the file has too little light to see by
+    Measurement, // `measure`, `solve` and pictures of what was solved: a sky where the file has no emitter at all
     Benchmark,   // `bench` and `lab`: as Measurement, under the sky that recorded figures were measured under
 };
 

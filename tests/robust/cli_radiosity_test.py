@@ -76,14 +76,16 @@ class Radiosity(CliTest):
         write(self.path("floor.mtl"), "newmtl a\nKd 0.5 0.5 0.6\n")
         self.refuse(2, "render", "floor.obj", *SMALL, "-o", "x.png", "--solution", "floor.rad", says=["with other materials"])
 
-    def test_a_scene_of_weak_emitters_is_solved_under_the_sky_that_its_pictures_have(self):
+    def test_a_scene_of_weak_emitters_is_solved_without_a_sky_and_its_pictures_have_none(self):
         cube = "".join(f"v {x} {y} {z}\n" for x in (-1, 1) for y in (-1, 1) for z in (-1, 1))
         body = "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"
         lamp = "".join(f"v {x} 1.01 {z}\n" for x in (0, 0.02) for z in (0, 0.02))
         write(self.path("weak.mtl"), "newmtl b\nKd .5 .5 .5\nnewmtl l\nKd 0 0 0\nKe 5 5 5\n")
         write(self.path("weak.obj"), "mtllib weak.mtl\n" + cube + "usemtl b\n" + body + lamp + "usemtl l\nf 9 10 12 11\n")
         self.solve(*COARSE, scene="weak.obj", output="weak.rad")
-        self.assertEqual(self.picture("--solution", "weak.rad", scene="weak.obj"), self.picture(*COARSE, scene="weak.obj"))
+        shown = self.picture("--solution", "weak.rad", scene="weak.obj")
+        self.assertEqual(shown, self.picture(*COARSE, "--environment", "0,0,0", scene="weak.obj"))
+        self.assertNotEqual(shown, self.picture(*COARSE, scene="weak.obj"))
 
     def test_a_solution_is_of_one_time(self):
         scene = json.loads(moving_gltf())

@@ -60,6 +60,9 @@ std::unique_ptr<ReadyScene> make_ready(const PictureOptions& options, Sink& sink
     auto ready = std::make_unique<ReadyScene>();
     OpenOptions open = open_options(options.scene);
     open.ground = ground_of(options);
+    const bool shows_solution =
+        options.render.integrator == IntegratorKind::Radiosity && !options.radiosity.solution.empty();
+    if (shows_solution) open.use = SceneUse::Measurement; // as it was solved
     Scene scene = open_scene(open, messages);
     if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
     RenderSettings& settings = ready->settings;
