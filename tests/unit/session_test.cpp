@@ -12,6 +12,7 @@
 #include "base/limits.h"
 #include "formats/read_scene.h"
 #include "image/picture_hash.h"
+#include "image/tone_map_image.h"
 #include "render/update_scene.h"
 #include "session/session.h"
 #include "tests/support/meshes.h"
