@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Compiles headers by themselves, so that each can be included first and, where it has device code, by any compiler.
 
-The first --cxx compiles each header alone, but for those that are compiled so already: in the build their own .cpp
-includes them first, or another header does, which then stands or falls with them. Host-device headers (those that say
-HD) are compiled by every other --cxx and by --nvcc too, gathered into one generated file. `--self-test` feeds the check
-headers that must fail.
+The first --cxx compiles each header but those that their own .cpp includes first: after nothing but headers that it
+includes itself, at once or through others. So a file that includes base/box.h and then scene/scene.h, which includes
+base/box.h, shows both to be complete. Host-device headers (those that say HD) are compiled by every other --cxx and by
+--nvcc too, gathered into one generated file. `--self-test` feeds the check headers that must fail.
 """
 
 import argparse
@@ -23,7 +23,7 @@ HOST_FLAGS = ["-x", "c++", "-std=c++20", "-fsyntax-only", "-ffp-contract=off", "
 NVCC_FLAGS = ["-x", "cu", "-std=c++20", "-ptx", "-arch=compute_90", "--expt-relaxed-constexpr", "-fmad=false",
               "-Werror=all-warnings", "-o", os.devnull]
 FIRST_INCLUDE = re.compile(r'^#include [<"](.*?)[>"]', re.MULTILINE)
-FIRST_LINES = re.compile(r'\A(?:\s*//.*\n|\s*#pragma once\n|\s*\n)*#include "(.*?)"')
+OWN_INCLUDE = re.compile(r'^#include "(.*?)"', re.MULTILINE)
 HOST_DEVICE = re.compile(r"^\s*(template\s*<.*>\s*)?(\[\[\w+\]\]\s*)?(constexpr\s+|static\s+)*HD\b", re.MULTILINE)
 
 
@@ -43,10 +43,45 @@ def built_alone(header, source):
     return bool(first) and first.group(1) == header.as_posix()
 
 
-def first_of_others(headers, source):
-    """The headers that come before all else in another one."""
-    firsts = [FIRST_LINES.match((source / h).read_text(encoding="utf-8")) for h in headers]
-    return {pathlib.Path(first.group(1)) for first in firsts if first}
+def closures(headers, source):
+    """All that each header includes, at once or through others, of our own."""
+    known = {}
+
+    def of(header):
+        if header not in known:
+            known[header] = set()  # where headers include each other in a circle
+            for name in map(pathlib.Path, OWN_INCLUDE.findall((source / header).read_text(encoding="utf-8"))):
+                if (source / name).exists():
+                    known[header] |= {name} | of(name)
+        return known[header]
+
+    return {h: of(h) for h in headers}
+
+
+def chains(headers, source):
+    """The headers in as few lists as can be, in which each includes all that come before it (a largest matching of
+    headers with ones that they include, by augmenting paths; Fulkerson 1956)."""
+    included = closures(headers, source)
+    below = {h: [other for other in headers if other != h and other in included[h]] for h in headers}
+    next_of = {}  # a header, and that which comes after it in its list
+
+    def find_before(header, seen):
+        for other in below[header]:
+            if other not in seen:
+                seen.add(other)
+                if other not in next_of or find_before(next_of[other], seen):
+                    next_of[other] = header
+                    return True
+        return False
+
+    for header in headers:
+        find_before(header, set())
+    followed = set(next_of.values())
+    for first in (h for h in headers if h not in followed):
+        chain = [first]
+        while chain[-1] in next_of:
+            chain.append(next_of[chain[-1]])
+        yield chain
 
 
 def jobs_for(source, compilers, nvcc):
@@ -56,10 +91,8 @@ def jobs_for(source, compilers, nvcc):
     others = [[c, *HOST_FLAGS] for c in compilers[1:]] + ([[nvcc, *NVCC_FLAGS]] if nvcc else [])
     for command in others:
         yield f"host-device headers by {command[0]}", command, host_device
-    covered = first_of_others(headers, source)
-    for header in headers:
-        if header not in covered and not built_alone(header, source):
-            yield f"{header} by {compilers[0]}", [compilers[0], *HOST_FLAGS], [header]
+    for chain in chains([h for h in headers if not built_alone(h, source)], source):
+        yield f"{', '.join(map(str, chain))} by {compilers[0]}", [compilers[0], *HOST_FLAGS], chain
 
 
 def check(source, compilers, nvcc, threads):
