@@ -6,6 +6,7 @@
 
 #include "apps/viewer/panel_phrases.h"
 #include "apps/viewer/panel_text.h"
+#include "base/parallel_for.h"
 #include "base/stopwatch.h"
 #include "image/write_png.h"
 
@@ -44,7 +45,10 @@ Rgba8Image shrunk(const Rgba8Image& picture, uint32_t factor) {
 
 Packer::Packer(Audience& audience, WebServer& server, std::function<double()> now_s, Queue* jpeg_queue)
     : audience_(audience), server_(server), now_s_(std::move(now_s)), jpeg_queue_(jpeg_queue),
-      thread_([this] { run(); }) {}
+      thread_([this, threads = thread_count()] {
+          set_thread_count(threads);
+          run();
+      }) {}
 
 Packer::~Packer() {
     is_ending_ = true;
