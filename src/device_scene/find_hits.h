@@ -17,6 +17,17 @@ inline void find_hits(const HostTrees& trees, uint32_t count, RayOrder order, co
     trace_closest_many<WalkOptions{}>(trees, count, order, ray_of, accept_of, hits);
 }
 
+/// The same of rays that come from the camera, or have bounced. Backs that are hidden from the camera do not count to
+/// its own rays (AcceptCameraHit).
+template <class RayOf, class AcceptOf>
+inline void find_hits(const HostTrees& trees, const SceneView& scene, bool from_camera, uint32_t count,
+                      const RayOf& ray_of, const AcceptOf& accept_of, Hit* hits) {
+    const RayOrder order = from_camera ? RayOrder::Together : RayOrder::Scattered;
+    if (!from_camera || scene.any_hidden_back == 0) return find_hits(trees, count, order, ray_of, accept_of, hits);
+    const auto accept_camera = [&](uint32_t i) { return AcceptCameraHit{accept_of(i), ray_of(i).direction}; };
+    find_hits(trees, count, order, ray_of, accept_camera, hits);
+}
+
 /// Whether each of `count` rays meets anything.
 template <class RayOf, class AcceptOf>
 inline void find_occlusions(const HostTrees& trees, uint32_t count, RayOrder order, const RayOf& ray_of,

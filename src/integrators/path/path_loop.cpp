@@ -105,15 +105,7 @@ private:
             }
             return;
         }
-        const RayOrder order = from_camera ? RayOrder::Together : RayOrder::Scattered;
-        if (from_camera && job_.picture.scene.any_hidden_back != 0) {
-            const auto accept_camera = [&](uint32_t i) {
-                return AcceptCameraHit{accept_of(i), paths_[begin + i].direction};
-            };
-            find_hits(trees_, end - begin, order, ray_of, accept_camera, hits_ + begin);
-        } else {
-            find_hits(trees_, end - begin, order, ray_of, accept_of, hits_ + begin);
-        }
+        find_hits(trees_, job_.picture.scene, from_camera, end - begin, ray_of, accept_of, hits_ + begin);
     }
 
     void add_light(uint32_t shadows) {

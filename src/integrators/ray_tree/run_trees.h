@@ -66,15 +66,7 @@ public:
                              trees.keys[i],
                              trees.times != nullptr ? trees.times[i] : kAtRest};
         };
-        const RayOrder order = kind == RayKind::Camera ? RayOrder::Together : RayOrder::Scattered;
-        if (kind == RayKind::Camera && scene.any_hidden_back != 0) {
-            const auto accept_camera = [&](uint32_t i) {
-                return AcceptCameraHit{accept_of(i), trees.rays[i].direction};
-            };
-            pertev::find_hits(trees_, rays.value(), order, ray_of, accept_camera, hits_.data());
-        } else {
-            pertev::find_hits(trees_, rays.value(), order, ray_of, accept_of, hits_.data());
-        }
+        pertev::find_hits(trees_, scene, kind == RayKind::Camera, rays.value(), ray_of, accept_of, hits_.data());
         for (uint32_t i = 0; i < rays.value(); ++i) trees.hits().store(i, hits_[i]);
     }
     void find_occlusions(const TreeJob& job, WorkCount shadows) {
