@@ -23,9 +23,9 @@ Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, uint32_
 }
 
 std::size_t Film::predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs, uint32_t light_layers) {
-    const std::size_t of_pixel = (film_channel_count(aovs) + std::size_t(3) * light_layers) * sizeof(FixedSum) +
-                                 ((aovs & kAovIds) != 0 ? sizeof(PixelIds) : 0) + kFilmColorChannels * sizeof(float);
-    return std::size_t(width) * height * of_pixel + sizeof(uint64_t);
+    Queue queue = Queue::make_dry_run(false);
+    const Film film(queue, width, height, aovs, light_layers);
+    return queue.allocated_bytes();
 }
 
 void Film::clear() {
