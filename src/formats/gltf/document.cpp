@@ -90,8 +90,7 @@ Document::Document(const std::filesystem::path& path, std::vector<std::byte> byt
 
 void Document::read_table(std::string_view name, const JsonValue& holder, Messages& messages) {
     std::vector<JsonValue>& table = tables_[std::string(name)];
-    const std::optional<JsonValue> member = holder.find(name);
-    if (member) read_or_leave_out(*member, messages, [&] { table = member->elements(); });
+    read_member(holder, name, messages, [&](const JsonValue& member) { table = member.elements(); });
 }
 
 /// Where the container ends: the header's length, where the file has it.

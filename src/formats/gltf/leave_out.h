@@ -2,7 +2,9 @@
 
 // The one rule of this reader: what cannot be read is left out with a warning, and the rest of the file is read on.
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -30,6 +32,14 @@ template <class Read>
 template <class Read>
 bool read_or_leave_out(const JsonValue& place, Messages& messages, const Read& read) {
     return read_or_leave_out(place.pointer(), messages, read);
+}
+
+/// Calls read(member) where `object` has the member. One that cannot be read counts as one that is not there.
+template <class Read>
+void read_member(const JsonValue& object, std::string_view key, Messages& messages, const Read& read) {
+    if (const std::optional<JsonValue> member = object.find(key)) {
+        read_or_leave_out(*member, messages, [&] { read(*member); });
+    }
 }
 
 } // namespace pertev::gltf

@@ -36,26 +36,18 @@ void read_cone(const JsonValue& spot, Light& light, Messages& messages) {
     set_cone(inner, outer, light);
 }
 
-/// What a light's strength is made of; 0 where it is negative.
+/// Returns the number, or 0 with a warning where it is negative.
 float not_negative(const JsonValue& number, Messages& messages) {
     const float value = number.to_float();
     if (value < 0) messages.warn({number.place(), fmt::format("{}; expected at least 0, which is taken", value)});
     return max(value, 0.0f);
 }
 
-/// Of which a member that cannot be read counts as one that is not there.
-template <class Read>
-void attempt(const JsonValue& light, std::string_view key, Messages& messages, const Read& read) {
-    if (const std::optional<JsonValue> member = light.find(key)) {
-        read_or_leave_out(*member, messages, [&] { read(*member); });
-    }
-}
-
 } // namespace
 
 Light read_light(const JsonValue& source, Messages& messages) {
     Light light;
-    attempt(source, "name", messages, [&](const JsonValue& name) { light.name = name.to_string(); });
+    read_member(source, "name", messages, [&](const JsonValue& name) { light.name = name.to_string(); });
     const std::string type = source.string_or("type", "");
     if (type == "point")
         light.kind = LightKind::Point;
@@ -68,18 +60,18 @@ Light read_light(const JsonValue& source, Messages& messages) {
 
     Rgb color = {1, 1, 1};
     float intensity = 1;
-    attempt(source, "color", messages, [&](const JsonValue& member) {
+    read_member(source, "color", messages, [&](const JsonValue& member) {
         (void)member.to_floats<3>(); // throws
         const std::vector<JsonValue> channels = member.elements();
         color = {not_negative(channels[0], messages), not_negative(channels[1], messages),
                  not_negative(channels[2], messages)};
     });
-    attempt(source, "intensity", messages,
-            [&](const JsonValue& member) { intensity = not_negative(member, messages); });
+    read_member(source, "intensity", messages,
+                [&](const JsonValue& member) { intensity = not_negative(member, messages); });
     constexpr float largest = std::numeric_limits<float>::max();
     light.intensity = {min(intensity * color.r, largest), min(intensity * color.g, largest),
                        min(intensity * color.b, largest)};
-    attempt(source, "range", messages, [&](const JsonValue& member) {
+    read_member(source, "range", messages, [&](const JsonValue& member) {
         const float range = member.to_float();
         if (range < 0) throw member.error(fmt::format("{}; expected a number above 0", range));
         light.range = range;
@@ -87,7 +79,7 @@ Light read_light(const JsonValue& source, Messages& messages) {
     if (light.kind != LightKind::Spot) return light;
 
     set_cone(0, kPi / 4, light);
-    attempt(source, "spot", messages, [&](const JsonValue& spot) { read_cone(spot, light, messages); });
+    read_member(source, "spot", messages, [&](const JsonValue& spot) { read_cone(spot, light, messages); });
     return light;
 }
 

@@ -14,11 +14,7 @@ namespace {
 /// A member that cannot be read is left out alone.
 std::variant<NodePose, DoubleTransform> pose_of(const JsonValue& node, Messages& messages) {
     std::optional<std::array<double, 16>> m; // by columns
-    const auto attempt = [&](const char* key, const auto& read) {
-        if (const std::optional<JsonValue> member = node.find(key)) {
-            read_or_leave_out(*member, messages, [&] { read(*member); });
-        }
-    };
+    const auto attempt = [&](const char* key, const auto& read) { read_member(node, key, messages, read); };
     attempt("matrix", [&](const JsonValue& matrix) { m = matrix.to_doubles<16>(); });
     if (m) {
         const std::array<double, 16>& a = *m;

@@ -72,9 +72,8 @@ TextureRef Textures::read(const JsonValue& info) {
             read_transform(*transform, texture);
         });
     }
-    if (const std::optional<JsonValue> sampler = source.find("sampler")) {
-        read_or_leave_out(*sampler, messages_, [&] { read_sampler(document_.item("samplers", *sampler), texture); });
-    }
+    read_member(source, "sampler", messages_,
+                [&](const JsonValue& sampler) { read_sampler(document_.item("samplers", sampler), texture); });
     if (uv_set > 1) {
         messages_.leave_out(
             {info.place(), fmt::format("set {} of texture coordinates; only 0 and 1 are supported, the texture is "
