@@ -1,6 +1,6 @@
 #pragma once
 
-// What render and view begin with alike: the session's make_ready, and what is said of it.
+// render and view begin with this alike: the session's make_ready, and what is said of it.
 
 #include "apps/cli/render_flags.h"
 #include "session/pictures/ready_scene.h"

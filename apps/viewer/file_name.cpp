@@ -69,7 +69,7 @@ std::string without_folders(std::string message, const std::string& scene) {
         if (!folder.empty()) erase_all(folder_of(folder.substr(0, folder.size() - 1)), message); // it is named itself
     }
     for (std::size_t at = 0; at < message.size(); ++at) {
-        // What begins with another letter is relative to a file of the scene.
+        // A path that begins with another letter is relative to a file of the scene.
         if ((message[at] != '/' && message[at] != '.') || !is_beginning(message, at)) continue;
         const std::string_view rest = std::string_view(message).substr(at);
         message.erase(at, folders_size(rest));

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a kind of device must offer: the few calls that move memory, wait and tell the time. There are the CPU
+// A kind of device must offer this: the few calls that move memory, wait and tell the time. There are the CPU
 // (queue.cpp), CUDA (cuda/cuda_backend.cpp), and a dry run of either, which counts memory (queue.cpp); a queue calls
 // through this table.
 

@@ -29,7 +29,7 @@ Counts count(const PlacedScene& prepared) {
     return all;
 }
 
-/// What stages read. `targets` outlives the list.
+/// Returns what stages read. `targets` outlives the list.
 PartArrays list_rest(const PlacedScene& prepared, std::vector<DeformVertices>& stages,
                      std::vector<std::vector<MorphTargetView>>& targets) {
     PartArrays arrays;

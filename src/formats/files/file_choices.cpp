@@ -26,8 +26,8 @@ constexpr Kind kClip = {"animation", true}, kFileScene = {"scene", false};
 
 bool is_name(const Kind& kind, const std::string& text) { return !text.empty() && !(kind.has_all && text == kAll); }
 
-/// Of each, whether its number alone stands for it: no name, or one that others have too, or one that is the number of
-/// another such.
+/// Returns of each whether its number alone stands for it: no name, or one that others have too, or one that is the
+/// number of another such.
 std::vector<bool> are_numbered(const Kind& kind, std::span<const std::string> names) {
     std::map<std::string_view, std::size_t> counts;
     for (const std::string& name : names) ++counts[name];

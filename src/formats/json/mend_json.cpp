@@ -62,7 +62,7 @@ std::string mended_infinity(std::string_view word) {
     return "";
 }
 
-/// The code unit of \uXXXX at `at`; -1 where there is none.
+/// Returns the code unit of the escape (backslash, u, four digits) at `at`, or -1 where there is none.
 int code_unit(std::string_view text, std::size_t at) {
     if (at + 6 > text.size() || text[at] != '\\' || text[at + 1] != 'u') return -1;
     int unit = 0;

@@ -15,7 +15,7 @@
 
 namespace pertev {
 
-// What a place learns from the rays of its hemisphere: the light that comes, how it changes with a turn and with a
+// A place learns this from the rays of its hemisphere: the light that comes, how it changes with a turn and with a
 // step, and how near all is. Any light may be asked for it, cell by cell, so this can be held to closed forms.
 //
 // Sources: Ward, Heckbert, "Irradiance Gradients", EGWR 1992, section 3 (the gradients; by a turn the mean of the
