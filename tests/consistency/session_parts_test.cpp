@@ -1,7 +1,6 @@
 // The parts of a session stand alone: each renders without a Session, and gives the bytes that a Session gives. Two
 // sessions run side by side.
 
-#include <algorithm>
 #include <atomic>
 #include <thread>
 
@@ -43,12 +42,6 @@ struct Parts {
     }
 };
 
-bool same_part_ids(const std::vector<PixelIds>& a, const std::vector<PixelIds>& b) {
-    return std::ranges::equal(a, b, [](const PixelIds& x, const PixelIds& y) {
-        return x.instance == y.instance && x.primitive == y.primitive && x.material == y.material;
-    });
-}
-
 /// Ends what goes on once it has heard `most` steps of it.
 struct EndingSink : Sink {
     explicit EndingSink(int steps) : most(steps) {}
@@ -63,26 +56,6 @@ struct EndingSink : Sink {
 };
 
 } // namespace
-
-TEST_CASE("films of two ranges of samples add up to the film of a session") {
-    const MixedWorld world;
-    Queue queue = test::queue_asked_for();
-    const RenderSettings settings = part_settings();
-    const Camera camera = test::mixed_scene_camera();
-    const RenderResult whole = render_picture(queue, world.prepared, camera, settings);
-    Parts parts(queue, world, settings);
-    FilmRender first(parts.pictures, camera, settings), second(parts.pictures, camera, settings);
-    CHECK(second.render({2, 4}) == 2);
-    CHECK(first.render({0, 2}) == 2);
-    CHECK(second.render({4, 5}) == 1);
-    CHECK(second.samples().first == 2);
-    CHECK(second.samples().count() == 3);
-    CHECK(picture_hash(second.picture()) != picture_hash(whole.picture));
-    first.film().add(second.film());
-    CHECK(picture_hash(first.film().picture(5, false)) == picture_hash(whole.picture));
-    CHECK(same_part_ids(first.film().ids(), whole.ids));
-    CHECK(picture_hash(first.film().layers(5)[1].image) == picture_hash(whole.layers[1].image));
-}
 
 TEST_CASE("frames, the meter and post steps work without a session") {
     const MixedWorld world;

@@ -1,0 +1,35 @@
+#include <doctest/doctest.h>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/cli/help.h"
+#include "apps/cli/setting_flags.h"
+#include "session/writing/picture_metadata.h"
+#include "settings/settings_file.h"
+
+using namespace pertev;
+
+TEST_CASE("a setting that is added by one row appears as a flag, in help, JSON and metadata") {
+    const std::vector<Setting> table = {row("roulette_depth", "Quality", "N",
+                                            PERTEV_SETTING_FIELD(render.path.roulette_depth),
+                                            "Russian roulette begins at this vertex.", Range{1, 99}, Recorded::Always)};
+    PictureOptions options;
+    CLI::App app("A program", "program");
+    app.formatter(std::make_shared<Help>(""));
+    CLI::App& verb = *app.add_subcommand("render", "A verb");
+    SettingFlags flags;
+    flags.add(verb, kRender, options, table);
+    CHECK(verb.help().find("--roulette-depth N") != std::string::npos);
+    CHECK(verb.help().find("begins at this vertex") != std::string::npos);
+    CHECK(verb.help().find("(3)") != std::string::npos); // its default
+    CHECK_THROWS_AS(app.parse("render --roulette-depth 0"), CLI::ValidationError);
+    app.parse("render --roulette-depth 5");
+    Messages messages;
+    flags.read(options, messages);
+    CHECK(options.render.path.roulette_depth == 5);
+    CHECK(settings_json(options, "", table).find(R"("settings":{"roulette_depth":5})") != std::string::npos);
+    const ExrMetadata metadata = recorded_settings(options, table);
+    REQUIRE(metadata.size() == 1);
+    CHECK(metadata[0].first == "pertev.roulette_depth");
+    CHECK(std::get<int32_t>(metadata[0].second) == 5);
+}

@@ -1,0 +1,96 @@
+// A film that holds a window of a picture has the bytes that the whole picture has there, its layers, its ids and its
+// layers of light paths too, by either body of the path tracer, and where rasterisation finds what the camera sees.
+
+#include <cstring>
+
+#include <doctest/doctest.h>
+
+#include "integrators/kinds/make_integrator.h"
+#include "render/film.h"
+#include "tests/seams/picture_on_device.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr uint32_t kUncroppedWidth = 61, kUncroppedHeight = 35, kCropSamples = 3;
+constexpr PixelWindow kWindow = {.picture_width = kUncroppedWidth, .x = 17, .y = 9, .width = 23};
+constexpr uint32_t kWindowHeight = 14;
+constexpr uint32_t kCropAovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
+
+struct CropResult {
+    std::vector<Image> images; // the picture, auxiliary layers, layers of light paths
+    std::vector<PixelIds> ids;
+};
+
+CropResult render_crop(Queue& queue, const PreparedScene& prepared, const IntegratorSettings& settings,
+                       bool is_window) {
+    test::PictureOnDevice picture(queue, prepared, test::mixed_scene_camera(), kUncroppedWidth, kUncroppedHeight);
+    const auto integrator = make_integrator(queue, settings);
+    integrator->begin(picture.view, picture.tracer, kCropSamples);
+    const uint32_t light_layers = settings.light_paths ? settings.light_paths->count() : 0;
+    const Film film(queue, is_window ? kWindow.width : kUncroppedWidth, is_window ? kWindowHeight : kUncroppedHeight,
+                    kCropAovs, light_layers);
+    FilmView view = film.view();
+    if (is_window) view.window = kWindow;
+    integrator->render(0, kCropSamples, view);
+    CropResult result = {{film.picture(kCropSamples, true)}, film.ids()};
+    for (FilmLayer& layer : film.layers(kCropSamples)) result.images.push_back(std::move(layer.image));
+    for (uint32_t i = 0; i < light_layers; ++i) result.images.push_back(film.light_layer(i, kCropSamples));
+    return result;
+}
+
+/// Pixels of a window that are not those of the whole image.
+uint32_t differing_in_window(const Image& window, const Image& whole) {
+    REQUIRE(window.channels == whole.channels);
+    const std::size_t channels = static_cast<std::size_t>(whole.channels);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < kWindow.width * kWindowHeight; ++i) {
+        const float* const there = &whole.pixels[kWindow.pixel_at(i) * channels];
+        count += std::memcmp(&window.pixels[i * channels], there, channels * sizeof(float)) != 0 ? 1 : 0;
+    }
+    return count;
+}
+
+} // namespace
+
+TEST_CASE("a film of a window has the bytes that the whole picture has there") {
+    for (uint32_t i = 0; i < kWindow.width * kWindowHeight; ++i) REQUIRE(kWindow.place_of(kWindow.pixel_at(i)) == i);
+    CHECK(PixelWindow{}.pixel_at(1234) == 1234);
+    CHECK(PixelWindow{}.place_of(1234) == 1234);
+
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    const auto layers = std::make_shared<const LightPathLayers>(
+        put_to_scene({parse_light_path("lamps=L<'lamp'>.*E"), parse_light_path("once=L.E")}, scene));
+    for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
+        for (const bool is_other : {false, true}) {
+            CAPTURE(static_cast<int>(body));
+            CAPTURE(is_other);
+            IntegratorSettings settings;
+            settings.body = body;
+            settings.batch = 500;
+            settings.integrator = is_other ? IntegratorKind::Hybrid : IntegratorKind::Path;
+            settings.path.sampler = is_other ? SamplerKind::Independent : SamplerKind::Sobol;
+            if (is_other) settings.light_paths = layers;
+            Queue queue = test::queue_asked_for();
+            const CropResult whole = render_crop(queue, prepared, settings, false);
+            const CropResult window = render_crop(queue, prepared, settings, true);
+            REQUIRE(whole.images.size() == (is_other ? 7 : 5));
+            for (std::size_t i = 0; i < whole.images.size(); ++i) {
+                CHECK(differing_in_window(window.images[i], whole.images[i]) == 0);
+            }
+            uint32_t other_ids = 0, things = 0;
+            for (uint32_t i = 0; i < window.ids.size(); ++i) {
+                const PixelIds a = window.ids[i], b = whole.ids[kWindow.pixel_at(i)];
+                other_ids += a.instance != b.instance || a.primitive != b.primitive || a.material != b.material ? 1 : 0;
+                things += a.instance != kNoHit && i > 0 && a.instance != window.ids[i - 1].instance ? 1 : 0;
+            }
+            CHECK(other_ids == 0);
+            CHECK(things > 10);
+        }
+    }
+}

@@ -1,0 +1,163 @@
+#pragma once
+
+// PathRounds is a schedule of the tests' own over the functions of the path tracer, beside the product's two. It takes
+// one sample of all pixels at a time. Each stage runs over all pixels, and the scene's tracer traces their rays; a path
+// that has ended keeps its place, with a ray that meets nothing. So any job, mask of features and listeners can be
+// rendered on either device, with no code in the product for it.
+
+#include "device/launch.h"
+#include "integrators/path/generate_path.h"
+#include "integrators/path/path_vertex.h"
+#include "tracer/scene_tracer.h"
+
+namespace pertev::test {
+
+/// Rays of all pixels on a device, and the triangles that they leave and lead to.
+struct RoundRays {
+    Ray* rays;
+    Uint2 *starts, *targets;
+
+    RayQueueView query() const { return {.rays = rays, .starts = starts, .targets = targets}; }
+    HD void store(uint32_t i, const Ray& ray, TriangleId start, TriangleId target) const {
+        rays[i] = ray;
+        starts[i] = {start.instance, start.primitive};
+        targets[i] = {target.instance, target.primitive};
+    }
+    /// Stores a ray that meets nothing.
+    HD void store_none(uint32_t i) const { store(i, {{0, 0, 0}, 0, {0, 0, 1}, 0}, {}, {}); }
+};
+
+template <class Listener>
+struct RoundPath {
+    PathState state;
+    typename Listener::Kept kept;
+    typename Listener::Asked asked;
+    Rgb asked_light; // of the shadow ray
+    bool goes_on, wants_shadow;
+};
+
+template <class Listener>
+struct RoundsView {
+    RoundPath<Listener>* paths; // [pixels of the film]
+    RoundRays onwards, shadows;
+    HitQueueView hits, occlusions;
+
+    HD void store_ray(uint32_t i) const {
+        const PathState& path = paths[i].state;
+        if (!paths[i].goes_on) return onwards.store_none(i);
+        onwards.store(i, {path.origin, 0, path.direction, kInfinity}, path.start, {});
+    }
+};
+
+template <class Listener, class Job>
+struct BeginRound {
+    Job job;
+    RoundsView<Listener> view;
+    uint32_t sample;
+
+    HD void operator()(uint32_t i) const {
+        RoundPath<Listener>& path = view.paths[i];
+        path.state = generate_path(job.picture.camera, job.settings, job.film.window.pixel_at(i), sample);
+        path.goes_on = true;
+        view.store_ray(i);
+    }
+};
+
+template <Features kFeatures, class Listener, class Job>
+struct ShadeRound {
+    Job job;
+    RoundsView<Listener> view;
+
+    HD void operator()(uint32_t i) const {
+        RoundPath<Listener>& path = view.paths[i];
+        path.wants_shadow = false;
+        view.shadows.store_none(i);
+        if (!path.goes_on) return;
+        Listener listener(job);
+        if (path.state.depth == 0) {
+            listener.begins(path.state);
+        } else {
+            listener.take_up(path.kept);
+        }
+        ShadowRay shadow;
+        const Hit hit = view.hits.load(i);
+        path.goes_on =
+            shade_vertex<kFeatures>(job, path.state, hit, DrawWhenAsked(), shadow, path.wants_shadow, listener);
+        listener.put_down(path.kept);
+        view.store_ray(i);
+        if (!path.wants_shadow) return;
+        listener.hand_over(path.asked);
+        path.asked_light = shadow.contribution;
+        view.shadows.store(i, {shadow.origin, 0, shadow.direction, shadow.t_max}, {hit.instance, hit.primitive},
+                           shadow.target);
+    }
+};
+
+template <class Listener, class Job>
+struct AddRoundLight {
+    Job job;
+    RoundsView<Listener> view;
+
+    HD void operator()(uint32_t i) const {
+        RoundPath<Listener>& path = view.paths[i];
+        if (!path.wants_shadow || view.occlusions.instances[i] != kNoHit) return;
+        path.state.radiance += path.asked_light;
+        Listener(job).arrived(path.kept, path.asked, path.asked_light);
+    }
+};
+
+template <class Listener, class Job>
+struct EndRounds {
+    Job job;
+    RoundsView<Listener> view;
+
+    HD void operator()(uint32_t i) const {
+        const RoundPath<Listener>& path = view.paths[i];
+        Listener(job).ended(path.state.pixel, path.state.radiance, path.kept);
+    }
+};
+
+/// Code for scenes of opaque surfaces at rest.
+template <Features kFeatures, class Listener, class Job = PathJob>
+class PathRounds {
+public:
+    PathRounds(Queue& queue, uint32_t pixels)
+        : queue_(queue), pixels_(pixels), paths_(queue, pixels, "rounds"), rays_(queue, 2 * pixels, "rounds"),
+          triangles_(queue, 4 * pixels, "rounds"), places_(queue, pixels, "rounds"),
+          instances_(queue, 2 * pixels, "rounds") {}
+
+    /// Adds samples [first, end) of the job's picture to its film, of at most `pixels` pixels.
+    void render(const Job& job, SceneTracer& tracer, uint32_t first, uint32_t end) {
+        const uint32_t count = job.film.width * job.film.height;
+        const uint32_t p = pixels_;
+        Uint2* const ids = triangles_.data();
+        const RoundsView<Listener> view = {.paths = paths_.data(),
+                                           .onwards = {rays_.data(), ids, ids + p},
+                                           .shadows = {rays_.data() + p, ids + 2 * p, ids + 3 * p},
+                                           .hits = {places_.data(), instances_.data()},
+                                           .occlusions = {nullptr, instances_.data() + p}};
+        for (uint32_t sample = first; sample < end; ++sample) {
+            launch(queue_, "begin_round", count, BeginRound<Listener, Job>{job, view, sample});
+            for (uint32_t depth = 0; depth <= job.settings.max_depth; ++depth) {
+                const RayKind kind = depth == 0 ? RayKind::Camera : RayKind::Bounce;
+                tracer.find_hits(kind, view.onwards.query(), count, view.hits);
+                launch(queue_, "shade_round", count, ShadeRound<kFeatures, Listener, Job>{job, view});
+                tracer.find_occlusions(view.shadows.query(), count, view.occlusions);
+                launch(queue_, "add_round_light", count, AddRoundLight<Listener, Job>{job, view});
+            }
+            launch(queue_, "end_rounds", count, EndRounds<Listener, Job>{job, view});
+        }
+        queue_.wait();
+    }
+
+private:
+    Queue& queue_;
+    uint32_t pixels_;
+    Buffer<RoundPath<Listener>> paths_;
+    Buffer<Ray> rays_;
+    Buffer<Uint2> triangles_;
+    Buffer<Float4> places_;
+    Buffer<uint32_t> instances_;
+};
+
+} // namespace pertev::test

@@ -1,0 +1,100 @@
+#pragma once
+
+// A target of a film that counts for each pixel how many samples show which instance, as mattes need it: the ids of
+// most coverage come first when it is resolved. The film knows nothing of it.
+//
+// Of more ids than a pixel has room for it keeps the least. That is a function of the set of samples, so that parts of
+// a film add up exactly: who is among the least of all is so in each part, and was never left out there.
+//
+// Source: Friedman, Jones, "Fully Automatic ID Mattes with Support for Motion Blur and Transparency", SIGGRAPH 2015
+// posters.
+
+#include <algorithm>
+#include <vector>
+
+#include "integrators/path/film_listener.h"
+#include "render/film.h"
+#include "tests/seams/path_rounds.h"
+
+namespace pertev::test {
+
+/// Ids and counts of samples, from the least id on; kNoHit behind the last one.
+template <uint32_t kIds>
+struct PixelCoverage {
+    uint32_t ids[kIds], samples[kIds];
+
+    HD void take(uint32_t id, uint32_t count) {
+        uint32_t i = 0;
+        while (i < kIds && ids[i] < id) ++i;
+        if (i == kIds) return;
+        if (ids[i] == id) {
+            samples[i] += count;
+            return;
+        }
+        for (uint32_t k = kIds - 1; k > i; --k) ids[k] = ids[k - 1], samples[k] = samples[k - 1];
+        ids[i] = id, samples[i] = count;
+    }
+};
+
+template <uint32_t kIds>
+struct AddCoverage {
+    const PixelCoverage<kIds>* from;
+    PixelCoverage<kIds>* to;
+
+    HD void operator()(uint32_t i) const {
+        for (uint32_t k = 0; k < kIds && from[i].ids[k] != kNoHit; ++k) to[i].take(from[i].ids[k], from[i].samples[k]);
+    }
+};
+
+template <uint32_t kIds>
+class CoverageTarget : public ElementTarget<PixelCoverage<kIds>, AddCoverage<kIds>, 0xff> {
+public:
+    CoverageTarget(Queue& queue, std::size_t pixels)
+        : ElementTarget<PixelCoverage<kIds>, AddCoverage<kIds>, 0xff>(queue, pixels, "coverage") {}
+    void show(FilmView&) const override {}
+
+    /// Resolves it: instances of each pixel with their counts, from most to least.
+    struct Rank {
+        uint32_t id, samples;
+        bool operator==(const Rank&) const = default;
+    };
+    std::vector<std::vector<Rank>> ranks() const {
+        std::vector<std::vector<Rank>> of_pixels;
+        for (const PixelCoverage<kIds>& pixel : this->elements().download()) {
+            std::vector<Rank>& ranked = of_pixels.emplace_back();
+            for (uint32_t k = 0; k < kIds && pixel.ids[k] != kNoHit; ++k) {
+                ranked.push_back({pixel.ids[k], pixel.samples[k]});
+            }
+            std::ranges::stable_sort(ranked, std::ranges::greater(), &Rank::samples);
+        }
+        return of_pixels;
+    }
+};
+
+template <uint32_t kIds>
+struct CoverageJob : PathJob {
+    PixelCoverage<kIds>* coverage; // [pixels of the film]
+};
+
+/// Listens for what camera rays meet first. One sample of a pixel is under way at a time, as in PathRounds.
+template <uint32_t kIds>
+class CoverageListener : public PathListener<CoverageListener<kIds>> {
+public:
+    HD explicit CoverageListener(const CoverageJob<kIds>& job) : job_(job) {}
+    HD void vertex(const PathState& path, const Hit& hit, Surface&) {
+        if (path.depth == 0) job_.coverage[job_.film.window.place_of(path.pixel)].take(hit.instance, 1);
+    }
+
+private:
+    const CoverageJob<kIds>& job_;
+};
+
+template <uint32_t kIds>
+using CoverageListeners = Listeners<FirstHitLayers, CoverageListener<kIds>>;
+template <uint32_t kIds>
+using CoverageRounds = PathRounds<kPlainDiffuse, CoverageListeners<kIds>, CoverageJob<kIds>>;
+
+extern template class PathRounds<kPlainDiffuse, CoverageListeners<2>, CoverageJob<2>>; // seam_stages.cu
+extern template class PathRounds<kPlainDiffuse, CoverageListeners<6>, CoverageJob<6>>;
+
+} // namespace pertev::test

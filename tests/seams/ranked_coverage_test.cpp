@@ -1,0 +1,119 @@
+// A film is given a target that ranks instances by coverage, by test code alone: samples of a rendering go to it, parts
+// of a film add up to the whole byte for byte, over serialisation and devices, and what it says is right.
+
+#include "tests/seams/ranked_coverage.h"
+
+#include <doctest/doctest.h>
+
+#include "tests/seams/picture_on_device.h"
+#include "tests/support/lit_scenes.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr uint32_t kMatteWidth = 13, kMatteHeight = 9, kMatteSamples = 7;
+
+/// Black squares in a row that emit red, green and blue in turns; three at most lie side by side in a pixel.
+Scene striped_scene() {
+    Scene scene;
+    for (uint32_t i = 0; i < 9; ++i) {
+        Rgb color = {0, 0, 0};
+        (i % 3 == 0 ? color.r : i % 3 == 1 ? color.g : color.b) = 1;
+        const float x = 0.25f * static_cast<float>(i) - 1;
+        test::add_emitter(scene, test::make_square(1), color,
+                          compose(make_translation({x, 0, 0.1f * static_cast<float>(i)}), make_scale({0.125f, 1, 1})));
+        scene.materials.back().base_color = {0, 0, 0};
+    }
+    return scene;
+}
+Camera from_below() {
+    Camera camera;
+    camera.world_from_camera = look_at({0.1f, -6, 0.2f}, {0.1f, 0, 0.2f}, {0.2f, 0, 1});
+    camera.fov_y = 0.5f;
+    return camera;
+}
+
+template <uint32_t kIds>
+struct Matte {
+    Matte(Queue& on, const PreparedScene& prepared)
+        : queue(on), picture(on, prepared, from_below(), kMatteWidth, kMatteHeight),
+          film(on, kMatteWidth, kMatteHeight, kAovIds) {
+        auto target = std::make_unique<test::CoverageTarget<kIds>>(on, kMatteWidth * kMatteHeight);
+        coverage = target.get();
+        film.hold(std::move(target));
+    }
+    void render(uint32_t first, uint32_t end) {
+        const test::CoverageJob<kIds> job = {
+            {.picture = picture.view, .settings = {.max_depth = 0}, .film = film.view(), .layers = {}},
+            coverage->elements().data()};
+        test::CoverageRounds<kIds>(queue, kMatteWidth * kMatteHeight).render(job, picture.tracer, first, end);
+    }
+    std::vector<std::vector<std::byte>> bytes() const {
+        std::vector<std::vector<std::byte>> all;
+        for (const auto& target : film.targets()) all.push_back(target->bytes());
+        return all;
+    }
+
+    Queue& queue;
+    test::PictureOnDevice picture;
+    Film film;
+    const test::CoverageTarget<kIds>* coverage;
+};
+
+/// Samples [0, 3) and [3, 7) on two devices: either film, made again from its bytes and with the other added to it, has
+/// the bytes of the film of all.
+template <uint32_t kIds>
+void check_parts(const PreparedScene& prepared) {
+    Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
+    Matte<kIds> whole(cpu, prepared), first(asked, prepared), second(cpu, prepared), again(asked, prepared);
+    whole.render(0, kMatteSamples);
+    first.render(0, 3);
+    second.render(3, 5);
+    second.render(5, kMatteSamples);
+    CHECK(first.bytes() != whole.bytes());
+    for (std::size_t i = 0; i < again.film.targets().size(); ++i) again.film.targets()[i]->set_bytes(second.bytes()[i]);
+    again.film.add(first.film);
+    CHECK(again.bytes() == whole.bytes());
+    first.film.add(second.film);
+    CHECK(first.bytes() == whole.bytes());
+    first.film.clear();
+    CHECK(first.bytes() == Matte<kIds>(cpu, prepared).bytes());
+}
+
+} // namespace
+
+TEST_CASE("a film's target of a test's own ranks what pixels show, and its parts add up to the byte") {
+    Messages messages;
+    const Scene scene = striped_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = test::queue_asked_for();
+    Matte<6> matte(queue, prepared);
+    matte.render(0, kMatteSamples);
+    const Image picture = matte.film.picture(1, true); // sums
+    const std::vector<PixelIds> first_ids = matte.film.ids();
+    const auto ranks = matte.coverage->ranks();
+    uint32_t shared = 0;
+    for (uint32_t pixel = 0; pixel < kMatteWidth * kMatteHeight; ++pixel) {
+        uint32_t of_color[3] = {}, hits = 0, last = kMatteSamples;
+        bool has_first = first_ids[pixel].instance == kNoHit;
+        for (const auto& [id, samples] : ranks[pixel]) {
+            REQUIRE(samples > 0);
+            REQUIRE(samples <= last);
+            last = samples;
+            of_color[id % 3] += samples, hits += samples;
+            has_first = has_first || id == first_ids[pixel].instance;
+        }
+        shared += ranks[pixel].size() > 2 ? 1 : 0;
+        CHECK(has_first);
+        const float* const sums = &picture.pixels[4 * std::size_t(pixel)];
+        CHECK(sums[3] == static_cast<float>(hits));
+        for (int c = 0; c < 3; ++c) CHECK(sums[c] == static_cast<float>(of_color[c]));
+    }
+    CHECK(shared > 5);
+
+    check_parts<6>(prepared);
+    check_parts<2>(prepared); // pixels with more ids than there is room for
+}
