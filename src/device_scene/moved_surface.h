@@ -54,19 +54,22 @@ struct LampsAt {
 };
 
 /// sample_light of a scene; `moves`: something in it does.
-template <bool kTextures = true>
+template <bool kTextures = true, class Choice = ChosenByPower>
 HD INLINE_ON_DEVICE bool draw_direct(const SceneView& scene, bool moves, const LightContext& context, SampleBits u,
                                      LightSample& sample) {
-    return moves ? sample_light<kTextures>(scene.lights, context, u, sample, LampsAt{scene.motions, context.time})
-                 : sample_light<kTextures>(scene.lights, context, u, sample);
+    return moves
+               ? sample_light<kTextures, Choice>(scene.lights, context, u, sample, LampsAt{scene.motions, context.time})
+               : sample_light<kTextures, Choice>(scene.lights, context, u, sample);
 }
 
 /// Density with which draw_direct, for `context`, draws the place of `surface`, 1/sr; 0 where that is no light.
+template <class Choice = ChosenByPower>
 HD inline float pdf_direct(const SceneView& scene, bool moves, const LightContext& context, const Surface& surface) {
     const uint32_t light = light_of(scene.lights, surface.triangle.instance, surface.triangle.primitive);
     if (light == kNoLight) return 0;
-    return moves ? pdf_light_hit(scene.lights, light, context, surface.position, LampsAt{scene.motions, context.time})
-                 : pdf_light_hit(scene.lights, light, context, surface.position);
+    return moves ? pdf_light_hit<Choice>(scene.lights, light, context, surface.position,
+                                         LampsAt{scene.motions, context.time})
+                 : pdf_light_hit<Choice>(scene.lights, light, context, surface.position);
 }
 
 /// What ray_to_light adds for a lamp that moves.

@@ -25,9 +25,9 @@ struct Surface {
     bool is_unlit;
     float tilt; // of the interpolated normal (shadow_terminator.h); 0 where the mesh has none
 
-    /// Of who asks for light here; `time`: of the ray, while the shutter is open.
-    HD LightContext light_context(float time = kAtRest) const {
-        return {position, frame.normal, bsdf.lets_through(), time};
+    /// Returns the context of a draw of light that is scattered to `wo`; `time`: of the ray, while the shutter is open.
+    HD LightContext light_context(Vec3 wo, float time = kAtRest) const {
+        return {position, dot(wo, frame.normal) < 0 ? -frame.normal : frame.normal, bsdf.lets_through(), time};
     }
 
     /// Both directions before the triangle, or both behind it.

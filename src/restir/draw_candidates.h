@@ -32,7 +32,7 @@ struct DrawCandidates {
         for (uint32_t k = 0; k < candidates; ++k) {
             const SampleKey candidate = {key.pixel, key.sample * candidates + k, key.seed};
             LightSample light;
-            if (!sample_light(scene.lights, surface.light_context(),
+            if (!sample_light(scene.lights, surface.light_context(wo),
                               sample_bits(here.sampler, candidate, kGroupCandidates), light)) {
                 continue;
             }
@@ -46,7 +46,7 @@ struct DrawCandidates {
         LightSample light;
         float measure = 1;
         const LightPlace place = met[pixel];
-        if (find_light(scene.lights, place, surface.light_context(), light, measure)) {
+        if (find_light(scene.lights, place, surface.light_context(wo), light, measure)) {
             const BsdfValue value = surface.evaluate(wo, light.wi);
             if (pick.takes(luminance(value.f * light.radiance) / (drawn * light.pdf + value.pdf))) {
                 reservoir.place = place;

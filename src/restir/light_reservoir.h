@@ -22,7 +22,7 @@ HD inline Rgb light_scattered(const SceneView& scene, const Surface& surface, Ve
                               const LightReservoir& reservoir) {
     LightSample light;
     float measure = 1;
-    if (!find_light(scene.lights, reservoir.place, surface.light_context(), light, measure)) return {};
+    if (!find_light(scene.lights, reservoir.place, surface.light_context(wo), light, measure)) return {};
     return measure * (surface.evaluate(wo, light.wi).f * light.radiance);
 }
 

@@ -67,8 +67,10 @@ HD inline bool find_light(const LightSetView& view, const LightPlace& place, con
         break;
     }
     const uint32_t light = light_of(view, place.instance, place.index);
-    if (light == kNoLight || !triangle_light_at<true>(view, light, context, {place.u, place.v}, sample)) return false;
-    measure = 2.0f * pmf_of_triangle(view, context, light) / sample.pdf; // a triangle of weights has the area 1/2
+    if (light == kNoLight) return false;
+    const float pmf = ChosenByPower::pmf_of_triangle(view, context, light);
+    if (!triangle_light_at<true>(view, light, pmf, context.point, {place.u, place.v}, sample)) return false;
+    measure = 2.0f * pmf / sample.pdf; // a triangle of weights has the area 1/2
     return true;
 }
 

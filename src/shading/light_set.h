@@ -3,8 +3,8 @@
 // All lights of a scene behind one door: emissive triangles (any number), point, spot and directional lights, and the
 // environment, drawn by power. sample_light draws a light and a direction to it for a context, the place that asks;
 // pdf_light_hit and find_environment give the density of that draw for a direction found otherwise, which multiple
-// importance sampling needs (Veach 1997, section 9.2). Which light is drawn is decided by draw_light alone, and how
-// probable that was is said by pmf_of_triangle and pmf_of_environment: a light tree is another body of these three.
+// importance sampling needs (Veach 1997, section 9.2). Which light is drawn, and how probable that was, is said by a
+// class that all three take as a parameter, ChosenByPower: a light tree is another class.
 //
 // A pair of numbers draws all of it, and near pairs draw near places: x the source (an emissive instance, a punctual
 // light, the environment) and y the instance's triangle, both by ordered tables; what remains of x and y draws the
@@ -100,7 +100,7 @@ struct LightSetView {
 /// Who asks for light: a point of a surface, or of space. What the draws leave alone costs nothing.
 struct LightContext {
     Vec3 point;        // metres, moved world
-    Vec3 normal;       // unit, shading; zero: there is none
+    Vec3 normal;       // unit, shading, on the side that the light is scattered to; zero: there is none
     bool lets_through; // light may come from behind the normal
     float time;        // of the ray, while the shutter is open
 
@@ -143,27 +143,19 @@ HD inline float triangle_pdf(Vec3 normal, Vec3 wi, float distance_squared) {
     return 2.0f * distance_squared / abs(dot(normal, wi));
 }
 
-/// Probability that draw_light draws a triangle light, or the environment.
-HD inline float pmf_of_triangle(const LightSetView& view, const LightContext&, uint32_t light) {
-    return view.triangles[light].pmf;
-}
-HD inline float pmf_of_environment(const LightSetView& view, const LightContext&) {
-    return ordered_pmf(view.choice, view.environment_source);
-}
-
-/// The place `b` (weights of the second and third vertex) on triangle light `light` as sample_light would have drawn
-/// it. False where nothing arrives.
+/// Sets `sample` to the point `b` (weights of the second and third vertex) on triangle light `light`, as sample_light
+/// draws it for `from_point` if it draws the light with probability `pmf`. Returns false where nothing arrives.
 template <bool kTextures>
-HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, const LightContext& context, Vec2 b,
+HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, float pmf, Vec3 from_point, Vec2 b,
                                  LightSample& sample) {
     const EmissiveTriangle& triangle = view.triangles[light];
     const Vec3 point = triangle.a + (b.x * triangle.ab + b.y * triangle.ac);
-    const Vec3 to_light = point - context.point;
+    const Vec3 to_light = point - from_point;
     const float distance_squared = length_squared(to_light), distance = sqrt(distance_squared);
     const Vec3 wi = to_light / distance;
     const Vec3 normal = cross(triangle.ab, triangle.ac);
     if (!triangle.emits_against(wi, normal)) return false; // its dark back
-    const float pdf = pmf_of_triangle(view, context, light) * triangle_pdf(normal, wi, distance_squared);
+    const float pdf = pmf * triangle_pdf(normal, wi, distance_squared);
     if (!(pdf > 0) || !is_finite(pdf)) return false; // edge-on, or the receiver lies on the light
     const Vec2 uv = (1.0f - b.x - b.y) * triangle.uv0 + b.x * triangle.uv1 + b.y * triangle.uv2;
     const Rgb radiance = surface_emission<kTextures>(view, triangle.material, uv);
@@ -189,10 +181,10 @@ HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3
 /// For sample_light: every lamp is where its triangles are.
 struct LampsAtRest {};
 
-/// Draws a light by `u` and returns what that one of the functions of `to` says that is for its kind; each is given
-/// what remains of `u`. False: there are no lights.
-///   triangle(light, place)   place: weights of its second and third vertex; pmf_of_triangle says how probable it was
-///   punctual(number, pmf)    number: in LightSetView::punctual
+/// Draws a light by its power by `u` and returns what the function of `to` for its kind returns. Each function gets the
+/// probability of the light, and what remains of `u`. Returns false if there are no lights.
+///   triangle(light, place, pmf)   place: weights of its second and third vertex
+///   punctual(number, pmf)         number: in LightSetView::punctual
 ///   environment(pmf, rest)
 template <class ToKind>
 HD INLINE_ON_DEVICE bool draw_light(const LightSetView& view, SampleBits u, const ToKind& to) {
@@ -203,8 +195,9 @@ HD INLINE_ON_DEVICE bool draw_light(const LightSetView& view, SampleBits u, cons
     case SourceKind::Triangle: {
         const OrderedDraw triangle = draw_ordered(view.triangles_of(source.index), u.y, more);
         const uint32_t first = view.emitters[source.index].first_triangle;
-        return to.triangle(first + view.triangle_order[first + triangle.index],
-                           sample_uniform_triangle({rest_of(source), rest_of(triangle)}));
+        const uint32_t light = first + view.triangle_order[first + triangle.index];
+        return to.triangle(light, sample_uniform_triangle({rest_of(source), rest_of(triangle)}),
+                           view.triangles[light].pmf);
     }
     case SourceKind::Punctual:
         return to.punctual(source.index - view.emitter_count, ordered_pmf(source.owned));
@@ -214,6 +207,23 @@ HD INLINE_ON_DEVICE bool draw_light(const LightSetView& view, SampleBits u, cons
     return to.environment(ordered_pmf(source.owned), SampleBits{number_of_rest(source), u.y});
 }
 
+/// Chooses lights by their power, for any context. `draw` is draw_light for a context; the others return the
+/// probability that it draws a triangle light, or the environment: the very number that `draw` gives with it.
+struct ChosenByPower {
+    static constexpr bool kReadsNormal = false; // of the context
+    template <class ToKind>
+    HD INLINE_ON_DEVICE static bool draw(const LightSetView& view, const LightContext&, SampleBits u,
+                                         const ToKind& to) {
+        return draw_light(view, u, to);
+    }
+    HD static float pmf_of_triangle(const LightSetView& view, const LightContext&, uint32_t light) {
+        return view.triangles[light].pmf;
+    }
+    HD static float pmf_of_environment(const LightSetView& view, const LightContext&) {
+        return ordered_pmf(view.choice, view.environment_source);
+    }
+};
+
 /// What a context sees of the light that was drawn: sample_light's functions of the kinds.
 template <bool kTextures, class Lamps>
 struct SampleOfKind {
@@ -222,12 +232,13 @@ struct SampleOfKind {
     const Lamps& lamps;
     LightSample& sample;
 
-    HD bool triangle(uint32_t light, Vec2 b) const {
+    HD bool triangle(uint32_t light, Vec2 b, float pmf) const {
         if constexpr (std::is_same_v<Lamps, LampsAtRest>) {
-            return triangle_light_at<kTextures>(view, light, context, b, sample);
+            return triangle_light_at<kTextures>(view, light, pmf, context.point, b, sample);
         } else {
             const auto motion = lamps(view.triangles[light].instance);
-            if (!triangle_light_at<kTextures>(view, light, motion.move_back(context.point), b, sample)) return false;
+            const Vec3 from_point = motion.move_back(context.point);
+            if (!triangle_light_at<kTextures>(view, light, pmf, from_point, b, sample)) return false;
             sample.wi = motion.turn(sample.wi);
             sample.light_point = motion.move(sample.light_point);
             sample.light_normal = motion.turn(sample.light_normal);
@@ -255,16 +266,16 @@ struct SampleOfKind {
 /// a triangle, outside a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha: where the
 /// triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives. `lamps`: the rigid
 /// motion of the lamp of an instance at the context's time (math/rigid_motion.h).
-template <bool kTextures = true, class Lamps = LampsAtRest>
+template <bool kTextures = true, class Choice = ChosenByPower, class Lamps = LampsAtRest>
 HD inline bool sample_light(const LightSetView& view, const LightContext& context, SampleBits u, LightSample& sample,
                             const Lamps& lamps = {}) {
-    return draw_light(view, u, SampleOfKind<kTextures, Lamps>{view, context, lamps, sample});
+    return Choice::draw(view, context, u, SampleOfKind<kTextures, Lamps>{view, context, lamps, sample});
 }
 
 /// Density with which sample_light draws, for `context`, the direction to `hit_point` on triangle light `light`, 1/sr.
 /// The very number in LightSample::pdf where hit_point is the light_point drawn; 0 where that is not drawn, as from
 /// behind a triangle that emits from its front alone.
-template <class Lamps = LampsAtRest>
+template <class Choice = ChosenByPower, class Lamps = LampsAtRest>
 HD inline float pdf_light_hit(const LightSetView& view, uint32_t light, const LightContext& context, Vec3 hit_point,
                               const Lamps& lamps = {}) {
     const EmissiveTriangle& triangle = view.triangles[light];
@@ -279,16 +290,17 @@ HD inline float pdf_light_hit(const LightSetView& view, uint32_t light, const Li
     const Vec3 wi = to_light / sqrt(distance_squared);
     const Vec3 normal = cross(triangle.ab, triangle.ac);
     if (!triangle.emits_against(wi, normal)) return 0;
-    const float pdf = triangle_pdf(normal, wi, distance_squared) * pmf_of_triangle(view, context, light);
+    const float pdf = triangle_pdf(normal, wi, distance_squared) * Choice::pmf_of_triangle(view, context, light);
     return is_finite(pdf) ? pdf : 0.0f;
 }
 
 /// What direction `wi` meets in the environment, with the density with which sample_light draws it for `context`, 1/sr.
+template <class Choice = ChosenByPower>
 HD inline EnvironmentHit find_environment(const LightSetView& view, const LightContext& context, Vec3 wi,
                                           bool wants_pdf) {
     if (!view.has_environment()) return {{0, 0, 0}, 0};
     EnvironmentHit hit = find_environment(view.environment, wi, wants_pdf && view.has_lights());
-    if (hit.pdf > 0) hit.pdf = pmf_of_environment(view, context) * hit.pdf;
+    if (hit.pdf > 0) hit.pdf = Choice::pmf_of_environment(view, context) * hit.pdf;
     return hit;
 }
 

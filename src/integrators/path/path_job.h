@@ -52,6 +52,11 @@ inline Features features_of(MaterialsKnown known) {
     return kAllMaterials;
 }
 
+/// How code for a mask of features chooses lights (shading/light_set.h). A light tree is a feature, for which this is
+/// specialised.
+template <Features kFeatures>
+struct LightChoice : ChosenByPower {};
+
 /// Masks that code has been compiled for, from those of the least code on.
 template <Features... kMasks>
 struct CompiledFor {

@@ -90,7 +90,8 @@ struct Listeners : Ls... {
     template <class L>
     static constexpr bool has = (std::is_same_v<L, Ls> || ...);
 
-    HD explicit Listeners(const PathJob& job) : Ls(job)... {}
+    template <class Job> // PathJob, or one that is derived from it for what a listener needs besides
+    HD explicit Listeners(const Job& job) : Ls(job)... {}
     HD void begins(const PathState& path) { (Ls::begins(path), ...); }
     HD void take_up(const Kept& kept) { (Ls::take_up(static_cast<const typename Ls::Kept&>(kept)), ...); }
     HD void vertex(const PathState& path, const Hit& hit, Surface& surface) { (Ls::vertex(path, hit, surface), ...); }

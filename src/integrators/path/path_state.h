@@ -20,6 +20,7 @@ struct PathState {
     float bsdf_pdf = 0;       // density with which `direction` was drawn, 1/sr; 0 after the camera or a delta lobe
     uint32_t pixel = 0, sample = 0;
     TriangleId start;         // triangle that the ray leaves
+    Vec3 normal = {0, 0, 0};  // of the context that chose a light there, where LightChoice reads it; zero: none
     uint32_t depth = 0;       // scattering vertices so far
     uint32_t rough_depth = 0; // of which not delta
     float time = kAtRest;     // of all of its rays, while the shutter is open

@@ -49,6 +49,12 @@ HD inline Rgb emitted_light(const PathSettings& settings, const PathState& path,
     return clamp_contribution(settings, path.depth, weight, path.throughput * (weight * emission));
 }
 
+/// Returns the context by which next-event estimation has chosen a light where the ray begins. Who reads normals keeps
+/// none of a surface that lets light through.
+HD inline LightContext context_before(const PathState& path) {
+    return {path.origin, path.normal, path.normal == Vec3{0, 0, 0}, path.time};
+}
+
 /// Adds light that the path's own ray has run into.
 template <class Listener>
 HD inline void add_emitted(PathState& path, Rgb light, Listener& listener) {
@@ -57,12 +63,13 @@ HD inline void add_emitted(PathState& path, Rgb light, Listener& listener) {
 }
 
 /// Light of the environment, of a ray that met nothing.
-template <class Listener>
+template <Features kFeatures, class Listener>
 HD INLINE_ON_DEVICE void add_background(const PathJob& job, PathState& path, Listener& listener) {
     const LightSetView& lights = job.picture.scene.lights;
     Rgb light = {0, 0, 0};
     if (lights.has_environment() && !(job.picture.hide_background && path.depth == 0)) {
-        const EnvironmentHit seen = find_environment(lights, path.origin, path.direction, path.bsdf_pdf > 0);
+        const EnvironmentHit seen =
+            find_environment<LightChoice<kFeatures>>(lights, context_before(path), path.direction, path.bsdf_pdf > 0);
         if (!listener.takes(path, place_in_environment(path.direction), seen.pdf)) {
             light = emitted_light(job.settings, path, seen.radiance, seen.pdf);
         }
@@ -77,8 +84,9 @@ HD INLINE_ON_DEVICE void add_surface_emission(const PathJob& job, PathState& pat
     Rgb light = {0, 0, 0};
     if (!is_black(surface.emission)) {
         constexpr bool kMoves = (kFeatures & kMoving) != 0;
-        const float light_pdf =
-            path.bsdf_pdf > 0 ? pdf_direct(job.picture.scene, kMoves, {path.origin, path.time}, surface) : 0.0f;
+        const float light_pdf = path.bsdf_pdf > 0 ? pdf_direct<LightChoice<kFeatures>>(job.picture.scene, kMoves,
+                                                                                       context_before(path), surface)
+                                                  : 0.0f;
         if (!listener.takes(path, {hit.instance, hit.primitive, hit.u, hit.v}, light_pdf)) {
             light = emitted_light(job.settings, path, surface.emission, light_pdf);
         }
@@ -97,8 +105,10 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     LightSample light;
     constexpr bool kMoves = (kFeatures & kMoving) != 0;
+    constexpr bool kTextures = (kFeatures & kTextured) != 0;
+    const LightContext context = surface.light_context(vertex.wo, path.time);
     const SampleBits u = numbers.light(settings, path);
-    if (!draw_direct<(kFeatures & kTextured) != 0>(scene, kMoves, surface.light_context(path.time), u, light)) {
+    if (!draw_direct<kTextures, LightChoice<kFeatures>>(scene, kMoves, context, u, light)) {
         return false;
     }
     const BsdfValue scattered = surface.evaluate(vertex.wo, light.wi);
@@ -179,7 +189,7 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     wants_shadow = false;
     if (hit.instance == kNoHit) {
         listener.missed(path);
-        add_background(job, path, listener);
+        add_background<kFeatures>(job, path, listener);
         return false;
     }
     Surface surface = make_vertex<kFeatures>(scene, path, hit);
@@ -189,6 +199,10 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     const VertexView vertex = {surface, -path.direction};
     wants_shadow = listener.wants_direct(path, hit, surface) &&
                    sample_direct<kFeatures>(job, path, vertex, numbers, shadow, listener);
+    if constexpr (LightChoice<kFeatures>::kReadsNormal) {
+        const LightContext context = surface.light_context(vertex.wo);
+        path.normal = context.lets_through ? Vec3{0, 0, 0} : context.normal;
+    }
     return sample_scattering(job.settings, path, vertex, numbers, listener);
 }
 

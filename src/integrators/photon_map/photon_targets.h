@@ -109,7 +109,7 @@ struct AimFromKind {
     EmitFromKind freely;
     const PhotonTargetsView& targets;
 
-    HD bool triangle(uint32_t light, Vec2 at) const {
+    HD bool triangle(uint32_t light, Vec2 at, float) const {
         LampPlace place;
         if (!find_lamp_place(freely.scene, light, at, freely.key, place)) return false;
         if (!(depth_of_cones(targets, place.point) < 1)) return freely.triangle(light, place);

@@ -75,7 +75,7 @@ struct TreeVertex {
         const uint32_t of = number() == 0 ? uint32_t(kGroupCamera) : group(kTreeScatter);
         LightSample sample;
         const SampleBits u = sample_bits(settings.sampler, key(), of, Pair::Last);
-        if (!draw_direct(picture.scene, moves, surface.light_context(time), u, sample)) return false;
+        if (!draw_direct(picture.scene, moves, surface.light_context(wo(), time), u, sample)) return false;
         const BsdfValue all = scattered(surface, wo(), sample.wi, kAllLobeClasses);
         if (is_black(all.f) || is_hole(sample)) return false;
         Rgb f = all.f;

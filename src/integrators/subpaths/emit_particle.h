@@ -80,7 +80,7 @@ struct EmitFromKind {
     uint32_t key; // find_lamp_place's
     Particle& particle;
 
-    HD bool triangle(uint32_t light, Vec2 at) const {
+    HD bool triangle(uint32_t light, Vec2 at, float) const {
         LampPlace place;
         return find_lamp_place(scene, light, at, key, place) && triangle(light, place);
     }
