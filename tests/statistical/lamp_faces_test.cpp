@@ -147,7 +147,8 @@ TEST_CASE("a clamp takes later light alike, however it is found, before it is we
         job.picture.scene = device.view();
         job.settings = {.strategy = strategy, .clamp = clamp, .sampler = SamplerKind::Independent};
         FilmListeners listener(job);
-        REQUIRE(sample_direct<kAllMaterials>(job, here, {surface, {0, 1, 0}}, DrawWhenAsked(), shadow, listener));
+        REQUIRE(sample_direct<kAllMaterials>(job, here, SurfaceVertex{surface, {0, 1, 0}}, DrawWhenAsked(), shadow,
+                                             listener));
         return static_cast<double>(max_component(shadow.contribution));
     };
     CHECK(asked(0, LightStrategy::NeeOnly, 1) == asked(0, LightStrategy::NeeOnly, 0));
