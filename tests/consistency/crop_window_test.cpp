@@ -40,11 +40,12 @@ Rendered render(Queue& queue, const PreparedScene& prepared, PathBody body, Samp
     settings.path.sampler = sampler;
     const auto integrator = make_integrator(queue, settings);
     integrator->begin({scene.view(), rays}, tracer, kSamples);
-    const Film film(queue, is_window ? kWindow.width : kWidth, is_window ? kWindowHeight : kHeight, kAovs);
+    Film film(queue, is_window ? kWindow.width : kWidth, is_window ? kWindowHeight : kHeight, kAovs);
     FilmView view = film.view();
     if (is_window) view.window = kWindow;
     integrator->render(0, kSamples, view);
-    return {film.picture(kSamples, true), film.layers(kSamples), film.ids()};
+    film.set_samples({0, kSamples});
+    return {film.picture(true), film.layers(), film.ids()};
 }
 
 /// Pixels of a window that are not those of the whole image.

@@ -27,7 +27,7 @@ struct SceneSource {
     std::string up_axis, unit; // of the file's coordinates, asked for; empty: not
     std::string hash;          // settings/settings_file.h's scene_hash(); empty: not known
     std::string settings;      // all that was asked for, as JSON (settings/settings_file.h); empty: not known
-    std::string by_scene, by_settings, by_flags; // names of settings that its file, --settings and flags gave
+    std::string by_scene, by_settings, by_flags; // names of settings that its file, a file of them, and flags gave
     std::string lamps;                           // set to amounts of light, a line each; empty: none
     bool has_environment = false;                // the scene has one: asked for, its own or the default
     bool has_ground = false;                     // a made-up one
