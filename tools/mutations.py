@@ -269,7 +269,7 @@ MUTATIONS = TRANSPORT_MUTATIONS + [
         edit("src/shading/bsdf.h", "light_through(bsdf, i, wo, {-wo.x, -wo.y, wo.z}) * one.mirror", "one.mirror")],
              ["unit/bsdf_specular"]),
     Mutation("materials are taken for plain that let rays pass", [
-        edit("src/shading/material_view.h", "m.alpha_mode == AlphaMode::Opaque && ", "")], ["consistency/one_picture"]),
+        edit("src/shading/materials_known.h", "m.alpha_mode == AlphaMode::Opaque && ", "")], ["consistency/one_picture"]),
     Mutation("boxes above where a subtree was put stay as they were", [
         edit("src/accel/builders/reinsert_subtrees.cpp", "{parent_[joint], joint, parent_[moves[i].target]}",
              "{parent_[joint], joint, joint}")], ["unit/reinsert_subtrees"]),

@@ -26,7 +26,7 @@ void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Message
     }
 }
 
-std::unique_ptr<ReadyScene> make_ready(const RenderFlags& flags, Reporter& reporter) {
+std::unique_ptr<ReadyScene> make_ready(RenderFlags& flags, Reporter& reporter) {
     return make_ready(flags, reporter, [&](ReadyScene& ready) {
         const RenderSettings& settings = ready.settings;
         if (flags.limits_memory) { // a picture for which there is no room is refused before its scene is solved

@@ -221,7 +221,9 @@ int view(ViewFlags& flags) {
     listen_for_interrupt();
     reporter.set_work("handing the scene to the device");
     PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
-    record.scene.settings = record.scene.by_flags = record.scene.by_file = ""; // the panel changes them
+    for (std::string* text :
+         {&record.scene.settings, &record.scene.by_scene, &record.scene.by_settings, &record.scene.by_flags})
+        text->clear(); // the panel changes them
     const Camera& camera = record.camera.camera;
     Session session(*ready->queue, ready->prepared(), camera, ready->settings);
     const bool on_cuda = ready->queue->is_cuda();

@@ -22,8 +22,8 @@ struct TriangleId {
 };
 
 /// Alpha of the material there: its factor, the textures' and the vertex colour's.
-HD inline float alpha_at(const SceneView& scene, const MaterialView& material, const MeshView& mesh, uint32_t primitive,
-                         float u, float v) {
+HD inline float alpha_at(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
+                         uint32_t primitive, float u, float v) {
     const TriangleIndices i = triangle_indices(mesh, primitive);
     TextureRef color = material.base_color_texture;
     color.channel = 3;
@@ -84,7 +84,7 @@ struct AcceptHit {
         if (known != Opacity::Unknown) return known == Opacity::Opaque;
         const InstanceView& placed = scene.instances[instance];
         if (placed.has_alpha == 0) return true;
-        const MaterialView& material = scene.materials[placed.material];
+        const MaterialParameters& material = scene.materials[placed.material];
         const MeshView& mesh = scene.meshes[placed.mesh];
         const float alpha = alpha_at(scene, material, mesh, primitive, u, v);
         if (material.alpha_mode == AlphaMode::Mask) return alpha >= material.alpha_cutoff;

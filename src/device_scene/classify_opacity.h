@@ -171,7 +171,7 @@ struct ClassifyOpacity {
     }
 
     HD Opacity opacity_within(uint32_t primitive, const MicroCorners& corners) const {
-        const MaterialView& surface = scene.materials[material];
+        const MaterialParameters& surface = scene.materials[material];
         const MeshView& shape = scene.meshes[mesh];
         const TriangleIndices i = triangle_indices(shape, primitive);
         ValueRange range = {surface.alpha, surface.alpha}; // times the others in the order of alpha_at

@@ -9,7 +9,7 @@ namespace pertev {
 
 /// The material's base colour there, [0, 1] per channel.
 template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
-HD inline Rgb base_color_at(const SceneView& scene, const MaterialView& material, const MeshView& mesh,
+HD inline Rgb base_color_at(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
                             TriangleIndices i, float u, float v) {
     Rgb color = material.base_color;
     if (const TextureRef& ref = material.base_color_texture; has_texture<kKnown>(ref)) {
@@ -25,8 +25,8 @@ HD inline Rgb base_color_at(const SceneView& scene, const MaterialView& material
 }
 
 template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
-HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialView& material, const MeshView& mesh, TriangleIndices i,
-                         float u, float v, Rgb base_color) {
+HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
+                         TriangleIndices i, float u, float v, Rgb base_color) {
     if (kKnown != MaterialsKnown::Nothing || material.kind == MaterialKind::Diffuse ||
         material.kind == MaterialKind::Unlit) {
         return make_diffuse(base_color);

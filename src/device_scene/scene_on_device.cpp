@@ -81,8 +81,8 @@ PartArrays list_instances(const PlacedScene& prepared, Instances& instances, Sce
     return arrays;
 }
 
-PartArrays list_materials(const Scene& scene, std::vector<MaterialView>& materials, SceneView& view) {
-    for (const Material& material : scene.materials) materials.push_back(make_material_view(material));
+PartArrays list_materials(const Scene& scene, std::vector<MaterialParameters>& materials, SceneView& view) {
+    for (const Material& material : scene.materials) materials.push_back(parameters_for_device(material));
     view.known = known_of(materials);
     PartArrays arrays;
     arrays.add(materials, view.materials);
@@ -133,7 +133,7 @@ PartArrays list_environment(const EnvironmentData* environment, EnvironmentView&
 } // namespace
 
 MaterialsKnown materials_known(const Scene& scene) {
-    std::vector<MaterialView> materials;
+    std::vector<MaterialParameters> materials;
     SceneView view = {};
     list_materials(scene, materials, view);
     return view.known;
@@ -188,7 +188,7 @@ void SceneOnDevice::update_instances(Queue& queue, const PlacedScene& prepared) 
 }
 
 void SceneOnDevice::update_materials(Queue& queue, const Scene& scene) {
-    std::vector<MaterialView> materials;
+    std::vector<MaterialParameters> materials;
     list_materials(scene, materials, view_).upload(queue, materials_, "materials");
 }
 

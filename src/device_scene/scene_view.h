@@ -11,7 +11,7 @@
 #include "math/vec3.h"
 #include "math/vec4.h"
 #include "shading/light_set.h"
-#include "shading/material_view.h"
+#include "shading/materials_known.h"
 #include "shading/texture_lookup.h"
 #include "trace/intersect/ray.h"
 
@@ -44,7 +44,7 @@ struct SceneView {
     const uint32_t* passing;              // a bit each, 32 a word: 1 where a ray may pass a surface of the instance
     const OpacityMicromapView* micromaps; // [instance_count]; null: none
     const MeshView* meshes;
-    const MaterialView* materials;
+    const MaterialParameters* materials;
     MaterialsKnown known; // of all of them
     const TextureImageView* images;
     const float* linear_from_srgb; // [256]

@@ -192,7 +192,7 @@ HD inline float corner_tilt(const InstanceView& instance, Vec3 local_normal, Vec
 /// map: a map's bumps have no neighbours whose horizon they would have to clear.
 template <MaterialsKnown kKnown>
 HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instance, const MeshView& mesh,
-                              const MaterialView& material, const PlacedTriangle& triangle, const Hit& hit,
+                              const MaterialParameters& material, const PlacedTriangle& triangle, const Hit& hit,
                               Vec3 geometric_normal, Vec3 wo, float& tilt) {
     tilt = 0;
     if (mesh.normals == nullptr && !has_texture<kKnown>(material.normal_texture)) return make_frame(geometric_normal);
@@ -222,7 +222,7 @@ template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
 HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 direction) {
     const InstanceView& instance = scene.instances[hit.instance];
     const MeshView& mesh = scene.meshes[instance.mesh];
-    const MaterialView& material = scene.materials[instance.material];
+    const MaterialParameters& material = scene.materials[instance.material];
     const PlacedTriangle triangle = place_triangle(instance, mesh, hit);
 
     const Vec3 geometric_normal = front_normal(instance, mesh, triangle);

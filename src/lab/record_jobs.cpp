@@ -22,7 +22,7 @@ Scene make_grey_scene(const std::string& file, Messages& messages) {
     ReadOptions options;
     options.geometry_only = true;
     Scene scene = read_scene(file, options, messages);
-    scene.materials.assign(1, Material{.name = "grey", .base_color = {0.7f, 0.7f, 0.7f}});
+    scene.materials.assign(1, Material{{.base_color = {0.7f, 0.7f, 0.7f}}, "grey"});
     for (Instance& instance : scene.instances) instance.material = 0;
     for (Mesh& mesh : scene.meshes) {
         mesh.normals.clear();

@@ -100,7 +100,7 @@ Scene make_record_scene(const RecordScene& record, const std::filesystem::path& 
         scene.meshes.push_back(read_one_mesh(record_file(record, folder), messages));
         if (std::string_view(record.name) == "bunny") scene.meshes[0] = make_bunny_box(scene.meshes[0]);
     }
-    scene.materials.push_back({.name = "grey"});
+    scene.materials.push_back({{}, "grey"});
     scene.instances.push_back({.name = record.name});
     scene.cameras.push_back(record_camera(record));
     return scene;

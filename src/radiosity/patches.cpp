@@ -79,7 +79,7 @@ PatchCode divide(const DividedScene& divided, PatchTree& tree, Patch patch, uint
 }
 
 /// A material that could reflect diffusely or give light.
-bool may_count(const MaterialView& material) {
+bool may_count(const MaterialParameters& material) {
     if (material.kind == MaterialKind::Unlit) return false;
     const bool emits = material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0;
     return emits || material.kind == MaterialKind::Diffuse || material.kind == MaterialKind::MetallicRoughness;

@@ -1,15 +1,37 @@
 #include "render/film.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "device/launch.h"
 #include "render/film_stages.h"
 
 namespace pertev {
-Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, uint32_t light_layers)
-    : queue_(&queue), width_(width), height_(height), aovs_(aovs), light_layers_(light_layers),
-      channels_(film_channel_count(aovs) + 3 * light_layers) {
+namespace {
+
+/// Returns both parts in one; none where there is no such part.
+std::optional<FilmPart> join(const FilmPart& a, const FilmPart& b) {
+    if (a.is_empty()) return b;
+    if (b.is_empty()) return a;
+    FilmPart both = a;
+    if (a.first_row == b.first_row && a.end_row == b.end_row) {
+        if (a.samples.end != b.samples.first && b.samples.end != a.samples.first) return std::nullopt;
+        both.samples = {std::min(a.samples.first, b.samples.first), std::max(a.samples.end, b.samples.end)};
+        return both;
+    }
+    if (!(a.samples == b.samples) || (a.end_row != b.first_row && b.end_row != a.first_row)) return std::nullopt;
+    both.first_row = std::min(a.first_row, b.first_row);
+    both.end_row = std::max(a.end_row, b.end_row);
+    return both;
+}
+
+} // namespace
+
+Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, std::vector<std::string> light_layers)
+    : queue_(&queue), width_(width), height_(height), aovs_(aovs), light_layers_(std::move(light_layers)),
+      channels_(film_channel_count(aovs) + 3 * static_cast<uint32_t>(light_layers_.size())) {
     const std::size_t pixels = std::size_t(width) * height;
     const auto take = [&]<class Target>(std::size_t count, const char* name, const Target*& taken) {
         auto target = std::make_unique<Target>(queue, count, name);
@@ -22,18 +44,20 @@ Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, uint32_
     resolved_ = {queue, pixels * kFilmColorChannels, "resolved film"};
 }
 
-std::size_t Film::predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs, uint32_t light_layers) {
+std::size_t Film::predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs,
+                                  std::vector<std::string> light_layers) {
     Queue queue = Queue::make_dry_run(false);
-    const Film film(queue, width, height, aovs, light_layers);
+    const Film film(queue, width, height, aovs, std::move(light_layers));
     return queue.allocated_bytes();
 }
 
 void Film::clear() {
     for (const auto& target : targets_) target->clear();
+    part_ = {};
 }
 
 FilmView Film::view() const {
-    FilmView view = {nullptr, nullptr, nullptr, channels_, aovs_, width_, height_, {}, {}};
+    FilmView view = {nullptr, nullptr, nullptr, channels_, aovs_, width_, height_, {}, window_};
     for (const auto& target : targets_) target->show(view);
     return view;
 }
@@ -41,7 +65,10 @@ FilmView Film::view() const {
 void Film::add(const Film& other) {
     PERTEV_CHECK(other.width_ == width_ && other.height_ == height_ && other.aovs_ == aovs_ &&
                  other.light_layers_ == light_layers_ && other.targets_.size() == targets_.size());
+    const std::optional<FilmPart> both = join(part_, other.part_);
+    PERTEV_CHECK(both);
     for (std::size_t i = 0; i < targets_.size(); ++i) targets_[i]->add(*other.targets_[i]);
+    part_ = *both;
 }
 
 std::vector<PixelIds> Film::ids() const {
@@ -50,29 +77,22 @@ std::vector<PixelIds> Film::ids() const {
 
 uint64_t Film::invalid_samples() const { return invalid_->elements().download()[0]; }
 
-Image Film::resolve(uint32_t first, uint32_t channels, bool over_hits, uint64_t samples) const {
+Image Film::resolve(uint32_t first, uint32_t channels, bool over_hits) const {
     launch(*queue_, "resolve_film", pixel_count(),
-           ResolveFilm{view(), first, channels, over_hits, samples, resolved_.data()});
+           ResolveFilm{view(), first, channels, over_hits, part_.samples.count(), resolved_.data()});
     Image image{width_, height_, channels, {}};
     image.pixels.resize(std::size_t(pixel_count()) * channels);
     queue_->copy_to_host(image.pixels.data(), resolved_.data(), image.pixels.size() * sizeof(float));
     return image;
 }
 
-Image Film::light_layer(uint32_t layer, uint64_t samples) const {
-    PERTEV_CHECK(layer < light_layers_);
-    return resolve(film_channel_count(aovs_) + 3 * layer, 3, false, samples);
-}
+Image Film::picture(bool transparent) const { return resolve(0, transparent ? 4 : 3, false); }
 
-Image Film::picture(uint64_t samples, bool transparent) const {
-    return resolve(0, transparent ? 4 : 3, false, samples);
-}
-
-void Film::display(uint64_t samples, ToneMap kind, float exposure_stops, bool transparent) {
+void Film::display(ToneMap kind, float exposure_stops, bool transparent) {
     static_assert(kFilmColorChannels * sizeof(float) >= 4);
     if (display_ == nullptr) display_ = queue_->make_host_copy(std::size_t(pixel_count()) * 4);
     launch(*queue_, "display_film", pixel_count(),
-           DisplayFilm{view(), samples, kind, exposure_scale(exposure_stops), transparent,
+           DisplayFilm{view(), part_.samples.count(), kind, exposure_scale(exposure_stops), transparent,
                        reinterpret_cast<uint8_t*>(resolved_.data())});
     display_->take(resolved_.data());
     queue_->wait(*display_);
@@ -84,14 +104,22 @@ Rgba8Image Film::displayed() const {
     return {width_, height_, {bytes, bytes + std::size_t(pixel_count()) * 4}};
 }
 
-std::vector<FilmLayer> Film::layers(uint64_t samples) const {
+std::vector<FilmLayer> Film::layers() const {
     std::vector<FilmLayer> layers;
     for (const AovGroup& group : kAovTable) {
         if ((aovs_ & group.bit) == 0 || !group.is_summed) continue;
         const std::vector<std::string> channels = channel_names(group);
-        layers.push_back({group.layer, channels,
-                          resolve(channel_offset(aovs_, group.bit), static_cast<uint32_t>(channels.size()),
-                                  group.over_hits, samples)});
+        layers.push_back(
+            {group.layer, channels,
+             resolve(channel_offset(aovs_, group.bit), static_cast<uint32_t>(channels.size()), group.over_hits)});
+    }
+    uint32_t first = film_channel_count(aovs_);
+    for (const std::string& name : light_layers_) {
+        layers.push_back({name, {"R", "G", "B"}, resolve(first, 3, false)});
+        first += 3;
+    }
+    for (const auto& target : targets_) {
+        for (FilmLayer& layer : target->layers(width_, part_.samples.count())) layers.push_back(std::move(layer));
     }
     return layers;
 }

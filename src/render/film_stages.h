@@ -38,6 +38,20 @@ struct AddIds {
     }
 };
 
+/// One pixel of a frame each: what `from` holds of it, where `to` has had no sample since it was cleared.
+struct AddFrames {
+    static constexpr uint32_t kNoSample = 0xffffffffu; // bits of the light's w
+
+    const Float4* from;
+    Float4* to;
+    uint32_t pixels, arrays; // each of `arrays` holds all pixels, that of the light first
+
+    HD void operator()(uint32_t i) const {
+        if (bits_of(to[i].w) != kNoSample) return;
+        for (uint32_t k = 0; k < arrays; ++k) to[uint64_t(k) * pixels + i] = from[uint64_t(k) * pixels + i];
+    }
+};
+
 /// Means of some neighbouring channels, one pixel each.
 struct ResolveFilm {
     FilmView film;

@@ -15,9 +15,17 @@
 #include "base/error.h"
 #include "device/buffer.h"
 #include "device/launch.h"
+#include "image/image.h"
 #include "render/film_view.h"
 
 namespace pertev {
+
+/// One layer of the finished picture: its name, channel names and pixels.
+struct FilmLayer {
+    std::string name; // as kAovTable names layer and channels
+    std::vector<std::string> channels;
+    Image image;
+};
 
 class FilmTarget {
 public:
@@ -31,6 +39,12 @@ public:
     /// Takes what `other`, of the same kind and size and from any queue, holds of other samples. Throws
     /// std::logic_error where it is of another kind or size.
     virtual void add(const FilmTarget& other) = 0;
+    /// Resolves to layers of the picture, of a film of `width` columns that has so many samples of each pixel. The
+    /// film itself resolves its own targets.
+    virtual std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const {
+        static_cast<void>(width), static_cast<void>(samples);
+        return {};
+    }
     virtual std::vector<std::byte> bytes() const = 0;
     /// Becomes the target that `bytes` were of. Throws std::logic_error where their number is wrong.
     virtual void set_bytes(std::span<const std::byte> bytes) = 0;

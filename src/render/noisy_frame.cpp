@@ -1,6 +1,11 @@
 #include "render/noisy_frame.h"
 
+#include <cstring>
 #include <utility>
+
+#include "base/error.h"
+#include "device/launch.h"
+#include "render/film_stages.h"
 
 namespace pertev {
 
@@ -14,7 +19,7 @@ NoisyFrame::NoisyFrame(Queue& queue, uint32_t width, uint32_t height, bool split
 }
 
 NoisyFrame::NoisyFrame(Queue& queue, uint32_t width, uint32_t height, bool splits_light, Float4* numbers)
-    : width_(width), height_(height), invalid_(queue, 1, "invalid samples") {
+    : queue_(&queue), width_(width), height_(height), invalid_(queue, 1, "invalid samples") {
     const std::size_t pixels = std::size_t(width) * height;
     Float4* next = numbers;
     for (Float4** array : {&view_.light, &view_.emission, &view_.place, &view_.normal, &view_.albedo, &view_.gloss}) {
@@ -25,13 +30,54 @@ NoisyFrame::NoisyFrame(Queue& queue, uint32_t width, uint32_t height, bool split
     begin();
 }
 
-FilmView NoisyFrame::film_view() const {
-    FilmView view = {};
+void NoisyFrame::show(FilmView& view) const {
     view.invalid = invalid_.data();
     view.width = width_;
     view.height = height_;
     view.frame = view_;
+}
+
+FilmView NoisyFrame::film_view() const {
+    FilmView view = {};
+    show(view);
     return view;
+}
+
+void NoisyFrame::clear() {
+    queue_->fill(view_.light, 0xff, count() * sizeof(Float4)); // AddFrames::kNoSample
+    invalid_.zero();
+}
+
+void NoisyFrame::add(const FilmTarget& other) {
+    const auto* const from = dynamic_cast<const NoisyFrame*>(&other);
+    PERTEV_CHECK(from != nullptr && from->width_ == width_ && from->height_ == height_ &&
+                 from->splits_light() == splits_light());
+    const std::vector<std::byte> theirs = from->bytes();
+    NoisyFrame copy(*queue_, width_, height_, splits_light());
+    copy.set_bytes(theirs);
+    const uint32_t pixels = width_ * height_;
+    launch(*queue_, "add_frames", pixels,
+           AddFrames{copy.view_.light, view_.light, pixels, static_cast<uint32_t>(arrays(splits_light()))});
+    const uint64_t invalid = invalid_samples() + copy.invalid_samples();
+    invalid_.upload({&invalid, 1});
+    queue_->wait(); // before the copy goes
+}
+
+std::vector<std::byte> NoisyFrame::bytes() const {
+    std::vector<std::byte> bytes(count() * sizeof(Float4) + sizeof(uint64_t));
+    queue_->copy_to_host(bytes.data(), view_.light, bytes.size() - sizeof(uint64_t));
+    const uint64_t invalid = invalid_samples();
+    std::memcpy(bytes.data() + bytes.size() - sizeof invalid, &invalid, sizeof invalid);
+    return bytes;
+}
+
+void NoisyFrame::set_bytes(std::span<const std::byte> bytes) {
+    PERTEV_CHECK(bytes.size() == count() * sizeof(Float4) + sizeof(uint64_t));
+    queue_->copy_to_device(view_.light, bytes.data(), bytes.size() - sizeof(uint64_t));
+    uint64_t invalid = 0;
+    std::memcpy(&invalid, bytes.data() + bytes.size() - sizeof invalid, sizeof invalid);
+    invalid_.upload({&invalid, 1});
+    queue_->wait();
 }
 
 } // namespace pertev

@@ -1,11 +1,12 @@
 #pragma once
 
-// What a surface is made of: plain numbers and texture references; shading/ turns them into BSDFs.
+// What a surface is made of: plain numbers and references to textures; shading/ turns them into BSDFs.
 
-#include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "base/limits.h"
 #include "math/rgb.h"
 #include "scene/texture.h"
 
@@ -21,43 +22,77 @@ enum class MaterialKind : uint8_t {
 
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
-struct Material {
-    std::string name, origin;
+/// All that a material is, as plain data: the block that goes to a device as it stands. A new parameter is a member
+/// here, a row of visit_parameters, what its reader reads, and the code that uses it.
+struct MaterialParameters {
     MaterialKind kind = MaterialKind::Diffuse;
-
-    Rgb base_color = {0.5f, 0.5f, 0.5f}; // [0, 1], linear; times the texture (alpha in .w of the texture)
-    TextureRef base_color_texture;
-
-    float alpha = 1;          // [0, 1]; times the base colour texture's alpha, the vertex colour's, and alpha_texture
-    TextureRef alpha_texture; // one channel, for OBJ map_d; none for glTF
     AlphaMode alpha_mode = AlphaMode::Opaque;
-    float alpha_cutoff = 0.5f; // Mask: hit where alpha >= cutoff
-
-    float metallic = 0;  // [0, 1]; times metallic_texture's channel
-    float roughness = 1; // [0, 1], perceptual: alpha_ggx = roughness^2; times roughness_texture's channel
-    TextureRef metallic_texture, roughness_texture;
-
-    float ior = 1.5f; // Dielectric and MetallicRoughness: inside over outside, >= 1
-    Rgb eta = {0.2f, 0.92f, 1.1f}, k = {3.9f, 2.45f, 2.14f}; // Conductor; default gold
-
-    Rgb emission = {0, 0, 0}; // W/(sr m2); times the texture
-    TextureRef emission_texture;
 
     // The front of a triangle is where its corners run counter-clockwise in the mesh's own space, whatever its vertex
     // normals say; so a node that mirrors a mesh leaves it its front.
     bool two_sided_emission = false; // else the front alone gives light; of unlit materials both faces are seen
     bool double_sided = true;        // else rays from the camera pass the back; every other ray is stopped by it
 
-    TextureRef normal_texture; // tangent space, x right, y up in texture space (OpenGL convention), linear
+    float alpha = 1;           // [0, 1]; times the base colour texture's alpha, the vertex colour's, and alpha_texture
+    float alpha_cutoff = 0.5f; // Mask: hit where alpha >= cutoff
+
+    Rgb base_color = {0.5f, 0.5f, 0.5f}; // [0, 1], linear; times the texture (alpha in .w of the texture)
+    Rgb emission = {0, 0, 0};            // W/(sr m2); times the texture
+    Rgb eta = {0.2f, 0.92f, 1.1f}, k = {3.9f, 2.45f, 2.14f}; // Conductor; default gold
+
+    float metallic = 0;  // [0, 1]; times metallic_texture's channel
+    float roughness = 1; // [0, 1], perceptual: alpha_ggx = roughness^2; times roughness_texture's channel
+    float ior = 1.5f;    // Dielectric and MetallicRoughness: inside over outside, >= 1
     float normal_scale = 1;
 
-    std::array<const TextureRef*, 6> textures() const {
-        return {&base_color_texture, &alpha_texture,    &metallic_texture,
-                &roughness_texture,  &emission_texture, &normal_texture};
-    }
+    TextureRef base_color_texture;
+    TextureRef alpha_texture; // one channel, for OBJ map_d; none for glTF
+    TextureRef metallic_texture, roughness_texture, emission_texture;
+    TextureRef normal_texture; // tangent space, x right, y up in texture space (OpenGL convention), linear
+
     bool is_emissive() const { return max_component(emission) > 0; }
     /// Is looked for as a light. An unlit one is not: rays from the camera or a surface that meet it see its colour.
     bool is_lamp() const { return is_emissive() && kind != MaterialKind::Unlit; }
+};
+
+/// Calls number(value, name, least, most) for each number of a material and each channel of its colours, and
+/// texture(reference, name) for each slot of a texture, with an image or without.
+template <class Parameters, class Number, class Texture>
+void visit_parameters(Parameters& m, const Number& number, const Texture& texture) {
+    const auto color = [&](auto& value, const char* name, float least, float most) {
+        for (auto* channel : {&value.r, &value.g, &value.b}) number(*channel, name, least, most);
+    };
+    color(m.base_color, "base_color", 0, 1);
+    color(m.emission, "emission", 0, kMaxSampleValue);
+    color(m.eta, "eta", 0x1p-10f, 0x1p10f);
+    color(m.k, "k", 0, 0x1p10f);
+    number(m.alpha, "alpha", 0, 1);
+    number(m.alpha_cutoff, "alpha_cutoff", 0, 0x1p10f);
+    number(m.metallic, "metallic", 0, 1);
+    number(m.roughness, "roughness", 0, 1);
+    number(m.ior, "ior", 1, 0x1p10f);
+    number(m.normal_scale, "normal_scale", -0x1p10f, 0x1p10f);
+    texture(m.base_color_texture, "base_color_texture");
+    texture(m.alpha_texture, "alpha_texture");
+    texture(m.metallic_texture, "metallic_texture");
+    texture(m.roughness_texture, "roughness_texture");
+    texture(m.emission_texture, "emission_texture");
+    texture(m.normal_texture, "normal_texture");
+}
+
+struct Material : MaterialParameters {
+    std::string name, origin; // origin: where its file has it
+
+    /// Its slots that have an image.
+    std::vector<const TextureRef*> textures() const {
+        std::vector<const TextureRef*> found;
+        visit_parameters(
+            *this, [](auto&&...) {},
+            [&](const TextureRef& texture, const char*) {
+                if (texture.has_image()) found.push_back(&texture);
+            });
+        return found;
+    }
 };
 
 } // namespace pertev

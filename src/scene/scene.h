@@ -40,6 +40,11 @@ struct Instance {
     bool is_background = false;
 };
 
+/// A setting of pictures by its name (docs/settings.md), and its value in words.
+struct SuggestedSetting {
+    std::string name, text;
+};
+
 struct Scene {
     std::vector<Mesh> meshes;
     std::vector<Material> materials;
@@ -50,14 +55,15 @@ struct Scene {
     std::vector<Camera> cameras;
     std::vector<Node> nodes; // a glTF file's, by their numbers there; also those that hold nothing
     std::vector<Skin> skins;
-    std::vector<MeshShape> shapes;         // of those meshes that morph targets or a skin can move
-    std::vector<Animation> animations;     // those that play
-    std::vector<Clip> clips;               // all animations of the file, in its order
-    std::vector<std::string> file_scenes;  // the names of all scenes of the file, in its order
-    uint32_t file_scene = 0;               // index into file_scenes: the one that this is
-    DoubleVec3 origin_in_file = {0, 0, 0}; // of all coordinates here, in those of the file, metres
-    bool is_far = false;                   // it lies over 2^12 of the scene's own sizes from the file's origin
-    std::string no_instances;              // where there are none: what the file has instead, and what would be right
+    std::vector<MeshShape> shapes;           // of those meshes that morph targets or a skin can move
+    std::vector<Animation> animations;       // those that play
+    std::vector<Clip> clips;                 // all animations of the file, in its order
+    std::vector<std::string> file_scenes;    // the names of all scenes of the file, in its order
+    uint32_t file_scene = 0;                 // index into file_scenes: the one that this is
+    DoubleVec3 origin_in_file = {0, 0, 0};   // of all coordinates here, in those of the file, metres
+    bool is_far = false;                     // it lies over 2^12 of the scene's own sizes from the file's origin
+    std::vector<SuggestedSetting> suggested; // by the file: samples, an integrator and its settings, a film
+    std::string no_instances;                // where there are none: what the file has instead, and what would be right
 };
 
 /// World from local of what has this place within a node; relative to `origin`, in the coordinates of the file.

@@ -60,7 +60,6 @@ void FilmRender::restart() {
 
 /// The film itself is cleared when it is next looked at.
 void FilmRender::forget_samples() {
-    samples_ = {};
     stats_ = {};
     film_is_old_ = true;
 }
@@ -77,8 +76,8 @@ Film& FilmRender::film() {
 }
 
 uint32_t FilmRender::render(SampleRange range, const KeepGoing& keep_going) {
-    PERTEV_CHECK(samples_.count() == 0 || range.first == samples_.end);
-    const uint32_t first = range.first, before = samples_.count();
+    PERTEV_CHECK(samples().count() == 0 || range.first == samples().end);
+    const uint32_t first = range.first, before = samples().count();
     const uint32_t count = std::min(range.count(), kMaxSamplesPerPixel - std::min(first, kMaxSamplesPerPixel));
     if (count == 0) return 0;
     const Stopwatch since_call;
@@ -123,10 +122,13 @@ uint32_t FilmRender::render(SampleRange range, const KeepGoing& keep_going) {
             return 0;
         }
         if (added == 0) break;
-        if (is_apart) into_film.add(into);
+        if (is_apart) {
+            into.set_samples({first + done, first + done + added});
+            into_film.add(into);
+        }
         done += added;
         const double seconds = watch.seconds();
-        samples_ = {first - before, first + done};
+        into_film.set_samples({first - before, first + done});
         stats_.rays = rays_before + integrator.rays();
         stats_.kind_seconds = pictures_.scene().tracer().seconds();
         stats_.render_seconds = seconds_before + seconds;
@@ -134,11 +136,11 @@ uint32_t FilmRender::render(SampleRange range, const KeepGoing& keep_going) {
         if (added < pass || (keep_going && !keep_going(now()))) break;
         if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) break;
     }
-    return samples_.count() - before;
+    return samples().count() - before;
 }
 
 std::optional<Image> FilmRender::denoised() {
-    if (settings_.denoise == Denoise::None || samples_.count() == 0) return std::nullopt;
+    if (settings_.denoise == Denoise::None || samples().count() == 0) return std::nullopt;
     return steps_.apply(picture());
 }
 
@@ -148,7 +150,7 @@ RenderStats FilmRender::stats() {
         hidden_back_share_ = hidden_back_share(pictures_.queue(), pictures_.scene().tracer(), picture);
     }
     RenderStats stats = stats_;
-    stats.samples = samples_.count();
+    stats.samples = samples().count();
     stats.invalid_samples = film().invalid_samples();
     stats.hidden_back_share = *hidden_back_share_;
     stats.upload_seconds = pictures_.scene().upload_seconds();

@@ -13,12 +13,6 @@
 
 namespace pertev {
 
-/// Samples [first, end) of each pixel.
-struct SampleRange {
-    uint32_t first = 0, end = 0;
-    uint32_t count() const { return end - first; }
-};
-
 class FilmRender {
 public:
     using KeepGoing = std::function<bool(const RenderProgress&)>;
@@ -50,11 +44,11 @@ public:
 
     /// Returns the film of the present picture. It is all zero without samples.
     Film& film();
-    SampleRange samples() const { return samples_; }
-    Image picture() { return film().picture(samples_.count(), settings_.transparent); }
+    SampleRange samples() const { return film_ && !film_is_old_ ? film_->part().samples : SampleRange(); }
+    Image picture() { return film().picture(settings_.transparent); }
     /// Returns the picture after the post steps; none if the settings ask for no step, or without samples.
     std::optional<Image> denoised();
-    std::vector<FilmLayer> layers() { return layers_of(film(), settings_, samples_.count()); }
+    std::vector<FilmLayer> layers() { return film().layers(); }
     /// Reads two numbers back. The share of hidden backs is counted once for each scene, camera and size.
     RenderStats stats();
 
@@ -71,7 +65,6 @@ private:
     std::optional<Film> film_;
     std::optional<Film> pass_film_; // the pass under way, if an abandoned one must leave film_ alone
     bool film_is_old_ = false;      // it holds samples of a picture that is no longer asked for
-    SampleRange samples_;           // in the film
     RenderStats stats_;             // without what stats() reads from the device
     std::optional<double> hidden_back_share_;
     uint64_t number_; // of the picture (PictureRenderer::new_number)

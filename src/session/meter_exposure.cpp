@@ -75,7 +75,8 @@ float Meter::stops(const Camera& camera, const RenderSettings& settings, ToneMap
         Film& film = fit_film(pictures_.queue(), film_, meter);
         film.clear();
         pictures_.begin(camera, meter, meter.samples).render(0, meter.samples, film.view());
-        return film.picture(meter.samples, meter.transparent);
+        film.set_samples({0, meter.samples});
+        return film.picture(meter.transparent);
     });
 }
 

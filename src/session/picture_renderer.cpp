@@ -6,7 +6,7 @@
 namespace pertev {
 
 bool is_film_of(const Film& film, const RenderSettings& settings) {
-    return film.width() == settings.width && film.height() == settings.height && film.view().aovs == settings.aovs &&
+    return film.width() == settings.width && film.height() == settings.height && film.aovs() == settings.aovs &&
            film.light_layers() == light_layers_of(settings);
 }
 
@@ -23,14 +23,6 @@ NoisyFrame& fit_frame(const DeviceScene& scene, std::optional<NoisyFrame>& frame
     }
     frame.reset(); // before the new one, so that two do not need to fit
     return frame.emplace(scene.queue(), width, height, splits_light);
-}
-
-std::vector<FilmLayer> layers_of(const Film& film, const RenderSettings& settings, uint64_t samples) {
-    std::vector<FilmLayer> layers = film.layers(samples);
-    for (uint32_t i = 0; i < film.light_layers(); ++i) {
-        layers.push_back({settings.light_paths->expressions[i].name, {"R", "G", "B"}, film.light_layer(i, samples)});
-    }
-    return layers;
 }
 
 PictureView PictureRenderer::view_of(const Camera& camera, const RenderSettings& settings) {
@@ -93,11 +85,12 @@ RenderResult PictureRenderer::render_aside(const Camera& camera, const RenderSet
     Film film(queue(), settings.width, settings.height, settings.aovs, light_layers_of(settings));
     Integrator& integrator = begin(camera, settings, settings.samples);
     integrator.render(first, settings.samples, film.view());
+    film.set_samples({first, first + settings.samples});
     RenderResult result;
     result.samples = settings.samples;
     result.rays = integrator.rays();
-    result.picture = film.picture(settings.samples, settings.transparent);
-    result.layers = layers_of(film, settings, settings.samples);
+    result.picture = film.picture(settings.transparent);
+    result.layers = film.layers();
     result.ids = film.ids();
     return result;
 }

@@ -12,7 +12,7 @@ namespace {
 
 /// The finished picture and its layers.
 std::size_t result_bytes(const RenderSettings& settings) {
-    const std::size_t channels = film_channel_count(settings.aovs) + std::size_t(3) * light_layers_of(settings);
+    const std::size_t channels = film_channel_count(settings.aovs) + 3 * light_layers_of(settings).size();
     return std::size_t(settings.width) * settings.height * channels * sizeof(float);
 }
 
@@ -36,8 +36,9 @@ std::string limit_text(std::size_t bytes, const RenderSettings& settings, const 
 
 /// What weighs, and the settings that make it less.
 std::string advice(const RenderSettings& settings, bool is_cuda) {
-    const uint32_t layers = light_layers_of(settings);
-    const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs, layers);
+    const std::vector<std::string> layer_names = light_layers_of(settings);
+    const std::size_t layers = layer_names.size();
+    const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs, layer_names);
     const std::size_t own = predicted_bytes(
         settings,
         {.width = settings.width, .height = settings.height, .samples = settings.samples, .walks_on_host = !is_cuda},

@@ -60,7 +60,7 @@ uint32_t Session::render(uint32_t samples, Sink& sink) {
 }
 
 void Session::display(ToneMap tone_map, float exposure_stops) {
-    film_.film().display(history().samples, tone_map, exposure_stops, settings().transparent);
+    film_.film().display(tone_map, exposure_stops, settings().transparent);
 }
 
 RenderResult Session::result() {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
+#include "base/error.h"
 #include "settings/value_names.h"
 
 namespace pertev {
@@ -83,6 +86,23 @@ std::string overruled_setting(const SettingConflict& conflict, const PictureOpti
         if (conflict.kind == SettingConflict::Kind::Excludes && yields_to(other, own)) return other;
     }
     return "";
+}
+
+void take_suggestions(const Scene& scene, PictureOptions& options, Messages& messages) {
+    for (const SuggestedSetting& suggested : scene.suggested) {
+        if (options.is_given(suggested.name)) continue;
+        const Setting* const setting = find_setting(suggested.name);
+        try {
+            if (setting == nullptr || !setting->is_kept) throw Error(ErrorCode::BadInput, "no setting is named so");
+            PictureOptions with = options;
+            set_value(with, *setting, std::span(&suggested.text, 1));
+            with.given[suggested.name] = SettingOrigin::Scene;
+            if (!find_conflict(with, kRender)) options = with;
+        } catch (const Error& error) {
+            messages.leave_out(
+                fmt::format("{}: {} {}: {}", options.scene.scene, suggested.name, suggested.text, error.what()));
+        }
+    }
 }
 
 } // namespace pertev

@@ -73,7 +73,11 @@ struct PictureSize {
 };
 
 /// What gave a setting its value. A later one overrules those before it.
-enum class SettingOrigin : uint8_t { File, Flag };
+enum class SettingOrigin : uint8_t {
+    Scene, // its file
+    File,  // of settings
+    Flag,
+};
 
 struct PictureOptions {
     SceneOptions scene;

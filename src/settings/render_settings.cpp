@@ -24,6 +24,13 @@ void set_default_size(RenderSettings& settings, const Camera* own) {
     settings.width = static_cast<uint32_t>(to_int(720 * own->aspect + 0.5f, 1, 8192));
 }
 
+std::vector<std::string> light_layers_of(const RenderSettings& settings) {
+    std::vector<std::string> names;
+    if (!settings.light_paths) return names;
+    for (const LightPathExpression& expression : settings.light_paths->expressions) names.push_back(expression.name);
+    return names;
+}
+
 RenderSettings settings_of_frames(RenderSettings settings) {
     settings.path.roulette_depth = std::min(settings.path.roulette_depth, 2u);
     if (settings.path.roulette == Roulette::FourthRoot) settings.path.roulette = Roulette::NearCubeRoot;

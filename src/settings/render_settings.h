@@ -44,10 +44,8 @@ struct RenderSettings : IntegratorSettings {
     bool time_kinds = false;             // fills RenderStats::kind_seconds; the wavefront is then slower
 };
 
-/// Layers of light paths that are asked for.
-inline uint32_t light_layers_of(const RenderSettings& settings) {
-    return settings.light_paths ? settings.light_paths->count() : 0;
-}
+/// Returns the names of the layers of light paths that are asked for.
+std::vector<std::string> light_layers_of(const RenderSettings& settings);
 
 /// Pixels: the one asked for, or the filter's default.
 inline float filter_radius_of(const RenderSettings& settings) {

@@ -4,12 +4,12 @@
 
 #include "base/host_device.h"
 #include "shading/bsdf.h"
-#include "shading/material_view.h"
+#include "shading/materials_known.h"
 
 namespace pertev {
 
 /// Whether some place of a surface of the material may have a delta lobe.
-HD inline bool may_be_specular(const MaterialView& material) {
+HD inline bool may_be_specular(const MaterialParameters& material) {
     switch (material.kind) {
     case MaterialKind::Diffuse:
     case MaterialKind::Unlit:

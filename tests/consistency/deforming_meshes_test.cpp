@@ -352,7 +352,7 @@ TEST_CASE("vertices that give light, mirror or are baked are made on the host, a
         return !moving.prepared().poses[shape].is_on_host;
     };
     Scene lit = make_bending_scene();
-    lit.materials.push_back({.name = "lamp", .emission = {1, 1, 1}});
+    lit.materials.push_back({{.emission = {1, 1, 1}}, "lamp"});
     lit.instances[kSkinned].material = 1;
     CHECK(!left_at(lit, 1, 0));
     CHECK(left_at(lit, 1, 1));

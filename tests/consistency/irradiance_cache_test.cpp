@@ -234,7 +234,7 @@ TEST_CASE("what is invalid of records is told with sample 0, whatever was render
     Queue queue = test::queue_asked_for();
     Scene scene = test::make_mixed_scene();
     test::add(scene, test::sheet({0, 3, 0}, {1, 0, 0}, {0, 0, 1}),
-              {.name = "too bright", .emission = {1e18f, 0, 0}, .two_sided_emission = true}); // for the film
+              {{.two_sided_emission = true, .emission = {1e18f, 0, 0}}, "too bright"}); // for the film
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     RenderSettings settings = cache_settings();

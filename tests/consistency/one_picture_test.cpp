@@ -6,7 +6,7 @@
 #include "base/parallel_for.h"
 #include "image/picture_hash.h"
 #include "integrators/path/path_integrator.h"
-#include "shading/material_view.h"
+#include "shading/materials_known.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -100,8 +100,8 @@ Scene scene_of(MaterialsKnown known) {
 }
 
 MaterialsKnown known_of(const Scene& scene) {
-    std::vector<MaterialView> views;
-    for (const Material& material : scene.materials) views.push_back(make_material_view(material));
+    std::vector<MaterialParameters> views;
+    for (const Material& material : scene.materials) views.push_back(parameters_for_device(material));
     return pertev::known_of(views);
 }
 
@@ -115,7 +115,7 @@ TEST_CASE("bodies that know something of materials give the bytes of those that 
         const Scene scene = scene_of(known);
         CHECK(known_of(scene) == known);
         Scene of_any = scene; // nothing is known of it, for a material that no instance has
-        of_any.materials.push_back({.name = "unused", .kind = MaterialKind::Conductor});
+        of_any.materials.push_back({{.kind = MaterialKind::Conductor}, "unused"});
         CHECK(known_of(of_any) == MaterialsKnown::Nothing);
         RenderSettings settings = odd_settings();
         settings.samples = 2;

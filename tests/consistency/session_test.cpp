@@ -216,7 +216,8 @@ TEST_CASE("an integrator that knows nothing of the path tracer renders through t
         integrator->render(0, in_first_call, film.view());
         integrator->render(in_first_call, 8 - in_first_call, film.view());
         CHECK(integrator->rays().camera == 15 * 9 * 8);
-        return film.picture(8, false);
+        film.set_samples({0, 8});
+        return film.picture(false);
     };
     const Image picture = render(queue, 7);
     CHECK(picture_hash(picture) == picture_hash(render(queue, 3)));

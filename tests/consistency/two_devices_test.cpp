@@ -52,15 +52,20 @@ public:
         integrator_->begin({scene_.view(), rays}, tracer_, kSamples);
     }
 
-    void add_sample(uint32_t sample) { integrator_->render(sample, 1, film_.view()); }
+    void add_sample(uint32_t sample) {
+        integrator_->render(sample, 1, film_.view());
+        SampleRange now = film_.part().samples;
+        if (now.count() == 0) now = {sample, sample};
+        film_.set_samples({std::min(now.first, sample), std::max(now.end, sample + 1)});
+    }
     void add_all() {
         for (uint32_t sample = 0; sample < kSamples; ++sample) add_sample(sample);
     }
     void add(const Render& other) { film_.add(other.film_); }
     Hash128 hash() const {
         Hasher hasher;
-        hasher.add_values(std::span<const float>(film_.picture(kSamples, true).pixels));
-        for (const FilmLayer& layer : film_.layers(kSamples)) {
+        hasher.add_values(std::span<const float>(film_.picture(true).pixels));
+        for (const FilmLayer& layer : film_.layers()) {
             hasher.add_values(std::span<const float>(layer.image.pixels));
         }
         return hasher.result();
@@ -108,15 +113,15 @@ TEST_CASE("a picture whose samples are shared out between two queues is the one 
         const Hash128 alone = hash_alone(0, settings);
         Queue first_queue = make_queue(0), second_queue = make_queue(1);
         Render first(first_queue, subject(0), settings), second(second_queue, subject(0), settings);
-        for (uint32_t sample = 0; sample < kSamples; ++sample) (sample % 2 == 0 ? first : second).add_sample(sample);
+        for (uint32_t sample = 0; sample < kSamples; ++sample) (sample < 2 ? first : second).add_sample(sample);
         CHECK(first.hash() != alone);
         first.add(second);
         CHECK(first.hash() == alone);
         // And the other way round: photons' radius, and what is told of records, go by the sample's number alone.
-        Render odd(first_queue, subject(0), settings), even(second_queue, subject(0), settings);
-        for (uint32_t sample = kSamples; sample-- > 0;) (sample % 2 == 1 ? odd : even).add_sample(sample);
-        odd.add(even);
-        CHECK(odd.hash() == alone);
+        Render late(first_queue, subject(0), settings), early(second_queue, subject(0), settings);
+        for (uint32_t sample = kSamples; sample-- > 0;) (sample >= 2 ? late : early).add_sample(sample);
+        late.add(early);
+        CHECK(late.hash() == alone);
     }
 }
 

@@ -3,6 +3,7 @@
 
 import json
 import os
+import pathlib
 import re
 import subprocess
 
@@ -41,6 +42,7 @@ class SettingsFiles(CliTest):
         self.assertEqual((info["pertev.spp"], info["pertev.seed"], info["width"]), (3, "6", 8))
         self.assertEqual(set(info["pertev.by_settings"].split()), {"spp", "size"})
         self.assertEqual(set(info["pertev.by_flags"].split()), {"seed", "device"})
+        self.assertEqual(info["pertev.by_scene"], "camera")
 
     def test_the_file_of_every_integrator_is_read_back_and_yields_to_flags(self):
         for flags in [["--integrator", "photon_map", "--photons", "100"], ["--integrator", "irradiance_cache"],
@@ -96,6 +98,19 @@ class Documents(CliTest):
         with open(os.path.join(ROOT, "docs", "settings.md"), encoding="utf-8") as file:
             self.assertEqual(file.read(), self.succeed("--settings-document").stdout,
                              "pertev --settings-document > docs/settings.md")
+
+    def test_every_key_of_metadata_is_a_setting_or_stands_in_the_document(self):
+        keys = set()
+        for folder in ["src", "apps"]:
+            for path in pathlib.Path(ROOT, folder).rglob("*.cpp"):
+                keys |= set(re.findall(r'"pertev\.([a-z_]+)"', path.read_text(encoding="utf-8")))
+        self.assertGreater(len(keys), 50)
+        settings = {name.replace("-", "_")
+                    for name in re.findall(r"(?m)^\| `--([a-z-]+)` ", self.succeed("--settings-document").stdout)}
+        conventions = pathlib.Path(ROOT, "docs/conventions.md").read_text(encoding="utf-8")
+        table = conventions.partition("The metadata of an EXR")[2].partition("\n\n")[2].partition("\n\n")[0]
+        told = {key for row in table.splitlines() for key in re.findall(r"`([a-z_]+)`", row.split("|")[1])}
+        self.assertEqual(keys - settings, told - settings)
 
     def test_bash_completes_verbs_flags_and_values(self):
         write(self.path("complete.bash"), self.succeed("--completion", "bash").stdout)

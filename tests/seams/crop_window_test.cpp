@@ -30,15 +30,15 @@ CropResult render_crop(Queue& queue, const PreparedScene& prepared, const Integr
     test::PictureOnDevice picture(queue, prepared, test::mixed_scene_camera(), kUncroppedWidth, kUncroppedHeight);
     const auto integrator = make_integrator(queue, settings);
     integrator->begin(picture.view, picture.tracer, kCropSamples);
-    const uint32_t light_layers = settings.light_paths ? settings.light_paths->count() : 0;
-    const Film film(queue, is_window ? kWindow.width : kUncroppedWidth, is_window ? kWindowHeight : kUncroppedHeight,
-                    kCropAovs, light_layers);
-    FilmView view = film.view();
-    if (is_window) view.window = kWindow;
-    integrator->render(0, kCropSamples, view);
-    CropResult result = {{film.picture(kCropSamples, true)}, film.ids()};
-    for (FilmLayer& layer : film.layers(kCropSamples)) result.images.push_back(std::move(layer.image));
-    for (uint32_t i = 0; i < light_layers; ++i) result.images.push_back(film.light_layer(i, kCropSamples));
+    const std::vector<std::string> light_layers =
+        settings.light_paths ? std::vector<std::string>{"lamps", "once"} : std::vector<std::string>();
+    Film film(queue, is_window ? kWindow.width : kUncroppedWidth, is_window ? kWindowHeight : kUncroppedHeight,
+              kCropAovs, light_layers);
+    if (is_window) film.set_window(kWindow);
+    integrator->render(0, kCropSamples, film.view());
+    film.set_samples({0, kCropSamples});
+    CropResult result = {{film.picture(true)}, film.ids()};
+    for (FilmLayer& layer : film.layers()) result.images.push_back(std::move(layer.image));
     return result;
 }
 

@@ -52,10 +52,12 @@ std::vector<std::vector<std::byte>> bytes_of_targets(const Film& film) {
 }
 
 /// A film of bytes, on any device.
-Film film_of_bytes(Queue& queue, const RenderSettings& settings, const std::vector<std::vector<std::byte>>& bytes) {
-    Film film(queue, settings.width, settings.height, settings.aovs, settings.light_paths->count());
+Film film_of_bytes(Queue& queue, const RenderSettings& settings, const std::vector<std::vector<std::byte>>& bytes,
+                   SampleRange samples) {
+    Film film(queue, settings.width, settings.height, settings.aovs, light_layers_of(settings));
     REQUIRE(film.targets().size() == bytes.size());
     for (std::size_t i = 0; i < bytes.size(); ++i) film.targets()[i]->set_bytes(bytes[i]);
+    film.set_samples(samples);
     return film;
 }
 
@@ -78,9 +80,10 @@ TEST_CASE("two parts of a film that are kept as bytes add up to the film that wa
         const auto bytes_of_first = bytes_of_targets(first.film()), bytes_of_second = bytes_of_targets(second.film());
         for (std::size_t i = 0; i < bytes.size(); ++i) CHECK(bytes_of_second[i] != bytes[i]);
         CHECK(bytes_of_first[0] != bytes[0]);
-        Film sum = film_of_bytes(cpu, world.settings, bytes_of_first);
-        sum.add(film_of_bytes(asked, world.settings, bytes_of_second));
+        Film sum = film_of_bytes(cpu, world.settings, bytes_of_first, {0, a});
+        sum.add(film_of_bytes(asked, world.settings, bytes_of_second, {a, 5}));
         CHECK(bytes_of_targets(sum) == bytes);
+        CHECK(sum.part() == whole.film().part());
         second.film().add(first.film());
         CHECK(bytes_of_targets(second.film()) == bytes);
     }

@@ -88,8 +88,7 @@ struct ShadeRound {
         if (!path.wants_shadow) return;
         listener.hand_over(path.asked);
         path.asked_light = shadow.contribution;
-        view.shadows.store(i, {shadow.origin, 0, shadow.direction, shadow.t_max}, {hit.instance, hit.primitive},
-                           shadow.target);
+        view.shadows.store(i, {shadow.origin, 0, shadow.direction, shadow.t_max}, shadow.start, shadow.target);
     }
 };
 

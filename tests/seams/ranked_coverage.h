@@ -53,21 +53,23 @@ public:
         : ElementTarget<PixelCoverage<kIds>, AddCoverage<kIds>, 0xff>(queue, pixels, "coverage") {}
     void show(FilmView&) const override {}
 
-    /// Resolves it: instances of each pixel with their counts, from most to least.
-    struct Rank {
-        uint32_t id, samples;
-        bool operator==(const Rank&) const = default;
-    };
-    std::vector<std::vector<Rank>> ranks() const {
-        std::vector<std::vector<Rank>> of_pixels;
-        for (const PixelCoverage<kIds>& pixel : this->elements().download()) {
-            std::vector<Rank>& ranked = of_pixels.emplace_back();
+    /// One layer: id and share of the samples of each rank, from most to least; a share of 0 ends them.
+    std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const override {
+        const std::vector<PixelCoverage<kIds>> pixels = this->elements().download();
+        FilmLayer layer = {"coverage", {}, {width, static_cast<uint32_t>(pixels.size()) / width, 2 * kIds, {}}};
+        for (const PixelCoverage<kIds>& pixel : pixels) {
+            std::vector<std::pair<uint32_t, uint32_t>> ranks; // samples, id
             for (uint32_t k = 0; k < kIds && pixel.ids[k] != kNoHit; ++k) {
-                ranked.push_back({pixel.ids[k], pixel.samples[k]});
+                ranks.emplace_back(pixel.samples[k], pixel.ids[k]);
             }
-            std::ranges::stable_sort(ranked, std::ranges::greater(), &Rank::samples);
+            std::ranges::sort(ranks, std::ranges::greater());
+            ranks.resize(kIds);
+            for (const auto& [count, id] : ranks) {
+                layer.image.pixels.push_back(static_cast<float>(id));
+                layer.image.pixels.push_back(static_cast<float>(count) / static_cast<float>(samples));
+            }
         }
-        return of_pixels;
+        return {layer};
     }
 };
 

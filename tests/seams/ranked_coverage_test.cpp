@@ -14,7 +14,7 @@ using namespace pertev;
 
 namespace {
 
-constexpr uint32_t kMatteWidth = 13, kMatteHeight = 9, kMatteSamples = 7;
+constexpr uint32_t kMatteWidth = 13, kMatteHeight = 9, kMatteSamples = 8;
 
 /// Black squares in a row that emit red, green and blue in turns; three at most lie side by side in a pixel.
 Scene striped_scene() {
@@ -50,6 +50,7 @@ struct Matte {
             {.picture = picture.view, .settings = {.max_depth = 0}, .film = film.view(), .layers = {}},
             coverage->elements().data()};
         test::CoverageRounds<kIds>(queue, kMatteWidth * kMatteHeight).render(job, picture.tracer, first, end);
+        film.set_samples({film.part().is_empty() ? first : film.part().samples.first, end});
     }
     std::vector<std::vector<std::byte>> bytes() const {
         std::vector<std::vector<std::byte>> all;
@@ -63,7 +64,7 @@ struct Matte {
     const test::CoverageTarget<kIds>* coverage;
 };
 
-/// Samples [0, 3) and [3, 7) on two devices: either film, made again from its bytes and with the other added to it, has
+/// Samples [0, 3) and [3, 8) on two devices: either film, made again from its bytes and with the other added to it, has
 /// the bytes of the film of all.
 template <uint32_t kIds>
 void check_parts(const PreparedScene& prepared) {
@@ -75,6 +76,7 @@ void check_parts(const PreparedScene& prepared) {
     second.render(5, kMatteSamples);
     CHECK(first.bytes() != whole.bytes());
     for (std::size_t i = 0; i < again.film.targets().size(); ++i) again.film.targets()[i]->set_bytes(second.bytes()[i]);
+    again.film.set_part(second.film.part());
     again.film.add(first.film);
     CHECK(again.bytes() == whole.bytes());
     first.film.add(second.film);
@@ -92,25 +94,29 @@ TEST_CASE("a film's target of a test's own ranks what pixels show, and its parts
     Queue queue = test::queue_asked_for();
     Matte<6> matte(queue, prepared);
     matte.render(0, kMatteSamples);
-    const Image picture = matte.film.picture(1, true); // sums
+    const Image picture = matte.film.picture(true);
     const std::vector<PixelIds> first_ids = matte.film.ids();
-    const auto ranks = matte.coverage->ranks();
+    const FilmLayer layer = matte.film.layers().back();
+    REQUIRE(layer.name == "coverage");
     uint32_t shared = 0;
     for (uint32_t pixel = 0; pixel < kMatteWidth * kMatteHeight; ++pixel) {
-        uint32_t of_color[3] = {}, hits = 0, last = kMatteSamples;
+        const float* const ranks = &layer.image.pixels[12 * std::size_t(pixel)];
+        float of_color[3] = {}, covered = 0, last = 1;
         bool has_first = first_ids[pixel].instance == kNoHit;
-        for (const auto& [id, samples] : ranks[pixel]) {
-            REQUIRE(samples > 0);
-            REQUIRE(samples <= last);
-            last = samples;
-            of_color[id % 3] += samples, hits += samples;
+        uint32_t count = 0;
+        for (; count < 6 && ranks[2 * count + 1] > 0; ++count) {
+            const auto id = static_cast<uint32_t>(ranks[2 * count]);
+            const float share = ranks[2 * count + 1]; // eighths: sums are exact
+            REQUIRE(share <= last);
+            last = share;
+            of_color[id % 3] += share, covered += share;
             has_first = has_first || id == first_ids[pixel].instance;
         }
-        shared += ranks[pixel].size() > 2 ? 1 : 0;
+        shared += count > 2 ? 1 : 0;
         CHECK(has_first);
-        const float* const sums = &picture.pixels[4 * std::size_t(pixel)];
-        CHECK(sums[3] == static_cast<float>(hits));
-        for (int c = 0; c < 3; ++c) CHECK(sums[c] == static_cast<float>(of_color[c]));
+        const float* const means = &picture.pixels[4 * std::size_t(pixel)];
+        CHECK(means[3] == covered);
+        for (int c = 0; c < 3; ++c) CHECK(means[c] == of_color[c]);
     }
     CHECK(shared > 5);
 

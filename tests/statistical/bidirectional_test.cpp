@@ -32,7 +32,7 @@ void add_box(Scene& scene, Vec3 centre, Vec3 half, const Material& material) {
 /// A room that is open to the camera: a lamp under its ceiling, and a box.
 Scene make_room(const Material& box, const Material& floor = test::white(0.6f), bool has_lamp = true) {
     Scene scene;
-    const Material red = {.name = "red", .base_color = {0.7f, 0.2f, 0.2f}};
+    const Material red = {{.base_color = {0.7f, 0.2f, 0.2f}}, "red"};
     test::add(scene, test::sheet({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), floor);
     test::add(scene, test::sheet({0, 1, -1}, {1, 0, 0}, {0, 1, 0}), test::white(0.6f));
     test::add(scene, test::sheet({-1, 1, 0}, {0, 1, 0}, {0, 0, 1}), red);
@@ -40,7 +40,7 @@ Scene make_room(const Material& box, const Material& floor = test::white(0.6f), 
     if (!has_lamp) return scene;
     test::add(scene, test::sheet({0, 2, 0}, {1, 0, 0}, {0, 0, 1}), test::white(0.6f));
     test::add(scene, test::sheet({-0.2f, 1.9f, 0}, {0.6f, 0, 0}, {0, 0, 0.6f}),
-              {.name = "lamp", .base_color = {0.2f, 0.2f, 0.2f}, .emission = {4, 3.5f, 3}});
+              {{.base_color = {0.2f, 0.2f, 0.2f}, .emission = {4, 3.5f, 3}}, "lamp"});
     return scene;
 }
 
@@ -52,13 +52,11 @@ Camera room_camera() {
 }
 
 Material plastic(float roughness) {
-    return {.name = "plastic",
-            .kind = MaterialKind::MetallicRoughness,
-            .base_color = {0.3f, 0.5f, 0.7f},
-            .roughness = roughness};
+    return {{.kind = MaterialKind::MetallicRoughness, .base_color = {0.3f, 0.5f, 0.7f}, .roughness = roughness},
+            "plastic"};
 }
 Material glass(float roughness = 0) {
-    return {.name = "glass", .kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .roughness = roughness};
+    return {{.kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .roughness = roughness}, "glass"};
 }
 
 struct Case {
@@ -78,11 +76,9 @@ std::vector<Case> cases() {
     std::vector<Case> all;
     all.push_back({.name = "diffuse", .scene = make_room(test::white(0.8f))});
 
-    Material metal = {.name = "metal",
-                      .kind = MaterialKind::MetallicRoughness,
-                      .base_color = {0.9f, 0.8f, 0.6f},
-                      .metallic = 1,
-                      .roughness = 0.45f};
+    Material metal = {
+        {.kind = MaterialKind::MetallicRoughness, .base_color = {0.9f, 0.8f, 0.6f}, .metallic = 1, .roughness = 0.45f},
+        "metal"};
     all.push_back({.name = "glossy", .scene = make_room(metal, plastic(0.5f)), .filter = PixelFilter::Gaussian});
 
     // A box: in the far tail of a filter particles of pixels beside the glass count, and a path is hardly ever drawn.
@@ -205,7 +201,7 @@ TEST_CASE("light and bidirectional show a floor under a flat lamp as bright as t
     const auto mean_of = [&](const Mesh& lamp, IntegratorKind integrator, uint32_t samples) {
         Scene scene;
         test::add(scene, test::floor_at(0, 50), test::white(1));
-        test::add(scene, lamp, {.name = "lamp", .base_color = {0, 0, 0}, .emission = {4, 4, 4}});
+        test::add(scene, lamp, {{.base_color = {0, 0, 0}, .emission = {4, 4, 4}}, "lamp"});
         RenderSettings settings;
         settings.width = settings.height = 32;
         settings.samples = samples;

@@ -31,7 +31,7 @@ RenderSettings distributed_settings(uint32_t side, uint32_t samples) {
 double floor_radiance(const Mesh& lamp, Vec3 at) {
     Scene scene;
     test::add(scene, test::floor_at(0, 50), test::white(1));
-    test::add(scene, lamp, {.name = "lamp", .base_color = {0, 0, 0}, .emission = {4, 4, 4}});
+    test::add(scene, lamp, {{.base_color = {0, 0, 0}, .emission = {4, 4, 4}}, "lamp"});
     Queue queue = test::queue_asked_for();
     const RenderResult result =
         test::render(queue, scene, test::camera_down(at + Vec3{0, 0.1f, 0}, 1e-3f), distributed_settings(1, 1024));
@@ -152,7 +152,7 @@ TEST_CASE("a lens is sharp at its distance, and blurs a point elsewhere over its
         Scene scene;
         const float half = 0.007f * distance; // almost a pixel, as seen
         test::add(scene, test::sheet({0, 0, -distance}, {half, 0, 0}, {0, half, 0}),
-                  {.name = "lamp", .base_color = {0, 0, 0}, .emission = {1000, 1000, 1000}});
+                  {{.base_color = {0, 0, 0}, .emission = {1000, 1000, 1000}}, "lamp"});
         Queue queue = test::queue_asked_for();
         RenderSettings settings = distributed_settings(kSide, 256);
         settings.integrator = integrator;

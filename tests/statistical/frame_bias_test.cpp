@@ -222,11 +222,8 @@ TEST_CASE("shared bounces at bent normals seen at grazing angles send nearly the
 TEST_CASE("light beneath a layer that reflects more of it from the side does not lag behind a camera that rises") {
     Scene scene;
     add(scene, floor_at(0, 50),
-        {.name = "varnished",
-         .kind = MaterialKind::MetallicRoughness,
-         .base_color = grey(0.8f),
-         .metallic = 0,
-         .roughness = 0.7f});
+        {{.kind = MaterialKind::MetallicRoughness, .base_color = grey(0.8f), .metallic = 0, .roughness = 0.7f},
+         "varnished"});
     scene.environment = Environment{};
     constexpr uint32_t kTurn = 32, kTimes = 8; // frames of a turn, and turns, by other samples each
     const auto camera_at = [](uint32_t frame) {

@@ -22,7 +22,7 @@ Scene make_room(float albedo) {
     mesh.indices = sphere.indices;
     scene.meshes.push_back(mesh);
     scene.materials.push_back(
-        {.name = "wall", .base_color = grey(albedo), .emission = {1, 1, 1}, .two_sided_emission = true});
+        {{.two_sided_emission = true, .base_color = grey(albedo), .emission = {1, 1, 1}}, "wall"});
     scene.instances.push_back({"room", 0, 0, {}});
     return scene;
 }

@@ -200,7 +200,7 @@ Scene room_with_caustic() {
     }
     test::add(scene, test::sheet({0, 2, 0}, {1, 0, 0}, {0, 0, 1}), test::white(0.7f));
     test::add(scene, test::sheet({0.1f, 1.6f, 0.1f}, {0.06f, 0, 0}, {0, 0, 0.06f}),
-              {.name = "lamp", .base_color = {0, 0, 0}, .emission = {400, 400, 400}});
+              {{.base_color = {0, 0, 0}, .emission = {400, 400, 400}}, "lamp"});
     return scene;
 }
 

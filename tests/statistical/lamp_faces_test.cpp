@@ -30,9 +30,9 @@ Scene lamp_over_floor(bool faces_down, bool is_two_sided, bool by_mirror) {
     Scene scene;
     scene.meshes = {square_at(1, 0), square_at(kHalf, by_mirror ? -1.0f : 1.0f)};
     if (by_mirror != faces_down) std::ranges::reverse(scene.meshes[1].indices);
-    scene.materials.push_back({.name = "floor", .base_color = grey(kAlbedo)});
+    scene.materials.push_back({{.base_color = grey(kAlbedo)}, "floor"});
     scene.materials.push_back(
-        {.name = "lamp", .base_color = {0, 0, 0}, .emission = grey(kRadiance), .two_sided_emission = is_two_sided});
+        {{.two_sided_emission = is_two_sided, .base_color = {0, 0, 0}, .emission = grey(kRadiance)}, "lamp"});
     scene.instances.push_back({"floor", 0, 0, {}});
     scene.instances.push_back({"lamp", 1, 1, by_mirror ? make_scale({1, -1, 1}) : Transform{}});
     return scene;
@@ -147,7 +147,8 @@ TEST_CASE("a clamp takes later light alike, however it is found, before it is we
         job.picture.scene = device.view();
         job.settings = {.strategy = strategy, .clamp = clamp, .sampler = SamplerKind::Independent};
         FilmListeners listener(job);
-        REQUIRE(sample_direct<kAllMaterials>(job, here, {surface, {0, 1, 0}}, DrawWhenAsked(), shadow, listener));
+        REQUIRE(sample_direct<kAllMaterials>(job, here, SurfaceVertex{surface, {0, 1, 0}}, DrawWhenAsked(), shadow,
+                                             listener));
         return static_cast<double>(max_component(shadow.contribution));
     };
     CHECK(asked(0, LightStrategy::NeeOnly, 1) == asked(0, LightStrategy::NeeOnly, 0));

@@ -36,7 +36,7 @@ Mesh disc(double share) {
 /// An unlit white mesh on a node, of which an animation over a second sets `part` from `begin` to `end`.
 Scene unlit_scene(Mesh mesh, AnimatedPart part, std::vector<float> begin, const std::vector<float>& end) {
     Scene scene;
-    test::add(scene, std::move(mesh), {.name = "white", .kind = MaterialKind::Unlit, .base_color = {1, 1, 1}});
+    test::add(scene, std::move(mesh), {{.kind = MaterialKind::Unlit, .base_color = {1, 1, 1}}, "white"});
     scene.nodes.resize(1);
     scene.instances[0].node = 0;
     begin.insert(begin.end(), end.begin(), end.end());
@@ -94,12 +94,10 @@ Scene make_lit_scene() {
     Scene scene;
     test::add(scene, test::floor_at(0, 2), test::white(0.7f));
     test::add(scene, test::sheet({0, 0, 0}, {0.5f, 0, 0}, {0, 0, 0.5f}),
-              {.name = "lamp", .base_color = {0, 0, 0}, .emission = {5, 4, 3}});
-    test::add(scene, test::sheet({0, 0, 0}, {0.5f, 0, 0}, {0, 0.4f, -0.2f}),
-              {.name = "plastic",
-               .kind = MaterialKind::MetallicRoughness,
-               .base_color = {0.3f, 0.5f, 0.7f},
-               .roughness = 0.3f});
+              {{.base_color = {0, 0, 0}, .emission = {5, 4, 3}}, "lamp"});
+    test::add(
+        scene, test::sheet({0, 0, 0}, {0.5f, 0, 0}, {0, 0.4f, -0.2f}),
+        {{.kind = MaterialKind::MetallicRoughness, .base_color = {0.3f, 0.5f, 0.7f}, .roughness = 0.3f}, "plastic"});
     scene.nodes.resize(2);
     scene.instances[1].node = 0, scene.instances[2].node = 1;
     scene.animations.emplace_back();

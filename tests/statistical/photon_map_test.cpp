@@ -139,7 +139,7 @@ TEST_CASE("a lamp that stands on the floor is no noisier than by path tracing, f
         Scene scene;
         test::add(scene, test::sheet({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), floor);
         test::add(scene, test::sheet({0, 0.1f, 0}, {0.3f, 0, 0}, {0, 0.1f, 0}), // it shines to +z
-                  {.name = "lamp", .base_color = grey(0), .emission = {20, 20, 20}});
+                  {{.base_color = grey(0), .emission = {20, 20, 20}}, "lamp"});
         Messages messages;
         const PreparedScene prepared = prepare_scene(scene, {}, messages);
         Queue queue = test::queue_asked_for();

@@ -91,7 +91,7 @@ Brightness furnace(const Scene& scene, LightStrategy strategy, uint32_t samples)
 /// The largest step from a pixel to the next across or down, over the brightest pixel, well within the outline.
 double largest_step(int subdivisions) {
     constexpr uint32_t kSize = 160;
-    Scene scene = sphere_scene(subdivisions, {.name = "chalk", .base_color = grey(0.8f)});
+    Scene scene = sphere_scene(subdivisions, {{.base_color = grey(0.8f)}, "chalk"});
     scene.lights.push_back(point_light({60, 30, 15}, 1e4f));
     RenderSettings settings;
     settings.width = settings.height = kSize;
@@ -234,15 +234,12 @@ TEST_CASE("the value over the triangle's own cosine stays bounded down to its ho
 }
 
 TEST_CASE("coarse smooth spheres cannot be seen in a white furnace, nor their rims") {
-    Material chalk{.name = "chalk", .base_color = grey(1)};
-    Material glass{.name = "glass", .kind = MaterialKind::Dielectric, .base_color = grey(1), .roughness = 0};
+    Material chalk{{.base_color = grey(1)}, "chalk"};
+    Material glass{{.kind = MaterialKind::Dielectric, .base_color = grey(1), .roughness = 0}, "glass"};
     Material frosted = glass;
     frosted.roughness = 0.5f;
-    Material metal{.name = "metal",
-                   .kind = MaterialKind::MetallicRoughness,
-                   .base_color = grey(1),
-                   .metallic = 1,
-                   .roughness = 0.4f};
+    Material metal{{.kind = MaterialKind::MetallicRoughness, .base_color = grey(1), .metallic = 1, .roughness = 0.4f},
+                   "metal"};
     for (const Material& material : {chalk, glass, frosted, metal}) {
         for (const int subdivisions : {1, 2}) {
             CAPTURE(material.name);
@@ -269,11 +266,11 @@ TEST_CASE("a coarse smooth sphere beside a lamp ends softly in the dark") {
 }
 
 TEST_CASE("no light leaks into a coarse smooth room") {
-    Material plastic{.name = "plastic", .kind = MaterialKind::MetallicRoughness, .base_color = grey(0.8f)};
+    Material plastic{{.kind = MaterialKind::MetallicRoughness, .base_color = grey(0.8f)}, "plastic"};
     Material mirror = plastic;
     mirror.metallic = 1;
     mirror.roughness = 0;
-    for (const Material& material : {Material{.name = "chalk", .base_color = grey(0.8f)}, plastic, mirror}) {
+    for (const Material& material : {Material{{.base_color = grey(0.8f)}, "chalk"}, plastic, mirror}) {
         for (const int subdivisions : {0, 1}) { // 0: so coarse that not all is raised clear of the horizon
             CAPTURE(material.name);
             CAPTURE(subdivisions);
@@ -295,17 +292,17 @@ TEST_CASE("no light leaks into a coarse smooth room") {
 }
 
 TEST_CASE("on coarse smooth meshes lights are found alike by every strategy") {
-    const Material metal{.name = "metal", .kind = MaterialKind::Conductor, .roughness = 0.6f};
-    const Material plastic{
-        .name = "plastic", .kind = MaterialKind::MetallicRoughness, .base_color = grey(0.8f), .roughness = 0.5f};
-    for (const Material& material : {Material{.name = "chalk", .base_color = grey(0.8f)}, metal, plastic}) {
+    const Material metal{{.kind = MaterialKind::Conductor, .roughness = 0.6f}, "metal"};
+    const Material plastic{{.kind = MaterialKind::MetallicRoughness, .base_color = grey(0.8f), .roughness = 0.5f},
+                           "plastic"};
+    for (const Material& material : {Material{{.base_color = grey(0.8f)}, "chalk"}, metal, plastic}) {
         CAPTURE(material.name);
         Scene scene = sphere_scene(1, material);
         Mesh quad; // beside the sphere, so that much of its light comes in low
         quad.positions = {{1.5f, -2, -2}, {1.5f, 2, -2}, {1.5f, 2, 2}, {1.5f, -2, 2}};
         quad.indices = {0, 2, 1, 0, 3, 2};
         scene.meshes.push_back(quad);
-        scene.materials.push_back({.name = "lamp", .base_color = grey(0), .emission = {1, 1, 1}});
+        scene.materials.push_back({{.base_color = grey(0), .emission = {1, 1, 1}}, "lamp"});
         scene.instances.push_back({"lamp", 1, 1, {}});
         Messages messages;
         const PreparedScene prepared = prepare_scene(scene, {}, messages);

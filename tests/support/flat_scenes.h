@@ -24,14 +24,11 @@ inline void add(Scene& scene, Mesh mesh, const Material& material) {
 /// A sheet of side 2 `half` in the plane y = `height` about (0, height, 0), its front up.
 inline Mesh floor_at(float height, float half) { return sheet({0, height, 0}, {0, 0, half}, {half, 0, 0}); }
 
-inline Material white(float albedo = 1) { return {.name = "white", .base_color = grey(albedo)}; }
+inline Material white(float albedo = 1) { return {{.base_color = grey(albedo)}, "white"}; }
 /// Reflects all light as a perfect mirror.
 inline Material mirror() {
-    return {.name = "mirror",
-            .kind = MaterialKind::MetallicRoughness,
-            .base_color = {1, 1, 1},
-            .metallic = 1,
-            .roughness = 0};
+    return {{.kind = MaterialKind::MetallicRoughness, .base_color = {1, 1, 1}, .metallic = 1, .roughness = 0},
+            "mirror"};
 }
 
 inline Light point_light(Vec3 position, Rgb intensity) {

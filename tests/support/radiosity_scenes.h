@@ -25,7 +25,7 @@ inline Scene closed_box(const Material& material, float half = 1) {
 }
 
 inline Material lamp_material(float reflectance, float radiance) {
-    return {.name = "lamp", .base_color = grey(reflectance), .emission = grey(radiance)};
+    return {{.base_color = grey(reflectance), .emission = grey(radiance)}, "lamp"};
 }
 
 /// A scene with its patches.

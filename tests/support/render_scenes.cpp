@@ -83,22 +83,21 @@ Scene make_mixed_scene() {
     scene.meshes.push_back(square_mesh());
 
     TextureRef checker{.image = 0, .is_srgb = true, .m00 = 3, .m11 = 3};
-    const uint32_t floor = add(scene, {.name = "floor", .base_color = {1, 1, 1}, .base_color_texture = checker});
-    const uint32_t red = add(scene, {.name = "red", .base_color = {0.7f, 0.2f, 0.15f}});
-    const uint32_t gold = add(scene, {.name = "gold", .kind = MaterialKind::Conductor, .roughness = 0.3f});
+    const uint32_t floor = add(scene, {{.base_color = {1, 1, 1}, .base_color_texture = checker}, "floor"});
+    const uint32_t red = add(scene, {{.base_color = {0.7f, 0.2f, 0.15f}}, "red"});
+    const uint32_t gold = add(scene, {{.kind = MaterialKind::Conductor, .roughness = 0.3f}, "gold"});
     const uint32_t glass =
-        add(scene, {.name = "glass", .kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .roughness = 0});
-    const uint32_t plastic = add(scene, {.name = "plastic",
-                                         .kind = MaterialKind::MetallicRoughness,
-                                         .base_color = {0.2f, 0.4f, 0.8f},
-                                         .roughness = 0.4f});
-    const uint32_t lamp = add(scene, {.name = "lamp", .base_color = {0, 0, 0}, .emission = {6, 5, 4}});
+        add(scene, {{.kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .roughness = 0}, "glass"});
+    const uint32_t plastic =
+        add(scene, {{.kind = MaterialKind::MetallicRoughness, .base_color = {0.2f, 0.4f, 0.8f}, .roughness = 0.4f},
+                    "plastic"});
+    const uint32_t lamp = add(scene, {{.base_color = {0, 0, 0}, .emission = {6, 5, 4}}, "lamp"});
     checker.m00 = checker.m11 = 1;
-    const uint32_t mask = add(scene, {.name = "mask", .base_color_texture = checker, .alpha_mode = AlphaMode::Mask});
+    const uint32_t mask = add(scene, {{.alpha_mode = AlphaMode::Mask, .base_color_texture = checker}, "mask"});
     const uint32_t blend =
-        add(scene, {.name = "blend", .base_color = {0.9f, 0.9f, 0.3f}, .alpha = 0.5f, .alpha_mode = AlphaMode::Blend});
+        add(scene, {{.alpha_mode = AlphaMode::Blend, .alpha = 0.5f, .base_color = {0.9f, 0.9f, 0.3f}}, "blend"});
 
-    const uint32_t turned = add(scene, {.name = "turned", .base_color = {0.2f, 0.8f, 0.2f}, .double_sided = false});
+    const uint32_t turned = add(scene, {{.double_sided = false, .base_color = {0.2f, 0.8f, 0.2f}}, "turned"});
 
     place(scene, 1, floor, {0, 0, 0}, {5, 1, 5});
     place(scene, 0, red, {-2.2f, 1, -1}, {1, 1, 1});
@@ -141,7 +140,7 @@ Camera mixed_scene_camera() {
 Scene make_furnace_scene(float albedo) {
     Scene scene;
     scene.meshes.push_back(sphere_mesh(3));
-    scene.materials.push_back({.name = "grey", .base_color = grey(albedo)});
+    scene.materials.push_back({{.base_color = grey(albedo)}, "grey"});
     scene.instances.push_back({"sphere", 0, 0, {}});
     scene.environment = Environment{};
     return scene;

@@ -11,7 +11,7 @@ namespace pertev::test {
 /// A lamp stands under the ceiling; or there is none, and the mixed scene's sky lights the room.
 inline Scene room_with_ball(const Material& ball_material, const Material& floor, bool has_sky) {
     Scene scene;
-    const Material red = {.name = "red", .base_color = {0.7f, 0.2f, 0.2f}};
+    const Material red = {{.base_color = {0.7f, 0.2f, 0.2f}}, "red"};
     add(scene, sheet({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), floor);
     add(scene, sheet({0, 1, -1}, {1, 0, 0}, {0, 1, 0}), white(0.6f));
     add(scene, sheet({-1, 1, 0}, {0, 1, 0}, {0, 0, 1}), red);
@@ -26,7 +26,7 @@ inline Scene room_with_ball(const Material& ball_material, const Material& floor
     }
     add(scene, sheet({0, 2, 0}, {1, 0, 0}, {0, 0, 1}), white(0.6f));
     add(scene, sheet({-0.1f, 1.9f, 0}, {0.5f, 0, 0}, {0, 0, 0.5f}),
-        {.name = "lamp", .base_color = {0.2f, 0.2f, 0.2f}, .emission = {4, 3.5f, 3}});
+        {{.base_color = {0.2f, 0.2f, 0.2f}, .emission = {4, 3.5f, 3}}, "lamp"});
     return scene;
 }
 
@@ -39,8 +39,7 @@ inline Camera room_camera() {
 }
 
 inline Material of_roughness(MaterialKind kind, float roughness, float metallic = 0) {
-    return {
-        .name = "ball", .kind = kind, .base_color = {0.9f, 0.8f, 0.7f}, .metallic = metallic, .roughness = roughness};
+    return {{.kind = kind, .base_color = {0.9f, 0.8f, 0.7f}, .metallic = metallic, .roughness = roughness}, "ball"};
 }
 
 } // namespace pertev::test

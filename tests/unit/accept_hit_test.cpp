@@ -6,8 +6,8 @@
 
 #include "device_scene/accept_hit.h"
 #include "device_scene/scene_on_device.h"
-#include "render/prepare_scene.h"
 #include "math/portable_math.h"
+#include "render/prepare_scene.h"
 #include "tests/support/random.h"
 #include "trace/intersect/intersect_triangle.h"
 
@@ -33,11 +33,11 @@ struct AlphaScene {
         image.rgba8 = {2, 1, {255, 255, 255, 255, 255, 255, 255, 0}};
         scene.images.push_back(image);
         TextureRef half_clear{.image = 0};
-        scene.materials.push_back({.name = "solid", .alpha = 0.1f}); // opaque: alpha is not looked at
+        scene.materials.push_back({{.alpha = 0.1f}, "solid"}); // opaque: alpha is not looked at
         scene.materials.push_back(
-            {.name = "masked", .base_color_texture = half_clear, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f});
-        scene.materials.push_back({.name = "blended", .alpha = 0.3f, .alpha_mode = AlphaMode::Blend});
-        scene.materials.push_back({.name = "tinted", .alpha = 0.8f, .alpha_mode = AlphaMode::Blend});
+            {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f, .base_color_texture = half_clear}, "masked"});
+        scene.materials.push_back({{.alpha_mode = AlphaMode::Blend, .alpha = 0.3f}, "blended"});
+        scene.materials.push_back({{.alpha_mode = AlphaMode::Blend, .alpha = 0.8f}, "tinted"});
         for (uint32_t i = 0; i < kInstances; ++i) scene.instances.push_back({"", i, i, {}});
         Messages messages;
         return prepare_scene(scene, {}, messages);
@@ -148,7 +148,7 @@ double share_stopped(const OneSurface& surface, uint32_t places = 20'000) {
 
 TEST_CASE("a cut-out stops rays where the alpha of vertices equals the cutoff") {
     for (const float alpha : {1.0f, 0.5f, 0.3f, 1.0f / 3}) {
-        const Material masked = {.alpha_mode = AlphaMode::Mask, .alpha_cutoff = alpha};
+        const Material masked = {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = alpha}};
         CAPTURE(alpha);
         CHECK(share_stopped({triangle_of_alpha(alpha, alpha, alpha), masked}) == 1);
         // A step of 16 bits less is less.
@@ -158,12 +158,12 @@ TEST_CASE("a cut-out stops rays where the alpha of vertices equals the cutoff") 
     // Products that are less than the cutoff when they are rounded: 0.7 x 0.7 and 0.9 x 0.9.
     CHECK(0.7f * 0.7f < 0.49f);
     CHECK(share_stopped({triangle_of_alpha(0.7f, 0.7f, 0.7f),
-                         {.alpha = 0.7f, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.49f}}) == 1);
+                         {{.alpha_mode = AlphaMode::Mask, .alpha = 0.7f, .alpha_cutoff = 0.49f}}}) == 1);
     CHECK(0.9f * 0.9f < 0.81f);
     CHECK(share_stopped({triangle_of_alpha(0.9f, 0.9f, 0.9f),
-                         {.alpha = 0.9f, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.81f}}) == 1);
+                         {{.alpha_mode = AlphaMode::Mask, .alpha = 0.9f, .alpha_cutoff = 0.81f}}}) == 1);
     // A cutoff above 1 hides all, however little it is above.
-    CHECK(share_stopped({triangle_of_alpha(1, 1, 1), {.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 1.0000001f}}) ==
+    CHECK(share_stopped({triangle_of_alpha(1, 1, 1), {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 1.0000001f}}}) ==
           0);
 }
 
@@ -174,16 +174,16 @@ TEST_CASE("a cut-out stops rays where the alpha of texels equals the cutoff, whi
         mesh.uv[0] = {{0, 0}, {1, 0}, {0, 1}};
         TextureImage image;
         image.rgba8 = {1, 1, {255, 255, 255, static_cast<uint8_t>(value)}};
-        const Material masked = {.base_color_texture = {.image = 0},
-                                 .alpha_mode = AlphaMode::Mask,
-                                 .alpha_cutoff = static_cast<float>(value / 255.0)};
+        const Material masked = {{.alpha_mode = AlphaMode::Mask,
+                                  .alpha_cutoff = static_cast<float>(value / 255.0),
+                                  .base_color_texture = {.image = 0}}};
         CAPTURE(value);
         CHECK(share_stopped({mesh, masked, {image}}, 20) == 1);
     }
 }
 
 TEST_CASE("a blended surface whose vertices have alpha 1 stops every ray") {
-    CHECK(share_stopped({triangle_of_alpha(1, 1, 1), {.alpha_mode = AlphaMode::Blend}}, 1'000'000) == 1);
+    CHECK(share_stopped({triangle_of_alpha(1, 1, 1), {{.alpha_mode = AlphaMode::Blend}}}, 1'000'000) == 1);
 }
 
 namespace {
@@ -232,7 +232,7 @@ TEST_CASE("the triangles of a blended surface that a ray meets on their edge or 
     for (uint32_t round = 0; round < 40; ++round) {
         const uint32_t sides = 3 + round % 5;
         const Mesh mesh = fan(sides, random);
-        const OneSurface pane(mesh, {.alpha = 0.25f, .alpha_mode = AlphaMode::Blend});
+        const OneSurface pane(mesh, {{.alpha_mode = AlphaMode::Blend, .alpha = 0.25f}});
         const auto stop_alike = [&](const std::vector<Met>& met) {
             uint32_t stopped = 0;
             for (uint32_t key = 0; key < 2000; ++key) {
@@ -262,14 +262,14 @@ TEST_CASE("the triangles of a blended surface that a ray meets on their edge or 
 TEST_CASE("each edge of a blended surface tosses a coin of its own") {
     test::Random random(12);
     const Mesh mesh = fan(6, random);
-    const OneSurface pane(mesh, {.alpha = 0.5f, .alpha_mode = AlphaMode::Blend});
+    const OneSurface pane(mesh, {{.alpha_mode = AlphaMode::Blend, .alpha = 0.5f}});
     const OneSurface other_place(
         [&] {
             Mesh moved = mesh;
             for (Vec3& p : moved.positions) p.x += 1;
             return moved;
         }(),
-        {.alpha = 0.5f, .alpha_mode = AlphaMode::Blend});
+        {{.alpha_mode = AlphaMode::Blend, .alpha = 0.5f}});
     uint32_t of_edges = 0, of_places = 0, of_inside = 0;
     for (uint32_t key = 0; key < 1000; ++key) {
         const bool first = pane.stops(0, 0, 0.5f, key);

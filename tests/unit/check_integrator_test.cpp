@@ -33,7 +33,7 @@ bool names(const Remark& remark, const std::string& text) { return remark.reason
 TEST_CASE("a scene that cast or whitted would show as black is refused, with what to use instead") {
     Scene scene;
     test::add(scene, test::floor_at(0, 1), test::white());
-    test::add(scene, test::floor_at(1, 1), {.name = "lamp", .emission = {1, 1, 1}});
+    test::add(scene, test::floor_at(1, 1), {{.emission = {1, 1, 1}}, "lamp"});
     for (const auto& [kind, name] :
          {std::pair(IntegratorKind::Cast, "cast"), std::pair(IntegratorKind::Whitted, "whitted")}) {
         const Remark dark = said(kind, scene);
@@ -87,7 +87,7 @@ TEST_CASE(
     CHECK(is_fine(said(IntegratorKind::PhotonMap, scene)));
     scene.environment->scale.b = 0; // which is all that it has
     check_dark();
-    test::add(scene, test::floor_at(1, 1), {.name = "lamp", .emission = {1, 1, 1}});
+    test::add(scene, test::floor_at(1, 1), {{.emission = {1, 1, 1}}, "lamp"});
     CHECK(is_fine(said(IntegratorKind::Path, scene)));
     CHECK(is_fine(said(IntegratorKind::Radiosity, scene)));
 }

@@ -6,6 +6,7 @@
 
 #include "image/tone_map_image.h"
 #include "render/film.h"
+#include "render/noisy_frame.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"
 #include "tests/support/render_scenes.h"
@@ -18,8 +19,7 @@ constexpr uint32_t kAovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | 
 constexpr uint32_t kWidth = 17, kHeight = 9, kSamples = 6;
 
 /// One made-up sample of every pixel of a film in the CPU's memory. Some are not finite, some miss.
-void take_sample(const Film& film, uint32_t sample) {
-    const FilmView view = film.view();
+void take_sample(const FilmView& view, uint32_t sample) {
     test::Random random(100 + sample);
     for (uint32_t pixel = 0; pixel < kWidth * kHeight; ++pixel) {
         const Vec3 light = random.point(-0.1f, pixel % 5 == 0 ? 40.0f : 1.0f);
@@ -32,11 +32,16 @@ void take_sample(const Film& film, uint32_t sample) {
     }
 }
 
+void take_samples(Film& film, SampleRange samples) {
+    for (uint32_t sample = samples.first; sample < samples.end; ++sample) take_sample(film.view(), sample);
+    film.set_samples(samples);
+}
+
 void check_equal(const Film& a, const Film& b) {
     for (const bool transparent : {false, true}) {
-        CHECK(a.picture(kSamples, transparent).pixels == b.picture(kSamples, transparent).pixels);
+        CHECK(a.picture(transparent).pixels == b.picture(transparent).pixels);
     }
-    const std::vector<FilmLayer> layers_a = a.layers(kSamples), layers_b = b.layers(kSamples);
+    const std::vector<FilmLayer> layers_a = a.layers(), layers_b = b.layers();
     REQUIRE(layers_a.size() == 4);
     REQUIRE(layers_b.size() == 4);
     for (std::size_t i = 0; i < 4; ++i) CHECK(layers_a[i].image.pixels == layers_b[i].image.pixels);
@@ -55,12 +60,13 @@ void check_equal(const Film& a, const Film& b) {
 TEST_CASE("films that hold parts of the samples add up to the film that holds them all, whichever device they are on") {
     Queue cpu = Queue::make_cpu(), other_cpu = Queue::make_cpu(), asked = test::queue_asked_for();
     Film whole(cpu, kWidth, kHeight, kAovs);
-    for (uint32_t sample = 0; sample < kSamples; ++sample) take_sample(whole, sample);
+    take_samples(whole, {0, kSamples});
     CHECK(whole.invalid_samples() == kSamples);
     for (const uint32_t with_first : {0u, 1u}) { // which of the two parts holds sample 0
         CAPTURE(with_first);
         Film parts[2] = {Film(cpu, kWidth, kHeight, kAovs), Film(other_cpu, kWidth, kHeight, kAovs)};
-        for (uint32_t sample = 0; sample < kSamples; ++sample) take_sample(parts[(sample + with_first) % 2], sample);
+        take_samples(parts[with_first], {0, 2});
+        take_samples(parts[1 - with_first], {2, kSamples});
         Film sum(asked, kWidth, kHeight, kAovs);
         sum.add(parts[0]);
         sum.add(parts[1]);
@@ -79,10 +85,9 @@ TEST_CASE("films that hold parts of the samples add up to the film that holds th
 TEST_CASE("a film is made again from the bytes of its targets, on whichever device it was and is to be") {
     Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
     Film whole(cpu, kWidth, kHeight, kAovs), part(cpu, kWidth, kHeight, kAovs), other(cpu, kWidth, kHeight, kAovs);
-    for (uint32_t sample = 0; sample < kSamples; ++sample) {
-        take_sample(whole, sample);
-        take_sample(sample < 2 ? part : other, sample);
-    }
+    take_samples(whole, {0, kSamples});
+    take_samples(part, {0, 2});
+    take_samples(other, {2, kSamples});
     Film again(asked, kWidth, kHeight, kAovs);
     REQUIRE(again.targets().size() == 3);
     for (std::size_t i = 0; i < again.targets().size(); ++i) {
@@ -90,6 +95,7 @@ TEST_CASE("a film is made again from the bytes of its targets, on whichever devi
         CHECK(again.targets()[i]->bytes() == part.targets()[i]->bytes());
         CHECK_THROWS_AS(again.targets()[i]->set_bytes({}), std::logic_error);
     }
+    again.set_part(part.part());
     again.add(other);
     check_equal(again, whole);
 }
@@ -139,7 +145,7 @@ TEST_CASE("a film of another size or of other layers is refused") {
 TEST_CASE("what a film shows has the bytes of its picture tone-mapped on the host") {
     Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
     Film film(cpu, kWidth, kHeight, kAovs);
-    for (uint32_t sample = 0; sample < kSamples; ++sample) take_sample(film, sample);
+    take_samples(film, {0, kSamples});
     Film on_device(asked, kWidth, kHeight, kAovs);
     on_device.add(film);
     for (const ToneMap kind : {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral}) {
@@ -148,8 +154,8 @@ TEST_CASE("what a film shows has the bytes of its picture tone-mapped on the hos
                 CAPTURE(name_of(kind));
                 CAPTURE(stops);
                 CAPTURE(transparent);
-                const Rgba8Image host = tone_map_image(film.picture(kSamples, transparent), kind, stops);
-                on_device.display(kSamples, kind, stops, transparent);
+                const Rgba8Image host = tone_map_image(film.picture(transparent), kind, stops);
+                on_device.display(kind, stops, transparent);
                 const Rgba8Image shown = on_device.displayed();
                 CHECK(shown.width == kWidth);
                 CHECK(shown.height == kHeight);
@@ -157,8 +163,65 @@ TEST_CASE("what a film shows has the bytes of its picture tone-mapped on the hos
             }
         }
     }
-    film.display(kSamples, ToneMap::Srgb, 0, true);
+    film.display(ToneMap::Srgb, 0, true);
     const Rgba8Image with_alpha = film.displayed();
-    film.display(kSamples, ToneMap::Srgb, 0, false);
+    film.display(ToneMap::Srgb, 0, false);
     CHECK(film.displayed().pixels != with_alpha.pixels);
+}
+
+TEST_CASE("a film says which samples of which rows it holds, and refuses those that do not follow its own") {
+    Queue queue = Queue::make_cpu();
+    const auto film_of = [&](FilmPart part) {
+        Film film(queue, kWidth, kHeight, 0);
+        film.set_part(part);
+        return film;
+    };
+    const auto sum_of = [&](FilmPart a, FilmPart b) {
+        Film film = film_of(a);
+        film.add(film_of(b));
+        return film.part();
+    };
+    CHECK(sum_of({}, {0, 9, {4, 6}}) == FilmPart{0, 9, {4, 6}});
+    CHECK(sum_of({0, 9, {4, 6}}, {}) == FilmPart{0, 9, {4, 6}});
+    CHECK(sum_of({0, 9, {4, 6}}, {0, 9, {6, 7}}) == FilmPart{0, 9, {4, 7}});
+    CHECK(sum_of({0, 9, {4, 6}}, {0, 9, {0, 4}}) == FilmPart{0, 9, {0, 6}});
+    CHECK(sum_of({5, 9, {0, 4}}, {0, 5, {0, 4}}) == FilmPart{0, 9, {0, 4}});
+    CHECK_THROWS_AS(sum_of({0, 9, {4, 6}}, {0, 9, {5, 7}}), std::logic_error); // one of them twice
+    CHECK_THROWS_AS(sum_of({0, 9, {4, 6}}, {0, 9, {7, 8}}), std::logic_error); // a gap
+    CHECK_THROWS_AS(sum_of({0, 5, {0, 4}}, {5, 9, {0, 5}}), std::logic_error); // of some rows more
+    CHECK_THROWS_AS(sum_of({0, 5, {0, 4}}, {4, 9, {0, 4}}), std::logic_error);
+    Film film = film_of({0, 9, {0, 4}});
+    film.clear();
+    CHECK(film.part().is_empty());
+}
+
+TEST_CASE("frames whose pixels were taken apart, on either device, are put together") {
+    Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
+    for (const bool splits_light : {false, true}) {
+        NoisyFrame whole(cpu, kWidth, kHeight, splits_light), upper(cpu, kWidth, kHeight, splits_light);
+        NoisyFrame lower(cpu, kWidth, kHeight, splits_light), both(asked, kWidth, kHeight, splits_light);
+        for (NoisyFrame* frame : {&whole, &upper, &lower}) frame->clear();
+        both.clear();
+        const auto take = [&](const NoisyFrame& frame, uint32_t pixel) {
+            test::Random random(pixel);
+            const NoisyFrameView& view = frame.view();
+            for (Float4* array : {view.emission, view.place, view.normal, view.albedo, view.gloss}) {
+                array[pixel] = {random.within(0, 1), random.within(0, 1), random.within(0, 1), random.within(0, 1)};
+            }
+            const float red = pixel % 7 == 0 ? kInfinity : random.within(0, 1);
+            store_sample(frame.film_view(), pixel, {red, 1, 2}, {0.5f, 1, 1});
+        };
+        for (uint32_t pixel = 0; pixel < kWidth * kHeight; ++pixel) {
+            take(whole, pixel);
+            take(pixel < 4 * kWidth ? upper : lower, pixel);
+        }
+        both.add(lower);
+        both.add(upper);
+        CHECK(both.bytes() == whole.bytes());
+        CHECK(both.invalid_samples() == whole.invalid_samples());
+        CHECK(whole.invalid_samples() > 0);
+        CHECK_THROWS_AS(both.add(NoisyFrame(cpu, kWidth + 1, kHeight, splits_light)), std::logic_error);
+        CHECK_THROWS_AS(both.add(NoisyFrame(cpu, kWidth, kHeight, !splits_light)), std::logic_error);
+        CHECK_THROWS_AS(both.set_bytes({}), std::logic_error);
+    }
 }

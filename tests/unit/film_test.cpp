@@ -13,16 +13,26 @@ namespace {
 
 constexpr uint32_t kAllAovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
 
+Image picture_of(Film& film, uint32_t samples, bool transparent) {
+    film.set_samples({0, samples});
+    return film.picture(transparent);
+}
+
+std::vector<FilmLayer> layers_of(Film& film, uint32_t samples) {
+    film.set_samples({0, samples});
+    return film.layers();
+}
+
 } // namespace
 
 TEST_CASE("a film starts black, with zeros in every layer, and clear() takes it back there") {
     Queue queue = Queue::make_cpu();
     Film film(queue, 3, 2, kAllAovs);
     const auto is_empty = [&] {
-        for (const float value : film.picture(1, true).pixels) {
+        for (const float value : picture_of(film, 1, true).pixels) {
             if (value != 0) return false;
         }
-        for (const FilmLayer& layer : film.layers(1)) {
+        for (const FilmLayer& layer : layers_of(film, 1)) {
             for (const float value : layer.image.pixels) {
                 if (value != 0) return false;
             }
@@ -51,7 +61,7 @@ TEST_CASE("the picture is the mean of the samples of each pixel, rounded once") 
             sums[pixel][0] += double(value.x), sums[pixel][1] += double(value.y), sums[pixel][2] += double(value.z);
         }
     }
-    const Image picture = film.picture(7, false);
+    const Image picture = picture_of(film, 7, false);
     REQUIRE(picture.width == 4);
     REQUIRE(picture.height == 3);
     REQUIRE(picture.channels == 3);
@@ -68,12 +78,12 @@ TEST_CASE("a small sample is not lost beside a million large ones") {
     Film film(queue, 1, 1, 0);
     for (int i = 0; i < 1'000'000; ++i) add_radiance(film.view(), 0, {1000.0f, -1.0f, 0x1p-40f});
     add_radiance(film.view(), 0, {1e-6f, 1'000'000.0f, 0});
-    const Image picture = film.picture(1, false);
+    const Image picture = picture_of(film, 1, false);
     CHECK(picture.pixels[0] == 1e9f);
     CHECK(picture.pixels[1] == 0.0f);
     CHECK(picture.pixels[2] == 0x1p-40f * 1e6f);
     for (int i = 0; i < 1'000'000; ++i) add_radiance(film.view(), 0, {-1000.0f, 0, 0});
-    CHECK(film.picture(1, false).pixels[0] == doctest::Approx(1e-6).epsilon(1e-7)); // what was cut lies below 2^-64
+    CHECK(picture_of(film, 1, false).pixels[0] == doctest::Approx(1e-6).epsilon(1e-7)); // what was cut lies below 2^-64
 }
 
 TEST_CASE("a transparent picture's alpha is the share of samples that hit something") {
@@ -83,7 +93,7 @@ TEST_CASE("a transparent picture's alpha is the share of samples that hit someth
         if (sample < 3) add_channel(film.view(), 0, 3, 1.0f);
         add_radiance(film.view(), 0, {sample < 3 ? 1.0f : 0.0f, 0, 0});
     }
-    const Image picture = film.picture(8, true);
+    const Image picture = picture_of(film, 8, true);
     REQUIRE(picture.channels == 4);
     CHECK(picture.at(0, 0)[3] == 0.375f);
     CHECK(picture.at(0, 0)[0] == 0.375f); // colour times coverage
@@ -101,7 +111,7 @@ TEST_CASE("layers come in one order with their channels; geometry is a mean over
         add_channel(view, 1, kFilmColorChannels + 6, hit == 0 ? 3.0f : 5.0f);
         add_channels(view, 1, kFilmColorChannels + 7, {10, hit == 0 ? -20.0f : -30.0f, 40});
     }
-    const std::vector<FilmLayer> layers = film.layers(4);
+    const std::vector<FilmLayer> layers = layers_of(film, 4);
     REQUIRE(layers.size() == 4);
     CHECK(layers[0].name == "albedo");
     CHECK(layers[1].name == "normal");
@@ -120,12 +130,12 @@ TEST_CASE("layers come in one order with their channels; geometry is a mean over
 TEST_CASE("only the layers asked for are there, and ids only with kAovIds") {
     Queue queue = Queue::make_cpu();
     const Film plain(queue, 2, 2, 0);
-    CHECK(plain.layers(1).empty());
+    CHECK(plain.layers().empty());
     CHECK(plain.ids().empty());
     CHECK(plain.view().channels == kFilmColorChannels);
     Film some(queue, 2, 2, kAovDepth | kAovIds);
-    REQUIRE(some.layers(1).size() == 1);
-    CHECK(some.layers(1)[0].name == "depth");
+    REQUIRE(layers_of(some, 1).size() == 1);
+    CHECK(layers_of(some, 1)[0].name == "depth");
     CHECK(some.view().channels == kFilmColorChannels + 1);
     some.view().ids[2] = {7, 8, 9};
     REQUIRE(some.ids().size() == 4);
@@ -145,12 +155,12 @@ TEST_CASE("a sample with a channel that is not finite or too large adds 0 to all
         add_channels(film.view(), 0, kFilmColorChannels, {bad, 2, bad});
     }
     CHECK(film.invalid_samples() == 15);
-    CHECK(film.picture(1, false).pixels == std::vector<float>{0, 0, 0});
+    CHECK(picture_of(film, 1, false).pixels == std::vector<float>{0, 0, 0});
     add_radiance(film.view(), 0, {0x1p40f, -0x1p40f, 0.5f}); // the largest there is
     add_channel(film.view(), 0, 3, 1.0f);
     CHECK(film.invalid_samples() == 15);
-    CHECK(film.picture(1, false).pixels == std::vector<float>{0x1p40f, -0x1p40f, 0.5f});
-    CHECK(film.layers(1)[0].image.pixels == std::vector<float>{0, 10, 0}); // valid channels of a layer count
+    CHECK(picture_of(film, 1, false).pixels == std::vector<float>{0x1p40f, -0x1p40f, 0.5f});
+    CHECK(layers_of(film, 1)[0].image.pixels == std::vector<float>{0, 10, 0}); // valid channels of a layer count
 }
 
 TEST_CASE("threads that add to one pixel at once lose nothing") {
@@ -159,7 +169,7 @@ TEST_CASE("threads that add to one pixel at once lose nothing") {
     const FilmView view = film.view();
     // The low words overflow at nearly every addition.
     parallel_for(200'000, 100, [&](uint64_t i) { add_radiance(view, 0, {0.75f, i % 2 == 0 ? 0.875f : -0.375f, 1}); });
-    const Image picture = film.picture(1, false);
+    const Image picture = picture_of(film, 1, false);
     CHECK(picture.pixels[0] == 150'000.0f);
     CHECK(picture.pixels[1] == 50'000.0f);
     CHECK(picture.pixels[2] == 200'000.0f);

@@ -21,7 +21,7 @@ RenderResult render_plane(PixelFilter filter, bool whole_plane) {
     square.positions = {{-50, -50, -3}, {right, -50, -3}, {right, 50, -3}, {-50, 50, -3}};
     square.indices = {0, 1, 2, 0, 2, 3};
     scene.meshes = {square, square};
-    scene.materials = {{.name = "unused"}, {.name = "wall", .base_color = {0.25f, 0.5f, 0.75f}}};
+    scene.materials = {{{}, "unused"}, {{.base_color = {0.25f, 0.5f, 0.75f}}, "wall"}};
     scene.instances = {{"wall", 1, 1, {}}};
     Camera camera;
     camera.projection = Projection::Orthographic;

@@ -45,7 +45,7 @@ Mesh sheet(float size = 1) {
 
 uint32_t add(Scene& scene, const Mesh& mesh, bool double_sided, const Transform& place = {}) {
     scene.meshes.push_back(mesh);
-    scene.materials.push_back({.name = "grey", .base_color = grey(0.5f), .double_sided = double_sided});
+    scene.materials.push_back({{.double_sided = double_sided, .base_color = grey(0.5f)}, "grey"});
     const auto last = static_cast<uint32_t>(scene.meshes.size() - 1);
     scene.instances.push_back({"", last, last, place});
     return last;

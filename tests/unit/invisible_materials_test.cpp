@@ -12,7 +12,7 @@ struct Case {
 
     explicit Case(AlphaMode mode, float alpha = 1) {
         scene.meshes.push_back({.name = "m", .positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .indices = {0, 1, 2}});
-        scene.materials.push_back({.name = "ghost", .alpha = alpha, .alpha_mode = mode});
+        scene.materials.push_back({{.alpha_mode = mode, .alpha = alpha}, "ghost"});
         scene.instances.push_back({.name = "i", .mesh = 0, .material = 0});
     }
     Case& with_texture(uint8_t alpha) {
@@ -55,7 +55,7 @@ TEST_CASE("a material of which anything can be seen is not named") {
     CHECK_FALSE(Case(AlphaMode::Mask).with_texture(128).is_named());
     CHECK_FALSE(Case(AlphaMode::Mask).with_vertices(0.5f).is_named());
     Case unused(AlphaMode::Opaque);
-    unused.scene.materials.push_back({.name = "ghost", .alpha = 0, .alpha_mode = AlphaMode::Blend});
+    unused.scene.materials.push_back({{.alpha_mode = AlphaMode::Blend, .alpha = 0}, "ghost"});
     CHECK_FALSE(unused.is_named());
     Case shared = Case(AlphaMode::Blend).with_vertices(0); // another mesh with the material has alpha
     shared.scene.meshes.push_back(shared.scene.meshes[0]);

@@ -352,8 +352,7 @@ TEST_CASE("a glowing room shows each scattering once, by records and by paths wh
     Mesh mesh;
     mesh.positions = sphere.positions;
     mesh.indices = sphere.indices;
-    test::add(scene, mesh,
-              {.name = "wall", .base_color = grey(0.5f), .emission = {1, 1, 1}, .two_sided_emission = true});
+    test::add(scene, mesh, {{.two_sided_emission = true, .base_color = grey(0.5f), .emission = {1, 1, 1}}, "wall"});
     for (const bool has_all : {true, false}) { // or records that serve less than a pixel
         double wanted = 0;
         for (uint32_t depth = 0; depth <= 4; ++depth) {

@@ -51,7 +51,7 @@ void check_measured(const Measured& measured, double wanted, double error_share)
     CHECK(measured.standard_error <= error_share * wanted);
 }
 
-Material black_lamp(float radiance) { return {.name = "lamp", .base_color = {0, 0, 0}, .emission = grey(radiance)}; }
+Material black_lamp(float radiance) { return {{.base_color = {0, 0, 0}, .emission = grey(radiance)}, "lamp"}; }
 
 /// Faces down, about (0, height, 0); its corners lie a little farther out than on the circle, so that its area is the
 /// circle's.
@@ -135,8 +135,7 @@ TEST_CASE("in a room that glows a meter reads all scattered light, and no more o
     mesh.positions = sphere.positions;
     mesh.indices = sphere.indices;
     Scene scene;
-    test::add(scene, mesh,
-              {.name = "wall", .base_color = grey(0.5f), .emission = {1, 1, 1}, .two_sided_emission = true});
+    test::add(scene, mesh, {{.two_sided_emission = true, .base_color = grey(0.5f), .emission = {1, 1, 1}}, "wall"});
     const Room room(std::move(scene));
     const MeterPlace place = {{0.3f, 0.2f, -0.5f}, {1, 0.4f, 0.1f}};
     RenderSettings settings = samples_of(2);

@@ -30,7 +30,7 @@ void add_quad(Scene& scene, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
 /// 1.4 m, which fills an eighth of the camera's picture.
 Scene make_room_with_window() {
     Scene scene;
-    scene.materials.push_back({.name = "white", .base_color = grey(0.7f)});
+    scene.materials.push_back({{.base_color = grey(0.7f)}, "white"});
     const float l = -2, r = 2, h = 3, n = 0, f = -5;   // left, right, height, near, far
     const float wl = -1, wr = 1, wb = 0.8f, wt = 2.2f; // the window's sides
     add_quad(scene, {l, 0, n}, {r, 0, n}, {r, 0, f}, {l, 0, f});
@@ -133,8 +133,8 @@ TEST_CASE("a room stays legible beside its bright window") {
 TEST_CASE("a lamp in view takes nothing from what it lights") {
     Queue queue = test::queue_asked_for();
     Scene scene; // a white floor that fills the lower half of the picture, and a lamp that fills much of the upper half
-    scene.materials.push_back({.name = "white", .base_color = grey(0.5f)});
-    scene.materials.push_back({.name = "lamp", .base_color = grey(0), .emission = grey(300)});
+    scene.materials.push_back({{.base_color = grey(0.5f)}, "white"});
+    scene.materials.push_back({{.base_color = grey(0), .emission = grey(300)}, "lamp"});
     add_quad(scene, {-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9});
     add_quad(scene, {-2, 1.5f, -4}, {2, 1.5f, -4}, {2, 4, -4}, {-2, 4, -4});
     scene.instances.back().material = 1;

@@ -202,24 +202,24 @@ TEST_CASE("micromaps never say anything else than textures, whatever these are, 
                 turned.uv_set = 1, turned.channel = 3;
                 turned.m00 = 0.8f, turned.m01 = -0.6f, turned.m02 = 3.3f, turned.m10 = 0.6f, turned.m11 = 0.8f;
                 const Mesh mesh = made.triangles(24, 3);
-                made.add(mesh, {.base_color_texture = texture, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f});
-                made.add(mesh, {.base_color_texture = texture, .alpha_mode = AlphaMode::Blend});
-                made.add(mesh, {.base_color_texture = texture,
-                                .alpha = 0.9f,
-                                .alpha_texture = turned,
-                                .alpha_mode = AlphaMode::Mask,
-                                .alpha_cutoff = 0.3f});
+                made.add(mesh, {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f, .base_color_texture = texture}});
+                made.add(mesh, {{.alpha_mode = AlphaMode::Blend, .base_color_texture = texture}});
+                made.add(mesh, {{.alpha_mode = AlphaMode::Mask,
+                                 .alpha = 0.9f,
+                                 .alpha_cutoff = 0.3f,
+                                 .base_color_texture = texture,
+                                 .alpha_texture = turned}});
                 Mesh tinted = mesh;
                 for (std::size_t i = 0; i < mesh.positions.size(); ++i)
                     tinted.colors.push_back({1, 1, 1, i % 5 == 0 ? 0.0f : 1.0f});
-                made.add(tinted, {.alpha_texture = turned, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 1});
-                made.add(tinted, {.base_color_texture = texture, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0});
+                made.add(tinted, {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 1, .alpha_texture = turned}});
+                made.add(tinted, {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0, .base_color_texture = texture}});
                 Mesh even = mesh; // alpha equals the cutoff where the texture's is 1
                 even.colors.assign(mesh.positions.size(), {1, 1, 1, 0.3f});
-                made.add(even, {.base_color_texture = texture, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.3f});
+                made.add(even, {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.3f, .base_color_texture = texture}});
                 Mesh far = mesh; // so far from 0 that coordinates are coarse
                 for (Vec2& uv : far.uv[0]) uv.x += 3000, uv.y -= 700;
-                made.add(far, {.base_color_texture = texture, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f});
+                made.add(far, {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f, .base_color_texture = texture}});
             }
         }
     }
@@ -292,10 +292,10 @@ TEST_CASE("micromaps know of most places of a leaf, and none is made where alpha
     square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     square.uv[0] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     square.indices = {0, 1, 2, 0, 2, 3};
-    made.add(square, {.base_color_texture = {.image = 0}, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f});
-    made.add(square, {.base_color_texture = {.image = 0}, .alpha_mode = AlphaMode::Blend});
-    made.add(square, {.alpha = 0.5f, .alpha_mode = AlphaMode::Blend});
-    made.add(square, {.base_color_texture = {.image = 0}});
+    made.add(square, {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f, .base_color_texture = {.image = 0}}});
+    made.add(square, {{.alpha_mode = AlphaMode::Blend, .base_color_texture = {.image = 0}}});
+    made.add(square, {{.alpha_mode = AlphaMode::Blend, .alpha = 0.5f}});
+    made.add(square, {{.base_color_texture = {.image = 0}}});
     const Told told(made.scene);
     for (const uint32_t instance : {0u, 1u}) {
         CAPTURE(instance);
@@ -318,7 +318,7 @@ TEST_CASE("micromaps know of most places of a leaf, and none is made where alpha
 TEST_CASE("micromaps are made again when textures, materials or meshes change, and left where things only move") {
     CutOuts made;
     made.add(made.triangles(8, 1),
-             {.base_color_texture = {.image = 0}, .alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f});
+             {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f, .base_color_texture = {.image = 0}}});
     made.add(made.triangles(8, 1), {});
     Messages messages;
     const PreparedScene prepared = prepare_scene(made.scene, {}, messages);

@@ -37,11 +37,11 @@ public:
         tell("emitted", path);
         found = light;
     }
-    void direct(const PathState& path, const VertexView&, Vec3, const ShadowRay& shadow) {
+    void direct(const PathState& path, const SurfaceVertex&, Vec3, const ShadowRay& shadow) {
         tell("direct", path);
         asked_ = {shadow.contribution};
     }
-    void scattered(const PathState& path, const VertexView&, const BsdfSample&) { tell("scattered", path); }
+    void scattered(const PathState& path, const SurfaceVertex&, const BsdfSample&) { tell("scattered", path); }
     void put_down(Kept& kept) const { kept = kept_; }
     void hand_over(Asked& asked) const { asked = asked_; }
 

@@ -141,7 +141,7 @@ double joules(const FixedSum& sum) { return static_cast<double>(mean_of(sum, 1))
 
 Scene under_two_faces_of_glass() {
     Scene scene = test::floor_under_spot();
-    const Material glass = {.name = "glass", .kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .ior = 1.5f};
+    const Material glass = {{.kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .ior = 1.5f}, "glass"};
     test::add(scene, test::floor_at(0.6f, 2), glass);
     test::add(scene, test::sheet({0, 0.4f, 0}, {2, 0, 0}, {0, 0, 2}), glass); // its front down
     scene.materials.back().roughness = scene.materials[1].roughness = 0;
@@ -154,7 +154,7 @@ Scene sphere_that_glows(float albedo) {
     Mesh mesh;
     mesh.positions = sphere.positions;
     mesh.indices = sphere.indices;
-    test::add(scene, mesh, {.name = "wall", .base_color = grey(albedo), .emission = {1, 1, 1}});
+    test::add(scene, mesh, {{.base_color = grey(albedo), .emission = {1, 1, 1}}, "wall"});
     scene.materials.back().two_sided_emission = true;
     return scene;
 }
@@ -375,7 +375,7 @@ TEST_CASE("targets are one sphere round a ball, and several where mirrors lie ap
     CHECK(choose_targets(found).empty());
     for (const bool are_apart : {false, true}) {
         Scene scene;
-        const Material glass = {.name = "glass", .kind = MaterialKind::Dielectric, .ior = 1.5f};
+        const Material glass = {{.kind = MaterialKind::Dielectric, .ior = 1.5f}, "glass"};
         for (const float x : {-3.0f, 3.0f}) {
             if (x < 0 && !are_apart) continue;
             const test::TriangleMesh ball = test::make_sphere(2, {x, 0, 0}, 0.5f);

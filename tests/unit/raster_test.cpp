@@ -220,9 +220,9 @@ TEST_CASE("edges are Bresenham's lines, the nearer one first") {
     Mesh triangle; // from (2, 2) to (12, 2) to (2, 6), pixels of a picture 16 wide, and one behind it
     triangle.positions = {{-5.5f, 5.5f, 0}, {4.5f, 5.5f, 0}, {-5.5f, 1.5f, 0}};
     triangle.indices = {0, 1, 2};
-    test::add(scene, triangle, {.name = "red", .base_color = {1, 0, 0}});
+    test::add(scene, triangle, {{.base_color = {1, 0, 0}}, "red"});
     for (Vec3& p : triangle.positions) p.z = -1;
-    test::add(scene, triangle, {.name = "green", .base_color = {0, 1, 0}});
+    test::add(scene, triangle, {{.base_color = {0, 1, 0}}, "green"});
     Queue queue = test::queue_asked_for();
     RenderSettings settings = raster_settings(16, 16);
     settings.look.is_wireframe = true;
@@ -247,7 +247,7 @@ TEST_CASE("edges are Bresenham's lines, the nearer one first") {
 
 TEST_CASE("samples of a pixel lie in its filter, evenly, the first in the middle; a picture is their mean") {
     Scene scene;
-    test::add(scene, test::sheet({-1, 0, 0}, {1, 0, 0}, {0, 9, 0}), {.name = "lamp", .emission = {1, 1, 1}});
+    test::add(scene, test::sheet({-1, 0, 0}, {1, 0, 0}, {0, 9, 0}), {{.emission = {1, 1, 1}}, "lamp"});
     Queue queue = test::queue_asked_for();
     RenderSettings settings = raster_settings(1, 1);
     settings.ambient = Rgb{0, 0, 0};

@@ -259,7 +259,7 @@ TEST_CASE("a plane displaced by a ramp is the tilted plane, in depth and normal"
 
 TEST_CASE("samples of a pixel lie in its filter at places of its own; a picture is their mean") {
     Scene scene;
-    test::add(scene, test::sheet({-1, 0, 0}, {1, 0, 0}, {0, 9, 0}), {.name = "lamp", .emission = {1, 1, 1}});
+    test::add(scene, test::sheet({-1, 0, 0}, {1, 0, 0}, {0, 9, 0}), {{.emission = {1, 1, 1}}, "lamp"});
     Queue queue = test::queue_asked_for();
     RenderSettings settings = reyes_settings(9, 9);
     settings.ambient = Rgb{0, 0, 0};

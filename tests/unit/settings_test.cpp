@@ -159,3 +159,30 @@ TEST_CASE("a picture's file records each setting that the table says, where the 
     CHECK(!has("pertev.photons"));
     CHECK(!has("pertev.denoise")); // which is the default
 }
+TEST_CASE("what a scene's file suggests holds where nothing was given that does not go with it") {
+    Scene scene;
+    scene.suggested = {{"spp", "64"},       {"size", "320x240"}, {"integrator", "photon_map"},
+                       {"photons", "1000"}, {"seed", "7"},       {"sampler", "none such"},
+                       {"samples", "1"},    {"ambient", "1"}};
+    PictureOptions options;
+    options.given["seed"] = SettingOrigin::Flag;
+    options.render.path.seed = 3;
+    Messages messages;
+    take_suggestions(scene, options, messages);
+    CHECK(options.render.samples == 64);
+    CHECK(options.size == PictureSize{320, 240});
+    CHECK(options.render.integrator == IntegratorKind::PhotonMap);
+    CHECK(options.given.at("photons") == SettingOrigin::Scene);
+    CHECK(options.render.path.seed == 3);
+    CHECK(options.given.at("seed") == SettingOrigin::Flag);
+    CHECK_FALSE(options.is_given("ambient")); // photon mapping has none
+    CHECK(messages.left_out().size() == 2);   // no such sampler, and no such setting
+
+    PictureOptions whitted;
+    whitted.render.integrator = IntegratorKind::Whitted;
+    whitted.given["integrator"] = SettingOrigin::File;
+    take_suggestions(scene, whitted, messages);
+    CHECK(whitted.render.integrator == IntegratorKind::Whitted);
+    CHECK_FALSE(whitted.is_given("photons"));
+    CHECK(whitted.given.at("ambient") == SettingOrigin::Scene);
+}

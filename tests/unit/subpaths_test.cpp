@@ -94,7 +94,7 @@ TEST_CASE("a floor under a spot light has the radiance of the closed form") {
 
 TEST_CASE("a light without size behind glass lights the floor, but for path tracing, which cannot find it") {
     Scene scene = test::floor_under_spot();
-    const Material glass = {.name = "glass", .kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .ior = 1.5f};
+    const Material glass = {{.kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .ior = 1.5f}, "glass"};
     test::add(scene, test::floor_at(0.6f, 2), glass);
     test::add(scene, test::sheet({0, 0.4f, 0}, {2, 0, 0}, {0, 0, 2}), glass); // its front down
     scene.materials.back().roughness = scene.materials[1].roughness = 0;
@@ -110,7 +110,7 @@ TEST_CASE("particles do not show what is seen in a mirror; walks from both ends 
     Scene scene;
     test::add(scene, test::floor_at(0, 4), test::mirror());
     test::add(scene, test::sheet({0, 2, 0}, {4, 0, 0}, {0, 0, 4}),
-              {.name = "lamp", .base_color = {0, 0, 0}, .emission = {3, 3, 3}});
+              {{.base_color = {0, 0, 0}, .emission = {3, 3, 3}}, "lamp"});
     const double path = seen_below(scene, IntegratorKind::Path, 16);
     CHECK(path == doctest::Approx(3).epsilon(0.01));
     CHECK(seen_below(scene, IntegratorKind::Light, 16) == 0);

@@ -225,7 +225,7 @@ TEST_CASE("each preset is a scene of the program, and all light is what three in
         CHECK_FALSE(light_of(name, lamps).empty());
     }
     glass.lights.emplace_back();
-    glass.materials.push_back({.kind = MaterialKind::Dielectric, .roughness = 0});
+    glass.materials.push_back({{.kind = MaterialKind::Dielectric, .roughness = 0}});
     glass.instances.emplace_back();
     glass.instances.back().material = 0;
     CHECK(light_of("path", glass) == "all but LS+D of point lights");

@@ -163,6 +163,16 @@ TEST_CASE("without geometry the error says what there is instead") {
     });
 }
 
+TEST_CASE("every parameter of a material is visited, and so is checked") {
+    MaterialParameters parameters;
+    std::size_t bytes = sizeof parameters.kind + sizeof parameters.alpha_mode + sizeof parameters.two_sided_emission +
+                        sizeof parameters.double_sided;
+    visit_parameters(
+        parameters, [&](float& value, auto&&...) { bytes += sizeof value; },
+        [&](const TextureRef& texture, auto&&...) { bytes += sizeof texture; });
+    CHECK(bytes == sizeof parameters);
+}
+
 TEST_CASE("what the file describes somewhere is named by that place") {
     using E = ErrorCode;
     check_refused("file: /meshes/3/primitives/1 square: triangle 1", E::BadInput, [](Scene& s) {

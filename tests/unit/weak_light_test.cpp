@@ -31,8 +31,8 @@ void add_quad(Scene& scene, Vec3 middle, Vec3 front, float half, uint32_t materi
 /// A cube of 1 m, and a lamp of 2 cm on its top that shines upwards.
 Scene make_body_with_lamp() {
     Scene scene;
-    scene.materials.push_back({.name = "body"});
-    scene.materials.push_back({.name = "lamp", .emission = grey(50)});
+    scene.materials.push_back({{}, "body"});
+    scene.materials.push_back({{.emission = grey(50)}, "lamp"});
     for (const Vec3 front :
          {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
         add_quad(scene, 0.5f * front, front, 0.5f, 0);
@@ -44,8 +44,8 @@ Scene make_body_with_lamp() {
 /// A floor beneath a lamp of 1 m.
 Scene make_lit_floor() {
     Scene scene;
-    scene.materials.push_back({.name = "floor"});
-    scene.materials.push_back({.name = "lamp", .emission = grey(5)});
+    scene.materials.push_back({{}, "floor"});
+    scene.materials.push_back({{.emission = grey(5)}, "lamp"});
     add_quad(scene, {}, {0, 1, 0}, 2, 0);
     add_quad(scene, {0, 2, 0}, {0, -1, 0}, 0.5f, 1);
     return scene;
@@ -86,7 +86,7 @@ TEST_CASE("a lamp that lights what is seen gets no sky, with an emission texture
 
 TEST_CASE("a light that an animation brightens is a light of the file") {
     Scene scene;
-    scene.materials.push_back({.name = "floor"});
+    scene.materials.push_back({{}, "floor"});
     add_quad(scene, {}, {0, 1, 0}, 2, 0);
     scene.lights.push_back({.name = "lamp", .position = {0, 2, 0}, .intensity = {}});
     CHECK(lacks_light(scene));
@@ -108,7 +108,7 @@ TEST_CASE("a lamp whose texture is black gives no light, so there is a sky") {
 
 TEST_CASE("lights without a size get a sky beside them only where they reach nothing that is seen") {
     Scene scene;
-    scene.materials.push_back({.name = "floor"});
+    scene.materials.push_back({{}, "floor"});
     add_quad(scene, {}, {0, 1, 0}, 2, 0);
     scene.lights.push_back({.name = "lamp", .position = {0, 2, 0}, .intensity = grey(100)});
     Light& light = scene.lights.front();

@@ -34,8 +34,8 @@ float radiance_of(const RenderResult& result) { return result.picture.at(0, 0)[0
 /// environment of radiance 1.
 Scene slab_scene() {
     Scene scene;
-    const Material glass = {
-        .name = "glass", .kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .roughness = 0, .ior = 3};
+    const Material glass = {{.kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .roughness = 0, .ior = 3},
+                            "glass"};
     test::add(scene, test::floor_at(1, 50), glass);
     test::add(scene, test::sheet({0, 0, 0}, {50, 0, 0}, {0, 0, 50}), glass); // its front down
     scene.environment = Environment{};

@@ -51,7 +51,6 @@ std::vector<Uses> uses_of(const Scene& scene, std::size_t images) {
     std::vector<Uses> uses(images);
     for (const Material& material : scene.materials) {
         for (const TextureRef* ref : material.textures()) {
-            if (!ref->has_image()) continue;
             Uses& use = uses.at(static_cast<std::size_t>(ref->image));
             (ref->is_srgb ? use.as_srgb : use.as_data) = true;
             use.as_color |= ref == &material.base_color_texture || ref == &material.emission_texture;

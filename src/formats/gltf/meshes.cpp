@@ -79,7 +79,7 @@ void Meshes::check_texture_coordinates(const Part& part) {
     const Mesh& mesh = scene_.meshes[part.mesh];
     const Material& material = scene_.materials[part.material];
     for (const TextureRef* texture : material.textures()) {
-        if (!texture->has_image() || !mesh.uv[texture->uv_set].empty()) continue;
+        if (!mesh.uv[texture->uv_set].empty()) continue;
         messages_.warn({Place{document_.file()},
                         fmt::format("{}: a texture over TEXCOORD_{}, which a mesh with this material does not have; "
                                     "one point of the texture is shown",

@@ -27,10 +27,6 @@ namespace fs = std::filesystem;
 namespace pertev {
 namespace {
 
-bool has_texture(const Material& m) {
-    return std::ranges::any_of(m.textures(), [](const TextureRef* texture) { return texture->has_image(); });
-}
-
 void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& data, const std::string& file,
                                           Messages& messages) {
     std::set<uint32_t> materials;
@@ -38,7 +34,7 @@ void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& dat
     for (std::size_t i = 0; i < data.groups.size(); ++i) {
         const uint32_t material = scene.instances[i].material;
         const std::vector<ObjCorner>& corners = data.groups[i].corners;
-        if (!has_texture(scene.materials[material]) || materials.contains(material) ||
+        if (scene.materials[material].textures().empty() || materials.contains(material) ||
             std::none_of(corners.begin(), corners.end(), [](const ObjCorner& c) { return c.uv == kNoIndex; })) {
             continue;
         }

@@ -28,7 +28,7 @@ struct CountMirroredLamps {
     HD void operator()(uint32_t i) const {
         const InstanceView& instance = scene.instances[i];
         if (instance.is_hidden != 0) return;
-        const MaterialView& material = scene.materials[instance.material];
+        const MaterialParameters& material = scene.materials[instance.material];
         const bool glows = material.kind == MaterialKind::Unlit || !is_black(material.emission);
         if (may_be_specular(material)) atomic_add(&count->mirrors, 1);
         if (glows || scene.lights.has_environment()) atomic_add(&count->lamps, 1);

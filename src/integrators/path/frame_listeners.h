@@ -71,12 +71,12 @@ public:
         const Rgb more = first_ * light;
         kept_.diffuse = {kept_.diffuse.x + more.r, kept_.diffuse.y + more.g, kept_.diffuse.z + more.b, kept_.diffuse.w};
     }
-    HD void direct(const PathState& path, const VertexView& at, Vec3 wi, const ShadowRay& shadow) {
+    HD void direct(const PathState& path, const SurfaceVertex& at, Vec3 wi, const ShadowRay& shadow) {
         if (!frame_.splits_light()) return;
         asked_.diffuse = (path.depth == 0 ? at.surface.diffuse_share(at.wo, wi) : first_) * shadow.contribution;
     }
     /// Not by the lobe that was drawn: others send light that way, too, and light of glossy ones changes with the view.
-    HD void scattered(const PathState& path, const VertexView& at, const BsdfSample&) {
+    HD void scattered(const PathState& path, const SurfaceVertex& at, const BsdfSample&) {
         if (!frame_.splits_light() || path.depth != 1) return;
         first_ = path.bsdf_pdf > 0 ? at.surface.diffuse_share(at.wo, path.direction) : Rgb{0, 0, 0};
     }
@@ -161,12 +161,12 @@ public:
         if (is_bounce_) begin_bounce(path, hit, true);
         return !(leaves() && path.depth == 0);
     }
-    HD void direct(const PathState& path, const VertexView& at, Vec3 wi, const ShadowRay& shadow) {
+    HD void direct(const PathState& path, const SurfaceVertex& at, Vec3 wi, const ShadowRay& shadow) {
         if (!tells()) return;
         const Rgb share = is_bounce_ ? at.surface.diffuse_share(at.wo, wi) : share_onwards(path.pixel);
         asked_ = {share * shadow.contribution, path.pixel};
     }
-    HD void scattered(const PathState& path, const VertexView& at, const BsdfSample&) {
+    HD void scattered(const PathState& path, const SurfaceVertex& at, const BsdfSample&) {
         if (!is_bounce_ || !(path.bsdf_pdf > 0)) return; // by a delta lobe nothing can be shared
         const Rgb share = at.surface.diffuse_share(at.wo, path.direction);
         left().onwards[path.pixel] = {share.r, share.g, share.b, 0};

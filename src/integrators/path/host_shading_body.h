@@ -16,7 +16,7 @@ namespace pertev {
 /// takes g++ twenty times as long, so that a build that only tests (src/CMakeLists.txt) does without.
 template <Features kFeatures, class Listener>
 PERTEV_INLINE_ALL bool shade_on_host(const PathJob& job, PathState& path, typename Listener::Kept& kept, const Hit& hit,
-                                    const DrawnNumbers& numbers, AskedByVertex<Listener>& asked, bool& goes_on) {
+                                     const DrawnNumbers& numbers, AskedByVertex<Listener>& asked, bool& goes_on) {
     Listener listener(job);
     if (path.depth == 0) {
         listener.begins(path);

@@ -59,14 +59,14 @@ public:
         if (!layers().is_there() || is_black(light)) return;
         layers().add(job_.film, path.pixel, state_, layers().light_of(lights(), met_), light);
     }
-    HD INLINE_ON_DEVICE void direct(const PathState& path, const VertexView& at, Vec3 wi, const ShadowRay& shadow) {
+    HD INLINE_ON_DEVICE void direct(const PathState& path, const SurfaceVertex& at, Vec3 wi, const ShadowRay& shadow) {
         if (!layers().is_there()) return;
         const bool is_transmission = !at.surface.same_side(at.wo, wi);
         asked_ = {exact_diffuse_share(at.surface, at.wo, wi, 0) * shadow.contribution, path.pixel, state_,
                   layers().first_column(met_.instance) + scattering_column(LobeClass::Diffuse, is_transmission),
                   layers().light_of(lights(), shadow.target)};
     }
-    HD INLINE_ON_DEVICE void scattered(const PathState& path, const VertexView& at, const BsdfSample& sample) {
+    HD INLINE_ON_DEVICE void scattered(const PathState& path, const SurfaceVertex& at, const BsdfSample& sample) {
         if (!layers().is_there()) return;
         const bool is_specular = sample.is_delta();
         Rgb diffuse;

@@ -6,6 +6,7 @@
 // traced, are two plain structs; the CPU has arrays of them, a GPU's queues have arrays of their parts
 // (ListenerQueues), and the listener says how they are put there.
 
+#include "device_scene/ray_origin.h"
 #include "device_scene/surface.h"
 #include "integrators/path/path_job.h"
 #include "integrators/path/path_state.h"
@@ -25,10 +26,28 @@ struct ListenerQueues {
     Uint4* layer_parts = nullptr;
 };
 
-/// What is scattered at a vertex: light along `wi` to `wo`.
-struct VertexView {
+/// A vertex of a path on a surface, seen from `wo` (unit).
+struct SurfaceVertex {
     const Surface& surface;
     Vec3 wo;
+
+    /// Returns whether no direction but those of delta lobes scatters light.
+    HD bool scatters_by_delta_alone() const { return surface.bsdf.has_delta_only(); }
+    HD LightContext light_context(float time) const { return surface.light_context(wo, time); }
+    HD BsdfValue evaluate(Vec3 wi) const { return surface.evaluate(wo, wi); }
+    /// Returns whether sample() uses `lobe`, a number in [0, 1).
+    HD bool draws_lobe() const { return surface.bsdf.draws_lobe(); }
+    HD BsdfSample sample(float lobe, Vec2 u) const { return surface.sample(wo, lobe, u); }
+    /// Returns the origin of a ray that leaves along `wi`.
+    HD Vec3 origin_towards(Vec3 wi) const {
+        return offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi);
+    }
+    /// Returns the shadow ray to what was drawn of a light, which ray_to_light describes.
+    HD Ray ray_to(const LightSample& light, float lamp_error) const {
+        return ray_to_light(light, surface.position, surface.error, surface.geometric_normal, lamp_error);
+    }
+    /// Returns the triangle that its rays leave.
+    HD TriangleId triangle() const { return surface.triangle; }
 };
 
 /// What every listener inherits, by its own name. A listener is made of the job, for one vertex of one path.
@@ -41,7 +60,7 @@ struct PathListener {
     HD void begins(const PathState&) {}
     template <class K>
     HD void take_up(const K&) {}
-    /// The path's ray has met a surface, before which there were path.depth scatterings, or nothing.
+    /// The path's ray has met a surface, before which there were path.depth scatterings, or none.
     HD void vertex(const PathState&, const Hit&, Surface&) {}
     HD void missed(const PathState&) {}
     /// Light that the ray has run into at `place`, which next-event estimation would have drawn by the density
@@ -51,10 +70,12 @@ struct PathListener {
     HD void emitted(const PathState&, Rgb) {}
     /// Whether light of a vertex is asked for by a shadow ray.
     HD bool wants_direct(const PathState&, const Hit&, const Surface&) { return true; }
-    /// It is, along `wi`.
-    HD void direct(const PathState&, const VertexView&, Vec3, const ShadowRay&) {}
+    /// It is, along `wi`. The vertex is a SurfaceVertex, or that of a medium (medium.h).
+    template <class Vertex>
+    HD void direct(const PathState&, const Vertex&, Vec3, const ShadowRay&) {}
     /// The path goes on, as `sample` was drawn; it has left the vertex.
-    HD void scattered(const PathState&, const VertexView&, const BsdfSample&) {}
+    template <class Vertex>
+    HD void scattered(const PathState&, const Vertex&, const BsdfSample&) {}
     /// After the vertex.
     template <class K>
     HD void put_down(K&) const {}
@@ -103,11 +124,13 @@ struct Listeners : Ls... {
     HD bool wants_direct(const PathState& path, const Hit& hit, const Surface& surface) {
         return (Ls::wants_direct(path, hit, surface) && ...);
     }
-    HD INLINE_ON_DEVICE void direct(const PathState& path, const VertexView& at, [[maybe_unused]] Vec3 wi,
+    template <class Vertex>
+    HD INLINE_ON_DEVICE void direct(const PathState& path, const Vertex& at, [[maybe_unused]] Vec3 wi,
                                     const ShadowRay& shadow) {
         (Ls::direct(path, at, wi, shadow), ...);
     }
-    HD INLINE_ON_DEVICE void scattered(const PathState& path, const VertexView& at, const BsdfSample& sample) {
+    template <class Vertex>
+    HD INLINE_ON_DEVICE void scattered(const PathState& path, const Vertex& at, const BsdfSample& sample) {
         (Ls::scattered(path, at, sample), ...);
     }
     HD void put_down(Kept& kept) const { (Ls::put_down(static_cast<typename Ls::Kept&>(kept)), ...); }

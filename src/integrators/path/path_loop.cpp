@@ -32,7 +32,6 @@ public:
             const uint32_t key = key_of(paths_[i], true);
             const bool wants_shadow =
                 shade_(job_, paths_[i], kept_[i], hits_[i], DrawnNumbers(words, i % kWords), asked.at, goes_on_[i]);
-            asked.start = {hits_[i].instance, hits_[i].primitive};
             asked.key = key, asked.path = i;
             shadows += wants_shadow ? 1 : 0;
         }
@@ -45,7 +44,6 @@ public:
 private:
     struct Asked {
         AskedByVertex<Listener> at;
-        TriangleId start;
         uint32_t key, path;
     };
 
@@ -114,7 +112,7 @@ private:
             return Ray{ray.origin, 0.0f, ray.direction, ray.t_max};
         };
         const auto accept_of = [&](uint32_t i) {
-            return AcceptHit{job_.picture.scene, asked_[i].start, asked_[i].at.ray.target, asked_[i].key,
+            return AcceptHit{job_.picture.scene, asked_[i].at.ray.start, asked_[i].at.ray.target, asked_[i].key,
                              paths_[asked_[i].path].time};
         };
         find_occlusions(trees_, shadows, RayOrder::Together, ray_of, accept_of, occluded_);

@@ -87,9 +87,9 @@ struct ShadowQueueView {
         return {.rays = rays, .starts = starts, .targets = targets, .keys = keys, .times = times};
     }
 
-    HD void store(uint32_t i, const ShadowRay& ray, uint32_t path, TriangleId start, uint32_t key) const {
+    HD void store(uint32_t i, const ShadowRay& ray, uint32_t path, uint32_t key) const {
         store_ray(rays + i, {ray.origin, 0.0f, ray.direction, ray.t_max});
-        starts[i] = {start.instance, start.primitive};
+        starts[i] = {ray.start.instance, ray.start.primitive};
         targets[i] = {ray.target.instance, ray.target.primitive};
         keys[i] = key;
         contribution[i] = {ray.contribution.r, ray.contribution.g, ray.contribution.b, float_of(path)};

@@ -82,7 +82,6 @@ struct Shade {
         Listener listener(job);
         PathState path;
         ShadowRay shadow;
-        TriangleId here;
         uint32_t key = 0;
         bool goes_on = false, wants_shadow = false;
         if (is_there) {
@@ -91,7 +90,6 @@ struct Shade {
             if (kMoves) path.time = time_of(job.picture.camera, job.settings, path);
             const Hit hit = hits.load(place);
             key = path_key(path, job.settings.seed, true);
-            here = {hit.instance, hit.primitive};
             if (path.depth == 0) {
                 listener.begins(path);
             } else {
@@ -113,7 +111,7 @@ struct Shade {
         listener.put_down(kept);
         Listener::store_next(listened, places.path, kept);
         if (!wants_shadow) return;
-        shadows.store(places.shadow, shadow, places.path, here, key);
+        shadows.store(places.shadow, shadow, places.path, key);
         if (kMoves && shadows.times != nullptr) shadows.times[places.shadow] = path.time;
         typename Listener::Asked asked{};
         listener.hand_over(asked);

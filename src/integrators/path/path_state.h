@@ -30,6 +30,7 @@ struct PathState {
 struct ShadowRay {
     Vec3 origin, direction;
     float t_max = 0;
+    TriangleId start;  // triangle that the ray leaves
     TriangleId target; // the light's triangle
     Rgb contribution;
 };

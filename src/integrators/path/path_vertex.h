@@ -8,8 +8,8 @@
 // sampling, power heuristic) and 10.4 (Russian roulette).
 
 #include "device_scene/moved_surface.h"
-#include "device_scene/ray_origin.h"
 #include "device_scene/surface.h"
+#include "integrators/path/medium.h"
 #include "integrators/path/path_listener.h"
 #include "integrators/path/vertex_numbers.h"
 #include "shading/power_heuristic.h"
@@ -95,23 +95,22 @@ HD INLINE_ON_DEVICE void add_surface_emission(const PathJob& job, PathState& pat
 }
 
 /// One point of one light, drawn for the vertex. True when `shadow` is to be traced.
-template <Features kFeatures, class Numbers, class Listener>
-HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path, const VertexView& vertex,
+template <Features kFeatures, class Vertex, class Numbers, class Listener>
+HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path, const Vertex& vertex,
                                        const Numbers& numbers, ShadowRay& shadow, Listener& listener) {
     const SceneView& scene = job.picture.scene;
     const PathSettings& settings = job.settings;
-    const Surface& surface = vertex.surface;
-    if (settings.strategy == LightStrategy::BsdfOnly || surface.bsdf.has_delta_only()) return false;
+    if (settings.strategy == LightStrategy::BsdfOnly || vertex.scatters_by_delta_alone()) return false;
     if (!counts(settings.light, path.rough_depth + 1)) return false;
     LightSample light;
     constexpr bool kMoves = (kFeatures & kMoving) != 0;
     constexpr bool kTextures = (kFeatures & kTextured) != 0;
-    const LightContext context = surface.light_context(vertex.wo, path.time);
+    const LightContext context = vertex.light_context(path.time);
     const SampleBits u = numbers.light(settings, path);
     if (!draw_direct<kTextures, LightChoice<kFeatures>>(scene, kMoves, context, u, light)) {
         return false;
     }
-    const BsdfValue scattered = surface.evaluate(vertex.wo, light.wi);
+    const BsdfValue scattered = vertex.evaluate(light.wi);
     if (is_black(scattered.f)) return false;
     if ((kFeatures & kAlpha) != 0 && light.instance != kNoLight && scene.any_alpha != 0 &&
         !AcceptHit{scene, {}, {}, path_key(path, settings.seed, true)}.passes_alpha(light.instance, light.primitive,
@@ -125,10 +124,16 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     shadow.contribution = clamp_contribution(settings, path.depth + 1, weight,
                                              path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
     const float lamp_error = kMoves ? lamp_error_at(scene, light, path.time) : 0.0f;
-    const Ray ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal, lamp_error);
+    const Ray ray = vertex.ray_to(light, lamp_error);
+    if constexpr (!Medium<kFeatures>::kIsVacuum) {
+        const Rgb transmittance = Medium<kFeatures>(scene).transmittance(settings, path, ray);
+        if (is_black(transmittance)) return false;
+        shadow.contribution = transmittance * shadow.contribution;
+    }
     shadow.origin = ray.origin;
     shadow.direction = ray.direction;
     shadow.t_max = ray.t_max;
+    shadow.start = vertex.triangle();
     shadow.target = {light.instance, light.primitive};
     listener.direct(path, vertex, light.wi, shadow);
     return true;
@@ -141,19 +146,18 @@ HD inline float survival_probability(Roulette roulette, float throughput) {
 }
 
 /// Draws where the path goes on. False when it ends here.
-template <class Numbers, class Listener>
-HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathState& path, const VertexView& vertex,
+template <class Vertex, class Numbers, class Listener>
+HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathState& path, const Vertex& vertex,
                                            const Numbers& numbers, Listener& listener) {
-    const Surface& surface = vertex.surface;
-    const float lobe = surface.bsdf.draws_lobe() ? numbers.lobe(settings, path) : 0.5f;
-    const BsdfSample sample = surface.sample(vertex.wo, lobe, numbers.direction(settings, path));
+    const float lobe = vertex.draws_lobe() ? numbers.lobe(settings, path) : 0.5f;
+    const BsdfSample sample = vertex.sample(lobe, numbers.direction(settings, path));
     if (!(sample.pdf > 0)) return false;
     const Vec3 wi = sample.wi;
     path.throughput = path.throughput * sample.weight;
     path.bsdf_pdf = sample.is_delta() ? 0.0f : sample.pdf;
-    path.origin = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi);
+    path.origin = vertex.origin_towards(wi);
     path.direction = wi;
-    path.start = surface.triangle;
+    path.start = vertex.triangle();
     path.rough_depth += sample.is_delta() ? 0 : 1;
     if (settings.light == PathLight::Direct && path.rough_depth > 1) return false; // nothing of it would count
     const uint32_t depth = path.depth + 1;
@@ -180,6 +184,18 @@ HD INLINE_ON_DEVICE Surface make_vertex(const SceneView& scene, const PathState&
     return surface;
 }
 
+/// The path's ray has met a medium at `vertex`, before any surface.
+template <Features kFeatures, class Vertex, class Numbers, class Listener>
+HD INLINE_ON_DEVICE bool shade_in_medium(const PathJob& job, PathState& path, const Vertex& vertex,
+                                         const Numbers& numbers, ShadowRay& shadow, bool& wants_shadow,
+                                         Listener& listener) {
+    listener.missed(path);
+    if (path.depth >= job.settings.max_depth) return false;
+    wants_shadow = sample_direct<kFeatures>(job, path, vertex, numbers, shadow, listener);
+    path.normal = {0, 0, 0};
+    return sample_scattering(job.settings, path, vertex, numbers, listener);
+}
+
 /// What the ray of `path` met: `hit`, or nothing when hit.instance is kNoHit. Returns whether the path goes on;
 /// `wants_shadow` says whether `shadow` was written. `numbers`: DrawWhenAsked or DrawnNumbers.
 template <Features kFeatures, class Numbers, class Listener>
@@ -187,6 +203,13 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
                                       ShadowRay& shadow, bool& wants_shadow, Listener& listener) {
     const SceneView& scene = job.picture.scene;
     wants_shadow = false;
+    if constexpr (!Medium<kFeatures>::kIsVacuum) {
+        typename Medium<kFeatures>::Vertex vertex;
+        const float distance = hit.instance == kNoHit ? kInfinity : hit.t;
+        if (Medium<kFeatures>(scene).meets(job.settings, path, distance, vertex)) {
+            return shade_in_medium<kFeatures>(job, path, vertex, numbers, shadow, wants_shadow, listener);
+        }
+    }
     if (hit.instance == kNoHit) {
         listener.missed(path);
         add_background<kFeatures>(job, path, listener);
@@ -196,11 +219,11 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     listener.vertex(path, hit, surface);
     add_surface_emission<kFeatures>(job, path, hit, surface, listener);
     if (surface.is_unlit || path.depth >= job.settings.max_depth) return false;
-    const VertexView vertex = {surface, -path.direction};
+    const SurfaceVertex vertex = {surface, -path.direction};
     wants_shadow = listener.wants_direct(path, hit, surface) &&
                    sample_direct<kFeatures>(job, path, vertex, numbers, shadow, listener);
     if constexpr (LightChoice<kFeatures>::kReadsNormal) {
-        const LightContext context = surface.light_context(vertex.wo);
+        const LightContext context = vertex.light_context(path.time);
         path.normal = context.lets_through ? Vec3{0, 0, 0} : context.normal;
     }
     return sample_scattering(job.settings, path, vertex, numbers, listener);

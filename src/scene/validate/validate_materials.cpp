@@ -86,25 +86,11 @@ private:
     void material(std::size_t i) {
         Material& m = scene_.materials[i];
         of_ = numbered("material", i, m.name, m.origin);
-        colour(m.base_color, 0, 1, "base_color");
-        colour(m.emission, 0, kMaxSampleValue, "emission");
-        colour(m.eta, 0x1p-10f, 0x1p10f, "eta");
-        colour(m.k, 0, 0x1p10f, "k");
-        number(m.alpha, 0, 1, "alpha");
-        number(m.alpha_cutoff, 0, 0x1p10f, "alpha_cutoff");
-        number(m.metallic, 0, 1, "metallic");
-        number(m.roughness, 0, 1, "roughness");
-        number(m.ior, 1, 0x1p10f, "ior");
-        number(m.normal_scale, -0x1p10f, 0x1p10f, "normal_scale");
-        texture(m.base_color_texture, "base_color_texture");
-        texture(m.alpha_texture, "alpha_texture");
-        texture(m.metallic_texture, "metallic_texture");
-        texture(m.roughness_texture, "roughness_texture");
-        texture(m.emission_texture, "emission_texture");
-        texture(m.normal_texture, "normal_texture");
+        visit_parameters(
+            m, [&](auto&&... row) { number(row...); }, [&](auto&&... row) { texture(row...); });
     }
 
-    void number(float& value, float lo, float hi, const char* name) {
+    void number(float& value, const char* name, float lo, float hi) {
         if (!is_finite(value)) throw bad(fmt::format("{}: {} is {}; it is a finite number", of_, name, value));
         if (value >= lo && value <= hi) return;
         if (clamped_++ == 0)
@@ -112,13 +98,7 @@ private:
         value = clamp(value, lo, hi);
     }
 
-    void colour(Rgb& value, float lo, float hi, const char* name) {
-        number(value.r, lo, hi, name);
-        number(value.g, lo, hi, name);
-        number(value.b, lo, hi, name);
-    }
-
-    void texture(TextureRef& ref, const char* name) {
+    void texture(const TextureRef& ref, const char* name) {
         if (ref.image == kNoImage) return;
         if (ref.image < 0 || static_cast<std::size_t>(ref.image) >= scene_.images.size()) {
             throw bad(fmt::format("{}: {}: image {} is out of range; there are {}", of_, name, ref.image,

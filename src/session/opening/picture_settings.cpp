@@ -61,8 +61,7 @@ RenderSettings render_settings(const PictureOptions& options, const Scene& scene
         set_default_size(settings, scene_camera(options.scene.camera.camera, scene));
     }
     const std::size_t of_ids = (settings.aovs & kAovIds) != 0 ? 3 : 0;
-    check_exr_row(settings.width,
-                  film_channel_count(settings.aovs) + of_ids + std::size_t(3) * light_layers_of(settings));
+    check_exr_row(settings.width, film_channel_count(settings.aovs) + of_ids + 3 * light_layers_of(settings).size());
     return settings;
 }
 

@@ -11,6 +11,7 @@
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
 #include "session/opening/strictness.h"
+#include "settings/check_settings.h"
 #include "settings/settings_file.h"
 #include "settings/tracer_options.h"
 
@@ -33,9 +34,16 @@ Ground ground_of(const PictureOptions& options) {
 }
 
 /// Says all that was asked for, and what asked for it, with the size and the number of samples that came of it.
-void tell_settings(PictureOptions options, const RenderSettings& settings, SceneSource& source) {
+void tell_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source) {
+    const CameraChoice& choice = options.scene.camera;
+    const Camera* const own = scene_camera(choice.camera, scene);
+    const bool is_own = own != nullptr && !choice.eye && options.camera_path.empty();
+    if (is_own) options.given.try_emplace("camera", SettingOrigin::Scene);
+    if (own != nullptr && own->aspect > 0) options.given.try_emplace("size", SettingOrigin::Scene);
     for (const auto& [name, origin] : options.given) {
-        std::string& names = origin == SettingOrigin::Flag ? source.by_flags : source.by_file;
+        std::string& names = origin == SettingOrigin::Flag   ? source.by_flags
+                             : origin == SettingOrigin::File ? source.by_settings
+                                                             : source.by_scene;
         names += (names.empty() ? "" : " ") + name;
     }
     options.size = PictureSize{settings.width, settings.height};
@@ -47,7 +55,7 @@ void tell_settings(PictureOptions options, const RenderSettings& settings, Scene
 
 } // namespace
 
-std::unique_ptr<ReadyScene> make_ready(const PictureOptions& options, Sink& sink, const SolveRadiosity& solve) {
+std::unique_ptr<ReadyScene> make_ready(PictureOptions& options, Sink& sink, const SolveRadiosity& solve) {
     Messages& messages = sink.messages();
     std::optional<CameraPath> path;
     if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
@@ -64,6 +72,7 @@ std::unique_ptr<ReadyScene> make_ready(const PictureOptions& options, Sink& sink
         options.render.integrator == IntegratorKind::Radiosity && !options.radiosity.solution.empty();
     if (shows_solution) open.use = SceneUse::Measurement; // as it was solved
     Scene scene = open_scene(open, messages);
+    take_suggestions(scene, options, messages);
     if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
     RenderSettings& settings = ready->settings;
     settings = render_settings(options, scene);
@@ -101,7 +110,7 @@ PictureRecord picture_record(const PictureOptions& options, ReadyScene& ready, c
                             .frame = {},
                             .display = {}};
     if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
-    tell_settings(options, ready.settings, record.scene);
+    tell_settings(options, ready.settings, ready.scene(), record.scene);
     record.scene.made_up = messages.made_up();
     record.scene.left_out = messages.left_out();
     record.scene.load_seconds = ready.load_s;

@@ -232,8 +232,9 @@ ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& sta
     const SceneSource& scene = record.scene;
     for (const auto& [name, text] : {std::pair("pertev.scene_hash", &scene.hash),
                                      {"pertev.settings", &scene.settings},
-                                     {"pertev.by_flags", &scene.by_flags},
-                                     {"pertev.by_settings", &scene.by_file}}) {
+                                     {"pertev.by_scene", &scene.by_scene},
+                                     {"pertev.by_settings", &scene.by_settings},
+                                     {"pertev.by_flags", &scene.by_flags}}) {
         if (!text->empty()) metadata.emplace_back(name, *text);
     }
     return metadata;

@@ -24,13 +24,13 @@ struct SceneSource {
     std::string environment;     // asked for: file or colour; empty: none was
     float environment_scale = 1; // factor
     float environment_rotation_deg = 0;
-    std::string up_axis, unit;     // of the file's coordinates, asked for; empty: not
-    std::string hash;              // settings/settings_file.h's scene_hash(); empty: not known
-    std::string settings;          // all that was asked for, as JSON (settings/settings_file.h); empty: not known
-    std::string by_flags, by_file; // the names of the settings that each gave, between spaces
-    std::string lamps;             // set to amounts of light, a line each; empty: none
-    bool has_environment = false;  // the scene has one: asked for, its own or the default
-    bool has_ground = false;       // a made-up one
+    std::string up_axis, unit; // of the file's coordinates, asked for; empty: not
+    std::string hash;          // settings/settings_file.h's scene_hash(); empty: not known
+    std::string settings;      // all that was asked for, as JSON (settings/settings_file.h); empty: not known
+    std::string by_scene, by_settings, by_flags; // names of settings that its file, a file of them, and flags gave
+    std::string lamps;                           // set to amounts of light, a line each; empty: none
+    bool has_environment = false;                // the scene has one: asked for, its own or the default
+    bool has_ground = false;                     // a made-up one
     bool two_sided_lights = false, show_back_faces = false;
     std::string animation, file_scene; // choices among the file's (formats/files/file_choices.h); empty: no others
     std::optional<double> time_s;      // that it is shown at; none: at rest

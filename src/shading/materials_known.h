@@ -1,6 +1,6 @@
 #pragma once
 
-// A material as device code sees it: scene/material.h without its name.
+// Materials as device code sees them, and what it may know of all of a scene's.
 
 #include <cstdint>
 #include <span>
@@ -10,17 +10,6 @@
 
 namespace pertev {
 
-struct MaterialView {
-    MaterialKind kind;
-    AlphaMode alpha_mode;
-    bool two_sided_emission;
-    float alpha;
-    float alpha_cutoff; // Mask: a ray is stopped where alpha is at least this (alpha_that_reaches)
-    Rgb base_color, emission, eta, k;
-    float metallic, roughness, ior, normal_scale;
-    TextureRef base_color_texture, alpha_texture, metallic_texture, roughness_texture, emission_texture, normal_texture;
-};
-
 /// What all materials of a scene have in common: code that knows it needs fewer registers.
 enum class MaterialsKnown : uint8_t {
     Nothing,
@@ -28,9 +17,9 @@ enum class MaterialsKnown : uint8_t {
     PlainDiffuse, // and opaque, without textures
 };
 
-inline MaterialsKnown known_of(std::span<const MaterialView> materials) {
+inline MaterialsKnown known_of(std::span<const MaterialParameters> materials) {
     bool are_plain = true;
-    for (const MaterialView& m : materials) {
+    for (const MaterialParameters& m : materials) {
         if (m.kind != MaterialKind::Diffuse) return MaterialsKnown::Nothing;
         are_plain = are_plain && m.alpha_mode == AlphaMode::Opaque && !m.base_color_texture.has_image() &&
                     !m.normal_texture.has_image() && !m.emission_texture.has_image();
@@ -51,26 +40,10 @@ HD inline bool has_texture(const TextureRef& slot) {
 /// everything.
 inline float alpha_that_reaches(float cutoff) { return cutoff > 1 ? cutoff : (1.0f - 0x1p-21f) * cutoff; }
 
-inline MaterialView make_material_view(const Material& m) {
-    return {.kind = m.kind,
-            .alpha_mode = m.alpha_mode,
-            .two_sided_emission = m.two_sided_emission,
-            .alpha = m.alpha,
-            .alpha_cutoff = alpha_that_reaches(m.alpha_cutoff),
-            .base_color = m.base_color,
-            .emission = m.emission,
-            .eta = m.eta,
-            .k = m.k,
-            .metallic = m.metallic,
-            .roughness = m.roughness,
-            .ior = m.ior,
-            .normal_scale = m.normal_scale,
-            .base_color_texture = m.base_color_texture,
-            .alpha_texture = m.alpha_texture,
-            .metallic_texture = m.metallic_texture,
-            .roughness_texture = m.roughness_texture,
-            .emission_texture = m.emission_texture,
-            .normal_texture = m.normal_texture};
+inline MaterialParameters parameters_for_device(const Material& material) {
+    MaterialParameters parameters = material;
+    parameters.alpha_cutoff = alpha_that_reaches(material.alpha_cutoff);
+    return parameters;
 }
 
 } // namespace pertev
