@@ -208,10 +208,11 @@ void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
         scene.images.push_back(std::move(textures[i]));
     }
     for (Material& material : scene.materials) {
-        for (TextureRef* ref : {&material.base_color_texture, &material.alpha_texture, &material.metallic_texture,
-                                &material.roughness_texture, &material.emission_texture, &material.normal_texture}) {
-            if (ref->has_image()) ref->image = renumbered.at(static_cast<std::size_t>(ref->image));
-        }
+        visit_parameters(
+            material, [](auto&&...) {},
+            [&](TextureRef& ref, const char*) {
+                if (ref.has_image()) ref.image = renumbered.at(static_cast<std::size_t>(ref.image));
+            });
     }
 }
 
