@@ -23,14 +23,14 @@ template <class Listener>
 using ShadeOnHost = bool (*)(const PathJob&, PathState&, typename Listener::Kept&, const Hit&, const DrawnNumbers&,
                              AskedByVertex<Listener>&, bool& goes_on);
 
-/// The one with no more code than the picture needs.
+/// The one with no more code than the job needs.
 template <class Listener>
-ShadeOnHost<Listener> shading_for(const PictureView& picture);
+ShadeOnHost<Listener> shading_for(const PathJob& job);
 template <>
-ShadeOnHost<FilmListeners> shading_for<FilmListeners>(const PictureView& picture);
+ShadeOnHost<FilmListeners> shading_for<FilmListeners>(const PathJob& job);
 template <>
-ShadeOnHost<ReuseListeners> shading_for<ReuseListeners>(const PictureView& picture);
+ShadeOnHost<ReuseListeners> shading_for<ReuseListeners>(const PathJob& job);
 template <>
-ShadeOnHost<LayerListeners> shading_for<LayerListeners>(const PictureView& picture);
+ShadeOnHost<LayerListeners> shading_for<LayerListeners>(const PathJob& job);
 
 } // namespace pertev

@@ -31,10 +31,9 @@ PERTEV_INLINE_ALL bool shade_on_host(const PathJob& job, PathState& path, typena
 }
 
 template <class Listener, class Compiled>
-ShadeOnHost<Listener> choose_shading_on_host(const PictureView& picture) {
+ShadeOnHost<Listener> choose_shading_on_host(const PathJob& job) {
     ShadeOnHost<Listener> shading = nullptr;
-    const Features moving = picture.scene.motions.is_there() ? Features{kMoving} : 0;
-    PERTEV_CHECK(Compiled::choose(features_of(picture.scene.known) | moving,
+    PERTEV_CHECK(Compiled::choose(features_for(job),
                                   [&]<Features kFeatures>() { shading = shade_on_host<kFeatures, Listener>; }));
     return shading;
 }

@@ -40,15 +40,6 @@ Size size_for(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth
     return {wavefronts, (each + 31) / 32 * 32}; // rounds begin 32 paths at a time
 }
 
-/// What code has to know of the picture. A moving camera's depth is along its axis at the ray's time.
-Features features_for(const PathJob& job) {
-    const PictureView& picture = job.picture;
-    const bool has_times =
-        picture.scene.motions.is_there() ||
-        (picture.camera.motion.moves() && !job.film.frame.is_there() && (job.film.aovs & kAovDepth) != 0);
-    return features_of(picture.scene.known) | (has_times ? Features{kMoving} : 0);
-}
-
 /// Calls `with`, a template over a mask of features and a listener, with those that have no more code than the job
 /// needs.
 template <class With>

@@ -52,6 +52,15 @@ inline Features features_of(MaterialsKnown known) {
     return kAllMaterials;
 }
 
+/// Returns what code has to know of the job. The depth that a moving camera sees is along its axis at the ray's time.
+inline Features features_for(const PathJob& job) {
+    const PictureView& picture = job.picture;
+    const bool has_times =
+        picture.scene.motions.is_there() ||
+        (picture.camera.motion.moves() && !job.film.frame.is_there() && (job.film.aovs & kAovDepth) != 0);
+    return features_of(picture.scene.known) | (has_times ? Features{kMoving} : 0);
+}
+
 /// How code for a mask of features chooses lights (shading/light_set.h). A light tree is a feature, for which this is
 /// specialised.
 template <Features kFeatures>

@@ -141,7 +141,7 @@ private:
     const PathJob& job_;
     const HostTrees& trees_;
     const TileRasterView* raster_;
-    const ShadeOnHost<Listener> shade_ = shading_for<Listener>(job_.picture);
+    const ShadeOnHost<Listener> shade_ = shading_for<Listener>(job_);
     uint32_t count_ = 0, going_on_ = 0; // paths; of which those that are not new
     PathState paths_[kPaths];
     typename Listener::Kept kept_[kPaths];

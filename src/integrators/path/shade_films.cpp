@@ -3,8 +3,8 @@
 namespace pertev {
 
 template <>
-ShadeOnHost<FilmListeners> shading_for<FilmListeners>(const PictureView& picture) {
-    return choose_shading_on_host<FilmListeners, FilmFeatures>(picture);
+ShadeOnHost<FilmListeners> shading_for<FilmListeners>(const PathJob& job) {
+    return choose_shading_on_host<FilmListeners, FilmFeatures>(job);
 }
 
 } // namespace pertev

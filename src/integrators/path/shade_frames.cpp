@@ -3,8 +3,8 @@
 namespace pertev {
 
 template <>
-ShadeOnHost<ReuseListeners> shading_for<ReuseListeners>(const PictureView& picture) {
-    return choose_shading_on_host<ReuseListeners, FrameFeatures>(picture);
+ShadeOnHost<ReuseListeners> shading_for<ReuseListeners>(const PathJob& job) {
+    return choose_shading_on_host<ReuseListeners, FrameFeatures>(job);
 }
 
 } // namespace pertev

@@ -3,8 +3,8 @@
 namespace pertev {
 
 template <>
-ShadeOnHost<LayerListeners> shading_for<LayerListeners>(const PictureView& picture) {
-    return choose_shading_on_host<LayerListeners, LayerFeatures>(picture);
+ShadeOnHost<LayerListeners> shading_for<LayerListeners>(const PathJob& job) {
+    return choose_shading_on_host<LayerListeners, LayerFeatures>(job);
 }
 
 } // namespace pertev
