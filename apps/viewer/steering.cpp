@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "math/portable_math.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -47,16 +48,9 @@ std::string text_of(Vec3 p, DoubleVec3 origin) {
 
 std::string lens_flags(const Camera& camera) {
     std::string flags;
-    switch (camera.projection) {
-    case Projection::Perspective:
-        flags += fmt::format(" --fov {}", degrees_for(camera.fov_y));
-        break;
-    case Projection::Orthographic:
-        flags += fmt::format(" --projection orthographic --view-height {}", camera.ortho_height);
-        break;
-    case Projection::Cosine: // no view
-        break;
-    }
+    if (camera.projection != Projection{}) flags += fmt::format(" --projection {}", name_of(camera.projection));
+    flags += has_parallel_rays(camera.projection) ? fmt::format(" --view-height {}", camera.ortho_height)
+                                                  : fmt::format(" --fov {}", degrees_for(camera.fov_y));
     if (camera.aperture_radius > 0) {
         flags += fmt::format(" --aperture {} --focus {}", camera.aperture_radius, camera.focus_distance);
     }

@@ -4,6 +4,7 @@
 
 #include "math/scalar.h"
 #include "math/vec3.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -28,10 +29,11 @@ std::string describe_camera(const Camera& camera, DoubleVec3 origin) {
     while (distance < max_component(abs(eye))) distance *= 2;
     const std::string place = fmt::format("`eye={}` `target={}` `up={}`", text_of(eye, origin),
                                           text_of(eye + distance * forward, origin), text_of(column(m, 1)));
-    if (camera.projection == Projection::Orthographic) {
-        return fmt::format("{} `projection=orthographic` `view_height={}` (metres)", place, camera.ortho_height);
+    const std::string_view projection = name_of(camera.projection);
+    if (has_parallel_rays(camera.projection)) {
+        return fmt::format("{} `projection={}` `view_height={}` (metres)", place, projection, camera.ortho_height);
     }
-    return fmt::format("{} `projection=perspective` `fov={}` (vertical field of view, degrees)", place,
+    return fmt::format("{} `projection={}` `fov={}` (vertical field of view, degrees)", place, projection,
                        camera.fov_y * 180 / kPi);
 }
 

@@ -56,13 +56,13 @@ Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect,
     return camera;
 }
 
-/// Turns a perspective camera into an orthographic one that shows as much of what it looks at.
+/// Gives a perspective camera the height of an orthographic view that shows as much of what it looks at.
 void flatten(const CameraChoice& choice, const Scene& scene, Camera& camera) {
     const Vec3 eye = camera.world_from_camera.translation, forward = -column(camera.world_from_camera, 2);
     const Bounds3 bounds = bounds_of(scene);
     const float distance = choice.target ? length(in_scene(scene, *choice.target) - eye)
                                          : dot(0.5f * (bounds.lo + bounds.hi) - eye, forward);
-    camera.projection = Projection::Orthographic;
+    camera.projection = choice.projection.value();
     if (distance > 0) camera.ortho_height = min(2 * tan(0.5f * camera.fov_y) * distance, kMaxCoordinate);
 }
 
@@ -86,7 +86,7 @@ void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera&
 
 /// `flattened`: the camera's angle of view has become a height.
 void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, bool flattened, Messages& messages) {
-    const bool is_perspective = camera.projection == Projection::Perspective;
+    const bool is_perspective = !has_parallel_rays(camera.projection);
     if (choice.view_height && is_perspective) {
         messages.warn(
             {"view_height", "", "the camera is a perspective one; `projection=orthographic` makes use of it"});
@@ -103,7 +103,7 @@ void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, boo
 } // namespace
 
 void check_camera_choice(const CameraChoice& choice) {
-    if (choice.view_height && choice.projection == Projection::Perspective) {
+    if (choice.view_height && choice.projection && !has_parallel_rays(*choice.projection)) {
         throw Error(ErrorCode::BadInput, "view_height", "",
                     "a perspective view has none; say `fov`, or `projection=orthographic`");
     }
@@ -153,10 +153,10 @@ Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Mess
     if (choice.fov_deg) camera.fov_y = *choice.fov_deg * kRadiansPerDegree;
     if (choice.aperture) camera.aperture_radius = *choice.aperture;
     if (choice.focus) camera.focus_distance = *choice.focus;
-    if (choice.projection == Projection::Perspective) camera.projection = Projection::Perspective;
-    const bool flattened =
-        choice.projection == Projection::Orthographic && camera.projection == Projection::Perspective;
+    const bool is_flat = choice.projection && has_parallel_rays(*choice.projection);
+    const bool flattened = is_flat && !has_parallel_rays(camera.projection);
     if (flattened) flatten(choice, scene, camera);
+    if (choice.projection) camera.projection = *choice.projection;
     if (choice.view_height) camera.ortho_height = *choice.view_height;
     focus_in_the_middle(choice, scene, camera, messages);
     warn_of_useless_parts(choice, camera, flattened, messages);

@@ -149,11 +149,11 @@ ExrMetadata camera_metadata(const CameraSource& source) {
                             {"pertev.up", comma_separated(up)},
                             {"pertev.aperture", camera.aperture_radius}};
     if (camera.aperture_radius > 0) metadata.emplace_back("pertev.focus", camera.focus_distance);
-    if (camera.projection == Projection::Orthographic) {
-        append(metadata, {{"pertev.projection", "orthographic"}, {"pertev.view_height", camera.ortho_height}});
+    metadata.emplace_back("pertev.projection", std::string(name_of(camera.projection)));
+    if (has_parallel_rays(camera.projection)) {
+        metadata.emplace_back("pertev.view_height", camera.ortho_height);
     } else {
-        const float fov_deg = source.fov_deg > 0 ? source.fov_deg : degrees_for(camera.fov_y);
-        append(metadata, {{"pertev.projection", "perspective"}, {"pertev.fov", fov_deg}});
+        metadata.emplace_back("pertev.fov", source.fov_deg > 0 ? source.fov_deg : degrees_for(camera.fov_y));
     }
     return metadata;
 }
