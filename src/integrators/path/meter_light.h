@@ -21,6 +21,7 @@ namespace pertev {
 /// Samples of pixels that go to the tracer together.
 struct MeterSamples {
     uint32_t pixels, first_sample;
+    PixelWindow window; // which pixels of the picture they are
 };
 
 struct MeterQueueView {
@@ -69,7 +70,8 @@ struct DrawMeterLights {
     MeterQueueView queue;
 
     HD void operator()(uint32_t i) const {
-        const uint32_t pixel = i % samples.pixels, sample = samples.first_sample + i / samples.pixels;
+        const uint32_t pixel = samples.window.pixel_at(i % samples.pixels);
+        const uint32_t sample = samples.first_sample + i / samples.pixels;
         const ShadowRay shadow = draw_meter_light(picture, settings, pixel, sample);
         store_ray(queue.rays + i, {shadow.origin, 0.0f, shadow.direction, shadow.t_max});
         queue.targets[i] = {shadow.target.instance, shadow.target.primitive};
