@@ -1,6 +1,7 @@
 // A film that holds a window of a picture has the bytes that the whole picture has there, its layers, its ids and its
 // layers of light paths too, by either body of the path tracer, and where rasterisation finds what the camera sees.
 
+#include <algorithm>
 #include <cstring>
 
 #include <doctest/doctest.h>
@@ -25,9 +26,9 @@ struct CropResult {
     std::vector<PixelIds> ids;
 };
 
-CropResult render_crop(Queue& queue, const PreparedScene& prepared, const IntegratorSettings& settings,
-                       bool is_window) {
-    test::PictureOnDevice picture(queue, prepared, test::mixed_scene_camera(), kUncroppedWidth, kUncroppedHeight);
+CropResult render_crop(Queue& queue, const PreparedScene& prepared, const IntegratorSettings& settings, bool is_window,
+                       const Camera& camera = test::mixed_scene_camera()) {
+    test::PictureOnDevice picture(queue, prepared, camera, kUncroppedWidth, kUncroppedHeight);
     const auto integrator = make_integrator(queue, settings);
     integrator->begin(picture.view, picture.tracer, kCropSamples);
     const std::vector<std::string> light_layers =
@@ -93,4 +94,17 @@ TEST_CASE("a film of a window has the bytes that the whole picture has there") {
             CHECK(things > 10);
         }
     }
+}
+
+TEST_CASE("a film of a window has the bytes that a light meter's whole picture has there") {
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Camera meter = test::mixed_scene_camera();
+    meter.projection = Projection::Cosine;
+    Queue queue = test::queue_asked_for();
+    const CropResult whole = render_crop(queue, prepared, {}, false, meter);
+    const CropResult window = render_crop(queue, prepared, {}, true, meter);
+    CHECK(differing_in_window(window.images[0], whole.images[0]) == 0);
+    CHECK(*std::ranges::max_element(window.images[0].pixels) > 0);
 }
