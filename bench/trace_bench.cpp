@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "bench/embree_peer.h"
 #include "bench/ray_contest.h"
-#include "formats/read_scene.h"
 #include "lab/ray_sets.h"
 #include "lab/record_scenes.h"
 #include "render/prepare_scene.h"
@@ -24,7 +23,7 @@ using namespace pertev::bench;
 namespace {
 
 struct Flags {
-    std::string scene = "sponza", folder, build = name_of(kDefaultBuild);
+    std::string scene = "sponza", folder, build = std::string(name_of(kDefaultBuild));
     uint32_t rays = 1 << 20;
     int rounds = 3;
     bool json = false;
@@ -103,7 +102,7 @@ int run_bench(const Flags& flags) {
     const RecordScene* const record = find_record_scene(flags.scene);
     if (record == nullptr) throw Error(ErrorCode::BadInput, "trace_bench: no such scene: " + flags.scene);
     const Scene scene = make_record_scene(*record, flags.folder, messages);
-    const std::optional<TreeBuild> build = tree_build_named(flags.build);
+    const std::optional<TreeBuild> build = value_named<TreeBuild>(flags.build);
     if (!build) throw Error(ErrorCode::BadInput, "trace_bench: no such build: " + flags.build);
     const TracerChoice tracers = default_tracers(false, *build);
     const PreparedScene prepared = prepare_scene(scene, {.tracers = tracers, .keep_coordinates = true}, messages);

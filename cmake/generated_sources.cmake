@@ -1,4 +1,5 @@
-# Sources that the build writes: the version (looked at in every build) and the built-in scenes.
+# Sources that the build writes: the version (looked at in every build), the built-in scenes and the tables
+# of lobes.
 
 set(PERTEV_GENERATED_DIR ${PROJECT_BINARY_DIR}/generated)
 set(PERTEV_BUILTIN_SCENES ${PROJECT_SOURCE_DIR}/scenes/cornell-box/cornell-box.gltf
@@ -23,3 +24,16 @@ add_custom_command(OUTPUT ${PERTEV_GENERATED_DIR}/builtin_scenes.cpp
           -P ${PROJECT_SOURCE_DIR}/cmake/embed_scenes.cmake
   COMMENT "Embedding the built-in scenes" VERBATIM)
 target_sources(pertev_formats PRIVATE ${PERTEV_GENERATED_DIR}/builtin_scenes.cpp)
+
+# Tables of lobes: 10 s of one core, once. Sums stand side by side for the vectoriser, which divides where masks say no.
+add_executable(pertev_make_lobe_tables ${PROJECT_SOURCE_DIR}/tools/make_lobe_tables.cpp)
+target_link_libraries(pertev_make_lobe_tables PRIVATE fmt::fmt TBB::tbb)
+target_compile_options(pertev_make_lobe_tables PRIVATE -O3 -fno-trapping-math -fno-sanitize=all)
+target_link_options(pertev_make_lobe_tables PRIVATE -fno-sanitize=all)
+set_target_properties(pertev_make_lobe_tables PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PERTEV_GENERATED_DIR})
+set(lobes ${PERTEV_GENERATED_DIR}/shading/lobes)
+file(MAKE_DIRECTORY ${lobes})
+add_custom_command(OUTPUT ${lobes}/energy_table_data.h ${lobes}/sheen_table_data.h
+  COMMAND pertev_make_lobe_tables ${lobes} COMMENT "Integrating the tables of lobes" VERBATIM)
+target_sources(pertev_shading PRIVATE ${lobes}/energy_table_data.h ${lobes}/sheen_table_data.h)
+target_include_directories(pertev_shading PUBLIC ${PERTEV_GENERATED_DIR})

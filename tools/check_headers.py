@@ -84,19 +84,20 @@ def chains(headers, source):
         yield chain
 
 
-def jobs_for(source, compilers, nvcc):
+def jobs_for(source, compilers, nvcc, folders):
     """(what it is, command, headers) for each compilation."""
     headers = [h.relative_to(source) for h in sorted(source.rglob("*.h")) if "cuda" not in h.parts]
     host_device = [h for h in headers if HOST_DEVICE.search((source / h).read_text(encoding="utf-8"))]
-    others = [[c, *HOST_FLAGS] for c in compilers[1:]] + ([[nvcc, *NVCC_FLAGS]] if nvcc else [])
+    includes = [f"-I{folder}" for folder in folders]
+    others = [[c, *HOST_FLAGS, *includes] for c in compilers[1:]] + ([[nvcc, *NVCC_FLAGS, *includes]] if nvcc else [])
     for command in others:
         yield f"host-device headers by {command[0]}", command, host_device
     for chain in chains([h for h in headers if not built_alone(h, source)], source):
-        yield f"{', '.join(map(str, chain))} by {compilers[0]}", [compilers[0], *HOST_FLAGS], chain
+        yield f"{', '.join(map(str, chain))} by {compilers[0]}", [compilers[0], *HOST_FLAGS, *includes], chain
 
 
-def check(source, compilers, nvcc, threads):
-    jobs = list(jobs_for(source, compilers, nvcc))
+def check(source, compilers, nvcc, threads, folders=()):
+    jobs = list(jobs_for(source, compilers, nvcc, folders))
     with concurrent.futures.ThreadPoolExecutor(threads) as pool:
         complaints = list(pool.map(lambda job: compile_includes(job[1], job[2], source), jobs))
     return [f"{what}:\n{text}" for (what, _, _), text in zip(jobs, complaints) if text], len(jobs)
@@ -133,6 +134,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--cxx", action="append", required=True, help="host compiler; may be repeated")
     parser.add_argument("--nvcc", help="CUDA compiler")
+    parser.add_argument("--include", action="append", default=[], help="folder of headers that the build writes; may be repeated")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--self-test", action="store_true")
     args = parser.parse_args()
@@ -142,7 +144,7 @@ def main():
     compilers = [c for c in args.cxx if c not in absent]
     if args.self_test:
         sys.exit(1 if self_test(compilers, args.nvcc) else 0)
-    faults, count = check(ROOT / "src", compilers, args.nvcc, args.jobs)
+    faults, count = check(ROOT / "src", compilers, args.nvcc, args.jobs, args.include)
     print("\n".join(faults) or f"{count} compilations, no complaint")
     sys.exit(1 if faults else 0)
 

@@ -4,11 +4,12 @@
 `make_bending_tube.py OUT.gltf [RINGS SEGMENTS]`: 2 * RINGS * SEGMENTS triangles, 262144 of them without numbers.
 """
 
-import base64
 import json
 import math
 import struct
 import sys
+
+from gltf_buffer import GltfBuffer
 
 JOINTS, HEIGHT, RADIUS = 8, 4.0, 0.5
 STEP = HEIGHT / (JOINTS - 1)
@@ -16,19 +17,11 @@ COMPONENTS = {"f": 5126, "H": 5123, "I": 5125}
 COUNTS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 
 
-class Binary:
-    """The buffer of a file, with its views and accessors."""
-
-    def __init__(self):
-        self.data, self.views, self.accessors = b"", [], []
-
+class Binary(GltfBuffer):
     def add(self, values, component, kind, **bounds):
-        packed = struct.pack(f"<{len(values)}{component}", *values)
-        self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(packed)})
-        self.accessors.append({"bufferView": len(self.views) - 1, "componentType": COMPONENTS[component],
-                               "type": kind, "count": len(values) // COUNTS[kind], **bounds})
-        self.data += packed + b"\0" * (-len(packed) % 4)
-        return len(self.accessors) - 1
+        return super().add(struct.pack(f"<{len(values)}{component}", *values),
+                           {"componentType": COMPONENTS[component], "type": kind,
+                            "count": len(values) // COUNTS[kind], **bounds})
 
 
 def tube(binary, rings, segments):
@@ -84,7 +77,6 @@ def make(rings, segments):
                "output": binary.add(turn(0) + turn(18) + turn(-14) + turn(0), "f", "VEC4")}
     channels = [{"sampler": 0, "target": {"node": first + joint, "path": "rotation"}} for joint in range(1, JOINTS)]
     skin = {"joints": list(range(first, first + JOINTS)), "inverseBindMatrices": binary.add(inverse, "f", "MAT4")}
-    uri = "data:application/octet-stream;base64," + base64.b64encode(binary.data).decode()
     return {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2, first]}], "nodes": nodes,
             "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}], "meshes": meshes,
             "materials": [{"name": "red", "pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.3, 0.2, 1],
@@ -92,8 +84,7 @@ def make(rings, segments):
                           {"name": "grey", "doubleSided": True, "pbrMetallicRoughness":
                            {"baseColorFactor": [0.6, 0.6, 0.6, 1], "metallicFactor": 0}}],
             "skins": [skin], "animations": [{"samplers": [sampler], "channels": channels}],
-            "accessors": binary.accessors, "bufferViews": binary.views,
-            "buffers": [{"byteLength": len(binary.data), "uri": uri}]}
+            "accessors": binary.accessors, "bufferViews": binary.views, "buffers": [binary.describe()]}
 
 
 if __name__ == "__main__":

@@ -12,12 +12,13 @@ its coordinates are kept; the camera looks along +z and sees +x on its left.
 """
 
 import argparse
-import base64
 import json
 import math
 import pathlib
 import struct
 import sys
+
+from gltf_buffer import GltfBuffer
 
 TARGET = pathlib.Path(__file__).resolve().parent.parent / "scenes/cornell-box/cornell-box.gltf"
 
@@ -176,25 +177,16 @@ def make_gltf():
                  material("red", reflectance(RED)), material("light", [LIGHT_REFLECTANCE] * 3, emission())]
     index_of = {m["name"]: i for i, m in enumerate(materials)}
 
-    data = b""
-    accessors, views, meshes, nodes = [], [], [], []
-
-    def add(payload, target, accessor):
-        nonlocal data
-        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(payload), "target": target})
-        accessors.append({"bufferView": len(views) - 1, **accessor})
-        data += payload + b"\0" * (-len(payload) % 4)
-        return len(accessors) - 1
-
+    buffer, meshes, nodes = GltfBuffer(), [], []
     for name, material_name, triangles in OBJECTS:
         vertices = sorted({v for t in triangles for v in t})
         points = [tuple(struct.unpack("<f", struct.pack("<f", c / 1000))[0] for c in v) for v in vertices]
         indices = [vertices.index(v) for t in triangles for v in t]
-        positions = add(b"".join(struct.pack("<3f", *p) for p in points), 34962, {
+        positions = buffer.add(b"".join(struct.pack("<3f", *p) for p in points), {
             "componentType": 5126, "type": "VEC3", "count": len(points),
-            "min": [min(c) for c in zip(*points)], "max": [max(c) for c in zip(*points)]})
-        corners = add(struct.pack(f"<{len(indices)}H", *indices), 34963,
-                      {"componentType": 5123, "type": "SCALAR", "count": len(indices)})
+            "min": [min(c) for c in zip(*points)], "max": [max(c) for c in zip(*points)]}, target=34962)
+        corners = buffer.add(struct.pack(f"<{len(indices)}H", *indices),
+                             {"componentType": 5123, "type": "SCALAR", "count": len(indices)}, target=34963)
         meshes.append({"name": name, "primitives": [
             {"attributes": {"POSITION": positions}, "indices": corners, "material": index_of[material_name]}]})
         nodes.append({"name": name, "mesh": len(meshes) - 1})
@@ -213,10 +205,9 @@ def make_gltf():
             "aspectRatio": 1, "yfov": round(2 * math.atan(FILM_SIZE / 2 / FOCAL_LENGTH), 9), "znear": 0.01}}],
         "materials": materials,
         "meshes": meshes,
-        "accessors": accessors,
-        "bufferViews": views,
-        "buffers": [{"byteLength": len(data),
-                     "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
+        "accessors": buffer.accessors,
+        "bufferViews": buffer.views,
+        "buffers": [buffer.describe()],
     }
 
 

@@ -8,7 +8,6 @@ boxes stand in their light. The floor is glossy, the rest is nearly diffuse. Met
 """
 
 import argparse
-import base64
 import colorsys
 import json
 import math
@@ -16,6 +15,8 @@ import pathlib
 import random
 import struct
 import sys
+
+from gltf_buffer import GltfBuffer
 
 TARGET = pathlib.Path(__file__).resolve().parent.parent / "scenes/many-lights/many-lights.gltf"
 SWARMS, TRIANGLES = 100, 100
@@ -68,19 +69,15 @@ def box(low, high, inward=False):
 
 class Document:
     def __init__(self):
-        self.bytes = b""
-        self.accessors, self.views, self.meshes, self.materials, self.nodes = [], [], [], [], []
+        self.buffer, self.meshes, self.materials, self.nodes = GltfBuffer(), [], [], []
 
     def positions(self, corners):
         data = b"".join(struct.pack("<3f", *corner) for corner in corners)
-        self.views.append({"buffer": 0, "byteOffset": len(self.bytes), "byteLength": len(data)})
-        self.bytes += data
         rounded = [struct.unpack("<3f", struct.pack("<3f", *corner)) for corner in corners]
-        self.accessors.append({
-            "bufferView": len(self.views) - 1, "componentType": 5126, "count": len(corners), "type": "VEC3",
+        return self.buffer.add(data, {
+            "componentType": 5126, "count": len(corners), "type": "VEC3",
             "min": [min(c[k] for c in rounded) for k in range(3)],
             "max": [max(c[k] for c in rounded) for k in range(3)]})
-        return len(self.accessors) - 1
 
     def mesh(self, name, accessor, material):
         self.materials.append({"name": name, **material})
@@ -89,7 +86,6 @@ class Document:
         return len(self.meshes) - 1
 
     def text(self):
-        encoded = base64.b64encode(self.bytes).decode("ascii")
         document = {
             "asset": {"version": "2.0", "generator": "tools/make_many_lights.py"},
             "extensionsUsed": ["KHR_materials_emissive_strength"],
@@ -100,9 +96,9 @@ class Document:
                          "perspective": {"yfov": 0.95, "aspectRatio": 1.7777778, "znear": 0.1}}],
             "meshes": self.meshes,
             "materials": self.materials,
-            "accessors": self.accessors,
-            "bufferViews": self.views,
-            "buffers": [{"byteLength": len(self.bytes), "uri": "data:application/octet-stream;base64," + encoded}],
+            "accessors": self.buffer.accessors,
+            "bufferViews": self.buffer.views,
+            "buffers": [self.buffer.describe()],
         }
         return json.dumps(document, separators=(",", ":")) + "\n"
 

@@ -6,12 +6,13 @@ The box is scenes/cornell-box/cornell-box.gltf. In 2.5 s the lamp sinks below th
 the short block slides away from its wall and back. With --mirror the tall block is a mirror.
 """
 
-import base64
 import json
 import math
 import pathlib
 import struct
 import sys
+
+from gltf_buffer import GltfBuffer
 
 BOX = pathlib.Path(__file__).resolve().parent.parent / "scenes/cornell-box/cornell-box.gltf"
 SECONDS, STEPS = 2.5, 25
@@ -24,18 +25,13 @@ def main(out, has_mirror):
     turn = [2 * math.pi * t / SECONDS for t in times]
     lamp = [(0.12 * math.sin(a), -0.05 * (1 - math.cos(a)) - 0.001, 0.0) for a in turn]
     slide = [(0.06 * (1 - math.cos(a)), 0.0, -0.05 * math.sin(a)) for a in turn]
-    data, views, accessors = b"", box["bufferViews"], box["accessors"]
+    buffer = GltfBuffer(box["bufferViews"], box["accessors"], len(box["buffers"]))
 
     def add(kind, rows):
-        nonlocal data
-        packed = b"".join(struct.pack(f"<{len(row)}f", *row) for row in rows)
-        views.append({"buffer": len(box["buffers"]), "byteOffset": len(data), "byteLength": len(packed)})
-        accessor = {"bufferView": len(views) - 1, "componentType": 5126, "count": len(rows), "type": kind}
+        accessor = {"componentType": 5126, "count": len(rows), "type": kind}
         if kind == "SCALAR":
             accessor |= {"min": [rows[0][0]], "max": [rows[-1][0]]}
-        accessors.append(accessor)
-        data += packed
-        return len(accessors) - 1
+        return buffer.add(b"".join(struct.pack(f"<{len(row)}f", *row) for row in rows), accessor)
 
     clock = add("SCALAR", [(t,) for t in times])
     moves = [(names.index("light"), add("VEC3", lamp)), (names.index("short block"), add("VEC3", slide))]
@@ -49,8 +45,7 @@ def main(out, has_mirror):
             "baseColorFactor": [0.9, 0.9, 0.9, 1], "metallicFactor": 1, "roughnessFactor": 0}})
         tall = box["nodes"][names.index("tall block")]["mesh"]
         box["meshes"][tall]["primitives"][0]["material"] = len(box["materials"]) - 1
-    box["buffers"].append({"byteLength": len(data),
-                           "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()})
+    box |= {"bufferViews": buffer.views, "accessors": buffer.accessors, "buffers": [*box["buffers"], buffer.describe()]}
     pathlib.Path(out).write_text(json.dumps(box) + "\n")
 
 

@@ -2,7 +2,6 @@
 // would pay for that tree beside those of builders on the host.
 
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -17,7 +16,6 @@
 #include "base/stopwatch.h"
 #include "device/device_timer.h"
 #include "device_scene/place_meshes.h"
-#include "formats/read_scene.h"
 #include "lab/record_scenes.h"
 #include "lab/stored_figures.h"
 #include "session/machine.h"
@@ -36,20 +34,13 @@ struct BuildFlags : PictureOptions {
 
 /// All triangles that do not move, in one world; where there are none, those of the first mesh.
 std::vector<BvhTriangle> read_triangles(const std::string& name, Messages& messages) {
-    Scene scene;
-    if (const RecordScene* record = find_record_scene(name)) {
-        scene = make_record_scene(*record, public_scenes_folder(), messages);
-    } else {
-        ReadOptions options;
-        options.geometry_only = true;
-        scene = read_scene(name, options, messages);
-    }
+    const Scene scene = read_record_scene(name, messages);
     std::vector<BvhTriangle> triangles = baked_triangles(scene, place_meshes(scene));
     return triangles.empty() && !scene.meshes.empty() ? mesh_triangles(scene.meshes.front()) : triangles;
 }
 
 /// `ratio`: of the tree's cost to that of the SBVH; 0: not known. `scene` may be one of the record.
-void print(const std::string& scene, const std::string& tree, const std::string& device, uint64_t triangles,
+void print(const std::string& scene, std::string_view tree, const std::string& device, uint64_t triangles,
            const RunTimes& times, std::size_t nodes, int depth, float cost, double ratio, Reporter& reporter) {
     const std::vector<Ratio> others = ratios_of(BuildRun{device, find_record_scene(scene), triangles, times.median});
     if (reporter.json()) {
@@ -92,13 +83,13 @@ void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags,
     if (flags.compare) {
         for (const BvhBuilder builder : {BvhBuilder::SpatialSplits, BvhBuilder::SpatialReinsertion,
                                          BvhBuilder::Reinsertion, BvhBuilder::Binned, BvhBuilder::Ploc}) {
-            reporter.set_work(fmt::format("{}: building by {}", name, bvh_builder_name(builder)));
+            reporter.set_work(fmt::format("{}: building by {}", name, name_of(builder)));
             const Stopwatch watch;
             const CompressedBvh bvh = make_compressed_bvh(build_bvh(builder, triangles));
             const double seconds = watch.seconds();
             if (builder == BvhBuilder::SpatialSplits) sbvh_cost = bvh.sah_cost;
-            print(name, bvh_builder_name(builder), "cpu", count, {seconds, seconds, seconds, 1}, bvh.nodes.size(),
-                  bvh.depth, bvh.sah_cost, ratio(bvh.sah_cost), reporter);
+            print(name, name_of(builder), "cpu", count, {seconds, seconds, seconds, 1}, bvh.nodes.size(), bvh.depth,
+                  bvh.sah_cost, ratio(bvh.sah_cost), reporter);
             throw_if_interrupted();
         }
     }
@@ -124,11 +115,7 @@ void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags,
 int bench_build(BuildFlags& flags) {
     Reporter reporter(flags.report);
     flags.settings.read(flags, reporter.messages());
-    std::vector<std::string> scenes = flags.scenes;
-    if (scenes.empty()) {
-        for (const RecordScene& scene : record_scenes()) scenes.emplace_back(scene.name);
-    }
-    for (const std::string& scene : scenes) check_record_scene(scene);
+    const std::vector<std::string> scenes = check_record_scenes(flags.scenes);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
     reporter.answer(
@@ -148,14 +135,8 @@ int bench_build(BuildFlags& flags) {
 void add_bench_build_command(CLI::App& bench, int& status) {
     CLI::App& verb = *bench.add_subcommand("build", "Trees that are built on the device");
     const auto flags = std::make_shared<BuildFlags>();
-    verb.add_option("--scene", flags->scenes,
-                    "sponza, bunny, forest, a scene file or a built-in scene;\nmay be given again (the first three, "
-                    "the files under PERTEV_SCENES)")
-        ->type_name("NAME|FILE")
-        ->allow_extra_args(false);
-    verb.add_option("--runs", flags->runs, "timed (3 on the CPU, 25 in CUDA)")
-        ->type_name("N")
-        ->check(whole_between(1, 10000));
+    add_record_scenes(verb, flags->scenes);
+    add_whole(verb, "--runs", flags->runs, "timed (3 on the CPU, 25 in CUDA)", 1, 10000);
     verb.add_flag("--compare", flags->compare,
                   "build by sbvh, sbvh-reinsertion, reinsertion, binned and\nploc on the CPU too");
     flags->settings.add(verb, kBenchBuild, *flags);

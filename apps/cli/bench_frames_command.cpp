@@ -19,7 +19,6 @@
 #include "image/picture_hash.h"
 #include "image/write_png.h"
 #include "math/portable_math.h"
-#include "session/opening/strictness.h"
 #include "session/session.h"
 #include "settings/parse_values.h"
 
@@ -182,9 +181,7 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
     flags->render.size = PictureSize{1920, 1080};
     flags->render.render.path.max_depth = 4;
     add_scene_name(verb, flags->render.scene);
-    verb.add_option("--frames", flags->frames, "of the sequence; the first two are not timed")
-        ->type_name("N")
-        ->check(whole_between(1, 100000))
+    add_whole(verb, "--frames", flags->frames, "of the sequence; the first two are not timed", 1, 100000)
         ->capture_default_str();
     verb.add_flag("--still", flags->still, "the camera stands still");
     verb.add_option("--reference", flags->reference,

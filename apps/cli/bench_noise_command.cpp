@@ -8,9 +8,7 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/render_flags.h"
-#include "base/limits.h"
 #include "image/metrics.h"
-#include "session/opening/strictness.h"
 #include "session/session.h"
 #include "settings/parse_values.h"
 
@@ -135,10 +133,7 @@ void add_bench_noise_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<NoiseFlags>();
     flags->render.size = PictureSize{640, 360};
     add_scene_name(verb, flags->render.scene);
-    verb.add_option("--seeds", flags->seeds, "pictures of each sampler")
-        ->type_name("N")
-        ->check(whole_between(2, 1024))
-        ->capture_default_str();
+    add_whole(verb, "--seeds", flags->seeds, "pictures of each sampler", 2, 1024)->capture_default_str();
     verb.add_option(
             "--keep", flags->keep_percent,
             "of the pixels: those where the low-discrepancy sampler varies\nleast, for the figures of both samplers; a "

@@ -26,10 +26,33 @@ void check_bench_scene(const std::string& name, std::string_view others) {
     }
 }
 
-void check_record_scene(const std::string& name) {
-    const RecordScene* const record = find_record_scene(name);
-    if (record == nullptr) return check_bench_scene(name, "sponza, bunny or forest nor ");
-    if (record->file != nullptr) record_file(*record, public_scenes_folder());
+void add_record_scenes(CLI::App& verb, std::vector<std::string>& names) {
+    verb.add_option("--scene", names,
+                    "sponza, bunny, forest, a scene file or a built-in scene;\nmay be given again (the first three, "
+                    "the files under PERTEV_SCENES)")
+        ->type_name("NAME|FILE")
+        ->allow_extra_args(false);
+}
+
+std::vector<std::string> check_record_scenes(std::vector<std::string> names) {
+    if (names.empty()) {
+        for (const RecordScene& scene : record_scenes()) names.emplace_back(scene.name);
+    }
+    for (const std::string& name : names) {
+        const RecordScene* const record = find_record_scene(name);
+        if (record == nullptr) check_bench_scene(name, "sponza, bunny or forest nor ");
+        if (record != nullptr && record->file != nullptr) record_file(*record, public_scenes_folder());
+    }
+    return names;
+}
+
+Scene read_record_scene(const std::string& name, Messages& messages) {
+    if (const RecordScene* record = find_record_scene(name)) {
+        return make_record_scene(*record, public_scenes_folder(), messages);
+    }
+    ReadOptions options;
+    options.geometry_only = true;
+    return read_scene(name, options, messages);
 }
 
 double mean_of(const Image& image) {
@@ -69,9 +92,7 @@ void add_picture_flags(CLI::App& verb, PictureFlags& flags, const std::string& s
     verb.add_option("--size", flags.size_text, fmt::format("of the picture ({})", sizes))
         ->type_name("WIDTHxHEIGHT")
         ->check(picture_size());
-    verb.add_option("--spp", flags.samples, fmt::format("samples a pixel ({})", samples))
-        ->type_name("N")
-        ->check(whole_between(1, kMaxSamplesPerPixel));
+    add_whole(verb, "--spp", flags.samples, fmt::format("samples a pixel ({})", samples), 1, kMaxSamplesPerPixel);
     flags.settings.add(verb, kBench, flags);
     add_report_flags(verb, flags.report);
 }

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,8 +36,13 @@ inline std::filesystem::path public_scenes_folder() {
 /// Throws Error(BadInput) where there is no such scene; `others` are names that are taken beside it. Asked of all
 /// scenes before the first is measured.
 void check_bench_scene(const std::string& name, std::string_view others = "");
-/// The same where scenes of the record may be named too (lab/record_scenes.h).
-void check_record_scene(const std::string& name);
+
+/// Adds --scene where scenes of the record may be named too (lab/record_scenes.h).
+void add_record_scenes(CLI::App& verb, std::vector<std::string>& names);
+/// Checks each as check_bench_scene does, and returns them: all of the record where none is named.
+std::vector<std::string> check_record_scenes(std::vector<std::string> names);
+/// Reads a scene of the record by its name, else the geometry of a built-in scene or a file.
+Scene read_record_scene(const std::string& name, Messages& messages);
 
 /// Of all channels and pixels.
 double mean_of(const Image& image);

@@ -19,7 +19,6 @@
 #include "apps/cli/scene_options.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "formats/read_scene.h"
 #include "lab/isolated_rays.h"
 #include "lab/measure_rays.h"
 #include "lab/ray_sets.h"
@@ -55,16 +54,6 @@ struct SetFigures {
         return ratio_of(RaysRun{device, record, number, triangles, rays, hit_share, rays_per_second()});
     }
 };
-
-/// A scene of the record by its name, else a built-in scene or a file.
-Scene read_geometry(const std::string& name, Messages& messages) {
-    if (const RecordScene* record = find_record_scene(name)) {
-        return make_record_scene(*record, public_scenes_folder(), messages);
-    }
-    ReadOptions options;
-    options.geometry_only = true;
-    return read_scene(name, options, messages);
-}
 
 std::string describe(const RayHit& hit) { return fmt::format("({}, {}, {})", hit.t, hit.instance, hit.primitive); }
 
@@ -159,7 +148,7 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     Messages& messages = reporter.messages();
     reporter.set_work(fmt::format("{}: making sets of rays", name));
     Stopwatch watch;
-    const Scene scene = read_geometry(name, messages);
+    const Scene scene = read_record_scene(name, messages);
     const double load_s = watch.seconds();
     throw_if_interrupted();
     const PreparedScene prepared = // the sets are in the file's coordinates
@@ -198,11 +187,7 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
 int bench_rays(RaysFlags& flags) {
     Reporter reporter(flags.report);
     flags.settings.read(flags, reporter.messages());
-    std::vector<std::string> scenes = flags.scenes;
-    if (scenes.empty()) {
-        for (const RecordScene& scene : record_scenes()) scenes.emplace_back(scene.name);
-    }
-    for (const std::string& scene : scenes) check_record_scene(scene);
+    const std::vector<std::string> scenes = check_record_scenes(flags.scenes);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
     const TracerChoice choice = tracer_choice(flags.tracer, queue->is_cuda()).value(); // there is one: of the best tree
@@ -226,19 +211,11 @@ int bench_rays(RaysFlags& flags) {
 void add_bench_rays_command(CLI::App& bench, int& status) {
     CLI::App& verb = *bench.add_subcommand("rays", "Sets of rays that other tracers can be timed on");
     const auto flags = std::make_shared<RaysFlags>();
-    verb.add_option("--scene", flags->scenes,
-                    "sponza, bunny, forest, a scene file or a built-in scene;\nmay be given again (the first three, "
-                    "the files under "
-                    "PERTEV_SCENES)")
-        ->type_name("NAME|FILE")
-        ->allow_extra_args(false);
-    verb.add_option("--count", flags->count, "rays of a set; that of the record is four frames of 1920x1080")
-        ->type_name("N")
-        ->check(whole_between(1, 1u << 30))
+    add_record_scenes(verb, flags->scenes);
+    add_whole(verb, "--count", flags->count, "rays of a set; that of the record is four frames of 1920x1080", 1,
+              1u << 30)
         ->capture_default_str();
-    verb.add_option("--runs", flags->runs, "timed, of each set (5 on the CPU, 25 in CUDA)")
-        ->type_name("N")
-        ->check(whole_between(1, 10000));
+    add_whole(verb, "--runs", flags->runs, "timed, of each set (5 on the CPU, 25 in CUDA)", 1, 10000);
     verb.add_flag("--check", flags->check, "compare every hit with the binary walk's on the CPU, bit for bit");
     verb.add_flag("--axes", flags->axes, "two more sets: diffuse1 turned along axes, and a thousandth beside them");
     flags->tracer.default_build = TreeBuild::Best; // no tree's making is timed

@@ -198,14 +198,9 @@ void add_bench_render_command(CLI::App& bench, int& status) {
         ->type_name("FILE")
         ->required()
         ->expected(1);
-    verb.add_option("--seed", flags->seed, "of the random numbers")
-        ->type_name("N")
-        ->check(whole_between(0, UINT32_MAX))
-        ->capture_default_str();
-    verb.add_option("--moves", flags->moves,
-                    "move the camera so often, too, and time one sample of every\npixel after each move (0)")
-        ->type_name("N")
-        ->check(whole_between(0, 100000));
+    add_whole(verb, "--seed", flags->seed, "of the random numbers", 0, UINT32_MAX)->capture_default_str();
+    add_whole(verb, "--moves", flags->moves,
+              "move the camera so often, too, and time one sample of every\npixel after each move (0)", 0, 100000);
     verb.add_flag("--isolated", flags->isolated,
                   "trace the sets of `bench rays` by themselves, too, and say\nwhat share of their rate the job's rays "
                   "have");

@@ -78,9 +78,8 @@ void add_compare_command(CLI::App& app, int& status) {
         ->check(file_name())
         ->required();
     verb.add_option("B", flags->reference, "the reference")->type_name("")->check(file_name())->required();
-    verb.add_option("--blocks", flags->blocks, "compare means over blocks of N x N pixels: less noise, same structure")
-        ->type_name("N")
-        ->check(whole_between(1, 4096))
+    add_whole(verb, "--blocks", flags->blocks, "compare means over blocks of N x N pixels: less noise, same structure",
+              1, 4096)
         ->capture_default_str();
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = compare(*flags); });

@@ -30,6 +30,13 @@ CLI::Validator number_above_zero(float high = std::numeric_limits<float>::max())
 /// A whole number in [low, high], in decimal digits.
 CLI::Validator whole_between(uint32_t low, uint32_t high);
 
+/// Adds a flag that takes such a number.
+template <class Whole>
+CLI::Option* add_whole(CLI::App& verb, const std::string& name, Whole& value, const std::string& text, uint32_t low,
+                       uint32_t high) {
+    return verb.add_option(name, value, text)->type_name("N")->check(whole_between(low, high));
+}
+
 /// The name of a file: not empty.
 CLI::Validator file_name();
 

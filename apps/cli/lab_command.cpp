@@ -51,11 +51,11 @@ std::vector<bool> on_off(const std::string& value) {
 
 /// The switches asked for, those with the most on first: heat maps are of a walk's first.
 std::vector<WalkOptions> walk_options(const LabFlags& flags) {
-    const auto named = [](const std::vector<std::string>& list, const std::string& name) {
+    const auto named = [](const std::vector<std::string>& list, std::string_view name) {
         return std::ranges::find(list, name) != list.end();
     };
     std::vector<WalkOptions> options;
-    for (const TestKind tests : all_tests()) {
+    for (const TestKind tests : kValuesOf<TestKind>) {
         if (!named(flags.tests, name_of(tests))) continue;
         for (const std::string rta : {"on", "nodes", "off"}) {
             if (!named(flags.rta, rta) && !(named(flags.rta, "both") && rta != "nodes")) continue;
@@ -81,21 +81,22 @@ std::pair<int, int> parse_depths(const std::string& text) {
     return {static_cast<int>(*first), static_cast<int>(*last)};
 }
 
-/// `all` where nothing is named. Names are CLI11's to check.
-template <class Kind, class Named>
-std::vector<Kind> chosen(const std::vector<std::string>& names, std::span<const Kind> all, const Named& named) {
+/// All where nothing is named. Names are CLI11's to check.
+template <class Kind>
+std::vector<Kind> chosen(const std::vector<std::string>& names) {
     std::vector<Kind> kinds;
     for (const std::string& name : names) {
-        if (std::ranges::find(kinds, *named(name)) == kinds.end()) kinds.push_back(*named(name));
+        const Kind kind = *value_named<Kind>(name);
+        if (std::ranges::find(kinds, kind) == kinds.end()) kinds.push_back(kind);
     }
-    return names.empty() ? std::vector<Kind>(all.begin(), all.end()) : kinds;
+    return names.empty() ? std::vector<Kind>(kValuesOf<Kind>.begin(), kValuesOf<Kind>.end()) : kinds;
 }
 
 LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
     LabSettings settings;
-    settings.structures = chosen(flags.structures, all_structures(), structure_named);
+    settings.structures = chosen<StructureKind>(flags.structures);
     settings.by_name = !flags.structures.empty() && !flags.walks.empty();
-    settings.walks = chosen(flags.walks, all_walks(), walk_named);
+    settings.walks = chosen<WalkKind>(flags.walks);
     // A brute-force walk over all of a frame's rays takes hours: only when asked for.
     if (flags.walks.empty()) std::erase(settings.walks, WalkKind::BruteForce);
     settings.options = walk_options(flags);
@@ -180,13 +181,6 @@ int run(LabFlags& flags) {
     return report.interrupted ? exit_status(ErrorCode::Interrupted) : 0;
 }
 
-template <class Kind>
-std::vector<std::string> names_of(std::span<const Kind> kinds) {
-    std::vector<std::string> names;
-    for (const Kind kind : kinds) names.emplace_back(name_of(kind));
-    return names;
-}
-
 void add_switch(CLI::App& verb, const char* flag, std::string& value, const char* what) {
     verb.add_option(flag, value, what)->type_name("WHICH")->check(one_of({"on", "off", "both"}))->capture_default_str();
 }
@@ -202,11 +196,11 @@ void add_lab_command(CLI::App& app, int& status) {
     verb.add_option("--structures", flags->structures, "some of the structures (all)")
         ->type_name("NAME,...")
         ->delimiter(',')
-        ->check(one_of(names_of(all_structures())));
+        ->check(one_of(names_of<StructureKind>()));
     verb.add_option("--walks", flags->walks, "some of the walks (all but brute-force)")
         ->type_name("NAME,...")
         ->delimiter(',')
-        ->check(one_of(names_of(all_walks())));
+        ->check(one_of(names_of<WalkKind>()));
     verb.add_option(
             "--rta", flags->rta,
             "redundant traversal avoidance: skip what lies beyond the\nnearest hit; nodes: at nodes and not at pops "
@@ -221,7 +215,7 @@ void add_lab_command(CLI::App& app, int& status) {
                     "and Laine have it")
         ->type_name("WHICH,...")
         ->delimiter(',')
-        ->check(one_of(names_of(all_tests())))
+        ->check(one_of(names_of<TestKind>()))
         ->capture_default_str();
     add_switch(verb, "--persistent", flags->persistent, "CUDA: rays from a pool");
     verb.add_option("--size", flags->size_text, "camera rays (1024x768; with --transport pictures of 256x256)")
@@ -236,12 +230,8 @@ void add_lab_command(CLI::App& app, int& status) {
         ->type_name("KIND,...")
         ->delimiter(',')
         ->check(one_of({"primary", "shadow", "diffuse", "record"}));
-    verb.add_option("--count", flags->count, "rays of a set of the record (8294400)")
-        ->type_name("N")
-        ->check(whole_between(1, 1u << 30));
-    verb.add_option("--runs", flags->runs, "times that each is traced; the figure is the median")
-        ->type_name("N")
-        ->check(whole_between(1, 10000))
+    add_whole(verb, "--count", flags->count, "rays of a set of the record (8294400)", 1, 1u << 30);
+    add_whole(verb, "--runs", flags->runs, "times that each is traced; the figure is the median", 1, 10000)
         ->capture_default_str();
     verb.add_flag("--no-heat-maps", flags->no_heat_maps, "no pictures of the tests a pixel");
     CLI::Option* thesis = verb.add_flag("--thesis", flags->thesis,

@@ -26,12 +26,12 @@ std::array<std::string, 2> heat_map_files(std::string combination) {
 /// Of every combination there is, on any device.
 std::set<std::string> all_heat_map_files() {
     std::set<std::string> files;
-    for (const StructureKind structure : all_structures()) {
-        for (const WalkKind walk : all_walks()) {
+    for (const StructureKind structure : kValuesOf<StructureKind>) {
+        for (const WalkKind walk : kValuesOf<WalkKind>) {
             if (why_not(structure, walk)) continue;
             for (const Distribution distribution :
                  {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
-                for (const TestKind tests : all_tests()) {
+                for (const TestKind tests : kValuesOf<TestKind>) {
                     for (int bits = 0; bits < 8; ++bits) { // rta off, at nodes alone, on
                         const WalkOptions options = {(bits & 3) != 0, (bits & 4) != 0, tests, (bits & 3) != 1};
                         const auto names = heat_map_files(name_of(Combination{structure, walk, options, distribution}));

@@ -6,27 +6,17 @@
 
 #include "apps/cli/flag_phrases.h"
 #include "base/json_text.h"
+#include "base/value_names.h"
 
 namespace pertev {
-namespace {
 
-const char* name_of(ErrorCode code) {
-    switch (code) {
-    case ErrorCode::BadInput:
-        return "bad_input";
-    case ErrorCode::OverLimit:
-        return "over_limit";
-    case ErrorCode::OutOfMemory:
-        return "out_of_memory";
-    case ErrorCode::DeviceFault:
-        return "device_fault";
-    case ErrorCode::FileWrite:
-        return "file_write";
-    case ErrorCode::Interrupted:
-        return "interrupted";
-    }
-    return "unknown";
-}
+constexpr ValueName<ErrorCode> kCodeNames[] = {
+    {ErrorCode::BadInput, "bad_input"},        {ErrorCode::OverLimit, "over_limit"},
+    {ErrorCode::OutOfMemory, "out_of_memory"}, {ErrorCode::DeviceFault, "device_fault"},
+    {ErrorCode::FileWrite, "file_write"},      {ErrorCode::Interrupted, "interrupted"}};
+constexpr const auto& names_of_all(ErrorCode) { return kCodeNames; }
+
+namespace {
 
 /// False where the stream is full or gone.
 bool write(std::FILE* file, const std::string& text) {

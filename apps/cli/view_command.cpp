@@ -278,9 +278,7 @@ void add_view_command(CLI::App& app, int& status) {
     const auto flags = std::make_shared<ViewFlags>();
     add_scene_name(verb, flags->render.scene);
     const char* group = "Server";
-    verb.add_option("--port", flags->port, "to listen on; 0: any that is free")
-        ->type_name("N")
-        ->check(whole_between(0, 65535))
+    add_whole(verb, "--port", flags->port, "to listen on; 0: any that is free", 0, 65535)
         ->capture_default_str()
         ->group(group);
     verb.add_option("--host", flags->host, "name or address to listen on, which browsers ask for")
@@ -294,10 +292,9 @@ void add_view_command(CLI::App& app, int& status) {
         ->capture_default_str()
         ->group(group);
     verb.add_flag("--no-browser", flags->no_browser, "open none, though there is a desktop")->group(group);
-    verb.add_option("--moving-depth", flags->moving_depth,
-                    fmt::format("most scatterings of a path ({}, or --max-depth where that is given)", kMovingDepth))
-        ->type_name("N")
-        ->check(whole_between(0, kMaxPathDepth - 1))
+    add_whole(verb, "--moving-depth", flags->moving_depth,
+              fmt::format("most scatterings of a path ({}, or --max-depth where that is given)", kMovingDepth), 0,
+              kMaxPathDepth - 1)
         ->group("Frames");
     flags->render.settings.add_file(verb);
     add_report_flags(verb, flags->render.report);

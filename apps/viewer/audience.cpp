@@ -51,41 +51,20 @@ std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
         inbox_.put(Joined{});
         return {};
     }
-    switch (message->kind) {
-    case MessageKind::Hello:
-        return "a second hello";
-    case MessageKind::Ack:
-        client.pace.acknowledged(
-            message->frame, now_s,
-            1e-3 * static_cast<double>(message->milliseconds)); // of one that a later one has overtaken: nothing to do
+    if (message->kind == MessageKind::Hello) return "a second hello";
+    if (message->kind == MessageKind::Ack) { // of one that a later one has overtaken: nothing to do
+        client.pace.acknowledged(message->frame, now_s, 1e-3 * static_cast<double>(message->milliseconds));
         changed_.notify_one();
         return {};
-    case MessageKind::Ask:
+    }
+    if (message->kind == MessageKind::Ask) {
         wheel_.ask(id);
         people_changed();
         return {};
-    case MessageKind::Hand:
+    }
+    if (message->kind == MessageKind::Hand) {
         if (wheel_.hand(id, message->client, now_s)) people_changed();
         return {};
-    case MessageKind::Move:
-    case MessageKind::Orbit:
-    case MessageKind::Look:
-    case MessageKind::Pan:
-    case MessageKind::Zoom:
-    case MessageKind::Speed:
-    case MessageKind::Pick:
-    case MessageKind::Home:
-    case MessageKind::Camera:
-    case MessageKind::Set:
-    case MessageKind::Meter:
-    case MessageKind::Play:
-    case MessageKind::Time:
-    case MessageKind::Key:
-    case MessageKind::Unkey:
-    case MessageKind::Follow:
-    case MessageKind::Rate:
-    case MessageKind::Shape:
-        break;
     }
     // Whoever has just lost the wheel may not know it yet: no reason to drop it. Looking at a place is free.
     if (!wheel_.steers(id)) note_wish(id, client, *message, now_s);

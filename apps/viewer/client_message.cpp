@@ -1,5 +1,6 @@
 #include "apps/viewer/client_message.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -135,32 +136,36 @@ struct Form {
     const char* type;
     MessageKind kind;
     std::span<const Key> keys; // all of them must be there, each once
+    const char* wish = "";     // of who does not steer
+    bool moves_the_picture = false;
 };
 
 constexpr Form kForms[] = {
     {"hello", MessageKind::Hello, kHelloKeys},
-    {"move", MessageKind::Move, kMoveKeys},
-    {"orbit", MessageKind::Orbit, kDragKeys},
-    {"look", MessageKind::Look, kDragKeys},
-    {"pan", MessageKind::Pan, kDragKeys},
-    {"zoom", MessageKind::Zoom, kStepKeys},
-    {"speed", MessageKind::Speed, kStepKeys},
-    {"pick", MessageKind::Pick, kPickKeys},
-    {"home", MessageKind::Home, kPlainKeys},
-    {"camera", MessageKind::Camera, kCameraKeys},
-    {"set", MessageKind::Set, kSetKeys},
-    {"meter", MessageKind::Meter, kPlainKeys},
-    {"play", MessageKind::Play, kPlayKeys},
-    {"time", MessageKind::Time, kTimeKeys},
-    {"key", MessageKind::Key, kTimeKeys},
-    {"unkey", MessageKind::Unkey, kCameraKeys},
-    {"follow", MessageKind::Follow, kPlainKeys},
+    {"move", MessageKind::Move, kMoveKeys, "move the camera", true},
+    {"orbit", MessageKind::Orbit, kDragKeys, "turn the view", true},
+    {"look", MessageKind::Look, kDragKeys, "look around", true},
+    {"pan", MessageKind::Pan, kDragKeys, "pan the view", true},
+    {"zoom", MessageKind::Zoom, kStepKeys, "come closer or go away", true},
+    {"speed", MessageKind::Speed, kStepKeys, "change the speed of the camera"},
+    {"pick", MessageKind::Pick, kPickKeys, "bring something into focus"},
+    {"home", MessageKind::Home, kPlainKeys, "go back to the camera of the start", true},
+    {"camera", MessageKind::Camera, kCameraKeys, "look through another camera", true},
+    {"set", MessageKind::Set, kSetKeys, "change a setting"},
+    {"meter", MessageKind::Meter, kPlainKeys, "meter the light"},
+    {"play", MessageKind::Play, kPlayKeys, "let time run"},
+    {"time", MessageKind::Time, kTimeKeys, "go to another time", true},
+    {"key", MessageKind::Key, kTimeKeys, "change the path of the camera"},
+    {"unkey", MessageKind::Unkey, kCameraKeys, "change the path of the camera"},
+    {"follow", MessageKind::Follow, kPlainKeys, "play the path of the camera", true},
     {"rate", MessageKind::Rate, kRateKeys},
     {"shape", MessageKind::Shape, kShapeKeys},
     {"ack", MessageKind::Ack, kAckKeys},
     {"ask", MessageKind::Ask, {}},
     {"hand", MessageKind::Hand, kHandKeys},
 };
+
+const Form& form_of(MessageKind kind) { return *std::ranges::find(kForms, kind, &Form::kind); }
 
 const Form* form_of(dom::object object) {
     std::string_view type;
@@ -202,34 +207,7 @@ std::optional<ClientMessage> parse_client_message(std::string_view text) {
     return message;
 }
 
-bool moves_the_picture(MessageKind kind) {
-    switch (kind) {
-    case MessageKind::Move:
-    case MessageKind::Orbit:
-    case MessageKind::Look:
-    case MessageKind::Pan:
-    case MessageKind::Zoom:
-    case MessageKind::Home:
-    case MessageKind::Camera:
-    case MessageKind::Time:
-    case MessageKind::Follow:
-        return true;
-    case MessageKind::Hello:
-    case MessageKind::Speed:
-    case MessageKind::Pick:
-    case MessageKind::Set:
-    case MessageKind::Meter:
-    case MessageKind::Play:
-    case MessageKind::Key:
-    case MessageKind::Unkey:
-    case MessageKind::Rate:
-    case MessageKind::Shape:
-    case MessageKind::Ack:
-    case MessageKind::Ask:
-    case MessageKind::Hand:
-        return false;
-    }
-    return false;
-}
+bool moves_the_picture(MessageKind kind) { return form_of(kind).moves_the_picture; }
+const char* wish_of(MessageKind kind) { return form_of(kind).wish; }
 
 } // namespace pertev

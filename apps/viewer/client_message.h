@@ -72,4 +72,8 @@ std::optional<ClientMessage> parse_client_message(std::string_view text);
 /// Whether it asks for another view or another time: the picture before it is of no use any more.
 bool moves_the_picture(MessageKind kind);
 
+/// Returns what it asks for, as the end of a sentence that begins with "viewer 2 would like to". It is empty where it
+/// steers nothing.
+const char* wish_of(MessageKind kind);
+
 } // namespace pertev

@@ -18,17 +18,7 @@ std::string json_of(const SettingValue& value) {
     return json_string(std::get<std::string>(value));
 }
 
-const char* name_of(ViewSetting::Kind kind) {
-    switch (kind) {
-    case ViewSetting::Kind::Choice:
-        return "choice";
-    case ViewSetting::Kind::Number:
-        return "number";
-    case ViewSetting::Kind::Whole:
-        return "whole";
-    }
-    return "";
-}
+constexpr const char* kKinds[] = {"choice", "number", "whole"}; // of ViewSetting::Kind
 
 void append(std::string& list, const std::string& item) {
     if (!list.empty()) list += ',';
@@ -45,8 +35,8 @@ std::string settings_json() {
             fmt::format(
                 R"({{"name":"{}","label":{},"group":{},"hint":{},"kind":"{}","choices":[{}],"low":{},"high":{},"step":{}}})",
                 setting.name, json_string(setting.label), json_string(setting.group), json_string(setting.hint),
-                name_of(setting.kind), choices, json_number(setting.low), json_number(setting.high),
-                json_number(setting.step)));
+                kKinds[static_cast<std::size_t>(setting.kind)], choices, json_number(setting.low),
+                json_number(setting.high), json_number(setting.step)));
     }
     return list;
 }

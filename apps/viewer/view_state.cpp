@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -34,13 +35,6 @@ std::vector<std::string> strings(const Names& names) {
     return {std::begin(names), std::end(names)};
 }
 
-template <class Kinds>
-std::vector<std::string> names_of(const Kinds& kinds) {
-    std::vector<std::string> names;
-    for (const auto kind : kinds) names.emplace_back(name_of(kind));
-    return names;
-}
-
 /// What the panel shows of the tracers: those of camera rays. A change is one of all kinds of ray.
 Combination shown_combination(const ViewState& state) {
     return state.picture.tracers.value_or(default_tracers(state.on_cuda)).camera;
@@ -62,7 +56,7 @@ bool is_cells(WalkKind walk) { return walk == WalkKind::Kd || walk == WalkKind::
 /// A structure brings a walk that goes over it where the present one does not.
 std::string set_structure(ViewState& state, const std::string& name) {
     Combination wanted = shown_combination(state);
-    wanted.structure = *structure_named(name);
+    wanted.structure = *value_named<StructureKind>(name);
     if (why_not(wanted.structure, wanted.walk)) {
         const bool is_tree = builder_of(wanted.structure).has_value();
         wanted = {.structure = wanted.structure,
@@ -76,7 +70,7 @@ std::string set_structure(ViewState& state, const std::string& name) {
 /// And the other way round.
 std::string set_walk(ViewState& state, const std::string& name) {
     const Combination now = shown_combination(state);
-    Combination wanted = {.structure = now.structure, .walk = *walk_named(name)};
+    Combination wanted = {.structure = now.structure, .walk = *value_named<WalkKind>(name)};
     if (why_not(wanted.structure, wanted.walk)) {
         wanted.structure = wanted.walk == WalkKind::Kd       ? StructureKind::KdSah
                            : wanted.walk == WalkKind::Octree ? StructureKind::Octree
@@ -112,7 +106,14 @@ std::vector<ViewSetting> make_settings() {
                             std::vector<std::string> choices, auto get, auto set) {
         all.push_back({name, label, group, hint, Kind::Choice, std::move(choices), 0, 0, 1,
                        [get](const ViewState& s) { return SettingValue(std::string(get(s))); },
-                       [set](ViewState& s, const SettingValue& v) { return set(s, text_of(v)); }});
+                       [set](ViewState& s, const SettingValue& v) {
+                           if constexpr (std::is_void_v<decltype(set(s, text_of(v)))>) {
+                               set(s, text_of(v));
+                               return std::string();
+                           } else {
+                               return set(s, text_of(v));
+                           }
+                       }});
     };
     const auto numeric = [&](const char* name, const char* label, const char* group, const char* hint, Kind kind,
                              double low, double high, double step, auto get, auto set) {
@@ -162,10 +163,9 @@ std::vector<ViewSetting> make_settings() {
         [](const ViewState& s) { return s.finds_exposure ? "auto" : "fixed"; },
         [](ViewState& s, const std::string& name) {
             const bool finds = name == "auto";
-            if (finds == s.finds_exposure) return std::string();
+            if (finds == s.finds_exposure) return;
             s.display.exposure_stops = finds ? 0 : clamp(s.found_stops + s.display.exposure_stops, -60.0f, 60.0f);
             s.finds_exposure = finds;
-            return std::string();
         });
     numeric(
         "exposure", "Stops", "Picture",
@@ -174,10 +174,7 @@ std::vector<ViewSetting> make_settings() {
         [](ViewState& s, float v) { s.display.exposure_stops = v; });
     shared_choice(
         "tone_map", "Tone map", "Picture", [](const ViewState& s) { return name_of(s.display.tone_map); },
-        [](ViewState& s, const std::string& name) {
-            s.display.tone_map = *value_named<ToneMap>(name);
-            return std::string();
-        });
+        [](ViewState& s, const std::string& name) { s.display.tone_map = *value_named<ToneMap>(name); });
     shared_choice(
         "integrator", "Light", "Light", [](const ViewState& s) { return integrator_name(s.picture); },
         [](ViewState& s, const std::string& name) {
@@ -209,10 +206,7 @@ std::vector<ViewSetting> make_settings() {
         "mode", "At rest", "Frames",
         "reference: samples gather until the picture is that of pertev render; real time: as while moving",
         {"reference", "real time"}, [](const ViewState& s) { return s.is_real_time ? "real time" : "reference"; },
-        [](ViewState& s, const std::string& name) {
-            s.is_real_time = name == "real time";
-            return std::string();
-        });
+        [](ViewState& s, const std::string& name) { s.is_real_time = name == "real time"; });
     numeric(
         "moving_depth", "Scatterings while moving", "Frames",
         "Fewer are faster, and darker where light comes by many surfaces. At rest the picture has all of them",
@@ -222,17 +216,11 @@ std::vector<ViewSetting> make_settings() {
         "denoiser", "Denoiser while moving", "Frames",
         "svgf: frames are filtered and keep what those before have seen; off: they are their samples", {"svgf", "off"},
         [](const ViewState& s) { return s.is_reconstructed ? "svgf" : "off"; },
-        [](ViewState& s, const std::string& name) {
-            s.is_reconstructed = name == "svgf";
-            return std::string();
-        });
+        [](ViewState& s, const std::string& name) { s.is_reconstructed = name == "svgf"; });
     shared_choice(
         "restir", "ReSTIR: light that pixels share", "Frames",
         [](const ViewState& s) { return name_of(s.restir.light); },
-        [](ViewState& s, const std::string& name) {
-            s.restir.light = *value_named<RestirLight>(name);
-            return std::string();
-        });
+        [](ViewState& s, const std::string& name) { s.restir.light = *value_named<RestirLight>(name); });
     shared_number(
         "restir_history", "Frames that share it, at most", "Frames", Kind::Whole, 1,
         [](const ViewState& s) { return s.restir.history; },
@@ -248,7 +236,6 @@ std::vector<ViewSetting> make_settings() {
         },
         [](ViewState& s, const std::string& name) {
             s.moving_scale = kScaleValues[std::ranges::find(kScales, name) - std::begin(kScales)];
-            return std::string();
         });
     shared_number(
         "fov", "Angle of view, degrees", "Camera", Kind::Number, 1,
@@ -264,11 +251,11 @@ std::vector<ViewSetting> make_settings() {
         [](ViewState& s, float v) { s.lens.focus_distance = v; });
     choice(
         "structure", "Structure", "Rays (the picture stays the same)",
-        "How triangles are kept so that rays find them. Another one is faster or slower", names_of(all_structures()),
+        "How triangles are kept so that rays find them. Another one is faster or slower", names_of<StructureKind>(),
         [](const ViewState& s) { return name_of(shown_combination(s).structure); }, set_structure);
     choice(
         "walk", "Walk", "Rays (the picture stays the same)",
-        "How rays go through the structure. Another one is faster or slower", names_of(all_walks()),
+        "How rays go through the structure. Another one is faster or slower", names_of<WalkKind>(),
         [](const ViewState& s) { return name_of(shown_combination(s).walk); }, set_walk);
     choice(
         "rta", "Redundant traversal avoidance", "Rays (the picture stays the same)",
@@ -279,10 +266,7 @@ std::vector<ViewSetting> make_settings() {
         "by kind: rays of each kind and shading are timed apart (Stages, below). Each waits for the one before, so "
         "that frames take longer",
         {"together", "by kind"}, [](const ViewState& s) { return s.picture.time_kinds ? "by kind" : "together"; },
-        [](ViewState& s, const std::string& name) {
-            s.picture.time_kinds = name == "by kind";
-            return std::string();
-        });
+        [](ViewState& s, const std::string& name) { s.picture.time_kinds = name == "by kind"; });
     return all;
 }
 

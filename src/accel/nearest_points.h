@@ -95,4 +95,23 @@ struct PointsWithin {
     }
 };
 
+// These are for each structure that has a search_points(tree, at, found). It offers `found` all points that may be
+// within its limit, in an order that only the points and `at` decide.
+
+/// The k points nearest to `at`, at most `radius` away (inclusive; may be infinite), nearest first, of equally far ones
+/// those of lower index. `found` has room for k. Returns how many there are.
+template <class Tree>
+HD inline uint32_t find_nearest(const Tree& tree, Vec3 at, float radius, uint32_t k, NearPoint* found) {
+    NearestPoints nearest(found, k, square_of_radius(radius));
+    search_points(tree, at, nearest);
+    return nearest.sort();
+}
+
+/// Calls visit(NearPoint) for each point at most `radius` away. A `share` is of a structure whose searches have shares.
+template <class Tree, class Visit, class... Share>
+HD inline void visit_within(const Tree& tree, Vec3 at, float radius, Visit&& visit, Share... share) {
+    PointsWithin<Visit> within = {square_of_radius(radius), visit};
+    search_points(tree, at, within, share...);
+}
+
 } // namespace pertev

@@ -3,6 +3,9 @@
 // The names of an enumeration's values, each said once: a table beside the enumeration, which names_of_all() returns.
 // The functions below look through it. They are found for every enumeration that has such a function in its namespace.
 
+#include <array>
+#include <cstddef>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +38,14 @@ constexpr std::optional<Value> value_named(std::string_view name) {
     }
     return std::nullopt;
 }
+
+/// The values in the order in which they are offered.
+template <NamedValue Value>
+inline constexpr auto kValuesOf = [] {
+    std::array<Value, std::size(names_of_all(Value{}))> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = names_of_all(Value{})[i].value;
+    return values;
+}();
 
 /// Returns the names in the order in which they are offered.
 template <NamedValue Value>

@@ -22,7 +22,7 @@ constexpr const char* kWarpNote =
     "(all lanes at one place) over 16 (neighbours, perfect) to 32. Registers and local memory are those of the "
     "closest-hit kernel, a thread. Occupancy is what its registers allow, not measured.</p>\n";
 
-std::string cell(const std::string& text) { return "<td>" + html_text(text) + "</td>"; }
+std::string cell(std::string_view text) { return "<td>" + html_text(text) + "</td>"; }
 std::string cell(const std::optional<double>& value, const char* format) {
     return cell(value ? fmt::format(fmt::runtime(format), *value) : "");
 }
@@ -145,13 +145,13 @@ std::string matrix_of(const LabReport& report, uint32_t set) {
         }
         return nullptr;
     };
-    for (const WalkKind walk : all_walks()) {
-        if (std::ranges::any_of(all_structures(), [&](StructureKind s) { return find(s, walk) != nullptr; })) {
+    for (const WalkKind walk : kValuesOf<WalkKind>) {
+        if (std::ranges::any_of(kValuesOf<StructureKind>, [&](StructureKind s) { return find(s, walk) != nullptr; })) {
             walks.push_back(walk);
         }
     }
     std::string rows;
-    for (const StructureKind structure : all_structures()) {
+    for (const StructureKind structure : kValuesOf<StructureKind>) {
         std::string row;
         bool any = false;
         for (const WalkKind walk : walks) {

@@ -5,7 +5,6 @@
 // lab/stored_figures.h.
 
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string_view>
 

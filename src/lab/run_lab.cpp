@@ -259,7 +259,7 @@ private:
                 }
             });
             if (failed.empty()) continue;
-            report_.structures.push_back({.name = name_of(structure), .failed = failed});
+            report_.structures.push_back({.name = std::string(name_of(structure)), .failed = failed});
             for (CombinationFigures* c : combinations) c->structure = at, c->refused = failed;
         }
         LabProgress now = progress_now("measured " + std::string(name_of(structure)));

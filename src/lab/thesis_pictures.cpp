@@ -25,6 +25,14 @@ const ThesisRecipe& recipe_named(std::string_view name) {
     return *found;
 }
 
+/// Where the thesis has it: "figure-3.7a" is of "Figure 3.7", "section-2.1-flat" of "Section 2.1".
+std::string place_of(std::string_view name) {
+    const std::size_t dash = name.find('-'), end = name.find_first_not_of("0123456789.", dash + 1);
+    std::string place = fmt::format("{} {}", name.substr(0, dash), name.substr(dash + 1, end - dash - 1));
+    place.front() -= 'a' - 'A';
+    return place;
+}
+
 /// Of the sums of both, `b` taken away from `a`.
 Image difference(const Image& a, const Image& b) {
     Image left = a;
@@ -113,7 +121,7 @@ struct ThesisPictures::Job {
 ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progress) {
     const ThesisRecipe& recipe = recipe_named(name);
     ThesisPicture picture = {.name = recipe.name,
-                             .place = recipe.place,
+                             .place = place_of(recipe.name),
                              .title = recipe.title,
                              .shows = recipe.shows,
                              .integrator = recipe.integrator};
@@ -125,14 +133,15 @@ ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progre
     }
     Job job = {recipe, settings_, progress, make_thesis_scene(recipe.scene), {}, {}};
     RenderSettings& settings = job.settings;
-    if (recipe.is_panel) {
+    if (!recipe.is_whole) {
         settings.width = std::max(1u, settings.width / 2), settings.height = std::max(1u, settings.height / 2);
     }
     if (*recipe.integrator != 0) PERTEV_CHECK(set_integrator(settings, recipe.integrator));
     settings.path.max_depth = std::min(settings.path.max_depth, most_depth(settings.integrator));
     if (recipe.set != nullptr) recipe.set(settings);
     if (recipe.way == ThesisWay::Work) {
-        settings.tracers = same_for_all({.structure = recipe.structure, .walk = recipe.walk});
+        settings.tracers = same_for_all(
+            {.structure = recipe.structure, .walk = only_walk_of(recipe.structure).value_or(WalkKind::WhileWhile)});
     }
     Messages messages;
     job.prepared = prepare_scene(job.scene, prepare_options(settings, queue_.is_cuda()), messages);

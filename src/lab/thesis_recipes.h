@@ -39,16 +39,15 @@ ThesisDetail thesis_detail(uint32_t panel_height);
 inline constexpr uint32_t kThesisPhotons = 16384; // of a pass, for each map, where they are to be seen one by one
 
 struct ThesisRecipe {
-    const char *name, *place, *title, *shows; // ThesisPicture's
+    const char *name, *title, *shows; // ThesisPicture's
     ThesisWay way = ThesisWay::Render;
     ThesisScene scene = ThesisScene::Box;
     const char* integrator = "";
-    bool is_panel = false;                  // one of several: half the width and height
+    bool is_whole = false;                  // else one panel of several: half the width and height
     const char* settings = "";              // of the command, beside scene, integrator, patches and photons
     void (*set)(RenderSettings&) = nullptr; // does what `settings` say, and chooses photons; null: nothing
     RadiosityPanel panel = {};              // of Radiosity
     StructureKind structure = {};           // of Work
-    WalkKind walk = {};                     // likewise
     float stops = 2;                        // of exposure
 };
 

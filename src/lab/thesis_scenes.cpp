@@ -150,18 +150,8 @@ Camera camera_of(ThesisScene which, const Scene& scene, float aspect) {
 }
 
 const char* command_of(ThesisScene which) {
-    switch (which) {
-    case ThesisScene::Box:
-        return "cornell-box";
-    case ThesisScene::Caustic:
-        return "caustic `eye=0.5,1.6,2.6` `target=0,0.5,0` `fov=50`";
-    case ThesisScene::PointLight:
-    case ThesisScene::MirrorBall:
-    case ThesisScene::PlasticBall:
-    case ThesisScene::TwoBalls:
-        break;
-    }
-    return "";
+    if (which == ThesisScene::Box) return "cornell-box";
+    return which == ThesisScene::Caustic ? "caustic `eye=0.5,1.6,2.6` `target=0,0.5,0` `fov=50`" : "";
 }
 
 } // namespace pertev

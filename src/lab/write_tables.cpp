@@ -49,12 +49,12 @@ Cells combination_head() {
 Cells combination_cells(const CombinationFigures& c) {
     const WalkOptions& o = c.combination.options;
     return {c.name,
-            name_of(c.combination.structure),
-            name_of(c.combination.walk),
+            std::string(name_of(c.combination.structure)),
+            std::string(name_of(c.combination.walk)),
             name_of_rta(o),
             number(o.near_first),
-            name_of(o.tests),
-            name_of(c.combination.distribution),
+            std::string(name_of(o.tests)),
+            std::string(name_of(c.combination.distribution)),
             c.refused,
             number(c.wrong)};
 }

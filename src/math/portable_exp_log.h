@@ -11,6 +11,14 @@ namespace pertev {
 
 inline constexpr float kNaN = __builtin_nanf("");
 
+/// Horner's rule by fused multiply-adds, from the coefficient of the highest power of `x` down.
+template <class... Floats>
+HD inline float polynomial(float x, float highest, Floats... others) {
+    float p = highest;
+    ((p = fma(p, x, others)), ...);
+    return p;
+}
+
 namespace portable {
 
 // Adding and subtracting 1.5 * 2^23 rounds |x| < 2^22 to the nearest integer, ties to even.
@@ -27,12 +35,8 @@ HD inline float scale_by_power_of_2(float x, int n) {
 
 /// 2^f for |f| <= 0.5 (a little more does no harm); at most 0.9 ulp off.
 HD inline float exp2_of_fraction(float f) {
-    float p = 0x1.416b5p-13f;
-    p = fma(p, f, 0x1.5f082ep-10f);
-    p = fma(p, f, 0x1.3b2dep-7f);
-    p = fma(p, f, 0x1.c6af7cp-5f);
-    p = fma(p, f, 0x1.ebfbdcp-3f);
-    p = fma(p, f, 0x1.62e43p-1f);
+    const float p =
+        polynomial(f, 0x1.416b5p-13f, 0x1.5f082ep-10f, 0x1.3b2dep-7f, 0x1.c6af7cp-5f, 0x1.ebfbdcp-3f, 0x1.62e43p-1f);
     return fma(p, f, 1.0f);
 }
 
@@ -66,11 +70,7 @@ HD inline float exp(float x) {
     const float n = portable::round_to_integer(x * 0x1.715476p0f);
     const float a = fma(n, -0x1.62e43p-1f, x);                                        // exact
     const float r = fma(n, 0x1.05c61p-29f, a), r_low = fma(n, 0x1.05c61p-29f, a - r); // x - n ln 2
-    float p = 0x1.6a493ap-10f;
-    p = fma(p, r, 0x1.12399ep-7f);
-    p = fma(p, r, 0x1.5558b4p-5f);
-    p = fma(p, r, 0x1.555492p-3f);
-    p = fma(p, r, 0x1.fffffcp-2f);
+    const float p = polynomial(r, 0x1.6a493ap-10f, 0x1.12399ep-7f, 0x1.5558b4p-5f, 0x1.555492p-3f, 0x1.fffffcp-2f);
     return portable::scale_by_power_of_2((r + fma(r * r, p, r_low)) + 1.0f, static_cast<int>(n));
 }
 
@@ -88,16 +88,8 @@ HD inline float log(float x) {
     if (portable::log_is_special(x, special)) return special;
     const portable::BinaryScale scale = portable::split_mantissa(x);
     const float f = scale.mantissa - 1.0f, e = static_cast<float>(scale.exponent);
-    float p = 0x1.14730ap-4f;
-    p = fma(p, f, -0x1.de01cap-4f);
-    p = fma(p, f, 0x1.e6c01p-4f);
-    p = fma(p, f, -0x1.fc28ccp-4f);
-    p = fma(p, f, 0x1.233ba2p-3f);
-    p = fma(p, f, -0x1.555c44p-3f);
-    p = fma(p, f, 0x1.99a476p-3f);
-    p = fma(p, f, -0x1.000006p-2f);
-    p = fma(p, f, 0x1.555548p-2f);
-    p = fma(p, f, -0.5f);
+    const float p = polynomial(f, 0x1.14730ap-4f, -0x1.de01cap-4f, 0x1.e6c01p-4f, -0x1.fc28ccp-4f, 0x1.233ba2p-3f,
+                               -0x1.555c44p-3f, 0x1.99a476p-3f, -0x1.000006p-2f, 0x1.555548p-2f, -0.5f);
     const float low = fma(p, f * f, e * -0x1.05c61p-29f); // and the low part of e ln 2
     return fma(e, 0x1.62e43p-1f, f + low);
 }
@@ -108,16 +100,8 @@ HD inline float log2(float x) {
     if (portable::log_is_special(x, special)) return special;
     const portable::BinaryScale scale = portable::split_mantissa(x);
     const float f = scale.mantissa - 1.0f;
-    float p = 0x1.8af57p-4f;
-    p = fma(p, f, -0x1.574d52p-3f);
-    p = fma(p, f, 0x1.5f5b38p-3f);
-    p = fma(p, f, -0x1.6eeef4p-3f);
-    p = fma(p, f, 0x1.a42aa4p-3f);
-    p = fma(p, f, -0x1.ec71d4p-3f);
-    p = fma(p, f, 0x1.277e66p-2f);
-    p = fma(p, f, -0x1.7154acp-2f);
-    p = fma(p, f, 0x1.ec708cp-2f);
-    p = fma(p, f, -0x1.715476p-1f);
+    const float p = polynomial(f, 0x1.8af57p-4f, -0x1.574d52p-3f, 0x1.5f5b38p-3f, -0x1.6eeef4p-3f, 0x1.a42aa4p-3f,
+                               -0x1.ec71d4p-3f, 0x1.277e66p-2f, -0x1.7154acp-2f, 0x1.ec708cp-2f, -0x1.715476p-1f);
     const float low = f * fma(p, f, 0x1.4ae0cp-26f); // 1 / ln 2 in two floats
     return static_cast<float>(scale.exponent) + fma(f, 0x1.715476p0f, low);
 }

@@ -15,26 +15,15 @@ inline constexpr float kHalfPi = 0x1.921fb6p0f, kHalfPiLow = -0x1.777a5cp-25f;
 
 /// asin(x) - x for |x| <= 0.5, where square = x * x.
 HD inline float asin_tail(float x, float square) {
-    float p = 0x1.595c8cp-5f;
-    p = fma(p, square, 0x1.8c3e2ap-6f);
-    p = fma(p, square, 0x1.747bbap-5f);
-    p = fma(p, square, 0x1.330204p-4f);
-    p = fma(p, square, 0x1.5555c8p-3f);
+    const float p = polynomial(square, 0x1.595c8cp-5f, 0x1.8c3e2ap-6f, 0x1.747bbap-5f, 0x1.330204p-4f, 0x1.5555c8p-3f);
     return p * (x * square);
 }
 
 /// atan(x) - x for |x| <= 1.
 HD inline float atan_tail(float x) {
     const float square = x * x;
-    float p = -0x1.d35742p-10f;
-    p = fma(p, square, 0x1.6423dep-7f);
-    p = fma(p, square, -0x1.fd7d9cp-6f);
-    p = fma(p, square, 0x1.da29f4p-5f);
-    p = fma(p, square, -0x1.58091ap-4f);
-    p = fma(p, square, 0x1.c08c4ep-4f);
-    p = fma(p, square, -0x1.242086p-3f);
-    p = fma(p, square, 0x1.9991e4p-3f);
-    p = fma(p, square, -0x1.55553ep-2f);
+    const float p = polynomial(square, -0x1.d35742p-10f, 0x1.6423dep-7f, -0x1.fd7d9cp-6f, 0x1.da29f4p-5f,
+                               -0x1.58091ap-4f, 0x1.c08c4ep-4f, -0x1.242086p-3f, 0x1.9991e4p-3f, -0x1.55553ep-2f);
     return p * (x * square);
 }
 

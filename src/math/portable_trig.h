@@ -19,24 +19,11 @@ struct ReducedAngle {
     int quadrant;    // quarter turns taken off; only the last two bits count
 };
 
-HD inline uint32_t two_over_pi_word(uint32_t k) { // 32 zero bits, then the fraction of 2/pi
-    switch (k) {
-    case 1:
-        return 0xa2f9836eu;
-    case 2:
-        return 0x4e441529u;
-    case 3:
-        return 0xfc2757d1u;
-    case 4:
-        return 0xf534ddc0u;
-    case 5:
-        return 0xdb629599u;
-    case 6:
-        return 0x3c439041u;
-    case 7:
-        return 0xfe5163abu;
-    }
-    return 0;
+/// Word `k` of 32 zero bits and then the fraction of 2/pi; k in [0, 7].
+HD inline uint32_t two_over_pi_word(uint32_t k) {
+    static constexpr uint32_t words[] = {0,           0xa2f9836eu, 0x4e441529u, 0xfc2757d1u,
+                                         0xf534ddc0u, 0xdb629599u, 0x3c439041u, 0xfe5163abu};
+    return words[k];
 }
 
 /// For 2^16 <= |x| < infinity. Of |x| 2/pi = m 2^s 2/pi, with m an integer of 24 bits, only the bits of 2/pi whose
@@ -79,16 +66,12 @@ HD inline ReducedAngle reduce_angle(float x) {
 /// sin(r + low) and cos(r + low), |r| <= 0.79.
 HD inline float sin_near_0(float r, float low) {
     const float s = r * r;
-    float p = -0x1.991c22p-13f;
-    p = fma(p, s, 0x1.1106c6p-7f);
-    p = fma(p, s, -0x1.555544p-3f);
+    const float p = polynomial(s, -0x1.991c22p-13f, 0x1.1106c6p-7f, -0x1.555544p-3f);
     return r + fma(r * s, p, low);
 }
 HD inline float cos_near_0(float r, float low) {
     const float s = r * r;
-    float p = 0x1.99e528p-16f;
-    p = fma(p, s, -0x1.6c0c22p-10f);
-    p = fma(p, s, 0x1.55554ap-5f);
+    const float p = polynomial(s, 0x1.99e528p-16f, -0x1.6c0c22p-10f, 0x1.55554ap-5f);
     const float half = 0.5f * s, most = 1.0f - half;
     return most + (((1.0f - most) - half) + fma(s * s, p, -r * low));
 }
@@ -133,13 +116,8 @@ HD inline float tan(float x) {
     if (x == 0) return x;
     const portable::ReducedAngle angle = portable::reduce_angle(x);
     const float r = angle.high, s = r * r, cube = r * s;
-    float p = 0x1.24a82ap-8f;
-    p = fma(p, s, -0x1.74ac5ap-14f);
-    p = fma(p, s, 0x1.679abap-7f);
-    p = fma(p, s, 0x1.5bd3e2p-6f);
-    p = fma(p, s, 0x1.baf0c6p-5f);
-    p = fma(p, s, 0x1.110d1ap-3f);
-    p = fma(p, s, 0x1.555562p-2f);
+    const float p = polynomial(s, 0x1.24a82ap-8f, -0x1.74ac5ap-14f, 0x1.679abap-7f, 0x1.5bd3e2p-6f, 0x1.baf0c6p-5f,
+                               0x1.110d1ap-3f, 0x1.555562p-2f);
     const float rough = fma(cube, p, r);
     const float t = r + fma(cube, p, angle.low * fma(rough, rough, 1.0f)); // tan' = 1 + tan^2
     return (angle.quadrant & 1) != 0 ? -1.0f / t : t;
@@ -149,17 +127,10 @@ HD inline float tan(float x) {
 HD inline void sin_cos_2pi(float u, float& s, float& c) {
     const float q = portable::round_to_integer(4.0f * u);
     const float f = fma(q, -0.25f, u), square = f * f; // |f| <= 1/8
-    float p = 0x1.443a72p5f;
-    p = fma(p, square, -0x1.32adaap6f);
-    p = fma(p, square, 0x1.466b78p6f);
-    p = fma(p, square, -0x1.4abbcep5f);
-    p = fma(p, square, -0x1.777a5cp-23f); // 2 pi in two floats
+    // The last coefficient of sin is the low part of 2 pi.
+    const float p = polynomial(square, 0x1.443a72p5f, -0x1.32adaap6f, 0x1.466b78p6f, -0x1.4abbcep5f, -0x1.777a5cp-23f);
     const float a = fma(f, 0x1.921fb6p2f, f * p);
-    float r = 0x1.846342p6f;
-    r = fma(r, square, 0x1.bb9a7ap5f);
-    r = fma(r, square, -0x1.5591aep6f);
-    r = fma(r, square, 0x1.03c196p6f);
-    r = fma(r, square, -0x1.3bd3ccp4f);
+    const float r = polynomial(square, 0x1.846342p6f, 0x1.bb9a7ap5f, -0x1.5591aep6f, 0x1.03c196p6f, -0x1.3bd3ccp4f);
     const float b = fma(r, square, 1.0f);
     const int quadrant = static_cast<int>(q);
     const bool swap = (quadrant & 1) != 0;

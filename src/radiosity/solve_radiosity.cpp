@@ -1,7 +1,6 @@
 #include "radiosity/solve_radiosity.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

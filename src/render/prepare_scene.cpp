@@ -33,7 +33,7 @@ std::vector<BvhBuilder> builders_for(const PrepareOptions& options) {
     const TracerChoice choice = options.tracers.value_or(default_tracers(false));
     std::vector<BvhBuilder> builders = {options.builder.value_or(builder_of(choice))};
     bool is_better = false; // than the one asked for
-    for (const TreeBuild build : kTreeBuilds) {
+    for (const TreeBuild build : kValuesOf<TreeBuild>) {
         const BvhBuilder builder = *builder_of(structure_of(build));
         if (is_better && options.may_be_better) builders.push_back(builder);
         is_better = is_better || builder == builders.front();
@@ -74,7 +74,7 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     prepared.trees.build_s = watch.seconds();
     prepared.structures = std::make_shared<SceneStructures>(builders.front(), prepared.trees, prepared.top_level);
     if (options.tracers) {
-        for (const RayKind kind : kRayKinds) prepared.structures->get((*options.tracers)[kind]);
+        for (const RayKind kind : kValuesOf<RayKind>) prepared.structures->get((*options.tracers)[kind]);
     }
     prepared.build_seconds = watch.seconds();
 

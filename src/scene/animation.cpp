@@ -19,21 +19,7 @@ std::vector<bool> moving_nodes(const Scene& scene) {
     bool any = false;
     for (const Animation& animation : scene.animations) {
         for (const AnimationChannel& channel : animation.channels) {
-            switch (channel.part) {
-            case AnimatedPart::Translation:
-            case AnimatedPart::Rotation:
-            case AnimatedPart::Scale:
-                moves[channel.target] = any = true;
-                break;
-            case AnimatedPart::Weights:
-            case AnimatedPart::CameraFov:
-            case AnimatedPart::CameraHeight:
-            case AnimatedPart::LightIntensity:
-            case AnimatedPart::LightRange:
-            case AnimatedPart::LightInnerCone:
-            case AnimatedPart::LightOuterCone:
-                break;
-            }
+            if (places_node(channel.part)) moves[channel.target] = any = true;
         }
     }
     if (!any) return moves;

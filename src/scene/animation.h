@@ -11,7 +11,7 @@ namespace pertev {
 
 struct Scene;
 
-enum class AnimatedPart : uint8_t {
+enum class AnimatedPart : uint8_t { // those of nodes, then of cameras, then of lights
     Translation,
     Rotation,
     Scale,
@@ -23,6 +23,15 @@ enum class AnimatedPart : uint8_t {
     LightInnerCone, // angles from a spot light's axis
     LightOuterCone
 };
+constexpr bool is_of_node(AnimatedPart part) { return part <= AnimatedPart::Weights; }
+constexpr bool is_of_camera(AnimatedPart part) { return !is_of_node(part) && part <= AnimatedPart::CameraHeight; }
+constexpr bool places_node(AnimatedPart part) { return part <= AnimatedPart::Scale; }
+/// Returns how many numbers a value has; 0 for weights, of which there are as many as a mesh has morph targets.
+constexpr std::size_t numbers_of(AnimatedPart part) {
+    constexpr uint8_t kNumbers[] = {3, 4, 3, 0, 1, 1, 3, 1, 1, 1}; // in the order of the parts
+    return kNumbers[static_cast<std::size_t>(part)];
+}
+
 enum class Interpolation : uint8_t { Step, Linear, CubicSpline };
 
 struct AnimationChannel {

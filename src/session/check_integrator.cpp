@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/limits.h"
 #include "render/raster/pinhole.h"
 #include "settings/value_names.h"
 

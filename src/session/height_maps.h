@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "base/messages.h"
-#include "integrators/kinds/make_integrator.h"
 #include "scene/scene.h"
 
 namespace pertev {

@@ -40,7 +40,7 @@ private:
     /// Makes the trees that stay on the device for meshes whose vertices move. The top level over them is added up.
     void take_deforming_trees(const PreparedScene& scene, const TracerChoice& tracers) {
         std::set<TreeLayout> layouts;
-        for (const RayKind kind : kRayKinds) layouts.insert(layout_of(tracers[kind]));
+        for (const RayKind kind : kValuesOf<RayKind>) layouts.insert(layout_of(tracers[kind]));
         const auto may_deform = [&](TreeLayout layout) { return can_deform(layout, queue_.is_cuda()); };
         if (scene.poses.empty() || !std::ranges::all_of(layouts, may_deform)) return;
         for (const TreeLayout layout : layouts) {

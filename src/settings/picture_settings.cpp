@@ -18,12 +18,6 @@ SettingField integrator_field(PictureOptions& options) {
         integrator_names};
 }
 
-std::vector<std::string> build_names() {
-    std::vector<std::string> names;
-    for (const TreeBuild build : kTreeBuilds) names.emplace_back(name_of(build));
-    return names;
-}
-
 } // namespace
 
 std::vector<Setting> picture_settings() {
@@ -99,7 +93,7 @@ std::vector<Setting> picture_settings() {
         row("build", "Tracing", "WHICH", FIELD(tracer.build),
             "How much time the tree that rays go through is worth: fast is built soonest, best is traversed soonest. "
             "No setting of this group changes the picture.",
-            Otherwise{"balanced"}, Choices{build_names()}, On{kTracing}, Mark::NotKept),
+            Otherwise{"balanced"}, Choices{names_of<TreeBuild>()}, On{kTracing}, Mark::NotKept),
         row("structure", "Tracing", "[KIND=]NAME", FIELD(tracer.structures),
             "The scene is sorted for rays so, as pertev lab names it, whatever build says. It may be given for one "
             "kind of ray: camera=, bounce= or shadow=NAME.",

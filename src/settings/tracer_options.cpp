@@ -1,9 +1,9 @@
 #include "settings/tracer_options.h"
 
 #include <set>
-#include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
 
@@ -18,7 +18,7 @@ void apply(const std::string& setting, const std::vector<std::string>& values, T
         const std::size_t equals = value.find('=');
         const std::string name = equals == std::string::npos ? value : value.substr(equals + 1);
         bool any = false, good = true;
-        for (const RayKind kind : kRayKinds) {
+        for (const RayKind kind : kValuesOf<RayKind>) {
             if (equals != std::string::npos && value.substr(0, equals) != name_of(kind)) continue;
             any = true;
             good = good && set(choice[kind], name);
@@ -32,10 +32,8 @@ void apply(const std::string& setting, const std::vector<std::string>& values, T
 }
 
 template <class Kind>
-std::string list_of(std::span<const Kind> kinds) {
-    std::string list;
-    for (const Kind kind : kinds) list += fmt::format("{}{}", list.empty() ? "one of " : ", ", name_of(kind));
-    return list;
+std::string list_of() {
+    return fmt::format("one of {}", fmt::join(names_of<Kind>(), ", "));
 }
 
 /// A structure that only one walk goes over brings that walk with it, without the switches of the default's own, and
@@ -59,21 +57,22 @@ bool set_on_off(bool& value, const std::string& name) {
 
 std::optional<TracerChoice> tracer_choice(const TracerOptions& options, bool on_cuda) {
     if (options.are_empty() && options.default_build == kDefaultBuild) return std::nullopt;
-    TracerChoice choice = default_tracers(on_cuda, tree_build_named(options.build).value_or(options.default_build));
+    TracerChoice choice =
+        default_tracers(on_cuda, value_named<TreeBuild>(options.build).value_or(options.default_build));
     std::set<const Combination*> structure_named, walk_named;
-    apply("structure", options.structures, choice, list_of(all_structures()),
+    apply("structure", options.structures, choice, list_of<StructureKind>(),
           [&](Combination& c, const std::string& name) {
-              const auto kind = pertev::structure_named(name);
+              const auto kind = value_named<StructureKind>(name);
               if (kind) c.structure = *kind, structure_named.insert(&c);
               return kind.has_value();
           });
-    apply("walk", options.walks, choice, list_of(all_walks()), [&](Combination& c, const std::string& name) {
-        const auto kind = pertev::walk_named(name);
+    apply("walk", options.walks, choice, list_of<WalkKind>(), [&](Combination& c, const std::string& name) {
+        const auto kind = value_named<WalkKind>(name);
         // Switches and a distribution that the default has for its own walk are none of this one's.
         if (kind) c = {.structure = c.structure, .walk = *kind}, walk_named.insert(&c);
         return kind.has_value();
     });
-    for (const RayKind kind : kRayKinds) {
+    for (const RayKind kind : kValuesOf<RayKind>) {
         Combination& c = choice[kind];
         complete(c, structure_named.contains(&c), walk_named.contains(&c));
     }
@@ -86,7 +85,7 @@ std::optional<TracerChoice> tracer_choice(const TracerOptions& options, bool on_
           [](Combination& c, const std::string& name) { return set_on_off(c.options.near_first, name); });
     apply("distribution", options.distributions, choice, "one-a-thread, persistent or dynamic-fetch",
           [](Combination& c, const std::string& name) {
-              const auto distribution = distribution_named(name);
+              const auto distribution = value_named<Distribution>(name);
               if (distribution) c.distribution = *distribution;
               return distribution.has_value();
           });

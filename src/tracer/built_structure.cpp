@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-
 #include "accel/bvh/parent_links.h"
 #include "accel/kd_tree/build_kd_tree.h"
 #include "accel/octree/build_octree.h"
@@ -15,31 +13,15 @@
 namespace pertev {
 namespace {
 
-const char* suffix_of(TreeLayout layout) {
-    switch (layout) {
-    case TreeLayout::Woop:
-        return " woop";
-    case TreeLayout::Skip:
-        return " skip links";
-    case TreeLayout::Wide4:
-        return " wide4";
-    case TreeLayout::Wide8:
-        return " wide8";
-    case TreeLayout::Wide8Simd:
-        return " wide8 simd";
-    case TreeLayout::Compressed:
-        return " compressed";
-    case TreeLayout::Triangles:
-        return " triangles";
-    case TreeLayout::Linked:
-        return " parent links";
-    case TreeLayout::Binary:
-    case TreeLayout::Kd:
-    case TreeLayout::Octree:
-        break;
-    }
-    return "";
-}
+/// What a structure's name has behind it for a layout that is not the one that its builder makes.
+constexpr ValueName<TreeLayout> kSuffixes[] = {{TreeLayout::Woop, " woop"},
+                                               {TreeLayout::Skip, " skip links"},
+                                               {TreeLayout::Wide4, " wide4"},
+                                               {TreeLayout::Wide8, " wide8"},
+                                               {TreeLayout::Wide8Simd, " wide8 simd"},
+                                               {TreeLayout::Compressed, " compressed"},
+                                               {TreeLayout::Triangles, " triangles"},
+                                               {TreeLayout::Linked, " parent links"}};
 
 } // namespace
 
@@ -159,7 +141,10 @@ void BuiltStructure::build(const TopLevelBvh& top_level, std::size_t count, cons
 
 BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, TreeLayout layout,
                                const BinaryTrees& trees, const Before* before) {
-    figures_.name = std::string(name_of(kind)) + suffix_of(layout);
+    figures_.name = name_of(kind);
+    for (const auto& [value, suffix] : kSuffixes) {
+        if (value == layout) figures_.name += suffix;
+    }
     figures_.build_s = trees.build_s;
     const std::vector<std::shared_ptr<const Bvh>>& parts = trees.parts;
     const auto convert = [&](const auto& make) {
@@ -220,7 +205,7 @@ BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind,
 
 BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, const SceneTriangles& triangles,
                                const Before* before) {
-    figures_.name = name_of(kind);
+    figures_.name = std::string(name_of(kind));
     if (kind == StructureKind::Octree) {
         build(top_level, triangles.parts(), before,
               [&](std::size_t part) { return build_octree(triangles.part(part)); });

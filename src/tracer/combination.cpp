@@ -1,37 +1,11 @@
 #include "tracer/combination.h"
 
-#include <algorithm>
-#include <array>
 #include <utility>
 
 #include <fmt/format.h>
 
 namespace pertev {
 namespace {
-
-constexpr std::array kStructures = {StructureKind::Binned,        StructureKind::Sweep,
-                                    StructureKind::Median,        StructureKind::EqualCounts,
-                                    StructureKind::SpatialSplits, StructureKind::Ploc,
-                                    StructureKind::Hploc,         StructureKind::Insertion,
-                                    StructureKind::Reinsertion,   StructureKind::SpatialReinsertion,
-                                    StructureKind::KdMedian,      StructureKind::KdSah,
-                                    StructureKind::Octree};
-constexpr std::array kWalks = {
-    WalkKind::IfIf,       WalkKind::WhileWhile,   WalkKind::Speculative, WalkKind::Octants,
-    WalkKind::BruteForce, WalkKind::RestartTrail, WalkKind::ShortStack,  WalkKind::ParentLinks,
-    WalkKind::SkipLinks,  WalkKind::Packet,       WalkKind::Wide4,       WalkKind::Wide8,
-    WalkKind::Wide8Simd,  WalkKind::Compressed,   WalkKind::Kd,          WalkKind::Octree};
-
-constexpr std::array kDistributions = {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch};
-
-constexpr std::array kTests = {TestKind::Exact, TestKind::Fast, TestKind::Woop};
-
-/// Of `all`; nothing when no kind is named so.
-template <class Kinds>
-auto kind_named(const Kinds& all, const std::string& name) {
-    const auto at = std::ranges::find_if(all, [&](auto kind) { return name == name_of(kind); });
-    return at == all.end() ? std::nullopt : std::optional(*at);
-}
 
 bool is_kd(StructureKind kind) { return kind == StructureKind::KdMedian || kind == StructureKind::KdSah; }
 
@@ -40,106 +14,7 @@ bool has_order(WalkKind walk) { return walk != WalkKind::BruteForce && walk != W
 
 } // namespace
 
-std::span<const StructureKind> all_structures() { return kStructures; }
-std::span<const WalkKind> all_walks() { return kWalks; }
-std::span<const TestKind> all_tests() { return kTests; }
-
-std::optional<BvhBuilder> builder_of(StructureKind kind) {
-    switch (kind) {
-    case StructureKind::Binned:
-        return BvhBuilder::Binned;
-    case StructureKind::Sweep:
-        return BvhBuilder::Sweep;
-    case StructureKind::Median:
-        return BvhBuilder::Median;
-    case StructureKind::EqualCounts:
-        return BvhBuilder::EqualCounts;
-    case StructureKind::SpatialSplits:
-        return BvhBuilder::SpatialSplits;
-    case StructureKind::Ploc:
-        return BvhBuilder::Ploc;
-    case StructureKind::Hploc:
-        return BvhBuilder::Hploc;
-    case StructureKind::Insertion:
-        return BvhBuilder::Insertion;
-    case StructureKind::Reinsertion:
-        return BvhBuilder::Reinsertion;
-    case StructureKind::SpatialReinsertion:
-        return BvhBuilder::SpatialReinsertion;
-    case StructureKind::KdMedian:
-    case StructureKind::KdSah:
-    case StructureKind::Octree:
-        break;
-    }
-    return std::nullopt;
-}
-
-const char* name_of(StructureKind kind) {
-    if (const auto builder = builder_of(kind)) return bvh_builder_name(*builder);
-    return kind == StructureKind::KdMedian ? "kd-median" : kind == StructureKind::KdSah ? "kd-sah" : "octree";
-}
-
-const char* name_of(WalkKind kind) {
-    switch (kind) {
-    case WalkKind::IfIf:
-        return "if-if";
-    case WalkKind::WhileWhile:
-        return "while-while";
-    case WalkKind::Speculative:
-        return "speculative";
-    case WalkKind::Octants:
-        return "octants";
-    case WalkKind::BruteForce:
-        return "brute-force";
-    case WalkKind::RestartTrail:
-        return "restart-trail";
-    case WalkKind::ShortStack:
-        return "short-stack";
-    case WalkKind::ParentLinks:
-        return "parent-links";
-    case WalkKind::SkipLinks:
-        return "skip-links";
-    case WalkKind::Packet:
-        return "packet";
-    case WalkKind::Wide4:
-        return "wide4";
-    case WalkKind::Wide8:
-        return "wide8";
-    case WalkKind::Wide8Simd:
-        return "wide8-simd";
-    case WalkKind::Compressed:
-        return "compressed";
-    case WalkKind::Kd:
-        return "kd";
-    case WalkKind::Octree:
-        return "octree";
-    }
-    return "";
-}
-
-const char* name_of(Distribution distribution) {
-    switch (distribution) {
-    case Distribution::OneAThread:
-        return "one-a-thread";
-    case Distribution::Persistent:
-        return "persistent";
-    case Distribution::DynamicFetch:
-        return "dynamic-fetch";
-    }
-    return "";
-}
-
-const char* name_of(TestKind kind) {
-    switch (kind) {
-    case TestKind::Exact:
-        return "exact";
-    case TestKind::Fast:
-        return "fast";
-    case TestKind::Woop:
-        return "woop";
-    }
-    return "";
-}
+std::optional<BvhBuilder> builder_of(StructureKind kind) { return value_named<BvhBuilder>(name_of(kind)); }
 
 const char* name_of_rta(const WalkOptions& options) {
     return !options.rta ? "off" : options.rta_at_pops ? "on" : "nodes";
@@ -163,10 +38,6 @@ std::string name_of(const Combination& c) {
     if (c.distribution != Distribution::OneAThread) name += fmt::format(" {}", name_of(c.distribution));
     return name;
 }
-
-std::optional<StructureKind> structure_named(const std::string& name) { return kind_named(kStructures, name); }
-std::optional<WalkKind> walk_named(const std::string& name) { return kind_named(kWalks, name); }
-std::optional<Distribution> distribution_named(const std::string& name) { return kind_named(kDistributions, name); }
 
 std::optional<WalkKind> only_walk_of(StructureKind structure) {
     if (is_kd(structure)) return WalkKind::Kd;

@@ -6,10 +6,10 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "accel/builders/builders.h"
+#include "base/value_names.h"
 #include "trace/traversal/walk_options.h"
 
 namespace pertev {
@@ -56,6 +56,47 @@ enum class Distribution {
     DynamicFetch, // the same, and lanes that are done get new rays while the others go on
 };
 
+// Names are those of the command line. Structures that are binary hierarchies are called as their builders.
+inline constexpr ValueName<StructureKind> kStructureNames[] = {
+    {StructureKind::Binned, name_of(BvhBuilder::Binned)},
+    {StructureKind::Sweep, name_of(BvhBuilder::Sweep)},
+    {StructureKind::Median, name_of(BvhBuilder::Median)},
+    {StructureKind::EqualCounts, name_of(BvhBuilder::EqualCounts)},
+    {StructureKind::SpatialSplits, name_of(BvhBuilder::SpatialSplits)},
+    {StructureKind::Ploc, name_of(BvhBuilder::Ploc)},
+    {StructureKind::Hploc, name_of(BvhBuilder::Hploc)},
+    {StructureKind::Insertion, name_of(BvhBuilder::Insertion)},
+    {StructureKind::Reinsertion, name_of(BvhBuilder::Reinsertion)},
+    {StructureKind::SpatialReinsertion, name_of(BvhBuilder::SpatialReinsertion)},
+    {StructureKind::KdMedian, "kd-median"},
+    {StructureKind::KdSah, "kd-sah"},
+    {StructureKind::Octree, "octree"}};
+inline constexpr ValueName<WalkKind> kWalkNames[] = {{WalkKind::IfIf, "if-if"},
+                                                     {WalkKind::WhileWhile, "while-while"},
+                                                     {WalkKind::Speculative, "speculative"},
+                                                     {WalkKind::Octants, "octants"},
+                                                     {WalkKind::BruteForce, "brute-force"},
+                                                     {WalkKind::RestartTrail, "restart-trail"},
+                                                     {WalkKind::ShortStack, "short-stack"},
+                                                     {WalkKind::ParentLinks, "parent-links"},
+                                                     {WalkKind::SkipLinks, "skip-links"},
+                                                     {WalkKind::Packet, "packet"},
+                                                     {WalkKind::Wide4, "wide4"},
+                                                     {WalkKind::Wide8, "wide8"},
+                                                     {WalkKind::Wide8Simd, "wide8-simd"},
+                                                     {WalkKind::Compressed, "compressed"},
+                                                     {WalkKind::Kd, "kd"},
+                                                     {WalkKind::Octree, "octree"}};
+inline constexpr ValueName<Distribution> kDistributionNames[] = {{Distribution::OneAThread, "one-a-thread"},
+                                                                 {Distribution::Persistent, "persistent"},
+                                                                 {Distribution::DynamicFetch, "dynamic-fetch"}};
+inline constexpr ValueName<TestKind> kTestNames[] = {
+    {TestKind::Exact, "exact"}, {TestKind::Fast, "fast"}, {TestKind::Woop, "woop"}};
+constexpr const auto& names_of_all(StructureKind) { return kStructureNames; }
+constexpr const auto& names_of_all(WalkKind) { return kWalkNames; }
+constexpr const auto& names_of_all(Distribution) { return kDistributionNames; }
+constexpr const auto& names_of_all(TestKind) { return kTestNames; }
+
 struct Combination {
     StructureKind structure = StructureKind::Binned;
     WalkKind walk = WalkKind::WhileWhile;
@@ -64,29 +105,15 @@ struct Combination {
     bool operator==(const Combination&) const = default;
 };
 
-/// All there are, in the order above.
-std::span<const StructureKind> all_structures();
-std::span<const WalkKind> all_walks();
-std::span<const TestKind> all_tests();
-
 /// None for kd-trees and the octree: the others are binary hierarchies.
 std::optional<BvhBuilder> builder_of(StructureKind kind);
 
-const char* name_of(StructureKind kind);
-const char* name_of(WalkKind kind);
-const char* name_of(Distribution distribution);
-const char* name_of(TestKind kind);
 /// "on", "nodes" (at nodes alone) or "off".
 const char* name_of_rta(const WalkOptions& options);
 /// `options` with RTA as that names it; nothing where nothing is named so.
 std::optional<WalkOptions> rta_named(const std::string& name, WalkOptions options);
 /// "sbvh while-while rta near persistent"
 std::string name_of(const Combination& combination);
-
-/// Nothing when no kind is named so.
-std::optional<StructureKind> structure_named(const std::string& name);
-std::optional<WalkKind> walk_named(const std::string& name);
-std::optional<Distribution> distribution_named(const std::string& name);
 
 /// The walk that goes over structures of this kind; nothing where there are several.
 std::optional<WalkKind> only_walk_of(StructureKind structure);

@@ -123,7 +123,7 @@ std::shared_ptr<const BuiltStructure> SceneStructures::get(const Combination& co
 
 std::size_t SceneStructures::device_bytes(const TracerChoice& choice) {
     std::set<std::shared_ptr<const BuiltStructure>> structures;
-    for (const RayKind kind : kRayKinds) structures.insert(get(choice[kind]));
+    for (const RayKind kind : kValuesOf<RayKind>) structures.insert(get(choice[kind]));
     std::size_t bytes = 0;
     for (const auto& structure : structures) bytes += structure->device_bytes();
     return bytes;

@@ -28,7 +28,7 @@ SceneTracer::SceneTracer(Queue& queue, SceneStructures& structures, const Tracer
       baked_bounds_(structures.baked_bounds()) {
     check_choice(choice, queue.is_cuda());
     std::map<std::shared_ptr<const BuiltStructure>, std::shared_ptr<StructureOnDevice>> placed;
-    for (const RayKind kind : kRayKinds) {
+    for (const RayKind kind : kValuesOf<RayKind>) {
         const auto built = structure_for(choice[kind], structures);
         auto& structure = placed[built];
         if (structure == nullptr) structure = std::make_shared<StructureOnDevice>(queue, built);
@@ -43,14 +43,15 @@ SceneTracer::SceneTracer(Queue& queue, SceneStructures& structures, const Tracer
 void SceneTracer::set_structures(SceneStructures& structures) {
     bounds_ = structures.bounds();
     baked_bounds_ = structures.baked_bounds();
-    for (const RayKind kind : kRayKinds) {
+    for (const RayKind kind : kValuesOf<RayKind>) {
         structures_[static_cast<std::size_t>(kind)]->update(structure_for(choice_[kind], structures));
     }
 }
 
 bool SceneTracer::can_deform() const {
-    return std::ranges::all_of(
-        kRayKinds, [&](RayKind kind) { return pertev::can_deform(layout_of(choice_[kind]), queue_.is_cuda()); });
+    return std::ranges::all_of(kValuesOf<RayKind>, [&](RayKind kind) {
+        return pertev::can_deform(layout_of(choice_[kind]), queue_.is_cuda());
+    });
 }
 
 void SceneTracer::deform(std::span<const DeformedMesh> meshes, std::span<const PlacedBvh> placed) {

@@ -7,50 +7,7 @@
 
 namespace pertev {
 
-const char* name_of(RayKind kind) {
-    switch (kind) {
-    case RayKind::Camera:
-        return "camera";
-    case RayKind::Bounce:
-        return "bounce";
-    case RayKind::Shadow:
-        break;
-    }
-    return "shadow";
-}
-
-Combination& TracerChoice::operator[](RayKind kind) {
-    switch (kind) {
-    case RayKind::Camera:
-        return camera;
-    case RayKind::Bounce:
-        return bounce;
-    case RayKind::Shadow:
-        break;
-    }
-    return shadow;
-}
-
 TracerChoice same_for_all(const Combination& combination) { return {combination, combination, combination}; }
-
-const char* name_of(TreeBuild build) {
-    switch (build) {
-    case TreeBuild::Fast:
-        return "fast";
-    case TreeBuild::Balanced:
-        return "balanced";
-    case TreeBuild::Best:
-        break;
-    }
-    return "best";
-}
-
-std::optional<TreeBuild> tree_build_named(const std::string& name) {
-    for (const TreeBuild build : kTreeBuilds) {
-        if (name == name_of(build)) return build;
-    }
-    return std::nullopt;
-}
 
 StructureKind structure_of(TreeBuild build) {
     switch (build) {
@@ -89,7 +46,7 @@ BvhBuilder builder_of(const TracerChoice& choice) {
 
 bool can_walk_on_host(const TracerChoice& choice, bool on_cuda) {
     if (on_cuda) return false;
-    for (const RayKind kind : kRayKinds) {
+    for (const RayKind kind : kValuesOf<RayKind>) {
         Combination c = choice[kind];
         if (kind == RayKind::Shadow) c.options.near_first = true; // either way it finds the same
         if (!(c == Combination{.structure = choice.camera.structure, .walk = WalkKind::Wide8Simd})) return false;
@@ -98,7 +55,7 @@ bool can_walk_on_host(const TracerChoice& choice, bool on_cuda) {
 }
 
 void check_choice(const TracerChoice& choice, bool on_cuda) {
-    for (const RayKind kind : kRayKinds) {
+    for (const RayKind kind : kValuesOf<RayKind>) {
         const Combination& c = choice[kind];
         if (const auto reason = why_no_tracer(c, on_cuda)) {
             throw Error(ErrorCode::BadInput, fmt::format("{}: {}", name_of(c), *reason));

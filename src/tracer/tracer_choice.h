@@ -9,14 +9,17 @@
 namespace pertev {
 
 enum class RayKind : uint8_t { Camera, Bounce, Shadow };
-inline constexpr RayKind kRayKinds[] = {RayKind::Camera, RayKind::Bounce, RayKind::Shadow};
-/// As on the command line: "camera".
-const char* name_of(RayKind kind);
+/// As on the command line.
+inline constexpr ValueName<RayKind> kRayKinds[] = {
+    {RayKind::Camera, "camera"}, {RayKind::Bounce, "bounce"}, {RayKind::Shadow, "shadow"}};
+constexpr const auto& names_of_all(RayKind) { return kRayKinds; }
 
 struct TracerChoice {
     Combination camera, bounce, shadow;
 
-    Combination& operator[](RayKind kind);
+    Combination& operator[](RayKind kind) {
+        return kind == RayKind::Camera ? camera : kind == RayKind::Bounce ? bounce : shadow;
+    }
     const Combination& operator[](RayKind kind) const { return const_cast<TracerChoice&>(*this)[kind]; }
     bool operator==(const TracerChoice&) const = default;
 };
@@ -29,12 +32,12 @@ enum class TreeBuild : uint8_t {
     Balanced, // what the first picture already pays for
     Best,     // what many pictures pay for
 };
-inline constexpr TreeBuild kTreeBuilds[] = {TreeBuild::Fast, TreeBuild::Balanced, TreeBuild::Best}; // each better
+/// As on the command line, each better than the one before.
+inline constexpr ValueName<TreeBuild> kTreeBuilds[] = {
+    {TreeBuild::Fast, "fast"}, {TreeBuild::Balanced, "balanced"}, {TreeBuild::Best, "best"}};
+constexpr const auto& names_of_all(TreeBuild) { return kTreeBuilds; }
 inline constexpr TreeBuild kDefaultBuild = TreeBuild::Balanced;
 
-/// As on the command line: "fast".
-const char* name_of(TreeBuild build);
-std::optional<TreeBuild> tree_build_named(const std::string& name);
 /// Which structure that is: the one place that says so.
 StructureKind structure_of(TreeBuild build);
 

@@ -116,7 +116,7 @@ TEST_CASE("vertices that are made on the device give the picture of those made o
     for (const double time_s : kTimes) expected.push_back(hash_by_host(rest, time_s, settings));
     CHECK(expected[0] != expected[1]);
     Queue queue = test::queue_asked_for();
-    for (const WalkKind walk : all_walks()) {
+    for (const WalkKind walk : kValuesOf<WalkKind>) {
         Combination c = {.structure = StructureKind::SpatialSplits, .walk = walk};
         if (walk == WalkKind::Kd) c.structure = StructureKind::KdSah;
         if (walk == WalkKind::Octree) c.structure = StructureKind::Octree;

@@ -70,8 +70,8 @@ Tally check_all(const Scene& scene) {
     Queue queue = test::queue_asked_for();
     Session session(queue, prepared, camera, settings);
     Tally tally;
-    for (const StructureKind structure : all_structures()) {
-        for (const WalkKind walk : all_walks()) {
+    for (const StructureKind structure : kValuesOf<StructureKind>) {
+        for (const WalkKind walk : kValuesOf<WalkKind>) {
             for (const WalkOptions& options : all_switches()) {
                 for (const Distribution distribution : kDistributions) {
                     const Combination c = {structure, walk, options, distribution};

@@ -42,8 +42,8 @@ std::vector<WalkOptions> exact_options() {
 /// Everything that is there on a device; brute force only where a scene is small.
 LabSettings all_combinations(bool is_cuda, bool brute_force) {
     LabSettings settings;
-    settings.structures.assign(all_structures().begin(), all_structures().end());
-    settings.walks.assign(all_walks().begin(), all_walks().end());
+    settings.structures.assign(kValuesOf<StructureKind>.begin(), kValuesOf<StructureKind>.end());
+    settings.walks.assign(kValuesOf<WalkKind>.begin(), kValuesOf<WalkKind>.end());
     if (!brute_force) std::erase(settings.walks, WalkKind::BruteForce);
     settings.options = exact_options();
     if (is_cuda) {
@@ -178,7 +178,7 @@ TEST_CASE("tests that leak miss a few rays, which are counted") {
     const Vec3 centre = {1.5e5f, 0, -1.5e5f}; // 150 km away: a float's last bits are centimetres there
     const Scene scene = scene_of({"soup", make_soup(1500, 1.5e5f), centre});
     LabSettings settings;
-    for (const TestKind tests : all_tests()) {
+    for (const TestKind tests : kValuesOf<TestKind>) {
         for (const WalkKind walk : {WalkKind::WhileWhile, WalkKind::Speculative}) {
             for (const Distribution distribution : all_combinations(queue.is_cuda(), false).distributions) {
                 settings.only.push_back({StructureKind::Binned, walk, {.tests = tests}, distribution});

@@ -147,8 +147,8 @@ TEST_CASE("every tracer finds the same in a scene that moves") {
     Queue queue = test::queue_asked_for();
     Session session(queue, moving.prepared(), rushing_camera(), settings);
     int pictures = 0, wrong = 0;
-    for (const StructureKind structure : all_structures()) {
-        for (const WalkKind walk : all_walks()) {
+    for (const StructureKind structure : kValuesOf<StructureKind>) {
+        for (const WalkKind walk : kValuesOf<WalkKind>) {
             for (const Distribution distribution :
                  {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
                 const Combination c = {structure, walk, {}, distribution};

@@ -74,8 +74,8 @@ TEST_CASE("an updated scene gives the picture of one prepared afresh, by every s
         fresh.push_back(test::render_hash(render_picture(cpu, prepare_afresh(changed, centre), camera, settings)));
     }
     int pictures = 0;
-    for (const StructureKind structure : all_structures()) {
-        for (const WalkKind walk : all_walks()) {
+    for (const StructureKind structure : kValuesOf<StructureKind>) {
+        for (const WalkKind walk : kValuesOf<WalkKind>) {
             const Combination c = {.structure = structure, .walk = walk};
             if (why_no_tracer(c, queue.is_cuda())) continue;
             // Every walk once by the default's tree, and every structure once.
@@ -111,7 +111,7 @@ TEST_CASE("an updated scene gives the picture of one prepared afresh, by every s
 TEST_CASE("a change rebuilds no tree but those of what changed") {
     Messages messages;
     Scene scene = test::make_mixed_scene();
-    for (const TreeBuild build : kTreeBuilds) {
+    for (const TreeBuild build : kValuesOf<TreeBuild>) {
         PrepareOptions options;
         options.tracers = default_tracers(false, build);
         const PreparedScene before = prepare_scene(scene, options, messages);

@@ -25,8 +25,6 @@ using namespace pertev::test;
 
 namespace {
 
-std::string name_of(BvhBuilder builder) { return bvh_builder_name(builder); }
-
 std::optional<std::string> fault_of(BvhBuilder builder, const Bvh& bvh, const std::vector<BvhTriangle>& mesh) {
     if (cuts_triangles(builder)) return find_split_fault(bvh, mesh);
     if (bvh.triangles.size() != mesh.size()) return "not as many triangles as the mesh";
@@ -39,7 +37,7 @@ std::optional<std::string> fault_of(BvhBuilder builder, const Bvh& bvh, const st
 TEST_CASE("every builder gives a sound tree on every nasty mesh") {
     for (const NastyMesh& mesh : nasty_meshes()) {
         CAPTURE(mesh.name);
-        for (const BvhBuilder builder : kBvhBuilders) {
+        for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
             CAPTURE(name_of(builder));
             for (const int max_leaf : {1, 4}) {
                 const Bvh bvh = build_bvh(builder, mesh.triangles, {.max_leaf = max_leaf});
@@ -56,7 +54,7 @@ TEST_CASE("no builder's tree depends on the number of threads") {
     std::vector<std::vector<BvhTriangle>> meshes;
     for (NastyMesh& mesh : nasty_meshes()) meshes.push_back(std::move(mesh.triangles));
     meshes.push_back(triangles_of(make_torus(110, 80))); // large enough for the builders to share the work
-    for (const BvhBuilder builder : kBvhBuilders) {
+    for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
         CAPTURE(name_of(builder));
         for (const std::vector<BvhTriangle>& triangles : meshes) {
             set_thread_count(1);
@@ -77,7 +75,7 @@ TEST_CASE("walks find in the tree of any builder what testing every triangle fin
         const std::vector<Ray> rays = nasty_rays(1000, mesh, 29);
         const std::vector<Hit> all = hits_by_brute_force(mesh.triangles, rays, AcceptAll{});
         const std::vector<Hit> some = hits_by_brute_force(mesh.triangles, rays, AcceptSome{});
-        for (const BvhBuilder builder : kBvhBuilders) {
+        for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
             CAPTURE(name_of(builder));
             const Bvh bvh = build_bvh(builder, mesh.triangles);
             check_walk(scene_of(view_of(bvh)), rays, all, AcceptAll{});
@@ -97,13 +95,13 @@ TEST_CASE("no builder's tree is deeper than walks go, however long the line") {
         const Vec3 p = {float_of((i / 2 + 30) << 23), 0, 0};
         doubling.push_back({p, i, p, 0, {p.x, p.x, p.x}, 0});
     }
-    for (const BvhBuilder builder : kBvhBuilders) {
+    for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
         CAPTURE(name_of(builder));
         for (const std::vector<BvhTriangle>* triangles : {&line, &doubling}) {
             const Stopwatch time;
             const Bvh bvh = build_bvh(builder, *triangles, {.max_leaf = 1});
             if (effort(0, 1))
-                MESSAGE(name_of(builder), ": ", triangles->size(), " triangles, depth ", bvh.depth, ", ",
+                MESSAGE(std::string(name_of(builder)), ": ", triangles->size(), " triangles, depth ", bvh.depth, ", ",
                         time.seconds(), " s");
             const auto fault = fault_of(builder, bvh, *triangles); // also holds the depth to kMaxBvhDepth
             CHECK_MESSAGE(!fault, fault.value_or(""));
@@ -145,7 +143,7 @@ TEST_CASE("coincident triangles, however many, neither stall a builder nor make 
         triangles.push_back(one[0]);
         triangles.back().primitive = i;
     }
-    for (const BvhBuilder builder : kBvhBuilders) {
+    for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
         CAPTURE(name_of(builder));
         const Bvh bvh = build_bvh(builder, triangles);
         const auto fault = fault_of(builder, bvh, triangles);
@@ -157,7 +155,7 @@ TEST_CASE("coincident triangles, however many, neither stall a builder nor make 
 TEST_CASE("the flags that are not a builder's are kept, and its own set anew") {
     std::vector<BvhTriangle> triangles = make_soup(500, 0);
     for (BvhTriangle& t : triangles) t.flags = (t.primitive << 1) | kLastInLeaf; // left over from another tree
-    for (const BvhBuilder builder : kBvhBuilders) {
+    for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
         CAPTURE(name_of(builder));
         const Bvh bvh = build_bvh(builder, triangles);
         CHECK(!fault_of(builder, bvh, triangles));
@@ -277,7 +275,7 @@ TEST_CASE("reinsertion makes any builder's tree better, and leaves it sound") {
         CAPTURE(mesh.name);
         const std::vector<Ray> rays = nasty_rays(500, mesh, 37);
         const std::vector<Hit> all = hits_by_brute_force(mesh.triangles, rays, AcceptAll{});
-        for (const BvhBuilder builder : kBvhBuilders) {
+        for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
             CAPTURE(name_of(builder));
             const Bvh before = build_bvh(builder, mesh.triangles);
             const Bvh after = optimise_bvh(before);
@@ -292,13 +290,13 @@ TEST_CASE("reinsertion makes any builder's tree better, and leaves it sound") {
 namespace {
 
 void check_costs(const std::vector<BvhTriangle>& triangles) {
-    float cost[std::size(kBvhBuilders)];
-    for (const BvhBuilder builder : kBvhBuilders) {
+    float cost[std::size(kValuesOf<BvhBuilder>)];
+    for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
         const Stopwatch time;
         const Bvh bvh = build_bvh(builder, triangles);
         const double seconds = time.seconds();
         if (effort(0, 1))
-            MESSAGE(name_of(builder), ": cost ", bvh.sah_cost, ", references a triangle ",
+            MESSAGE(std::string(name_of(builder)), ": cost ", bvh.sah_cost, ", references a triangle ",
                     static_cast<double>(bvh.triangles.size()) / static_cast<double>(triangles.size()), ", depth ",
                     bvh.depth, ", ", seconds, " s");
         const auto fault = fault_of(builder, bvh, triangles);

@@ -8,24 +8,24 @@
 using namespace pertev;
 
 TEST_CASE("every structure and walk of the laboratory has a name of its own, by which it is found") {
-    std::set<std::string> names;
-    for (const StructureKind kind : all_structures()) {
-        CHECK(structure_named(name_of(kind)) == kind);
+    std::set<std::string_view> names;
+    for (const StructureKind kind : kValuesOf<StructureKind>) {
+        CHECK(value_named<StructureKind>(name_of(kind)) == kind);
         CHECK(names.insert(name_of(kind)).second);
     }
     CHECK(names.size() == 13);
-    CHECK(!structure_named("no such structure"));
+    CHECK(!value_named<StructureKind>("no such structure"));
     names.clear();
-    for (const WalkKind kind : all_walks()) {
-        CHECK(walk_named(name_of(kind)) == kind);
+    for (const WalkKind kind : kValuesOf<WalkKind>) {
+        CHECK(value_named<WalkKind>(name_of(kind)) == kind);
         CHECK(names.insert(name_of(kind)).second);
     }
     CHECK(names.size() == 16);
-    CHECK(!walk_named(""));
+    CHECK(!value_named<WalkKind>(""));
     for (const Distribution d : {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
-        CHECK(distribution_named(name_of(d)) == d);
+        CHECK(value_named<Distribution>(name_of(d)) == d);
     }
-    CHECK(!distribution_named("persist"));
+    CHECK(!value_named<Distribution>("persist"));
 }
 
 TEST_CASE("RTA is switched by its names, and by nothing else") {
@@ -42,7 +42,7 @@ TEST_CASE("RTA is switched by its names, and by nothing else") {
 
 TEST_CASE("names of combinations differ wherever their switches do, those refused included") {
     std::set<std::string> names;
-    for (const WalkKind walk : all_walks()) {
+    for (const WalkKind walk : kValuesOf<WalkKind>) {
         for (const bool near_first : {true, false}) {
             CHECK(names.insert(name_of({StructureKind::Binned, walk, {.near_first = near_first}})).second);
         }
@@ -55,7 +55,7 @@ TEST_CASE("names of combinations differ wherever their switches do, those refuse
           "binned compressed rta-at-nodes near");
     for (const bool rta : {true, false}) {
         for (const bool near_first : {true, false}) {
-            for (const TestKind tests : all_tests()) {
+            for (const TestKind tests : kValuesOf<TestKind>) {
                 for (const Distribution d :
                      {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
                     CHECK(names.insert(name_of({StructureKind::Ploc, WalkKind::IfIf, {rta, near_first, tests}, d}))
@@ -67,15 +67,16 @@ TEST_CASE("names of combinations differ wherever their switches do, those refuse
 }
 
 TEST_CASE("each structure has a walk and each walk a structure; kd-trees and octrees have none but their own") {
-    for (const StructureKind structure : all_structures()) {
-        const auto walks = std::ranges::count_if(all_walks(), [&](WalkKind walk) { return !why_not(structure, walk); });
+    for (const StructureKind structure : kValuesOf<StructureKind>) {
+        const auto walks =
+            std::ranges::count_if(kValuesOf<WalkKind>, [&](WalkKind walk) { return !why_not(structure, walk); });
         CHECK(walks == (builder_of(structure) ? 14 : 1));
         const std::optional<WalkKind> only = only_walk_of(structure);
         CHECK(only.has_value() == (walks == 1));
         if (only) CHECK(!why_not(structure, *only));
     }
-    for (const WalkKind walk : all_walks()) {
-        CHECK(std::ranges::any_of(all_structures(), [&](StructureKind s) { return !why_not(s, walk); }));
+    for (const WalkKind walk : kValuesOf<WalkKind>) {
+        CHECK(std::ranges::any_of(kValuesOf<StructureKind>, [&](StructureKind s) { return !why_not(s, walk); }));
     }
 }
 

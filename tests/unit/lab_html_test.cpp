@@ -102,7 +102,7 @@ TEST_CASE("ratios are of pairs that differ in one switch; copies and refused twi
 TEST_CASE("bars are the thirty fastest, coloured by family, fast tests hollow") {
     LabReport report = small_report();
     report.combinations.clear();
-    for (const StructureKind structure : all_structures()) {
+    for (const StructureKind structure : kValuesOf<StructureKind>) {
         for (const WalkKind walk : {WalkKind::WhileWhile, WalkKind::SkipLinks, WalkKind::Wide4, WalkKind::Packet}) {
             const double seconds = 1 + static_cast<double>(report.combinations.size());
             report.combinations.push_back(figures({.structure = structure, .walk = walk}, {timed(0, seconds)}));

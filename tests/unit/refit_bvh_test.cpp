@@ -47,8 +47,8 @@ TEST_CASE("a refitted tree is sound and finds what testing every triangle finds,
         mesh.centre = {nasty.centre.y + 0.25f * nasty.centre.z, -nasty.centre.x, 0.5f * nasty.centre.z};
         const std::vector<Ray> rays = nasty_rays(500, mesh, 41);
         const std::vector<Hit> hits = hits_by_brute_force(after, rays, AcceptAll{});
-        for (const BvhBuilder builder : kBvhBuilders) {
-            CAPTURE(std::string(bvh_builder_name(builder)));
+        for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
+            CAPTURE(std::string(name_of(builder)));
             const Bvh refitted = refit_bvh(build_bvh(builder, before), after);
             const auto fault = cuts_triangles(builder) ? find_split_fault(refitted, after) : find_fault(refitted);
             CHECK_MESSAGE(!fault, fault.value_or(""));
@@ -80,7 +80,8 @@ TEST_CASE("a tree is not refitted to other triangles, and builders that cut them
     std::vector<BvhTriangle> fewer = triangles;
     fewer.pop_back();
     CHECK_THROWS_AS(refit_bvh(build_bvh(triangles), fewer), Error);
-    for (const BvhBuilder builder : kBvhBuilders) CHECK(why_no_refit(builder).has_value() == cuts_triangles(builder));
+    for (const BvhBuilder builder : kValuesOf<BvhBuilder>)
+        CHECK(why_no_refit(builder).has_value() == cuts_triangles(builder));
 }
 
 TEST_CASE("an update shares trees that stay, refits those that are deformed, and builds anew those refits spoil") {
@@ -100,8 +101,8 @@ TEST_CASE("an update shares trees that stay, refits those that are deformed, and
     after.meshes = {deformed(torus), soup(), triangles_of(make_torus(10, 10))};
     const std::vector<PartChange> changes = {PartChange::None, PartChange::Deformed, PartChange::Deformed,
                                              PartChange::Replaced};
-    for (const BvhBuilder builder : kBvhBuilders) {
-        CAPTURE(std::string(bvh_builder_name(builder)));
+    for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
+        CAPTURE(std::string(name_of(builder)));
         const BinaryTrees built = build_binary_trees(before, builder);
         const BinaryTrees updated = update_binary_trees(built, builder, changes, after);
         CHECK(updated.parts[0] == built.parts[0]);

@@ -14,16 +14,16 @@ TEST_CASE("each --build names a structure, which all default tracers of both dev
     CHECK(structure_of(TreeBuild::Fast) == StructureKind::Binned);
     CHECK(structure_of(TreeBuild::Balanced) == StructureKind::SpatialSplits);
     CHECK(structure_of(TreeBuild::Best) == StructureKind::SpatialReinsertion);
-    for (const TreeBuild build : kTreeBuilds) {
-        CHECK(tree_build_named(name_of(build)) == build);
+    for (const TreeBuild build : kValuesOf<TreeBuild>) {
+        CHECK(value_named<TreeBuild>(name_of(build)) == build);
         for (const bool on_cuda : {false, true}) {
             const TracerChoice choice = default_tracers(on_cuda, build);
-            for (const RayKind kind : kRayKinds) CHECK(choice[kind].structure == structure_of(build));
+            for (const RayKind kind : kValuesOf<RayKind>) CHECK(choice[kind].structure == structure_of(build));
             CHECK(builder_of(choice) == builder_of(structure_of(build)));
         }
     }
     CHECK(default_tracers(false) == default_tracers(false, kDefaultBuild));
-    CHECK(!tree_build_named("sbvh"));
+    CHECK(!value_named<TreeBuild>("sbvh"));
 }
 
 TEST_CASE("what is built fast can be refitted") { CHECK(!why_no_refit(*builder_of(structure_of(TreeBuild::Fast)))); }

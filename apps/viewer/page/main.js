@@ -5,7 +5,7 @@ import { makeGroup, remember, remembered } from "./groups.js";
 import { Controls, kKeys } from "./keys.js";
 import { Link } from "./link.js";
 import { People } from "./people.js";
-import { Settings, element, make, showRows } from "./panel.js";
+import { Settings, button, element, make, showRows } from "./panel.js";
 import { watchRate, watchShape, windowShape } from "./screen.js";
 import { Recorder, TimeLine } from "./time.js";
 
@@ -151,16 +151,6 @@ function showReadings() {
   document.body.dataset.phase = state.phase;
   document.body.dataset.hash = state.hash;
   document.body.dataset.flags = state.flags;
-}
-
-/** @param {string} text @param {() => void} onClick */
-function button(text, onClick) {
-  const made = /** @type {HTMLButtonElement} */ (make("button", text));
-  made.addEventListener("click", () => {
-    onClick();
-    made.blur();
-  });
-  return made;
 }
 
 /** @param {string[]} cameras */

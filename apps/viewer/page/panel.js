@@ -21,6 +21,18 @@ export function make(tag, text, name = "") {
   return made;
 }
 
+/** @param {string} text @param {() => void} onClick @param {string} [id] @param {string} [hint] */
+export function button(text, onClick, id = "", hint = "") {
+  const made = /** @type {HTMLButtonElement} */ (make("button", text));
+  made.id = id;
+  made.title = hint;
+  made.addEventListener("click", () => {
+    onClick();
+    made.blur(); // keys steer again
+  });
+  return made;
+}
+
 /** Rows of [group, label, value] under headings. Elements stay while the rows are the same, so that text can be marked.
  * @param {HTMLElement} place @param {[string, string, string][]} rows
  * @param {(name: string) => HTMLElement} [groupFor] makes what holds a group's rows; without it there are headings */

@@ -1,19 +1,9 @@
 // Who is there, who steers, and what the others wish: in the panel, and in a bar that is there without it.
 
-import { element, make } from "./panel.js";
+import { button, element, make } from "./panel.js";
 
 /** @typedef {import("./link.js").Link} Link */
 /** @typedef {{id: number, asks: boolean, wish: string}} Person */
-
-/** @param {string} text @param {() => void} onClick */
-function button(text, onClick) {
-  const made = /** @type {HTMLButtonElement} */ (make("button", text));
-  made.addEventListener("click", () => {
-    onClick();
-    made.blur(); // keys steer again
-  });
-  return made;
-}
 
 export class People {
   /** @param {Link} link */

@@ -2,7 +2,7 @@
 // what is asked for; time and keys are the viewer's, so that all pages see the same.
 
 import { makeGroup } from "./groups.js";
-import { Asked, element, make } from "./panel.js";
+import { Asked, button, element, make } from "./panel.js";
 
 /** @typedef {import("./link.js").Link} Link */
 /** @typedef {{at: number, end: number, on: boolean, loops: boolean, speed: number}} Clock */
@@ -18,19 +18,6 @@ function input(type, id) {
   return made;
 }
 
-/** @param {string} text @param {string} id @param {string} hint @param {() => void} onClick */
-function button(text, id, hint, onClick) {
-  const made = document.createElement("button");
-  made.textContent = text;
-  made.id = id;
-  made.title = hint;
-  made.addEventListener("click", () => {
-    onClick();
-    made.blur(); // keys steer again
-  });
-  return made;
-}
-
 export class TimeLine {
   /** @param {Link} link */
   constructor(link) {
@@ -39,7 +26,7 @@ export class TimeLine {
     this.clock = { at: 0, end: 0, on: false, loops: true, speed: 1 };
     this.toldAt = 0; // when the clock was so
     this.asked = new Asked();
-    this.button = button("", "play", "Space", () => this.toggle());
+    this.button = button("", () => this.toggle(), "play", "Space");
     this.slider = input("range", "time-at");
     this.slider.min = "0";
     this.slider.step = "any";
@@ -147,9 +134,9 @@ export class Recorder {
     this.time.step = "any";
     this.time.value = "0";
     this.time.setAttribute("aria-label", "Seconds of the next key");
-    this.add = button("Add this view", "key-add", "a key of this place, at so many seconds", () => this.addKey());
-    this.play = button("Play", "path-play", "the camera goes the path", () => link.sendInput({ type: "follow" }));
-    this.download = button("Download", "path-download", "as the file that --camera-path reads", () => this.save());
+    this.add = button("Add this view", () => this.addKey(), "key-add", "a key of this place, at so many seconds");
+    this.play = button("Play", () => link.sendInput({ type: "follow" }), "path-play", "the camera goes the path");
+    this.download = button("Download", () => this.save(), "path-download", "as the file that --camera-path reads");
     const row = make("div", "", "row"), buttons = make("div", "", "pair");
     row.append(this.time, this.add);
     buttons.append(this.play, this.download);
@@ -173,7 +160,7 @@ export class Recorder {
       const row = make("div", "", "row key"), place = key.eye.map((x) => Number(x.toPrecision(3))).join(", ");
       const seconds = make("b", `${Number(key.time.toPrecision(4))} s`), text = make("span", `from ${place}`);
       row.title = `eye ${key.eye.join(", ")}; target ${key.target.join(", ")}; up ${key.up.join(", ")}; ${key.fov}°`;
-      const remove = button("×", `key-remove-${i}`, "delete", () => this.link.sendInput({ type: "unkey", index: i }));
+      const remove = button("×", () => this.link.sendInput({ type: "unkey", index: i }), `key-remove-${i}`, "delete");
       remove.disabled = !this.may;
       row.append(seconds, text, remove);
       return row;

@@ -5,32 +5,6 @@
 
 namespace pertev {
 
-const char* bvh_builder_name(BvhBuilder builder) {
-    switch (builder) {
-    case BvhBuilder::Binned:
-        return "binned";
-    case BvhBuilder::Sweep:
-        return "sweep";
-    case BvhBuilder::Median:
-        return "median";
-    case BvhBuilder::EqualCounts:
-        return "equal-counts";
-    case BvhBuilder::SpatialSplits:
-        return "sbvh";
-    case BvhBuilder::Ploc:
-        return "ploc";
-    case BvhBuilder::Hploc:
-        return "hploc";
-    case BvhBuilder::Insertion:
-        return "insertion";
-    case BvhBuilder::Reinsertion:
-        return "reinsertion";
-    case BvhBuilder::SpatialReinsertion:
-        return "sbvh-reinsertion";
-    }
-    PERTEV_CHECK(false);
-}
-
 bool cuts_triangles(BvhBuilder builder) {
     return builder == BvhBuilder::SpatialSplits || builder == BvhBuilder::SpatialReinsertion;
 }

@@ -10,6 +10,7 @@
 
 #include "accel/bvh/build_tree.h"
 #include "accel/bvh/bvh.h"
+#include "base/value_names.h"
 
 namespace pertev {
 
@@ -25,14 +26,18 @@ enum class BvhBuilder {
     Reinsertion,        // Binned, then subtrees are moved to where they add least
     SpatialReinsertion, // SpatialSplits, then the same
 };
-inline constexpr BvhBuilder kBvhBuilders[] = {BvhBuilder::Binned,        BvhBuilder::Sweep,
-                                              BvhBuilder::Median,        BvhBuilder::EqualCounts,
-                                              BvhBuilder::SpatialSplits, BvhBuilder::Ploc,
-                                              BvhBuilder::Hploc,         BvhBuilder::Insertion,
-                                              BvhBuilder::Reinsertion,   BvhBuilder::SpatialReinsertion};
-
-/// As on the command line: "binned", "equal-counts".
-const char* bvh_builder_name(BvhBuilder builder);
+/// As on the command line.
+inline constexpr ValueName<BvhBuilder> kBvhBuilders[] = {{BvhBuilder::Binned, "binned"},
+                                                         {BvhBuilder::Sweep, "sweep"},
+                                                         {BvhBuilder::Median, "median"},
+                                                         {BvhBuilder::EqualCounts, "equal-counts"},
+                                                         {BvhBuilder::SpatialSplits, "sbvh"},
+                                                         {BvhBuilder::Ploc, "ploc"},
+                                                         {BvhBuilder::Hploc, "hploc"},
+                                                         {BvhBuilder::Insertion, "insertion"},
+                                                         {BvhBuilder::Reinsertion, "reinsertion"},
+                                                         {BvhBuilder::SpatialReinsertion, "sbvh-reinsertion"}};
+constexpr const auto& names_of_all(BvhBuilder) { return kBvhBuilders; }
 
 /// Whether the builder cuts triangles: a tree may then hold one more than once, in boxes that hold but a part of it.
 /// find_split_fault checks such a tree, find_fault all others.

@@ -24,7 +24,7 @@ std::unordered_map<uint32_t, std::size_t> firsts_of(const std::vector<BvhTriangl
 
 std::optional<std::string> why_no_refit(BvhBuilder builder) {
     if (!cuts_triangles(builder)) return std::nullopt;
-    return std::string(bvh_builder_name(builder)) +
+    return std::string(name_of(builder)) +
            ": its boxes hold parts of triangles, which are other parts once the triangles move; it is built anew";
 }
 

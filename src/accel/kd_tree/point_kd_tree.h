@@ -78,19 +78,4 @@ HD inline void search_points(const PointKdTreeView& tree, Vec3 at, Found& found)
     }
 }
 
-/// The k points nearest to `at`, at most `radius` away (inclusive; may be infinite), nearest first, of equally far ones
-/// those of lower index. `found` has room for k. Returns how many there are.
-HD inline uint32_t find_nearest(const PointKdTreeView& tree, Vec3 at, float radius, uint32_t k, NearPoint* found) {
-    NearestPoints nearest(found, k, square_of_radius(radius));
-    search_points(tree, at, nearest);
-    return nearest.sort();
-}
-
-/// Calls visit(NearPoint) for each point at most `radius` away, in an order that only the points and `at` decide.
-template <class Visit>
-HD inline void visit_within(const PointKdTreeView& tree, Vec3 at, float radius, Visit&& visit) {
-    PointsWithin<Visit> within = {square_of_radius(radius), visit};
-    search_points(tree, at, within);
-}
-
 } // namespace pertev

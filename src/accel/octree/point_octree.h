@@ -98,21 +98,6 @@ HD inline void search_points(const PointOctreeView& tree, Vec3 at, Found& found)
     }
 }
 
-/// The k centres nearest to `at`, at most `radius` away (inclusive; may be infinite), nearest first, of equally far
-/// ones those of lower index. `found` has room for k. Returns how many there are.
-HD inline uint32_t find_nearest(const PointOctreeView& tree, Vec3 at, float radius, uint32_t k, NearPoint* found) {
-    NearestPoints nearest(found, k, square_of_radius(radius));
-    search_points(tree, at, nearest);
-    return nearest.sort();
-}
-
-/// Calls visit(NearPoint) for each centre at most `radius` away, in the order of the tree.
-template <class Visit>
-HD inline void visit_within(const PointOctreeView& tree, Vec3 at, float radius, Visit&& visit) {
-    PointsWithin<Visit> within = {square_of_radius(radius), visit};
-    search_points(tree, at, within);
-}
-
 /// Bytes of the host's memory that build_point_octree takes for so many spheres at most: the tree, and while it is
 /// built two lists of numbers.
 inline std::size_t most_octree_bytes(uint64_t spheres) {

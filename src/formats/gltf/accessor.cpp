@@ -29,21 +29,6 @@ std::string_view name_of(ElementType type) {
 
 uint64_t components_of(ElementType type) { return static_cast<uint64_t>(type); }
 
-uint64_t bytes_of(ComponentType type) {
-    switch (type) {
-    case ComponentType::Int8:
-    case ComponentType::UInt8:
-        return 1;
-    case ComponentType::Int16:
-    case ComponentType::UInt16:
-        return 2;
-    case ComponentType::UInt32:
-    case ComponentType::Float:
-        return 4;
-    }
-    return 0;
-}
-
 ComponentType component_type_of(const JsonValue& value) {
     const uint64_t number = value.to_unsigned();
     for (const ComponentType type : {ComponentType::Int8, ComponentType::UInt8, ComponentType::Int16,
@@ -106,6 +91,12 @@ void with_type(ComponentType type, const Visit& visit) {
     case ComponentType::Float:
         return visit(float());
     }
+}
+
+uint64_t bytes_of(ComponentType type) {
+    uint64_t bytes = 0;
+    with_type(type, [&](auto component) { bytes = sizeof component; });
+    return bytes;
 }
 
 } // namespace

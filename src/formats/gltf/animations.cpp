@@ -35,22 +35,8 @@ Interpolation interpolation_of(const JsonValue& sampler) {
 }
 
 ElementType element_of(AnimatedPart part) {
-    switch (part) {
-    case AnimatedPart::Translation:
-    case AnimatedPart::Scale:
-    case AnimatedPart::LightIntensity:
-        return ElementType::Vec3;
-    case AnimatedPart::Rotation:
-        return ElementType::Vec4;
-    case AnimatedPart::Weights:
-    case AnimatedPart::CameraFov:
-    case AnimatedPart::CameraHeight:
-    case AnimatedPart::LightRange:
-    case AnimatedPart::LightInnerCone:
-    case AnimatedPart::LightOuterCone:
-        return ElementType::Scalar;
-    }
-    return ElementType::Scalar;
+    const std::size_t numbers = numbers_of(part);
+    return numbers == 4 ? ElementType::Vec4 : numbers == 3 ? ElementType::Vec3 : ElementType::Scalar;
 }
 
 bool takes_integers(AnimatedPart part) { return part == AnimatedPart::Rotation || part == AnimatedPart::Weights; }

@@ -189,23 +189,8 @@ private:
 } // namespace
 
 std::size_t size_of(PlyType type) {
-    switch (type) {
-    case PlyType::Int8:
-    case PlyType::UInt8:
-        return 1;
-    case PlyType::Int16:
-    case PlyType::UInt16:
-        return 2;
-    case PlyType::Int32:
-    case PlyType::UInt32:
-    case PlyType::Float32:
-        return 4;
-    case PlyType::Float64:
-    case PlyType::Int64:
-    case PlyType::UInt64:
-        return 8;
-    }
-    return 0;
+    constexpr std::size_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8, 8, 8}; // in the order of the types
+    return kSizes[static_cast<std::size_t>(type)];
 }
 
 PlyHeader parse_ply_header(std::span<const std::byte> bytes, const std::string& file) {

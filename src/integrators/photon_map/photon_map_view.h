@@ -137,7 +137,7 @@ struct Share {
     uint32_t number = 0, of = 1;
 };
 
-/// Offers `found` each photon of a share that may be within its limit; see accel/kd_tree/point_kd_tree.h.
+/// Offers `found` each photon of a share that may be within its limit; see accel/nearest_points.h.
 template <class Found>
 HD inline void search_points(const PhotonGridView& grid, Vec3 at, Found& found, Share share = {}) {
     visit_buckets(grid, at, [&](uint32_t begin, uint32_t end) {
@@ -146,18 +146,6 @@ HD inline void search_points(const PhotonGridView& grid, Vec3 at, Found& found, 
             found.offer({squared_distance({point.x, point.y, point.z}, at), bits_of(point.w)});
         }
     });
-}
-
-/// As those of accel/: see point_kd_tree.h.
-HD inline uint32_t find_nearest(const PhotonGridView& grid, Vec3 at, float radius, uint32_t k, NearPoint* found) {
-    NearestPoints nearest(found, k, square_of_radius(radius));
-    search_points(grid, at, nearest);
-    return nearest.sort();
-}
-template <class Visit>
-HD inline void visit_within(const PhotonGridView& grid, Vec3 at, float radius, Visit&& visit, Share share = {}) {
-    PointsWithin<Visit> within = {square_of_radius(radius), visit};
-    search_points(grid, at, within, share);
 }
 
 struct PhotonMapView {

@@ -29,48 +29,16 @@ bool is_zero_quaternion(const std::vector<float>& values, std::size_t first) {
 
 /// What a channel's target is an index into, and how many there are.
 std::pair<const char*, std::size_t> targets_of(AnimatedPart part, const Scene& scene) {
-    switch (part) {
-    case AnimatedPart::Translation:
-    case AnimatedPart::Rotation:
-    case AnimatedPart::Scale:
-    case AnimatedPart::Weights:
-        return {"node", scene.nodes.size()};
-    case AnimatedPart::CameraFov:
-    case AnimatedPart::CameraHeight:
-        return {"camera", scene.cameras.size()};
-    case AnimatedPart::LightIntensity:
-    case AnimatedPart::LightRange:
-    case AnimatedPart::LightInnerCone:
-    case AnimatedPart::LightOuterCone:
-        return {"light", scene.lights.size()};
-    }
-    return {"", 0};
-}
-
-bool places_node(AnimatedPart part) {
-    return part == AnimatedPart::Translation || part == AnimatedPart::Rotation || part == AnimatedPart::Scale;
+    if (is_of_node(part)) return {"node", scene.nodes.size()};
+    if (is_of_camera(part)) return {"camera", scene.cameras.size()};
+    return {"light", scene.lights.size()};
 }
 
 } // namespace
 
 std::size_t numbers_in_value(const AnimationChannel& channel, const Scene& scene) {
-    switch (channel.part) {
-    case AnimatedPart::Translation:
-    case AnimatedPart::Scale:
-    case AnimatedPart::LightIntensity:
-        return 3;
-    case AnimatedPart::Rotation:
-        return 4;
-    case AnimatedPart::Weights:
-        return scene.nodes[channel.target].morph_weights.size();
-    case AnimatedPart::CameraFov:
-    case AnimatedPart::CameraHeight:
-    case AnimatedPart::LightRange:
-    case AnimatedPart::LightInnerCone:
-    case AnimatedPart::LightOuterCone:
-        return 1;
-    }
-    return 0;
+    const bool has_weights = channel.part == AnimatedPart::Weights;
+    return has_weights ? scene.nodes[channel.target].morph_weights.size() : numbers_of(channel.part);
 }
 
 std::string fault_of(const AnimationChannel& channel, const Scene& scene) {

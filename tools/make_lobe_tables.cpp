@@ -1,0 +1,369 @@
+// Writes the tables of lobes into the folder that it is given: energy_table_data.h, which says how much energy GGX
+// microfacets lose to single scattering, and sheen_table_data.h, the directional albedo of the sheen lobe.
+//
+// The build runs it. Axes and meaning are stated in src/shading/lobes/energy_tables.h and sheen_lobe.h, which must
+// agree with this file. Doubles leave eight digits to spare, so the values do not depend on the compiler or on libm,
+// and tests/unit/lobe_tables_test.cpp holds their hash.
+//
+// Each value is an integral by a product rule: Gauss-Legendre along one axis, and midpoints about the other, along
+// which the integrand is even and periodic. Energy is integrated over the distribution of visible normals (Heitz 2018;
+// Dupuy and Benyoub 2023 for the warp). The tables are interpolated linearly. Where the chord lies above the curve, a
+// lookup would give energy away that was never lost, so nodes are lowered where the inside of a cell overshoots by more
+// than kOvershoot.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+namespace {
+
+using std::numbers::pi;
+using Values = std::vector<double>;
+
+constexpr int kMuNodes = 36, kRoughnessNodes = 20, kIorNodes = 14, kAverageNodes = 64;
+constexpr double kAlphaMin = 1e-3, kIorMin = 1.1, kIorMax = 3, kOvershoot = 2e-4;
+constexpr int kSheenMuNodes = 24, kSheenRoughnessNodes = 16;
+constexpr double kSheenRoughnessMin = 0.2;
+
+struct Node {
+    double x, weight;
+};
+
+/// Returns the nodes of Gauss and Legendre in [0, 1].
+std::vector<Node> gauss_legendre(int count) {
+    std::vector<Node> nodes;
+    for (int i = count; i-- > 0;) {
+        double z = std::cos(pi * (i + 0.75) / (count + 0.5)), slope = 1;
+        for (int step = 0; step < 10; ++step) { // Newton's
+            double p = 1, before = 0;
+            for (int k = 0; k < count; ++k) {
+                const double next = ((2 * k + 1) * z * p - k * before) / (k + 1);
+                before = p;
+                p = next;
+            }
+            slope = count * (z * p - before) / (z * z - 1);
+            z -= p / slope;
+        }
+        nodes.push_back({(z + 1) / 2, 1 / ((1 - z * z) * slope * slope)});
+    }
+    return nodes;
+}
+
+constexpr int kHeights = 96, kAngles = 48; // of the rule over the cap of visible normals
+
+struct Angles {
+    std::array<double, kAngles> cosine, sine;
+    Angles() {
+        for (int j = 0; j < kAngles; ++j) {
+            cosine[j] = std::cos((j + 0.5) / kAngles * pi);
+            sine[j] = std::sin((j + 0.5) / kAngles * pi);
+        }
+    }
+};
+
+double smith_lambda(double z, double alpha) {
+    const double z2 = std::max(z * z, 1e-24);
+    return 0.5 * (std::sqrt(1 + alpha * alpha * std::max(0.0, 1 - z2) / z2) - 1);
+}
+
+/// The visible normals of one view, by height and angle, which all indices of refraction share.
+struct View {
+    struct Row {
+        std::array<double, kAngles> z, cosine,
+            reflected; // of the normal; between normal and view; masking of reflection
+        double weight;
+    };
+    double mu, alpha, lambda;
+    std::array<Row, kHeights> rows;
+
+    View(double mu_of_view, double alpha_of_view)
+        : mu(mu_of_view), alpha(alpha_of_view), lambda(smith_lambda(mu, alpha)) {
+        static const std::vector<Node> heights = gauss_legendre(kHeights);
+        static const Angles angles;
+        const double across = std::sqrt(std::max(0.0, 1 - mu * mu)), length = std::hypot(across * alpha, mu);
+        const double wx = across * alpha / length, wz = mu / length;
+        for (int i = 0; i < kHeights; ++i) {
+            const double h = heights[i].x, t = h * h * (3 - 2 * h) * (1 + wz); // nodes gather at both ends of the cap
+            const double s = std::sqrt(t * (2 - t));
+            rows[i].weight = heights[i].weight * 6 * h * (1 - h) / kAngles;
+            for (int j = 0; j < kAngles; ++j) {
+                const double x = alpha * (s * angles.cosine[j] + wx), y = alpha * s * angles.sine[j], z = 1 - t + wz;
+                const double norm = std::sqrt(x * x + y * y + z * z);
+                rows[i].z[j] = z / norm;
+                rows[i].cosine[j] = std::clamp((across * x + mu * z) / norm, 0.0, 1.0);
+                rows[i].reflected[j] = masking(2 * rows[i].cosine[j] * rows[i].z[j] - mu);
+            }
+        }
+    }
+
+    double masking(double z) const { return z > 0 ? (1 + lambda) / (1 + lambda + smith_lambda(z, alpha)) : 0; }
+
+    /// Returns the integral of `of(cosine, z, masking of reflection)` over the visible normals.
+    template <class Function>
+    double integrate(const Function& of) const {
+        std::array<double, kAngles> sums{}; // side by side, for the vectoriser
+        for (const Row& row : rows)
+            for (int j = 0; j < kAngles; ++j) sums[j] += row.weight * of(row.cosine[j], row.z[j], row.reflected[j]);
+        double sum = 0;
+        for (const double s : sums) sum += s;
+        return sum;
+    }
+
+    /// The energy of one bounce off a reflector with F = 1.
+    double reflected() const {
+        return integrate([](double, double, double masked) { return masked; });
+    }
+    /// The same, weighted by Schlick's (1 - cos)^5.
+    double reflected_by_schlick() const {
+        return integrate([](double c, double, double masked) { return masked * std::pow(1 - c, 5); });
+    }
+    /// The energy of reflection and refraction; `eta` is the far side's index over the near side's.
+    double scattered(double eta) const {
+        return integrate([&](double c, double z, double masked) {
+            const double t2 = 1 - (1 - c * c) / (eta * eta), t = std::sqrt(std::max(0.0, t2));
+            const double rs = (c - eta * t) / (c + eta * t), rp = (eta * c - t) / (eta * c + t);
+            const double f = t2 <= 0 ? 1.0 : 0.5 * (rs * rs + rp * rp);
+            return f * masked + (1 - f) * masking(-((c / eta - t) * z - mu / eta));
+        });
+    }
+};
+
+double mu_at(double x, double alpha) {
+    const double p = x * (kMuNodes - 1);
+    x = (p < 1 ? std::sqrt(p) : p) / (kMuNodes - 1); // in the first cell the curves are linear in mu
+    const double t = alpha * x * x;
+    return std::max(t / ((1 - x) * (1 - x) + t), 1e-7);
+}
+
+double x_at(double mu, double alpha) {
+    const double p = std::sqrt(mu) / (std::sqrt(mu) + std::sqrt(alpha * (1 - mu))) * (kMuNodes - 1);
+    return (p < 1 ? p * p : p) / (kMuNodes - 1);
+}
+
+double alpha_at(double r) {
+    const double root = std::sqrt(kAlphaMin) + (1 - std::sqrt(kAlphaMin)) * r;
+    return root * root;
+}
+
+double eta_at(double q) {
+    const auto root = [](double eta) { return std::sqrt((eta - 1) / (eta + 1)); };
+    const double k = root(kIorMin) + (root(kIorMax) - root(kIorMin)) * q;
+    return (1 + k * k) / (1 - k * k);
+}
+
+/// A table over three axes, the first of which may have one node. Cells are looked at in places between the nodes too.
+struct Grid {
+    static constexpr int kFine[] = {2, 2, 4}; // places a cell: curves bend most along the last axis
+    std::array<int, 3> nodes;
+
+    int size(int axis) const { return (nodes[axis] - 1) * kFine[axis] + 1; }
+    double at(int axis, int place) const { return nodes[axis] == 1 ? 0 : double(place) / (size(axis) - 1); }
+    size_t index(int q, int r, int x) const { return (size_t(q) * nodes[1] + r) * nodes[2] + x; }
+    size_t fine_index(int q, int r, int x) const { return (size_t(q) * size(1) + r) * size(2) + x; }
+
+    /// Makes a value of each place by `fill(row of places along the first axis, r, x)`.
+    template <class Fill>
+    Values tabulate(const Fill& fill) const {
+        Values fine(fine_index(size(0), 0, 0));
+        tbb::parallel_for(0, size(1) * size(2), [&](int i) {
+            Values column(size(0));
+            fill(column, at(1, i / size(2)), at(2, i % size(2)));
+            for (int q = 0; q < size(0); ++q) fine[fine_index(q, i / size(2), i % size(2))] = column[q];
+        });
+        return fine;
+    }
+
+    /// Calls `visit` with the lower node of each cell.
+    template <class Visit>
+    void for_each_cell(const Visit& visit) const {
+        for (int q = 0; q < std::max(nodes[0] - 1, 1); ++q)
+            for (int r = 0; r < nodes[1] - 1; ++r)
+                for (int x = 0; x < nodes[2] - 1; ++x) visit(q, r, x);
+    }
+
+    /// Returns the nodes, lowered where linear interpolation overshoots the values `fine` inside a cell.
+    Values lowered(const Values& fine) const {
+        Values table;
+        for (int q = 0; q < nodes[0]; ++q)
+            for (int r = 0; r < nodes[1]; ++r)
+                for (int x = 0; x < nodes[2]; ++x) table.push_back(fine[fine_index(2 * q, 2 * r, 4 * x)]);
+        for (int pass = 0; pass < 4; ++pass) { // a node that would fall below 0 leaves the rest to its neighbours
+            Values drop(table.size());
+            for_each_cell([&](int q, int r, int x) {
+                const int q_end = nodes[0] == 1 ? 0 : 2;
+                double excess = 0;
+                for (int a = 0; a <= q_end; ++a)
+                    for (int b = 0; b <= 2; ++b)
+                        for (int c = 0; c <= 4; ++c) {
+                            double error = -fine[fine_index(2 * q + a, 2 * r + b, 4 * x + c)];
+                            for (int corner = 0; corner < 8; ++corner) {
+                                const int i = corner >> 2, j = corner >> 1 & 1, k = corner & 1;
+                                const double weight =
+                                    std::abs(1 - i - a / 2.0) * std::abs(1 - j - b / 2.0) * std::abs(1 - k - c / 4.0);
+                                if (weight > 0) error += weight * table[index(q + i, r + j, x + k)];
+                            }
+                            excess = std::max(excess, error - kOvershoot);
+                        }
+                for (int i = 0; i <= (q_end > 0); ++i)
+                    for (const int j : {0, 1})
+                        for (const int k : {0, 1}) {
+                            double& most = drop[index(q + i, r + j, x + k)];
+                            most = std::max(most, excess);
+                        }
+            });
+            for (size_t i = 0; i < table.size(); ++i) table[i] = std::max(table[i] - drop[i], 0.0);
+        }
+        return table;
+    }
+};
+
+/// Returns the table in units of 1 / 65535.
+Values quantised(Values table) {
+    for (double& v : table) v = std::nearbyint(std::clamp(v, 0.0, 1.0) * 65535);
+    return table;
+}
+
+double interpolate(const double* row, int nodes, double position) {
+    const int i = std::min(int(position * (nodes - 1)), nodes - 2);
+    return std::lerp(row[i], row[i + 1], position * (nodes - 1) - i);
+}
+
+/// Returns the row along mu at roughness `r` of a quantised table.
+Values row_at(const double* table, double r) {
+    Values row(kMuNodes);
+    for (int x = 0; x < kMuNodes; ++x) {
+        Values column(kRoughnessNodes);
+        for (int i = 0; i < kRoughnessNodes; ++i) column[i] = table[i * kMuNodes + x] / 65535;
+        row[x] = interpolate(column.data(), kRoughnessNodes, r);
+    }
+    return row;
+}
+
+double average_r(int i) { return std::pow(double(i) / (kAverageNodes - 1), 2); } // dense where averages change fastest
+
+/// Returns 2 int of(mu, x) mu dmu.
+template <class Function>
+double average(double alpha, const Function& of) {
+    static const std::vector<Node> nodes = gauss_legendre(400);
+    double sum = 0;
+    for (const Node& node : nodes) { // mu = x^2: dmu = 2 x dx
+        const double mu = node.x * node.x;
+        sum += 4 * node.x * mu * node.weight * of(mu, x_at(mu, alpha));
+    }
+    return sum;
+}
+
+/// Adds the averages of what is lost, over alpha, of a table of metal or one index.
+void add_average_lost(const double* table, Values& averages) {
+    for (int i = 0; i < kAverageNodes; ++i) {
+        const double alpha = alpha_at(average_r(i));
+        const Values row = row_at(table, average_r(i));
+        averages.push_back(average(alpha, [&](double, double x) { return interpolate(row.data(), kMuNodes, x); }) /
+                           alpha);
+    }
+}
+
+double sheen_albedo(double mu, double alpha) {
+    static const std::vector<Node> heights = gauss_legendre(96);
+    const double across_o = std::sqrt(1 - mu * mu);
+    double sum = 0;
+    for (const Node& node : heights)
+        for (int j = 0; j < 96; ++j) {
+            const double phi = (j + 0.5) / 96 * pi, h = node.x * node.x, across_i = std::sqrt(1 - h * h);
+            const double x = across_o + across_i * std::cos(phi), y = across_i * std::sin(phi), z = mu + h;
+            const double sine2 = (x * x + y * y) / (x * x + y * y + z * z);
+            const double d = (2 + 1 / alpha) / (2 * pi) * std::pow(sine2, 0.5 / alpha);
+            sum += 2 * node.x * node.weight * d * h / (4 * (mu + h - mu * h));
+        }
+    return sum * 2 * pi / 96;
+}
+
+std::string array(const char* type, const char* name, const Values& values) {
+    const bool whole = type[0] == 'u';
+    std::string text = fmt::format("HD inline {0} {1}(int i) {{\n    static constexpr {0} k[] = {{", type, name);
+    for (const double v : values)
+        text += whole ? fmt::format("{},\n", int(v)) : fmt::format("{:.9g}f,\n", double(float(v)));
+    return text + "};\n    return k[i];\n}\n";
+}
+
+void write(const std::string& path, const std::string& space, const std::string& body) {
+    std::ofstream(path) << "#pragma once\n#include <cstdint>\n#include \"base/host_device.h\"\nnamespace pertev::"
+                        << space << " {\n"
+                        << body << "}\n";
+}
+
+std::string energy_tables() {
+    const Grid metal{{1, kRoughnessNodes, kMuNodes}}, glass{{kIorNodes, kRoughnessNodes, kMuNodes}};
+    const Values lost = quantised(metal.lowered(metal.tabulate([](Values& column, double r, double x) {
+        column[0] = 1 - View(mu_at(x, alpha_at(r)), alpha_at(r)).reflected();
+    })));
+    // Schlick's weight of the half vector less that of mu itself: goes to 0 with alpha. Rather too much than too
+    // little, since what the coat takes the base does not get.
+    Values schlick = metal.lowered(metal.tabulate([](Values& column, double r, double x) {
+        const View view(mu_at(x, alpha_at(r)), alpha_at(r));
+        column[0] = 0.5 * (1 - (view.reflected_by_schlick() / view.reflected() - std::pow(1 - view.mu, 5)));
+    }));
+    for (double& v : schlick) v = 1 - v;
+    schlick = quantised(schlick);
+
+    Values average_lost, average_schlick;
+    add_average_lost(lost.data(), average_lost);
+    for (int i = 0; i < kAverageNodes; ++i) {
+        const Values e = row_at(lost.data(), average_r(i)), b = row_at(schlick.data(), average_r(i));
+        average_schlick.push_back(average(alpha_at(average_r(i)), [&](double mu, double x) {
+            return (1 - interpolate(e.data(), kMuNodes, x)) *
+                   (std::pow(1 - mu, 5) + 2 * interpolate(b.data(), kMuNodes, x) - 1);
+        }));
+    }
+
+    Values glass_lost, average_glass;
+    for (const bool inside : {false, true}) {
+        const Values table = quantised(glass.lowered(glass.tabulate([&](Values& column, double r, double x) {
+            const View view(mu_at(x, alpha_at(r)), alpha_at(r));
+            for (int q = 0; q < glass.size(0); ++q) {
+                const double eta = eta_at(glass.at(0, q));
+                column[q] = 1 - view.scattered(inside ? 1 / eta : eta);
+            }
+        })));
+        for (int q = 0; q < kIorNodes; ++q) add_average_lost(&table[glass.index(q, 0, 0)], average_glass);
+        glass_lost.insert(glass_lost.end(), table.begin(), table.end());
+    }
+    return fmt::format("inline constexpr int kMuNodes = {}, kRoughnessNodes = {}, kIorNodes = {}, kAverageNodes = {};\n"
+                       "inline constexpr float kAlphaMin = {}f, kIorMin = {}f, kIorMax = {}.0f;\n",
+                       kMuNodes, kRoughnessNodes, kIorNodes, kAverageNodes, kAlphaMin, kIorMin, kIorMax) +
+           array("uint16_t", "metal_lost_at", lost) + array("uint16_t", "metal_schlick_at", schlick) +
+           array("float", "metal_average_lost_at", average_lost) +
+           array("float", "metal_average_schlick_at", average_schlick) +
+           array("uint16_t", "glass_lost_at", glass_lost) + array("float", "glass_average_lost_at", average_glass);
+}
+
+std::string sheen_table() {
+    const Grid grid{{1, kSheenRoughnessNodes, kSheenMuNodes}};
+    // Rather too much than too little, since what the sheen takes the lobes beneath do not get: turned over, so that
+    // lowered() raises it.
+    Values table = grid.lowered(grid.tabulate([](Values& column, double r, double x) {
+        const double root = kSheenRoughnessMin + (1 - kSheenRoughnessMin) * r;
+        column[0] = 4 - sheen_albedo(std::max(x * x, 1e-7), root * root);
+    }));
+    for (double& v : table) v = 4 - v;
+    return fmt::format("inline constexpr int kMuNodes = {}, kRoughnessNodes = {};\n"
+                       "inline constexpr float kRoughnessMin = {}f;\n",
+                       kSheenMuNodes, kSheenRoughnessNodes, kSheenRoughnessMin) +
+           array("float", "albedo_at", table);
+}
+
+} // namespace
+
+int main(int, char** arguments) {
+    const std::string folder = arguments[1];
+    write(folder + "/energy_table_data.h", "energy_table", energy_tables());
+    write(folder + "/sheen_table_data.h", "sheen_table", sheen_table());
+}
