@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/messages.h"
+#include "integrators/kinds/make_integrator.h"
 #include "scene/scene.h"
 
 namespace pertev {
