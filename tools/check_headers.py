@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Compiles headers by themselves, so that each can be included first and, where it has device code, by any compiler.
 
-The first --cxx compiles each header but those that their own .cpp includes first: after nothing but headers that it
-includes itself, at once or through others. So a file that includes base/box.h and then scene/scene.h, which includes
-base/box.h, shows both to be complete. Host-device headers (those that say HD) are compiled by every other --cxx and by
+The first --cxx compiles each header but those that their own .cpp includes first. It compiles many of them in one go,
+which spares it the standard library, yet each header follows only headers whose declarations it does not name, or which
+it includes itself. Thus each is as complete as if it stood there alone. Host-device headers (those that say HD) are compiled by every other --cxx and by
 --nvcc too, gathered into one generated file. `--self-test` feeds the check headers that must fail.
 """
 
@@ -24,6 +24,30 @@ NVCC_FLAGS = ["-x", "cu", "-std=c++20", "-ptx", "-arch=compute_90", "--expt-rela
               "-Werror=all-warnings", "-o", os.devnull]
 FIRST_INCLUDE = re.compile(r'^#include [<"](.*?)[>"]', re.MULTILINE)
 OWN_INCLUDE = re.compile(r'^#include "(.*?)"', re.MULTILINE)
+STD_INCLUDE = re.compile(r"^#include <(.*?)>", re.MULTILINE)
+NO_CODE = re.compile(r'//[^\n]*|"(?:[^"\\\n]|\\.)*"')
+DIRECTIVE = re.compile(r"^#(?! *define).*", re.MULTILINE)
+NAME = re.compile(r"\b[A-Za-z_]\w*")
+DECLARED = re.compile(r"\b(?:struct|class|enum|enum class|union|concept|namespace|define|using)\s+(\w+)|(\w+)\s*\(|"
+                      r"\b([A-Za-z_]\w*)\s*(?:\[[^\]\n]*\]\s*)*[={;]")
+TEMPLATE = re.compile(r"\btemplate\s*<[^<>]*>")
+STD_NAME = re.compile(r"\bstd::(\w+)")
+TYPE = re.compile(r"\b(?:struct|class|enum|enum class|union|concept)\s+(?:alignas\(\w+\)\s+)?(\w+)")
+FORWARD = re.compile(r"^(?:struct|class|enum class|enum)\s+(\w+)[^{};\n]*;", re.MULTILINE)
+NO_NAMES = {"pertev", "class", "alignas", "static_assert", "requires", "defined", "if", "const", "void", "sizeof", "bool",
+            "uint8_t", "uint16_t", "uint32_t", "uint64_t"}
+# The headers that declare names of the standard library, where these are not called as the names are.
+STD_HEADER_OF = {"function": "functional", "unique_ptr": "memory", "shared_ptr": "memory", "make_shared": "memory",
+                 "make_unique": "memory", "nullopt": "optional", "size_t": "cstddef", "byte": "cstddef",
+                 "move": "utility", "pair": "utility", "exchange": "utility", "swap": "utility",
+                 "numeric_limits": "limits", "max": "algorithm", "min": "algorithm", "sort": "algorithm",
+                 "memcpy": "cstring", "memchr": "cstring", "isnan": "cmath", "isfinite": "cmath", "as_bytes": "span",
+                 "from_chars": "charconv", "errc": "charconv", "is_same_v": "type_traits",
+                 "type_identity_t": "type_traits", "conditional_t": "type_traits", "integral_constant": "type_traits"}
+# Headers of the standard library declare these names outside of std too.
+C_NAMES = {"cstdint": {f"{sign}int{bits}_t" for sign in ("", "u") for bits in (8, 16, 32, 64, "ptr")},
+           "cstddef": {"size_t", "ptrdiff_t", "offsetof"}, "cstring": {"memcpy", "memset", "memcmp", "memchr"},
+           "cmath": {"fabsf", "sqrtf", "fmaf", "isnan", "INFINITY", "NAN"}, "immintrin.h": {"_mm_malloc", "__m128"}}
 HOST_DEVICE = re.compile(r"^\s*(template\s*<.*>\s*)?(\[\[\w+\]\]\s*)?(constexpr\s+|static\s+)*HD\b", re.MULTILINE)
 
 
@@ -58,30 +82,72 @@ def closures(headers, source):
     return {h: of(h) for h in headers}
 
 
-def chains(headers, source):
-    """The headers in as few lists as can be, in which each includes all that come before it (a largest matching of
-    headers with ones that they include, by augmenting paths; Fulkerson 1956)."""
+class Text:
+    """The names of a header, without comments and strings, and those that it declares."""
+
+    def __init__(self, text):
+        self.std_headers = set(STD_INCLUDE.findall(text))
+        text = DIRECTIVE.sub("", NO_CODE.sub("", text))
+        self.tokens = set(NAME.findall(text))
+        self.std_names = set(STD_NAME.findall(text))
+        self.types = set(TYPE.findall(text))
+        self.only_named = set(FORWARD.findall(text))
+        # Pairs of a name and the other names of its declaration. Members do not stand at the left margin.
+        self.declared = []
+        for line in text.splitlines():
+            head = TEMPLATE.sub("", line.split("{")[0]) if line[:1].strip() else ""
+            names = set(NAME.findall(head))
+            of = {next(filter(None, found)) for found in DECLARED.findall(head if "(" in head else head + ";")}
+            self.declared += [(n, names - {n}) for n in of - NO_NAMES | names & {"operator"}]
+
+
+def provides(std_headers, name):
+    """Do these headers of the standard library declare std::name?"""
+    return STD_HEADER_OF.get(name, name) in std_headers
+
+
+class Unit:
+    """Headers that are compiled in one go. None names what is declared before it by a header that it does not include."""
+
+    def __init__(self):
+        self.list, self.own, self.std = [], set(), set()
+
+    def takes(self, header, closure, texts):
+        """Can the header come next? `closure` has it and all of ours that it includes, at once or through others."""
+        text = texts[header]
+        std = set().union(*(texts[h].std_headers for h in closure))
+        foreign_std = self.std - std
+        if foreign_std and not all(provides(std, name) for name in text.std_names):
+            return False
+        if any(C_NAMES[h].intersection(text.tokens) for h in foreign_std & C_NAMES.keys()):
+            return False
+        foreign = [texts[h] for h in self.own - closure]
+        types = set().union(*(t.types for t in foreign)) - set().union(*(texts[h].types for h in closure))
+        incomplete = set().union(*(texts[h].only_named for h in closure))
+        # The header cannot call a function that takes a type which it does not know.
+        return not any((name in text.tokens or name in incomplete or name == "operator") and not others & types
+                       for t in foreign for name, others in t.declared)
+
+    def add(self, header, closure, texts):
+        self.list.append(header)
+        self.own |= closure
+        self.std |= set().union(*(texts[h].std_headers for h in closure))
+
+
+def units(headers, source):
+    """Puts each header into the first list that takes it, those that include least first."""
     included = closures(headers, source)
-    below = {h: [other for other in headers if other != h and other in included[h]] for h in headers}
-    next_of = {}  # a header, and that which comes after it in its list
-
-    def find_before(header, seen):
-        for other in below[header]:
-            if other not in seen:
-                seen.add(other)
-                if other not in next_of or find_before(next_of[other], seen):
-                    next_of[other] = header
-                    return True
-        return False
-
-    for header in headers:
-        find_before(header, set())
-    followed = set(next_of.values())
-    for first in (h for h in headers if h not in followed):
-        chain = [first]
-        while chain[-1] in next_of:
-            chain.append(next_of[chain[-1]])
-        yield chain
+    known = set(headers).union(*included.values())
+    texts = {h: Text((source / h).read_text(encoding="utf-8")) for h in known}
+    found = []
+    for header in sorted(headers, key=lambda h: (len(included[h]), h)):
+        closure = included[header] | {header}
+        unit = next((u for u in found if u.takes(header, closure, texts)), None)
+        if unit is None:
+            unit = Unit()
+            found.append(unit)
+        unit.add(header, closure, texts)
+    return [unit.list for unit in found]
 
 
 def jobs_for(source, compilers, nvcc, folders):
@@ -92,8 +158,8 @@ def jobs_for(source, compilers, nvcc, folders):
     others = [[c, *HOST_FLAGS, *includes] for c in compilers[1:]] + ([[nvcc, *NVCC_FLAGS, *includes]] if nvcc else [])
     for command in others:
         yield f"host-device headers by {command[0]}", command, host_device
-    for chain in chains([h for h in headers if not built_alone(h, source)], source):
-        yield f"{', '.join(map(str, chain))} by {compilers[0]}", [compilers[0], *HOST_FLAGS, *includes], chain
+    for unit in units([h for h in headers if not built_alone(h, source)], source):
+        yield f"{', '.join(map(str, unit))} by {compilers[0]}", [compilers[0], *HOST_FLAGS, *includes], unit
 
 
 def check(source, compilers, nvcc, threads, folders=()):
@@ -106,6 +172,7 @@ def check(source, compilers, nvcc, threads, folders=()):
 GOOD = '#pragma once\n#include "base/host_device.h"\n'
 BAD_HEADERS = {  # each compiles for somebody, and must fail for the compiler named
     "cxx": "#pragma once\nHD inline int f(Vec3 v) { return 0; }\n",
+    "unit": GOOD + "inline int f(int x) { return g(x); }\n",  # g is good.h's, which it does not include
     "nvcc": GOOD + "inline int on_host(int x) { return x; }\nHD inline int f(int x) { return on_host(x); }\n",
 }
 
