@@ -88,7 +88,7 @@ TEST_CASE("light that a block scatters once is the integral over the camera's ra
     Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
     PathSettings settings;
     settings.sampler = SamplerKind::Independent;
-    const Image picture = render_block<test::kScattering>(asked, scene, settings, 2048);
+    const Image picture = render_block<test::kScattering>(asked, scene, settings, 8192);
     CHECK(picture_hash(render_block<test::kScattering>(asked, scene, settings, 8)) ==
           picture_hash(render_block<test::kScattering>(cpu, scene, settings, 8)));
     CHECK(picture.at(2, 2)[0] == 0); // beside the block
