@@ -1,7 +1,5 @@
 // pertev measure SCENE --at X,Y,Z --normal X,Y,Z: the light that arrives at a point, in numbers.
 
-#include <optional>
-
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 

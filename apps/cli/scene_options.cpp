@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include "apps/cli/flag_checks.h"
-#include "base/limits.h"
 #include "formats/builtin_scenes.h"
 #include "session/opening/open_scene.h"
 #include "settings/parse_values.h"

@@ -1,7 +1,6 @@
 // pertev solve radiosity SCENE -o FILE: light that does not depend on a camera, solved once for any number of pictures.
 
 #include <filesystem>
-#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -9,7 +8,6 @@
 #include "accel/builders/bvh_cache.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
-#include "apps/cli/interrupt.h"
 #include "apps/cli/radiosity_flags.h"
 #include "apps/cli/report_result.h"
 #include "apps/cli/scene_options.h"
@@ -20,7 +18,6 @@
 #include "base/write_file_atomically.h"
 #include "image/image_format.h"
 #include "session/check_integrator.h"
-#include "session/machine.h"
 #include "session/moving_scene.h"
 #include "session/opening/strictness.h"
 

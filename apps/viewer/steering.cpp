@@ -1,7 +1,5 @@
 #include "apps/viewer/steering.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "math/portable_math.h"

@@ -4,7 +4,6 @@
 // wheel waits a while for it to come back, known by its key, and then goes to the client that has waited longest.
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 

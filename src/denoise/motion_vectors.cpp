@@ -1,7 +1,6 @@
 #include "denoise/motion_vectors.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "device/launch.h"
 

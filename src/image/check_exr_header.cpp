@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/limits.h"
 #include "image/check_image_size.h"
 #include "math/scalar.h"
 

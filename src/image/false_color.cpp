@@ -1,7 +1,6 @@
 #include "image/false_color.h"
 
 #include <algorithm>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>

@@ -3,7 +3,6 @@
 // Numbers as false colours, with their scale: dark is little, bright is much.
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "image/image.h"

@@ -1,7 +1,6 @@
 #include "image/flip.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "base/error.h"

@@ -1,7 +1,5 @@
 #include "image/read_exr.h"
 
-#include <fmt/format.h>
-
 #include "base/error.h"
 #include "base/read_file.h"
 #include "image/exr_reader.h"

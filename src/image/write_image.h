@@ -2,12 +2,9 @@
 
 // Writes a rendered picture in the format that its file name asks for.
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "image/image_format.h"
 #include "image/tone_map.h"

@@ -1,7 +1,6 @@
 #include "image/write_png.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <new>
 

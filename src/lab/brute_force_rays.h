@@ -6,7 +6,6 @@
 // judged too.
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 

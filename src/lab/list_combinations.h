@@ -3,8 +3,6 @@
 // What the laboratory is asked to measure, before anything is: each combination once, those that cannot be measured
 // with the reason.
 
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "lab/run_lab.h"

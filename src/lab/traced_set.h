@@ -4,7 +4,6 @@
 // which itself was held against brute force on some of the rays.
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "device/buffer.h"

@@ -1,7 +1,6 @@
 // html_of of write_transport.h.
 
 #include <algorithm>
-#include <array>
 
 #include <fmt/format.h>
 

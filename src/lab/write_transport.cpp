@@ -1,7 +1,5 @@
 #include "lab/write_transport.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "base/json_text.h"

@@ -3,8 +3,6 @@
 // What a patch receives by shadow rays to points drawn on lights: of point, spot and directional lights and the
 // environment its irradiance, of lamps (patches that emit) form factors.
 
-#include <vector>
-
 #include "radiosity/row_maker.h"
 
 namespace pertev {

@@ -7,7 +7,6 @@
 // Efficient Radiosity Approach for Realistic Image Synthesis", IEEE CG&A 6(3), 1986.
 
 #include <cstdint>
-#include <functional>
 #include <string>
 
 #include "radiosity/radiosity_settings.h"

@@ -1,7 +1,6 @@
 #include "scene/camera_path.h"
 
 #include <algorithm>
-#include <cstdint>
 
 namespace pertev {
 namespace {

@@ -3,7 +3,6 @@
 // The size of a surface that gives light, and what its emission's texture leaves of that: what its flux and its
 // intensity go by.
 
-#include "math/rgb.h"
 #include "scene/scene.h"
 
 namespace pertev {

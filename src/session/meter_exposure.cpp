@@ -1,6 +1,5 @@
 #include "session/meter_exposure.h"
 
-#include <algorithm>
 #include <numeric>
 
 #include "image/auto_exposure.h"

@@ -2,7 +2,6 @@
 
 // Light as the eye and cameras take it: lumens of a scene's watts, and the exposure of a camera's film.
 
-#include <optional>
 #include <string>
 
 namespace pertev {

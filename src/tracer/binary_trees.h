@@ -4,7 +4,6 @@
 // scene in which its triangles are the same.
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "accel/builders/builders.h"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <numeric>
 
 #include "accel/builders/binary_tree.h"
 #include "accel/builders/builders.h"

@@ -5,7 +5,6 @@
 // 2018. Ours are the ties, which there may leave clusters waiting in line: see Choice and kFewMerges.
 
 #include <algorithm>
-#include <bit>
 
 #include "accel/builders/binary_tree.h"
 #include "accel/builders/build_bvh.h"

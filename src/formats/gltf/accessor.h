@@ -11,7 +11,6 @@
 #include <initializer_list>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "formats/gltf/buffers.h"

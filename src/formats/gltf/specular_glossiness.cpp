@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "base/limits.h"
 #include "base/parallel_for.h"
 #include "image/srgb.h"
 

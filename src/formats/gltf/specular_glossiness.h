@@ -8,7 +8,6 @@
 // same reflectance.
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "base/messages.h"

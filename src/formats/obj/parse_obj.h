@@ -7,7 +7,6 @@
 // Why not tinyobjloader: its 2.0rc10 reads a number that it cannot parse, `nan` too, as 0 without a word; takes a
 // minute for one polygon of 200 000 corners; rounds numbers through libm's pow; and knows no line for what is wrong.
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>

@@ -6,7 +6,6 @@
 #include <limits>
 #include <numeric>
 #include <optional>
-#include <string_view>
 
 #include <fmt/format.h>
 

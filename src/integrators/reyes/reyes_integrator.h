@@ -6,7 +6,6 @@
 //
 // Source: Cook, Carpenter, Catmull, "The Reyes Image Rendering Architecture", SIGGRAPH 1987.
 
-#include <cstddef>
 #include <cstdint>
 
 #include "device/buffer.h"

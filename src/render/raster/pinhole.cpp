@@ -1,7 +1,6 @@
 #include "render/raster/pinhole.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace pertev {
 

@@ -13,7 +13,6 @@
 
 #include "base/host_device.h"
 #include "math/double_vec3.h"
-#include "math/scalar.h"
 #include "math/transform.h"
 #include "render/camera_rays.h"
 

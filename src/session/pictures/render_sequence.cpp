@@ -1,7 +1,5 @@
 #include "session/pictures/render_sequence.h"
 
-#include <utility>
-
 #include "base/stopwatch.h"
 
 namespace pertev {

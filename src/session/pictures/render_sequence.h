@@ -3,8 +3,6 @@
 // The frames of a moving scene, one after the other by one session, which takes over from frame to frame what does not
 // move. A frame is to the byte the picture of its time, or in real time the next frame of its sequence.
 
-#include <functional>
-
 #include "session/frame_range.h"
 #include "session/moving_scene.h"
 #include "session/opening/moving_camera.h"

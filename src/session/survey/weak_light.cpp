@@ -1,8 +1,5 @@
 #include "session/survey/weak_light.h"
 
-#include <optional>
-#include <vector>
-
 #include "device/queue.h"
 #include "scene/pose/posed_scene.h"
 #include "session/meter_exposure.h"

@@ -1,6 +1,5 @@
 #include "session/writing/sequence_record.h"
 
-#include <optional>
 #include <span>
 
 #include <fmt/format.h>
