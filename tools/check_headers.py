@@ -201,7 +201,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--cxx", action="append", required=True, help="host compiler; may be repeated")
     parser.add_argument("--nvcc", help="CUDA compiler")
-    parser.add_argument("--include", action="append", default=[], help="folder of headers that the build writes; may be repeated")
+    parser.add_argument("--include", action="append", help="folder of headers that the build writes (build*/generated)")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--self-test", action="store_true")
     args = parser.parse_args()
@@ -211,7 +211,8 @@ def main():
     compilers = [c for c in args.cxx if c not in absent]
     if args.self_test:
         sys.exit(1 if self_test(compilers, args.nvcc) else 0)
-    faults, count = check(ROOT / "src", compilers, args.nvcc, args.jobs, args.include)
+    folders = args.include or sorted(ROOT.glob("build*/generated"))
+    faults, count = check(ROOT / "src", compilers, args.nvcc, args.jobs, folders)
     print("\n".join(faults) or f"{count} compilations, no complaint")
     sys.exit(1 if faults else 0)
 
