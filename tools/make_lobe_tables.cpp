@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <numbers>
@@ -32,6 +33,7 @@ constexpr int kMuNodes = 36, kRoughnessNodes = 20, kIorNodes = 14, kAverageNodes
 constexpr double kAlphaMin = 1e-3, kIorMin = 1.1, kIorMax = 3, kOvershoot = 2e-4;
 constexpr int kSheenMuNodes = 24, kSheenRoughnessNodes = 16;
 constexpr double kSheenRoughnessMin = 0.2;
+constexpr uint64_t kHash = 0x53a88e4540018592; // of the text of all tables
 
 struct Node {
     double x, weight;
@@ -294,10 +296,22 @@ std::string array(const char* type, const char* name, const Values& values) {
     return text + "};\n    return k[i];\n}\n";
 }
 
-void write(const std::string& path, const std::string& space, const std::string& body) {
-    std::ofstream(path) << "#pragma once\n#include <cstdint>\n#include \"base/host_device.h\"\nnamespace pertev::"
-                        << space << " {\n"
-                        << body << "}\n";
+/// Returns whether the file was written.
+bool write(const std::string& path, const std::string& space, const std::string& body) {
+    std::ofstream file(path);
+    file << "#pragma once\n// Written by tools/make_lobe_tables.cpp; src/shading/lobes/ says what it means.\n"
+         << "#include <cstdint>\n#include \"base/host_device.h\"\nnamespace pertev::" << space << " {\n"
+         << body << "}\n";
+    file.close();
+    if (!file) fmt::print(stderr, "{} could not be written\n", path);
+    return static_cast<bool>(file);
+}
+
+/// FNV-1a.
+uint64_t hash_of(const std::string& text) {
+    uint64_t hash = 0xcbf29ce484222325;
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    return hash;
 }
 
 std::string energy_tables() {
@@ -362,8 +376,17 @@ std::string sheen_table() {
 
 } // namespace
 
-int main(int, char** arguments) {
-    const std::string folder = arguments[1];
-    write(folder + "/energy_table_data.h", "energy_table", energy_tables());
-    write(folder + "/sheen_table_data.h", "sheen_table", sheen_table());
+int main(int count, char** arguments) {
+    if (count != 2) {
+        fmt::print(stderr, "make_lobe_tables FOLDER\n");
+        return 2;
+    }
+    const std::string folder = arguments[1], energy = energy_tables(), sheen = sheen_table();
+    // Pictures are to have the same bytes wherever they are made, so other tables would be a fault of this machine.
+    if (const uint64_t hash = hash_of(energy + sheen); hash != kHash) {
+        fmt::print(stderr, "the tables of lobes have the hash {:#x} here; it should be {:#x}\n", hash, kHash);
+        return 1;
+    }
+    const bool has_energy = write(folder + "/energy_table_data.h", "energy_table", energy);
+    return has_energy && write(folder + "/sheen_table_data.h", "sheen_table", sheen) ? 0 : 1;
 }

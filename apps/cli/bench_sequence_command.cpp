@@ -179,7 +179,7 @@ int bench_sequence(SequenceFlags& flags) {
     }
     check_motion_flags(flags.render);
     check_radiosity_flags(flags.render.radiosity, flags.render.render, flags.render.limits_memory);
-    const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, reporter);
+    const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, kBenchSequence, reporter);
     reporter.say_messages();
     listen_for_interrupt();
     PictureRecord record = picture_record(flags.render, *ready, reporter.messages());

@@ -26,8 +26,8 @@ void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Message
     }
 }
 
-std::unique_ptr<ReadyScene> make_ready(RenderFlags& flags, Reporter& reporter) {
-    return make_ready(flags, reporter, [&](ReadyScene& ready) {
+std::unique_ptr<ReadyScene> make_ready(RenderFlags& flags, uint32_t verbs, Reporter& reporter) {
+    return make_ready(flags, verbs, reporter, [&](ReadyScene& ready) {
         const RenderSettings& settings = ready.settings;
         if (flags.limits_memory) { // a picture for which there is no room is refused before its scene is solved
             const std::size_t film =

@@ -8,7 +8,7 @@
 namespace pertev {
 
 /// Says what there is to say on the way. Throws Error.
-std::unique_ptr<ReadyScene> make_ready(RenderFlags& flags, Reporter& reporter);
+std::unique_ptr<ReadyScene> make_ready(RenderFlags& flags, uint32_t verbs, Reporter& reporter);
 
 /// Says what a time would show if none is given, or that one shows nothing.
 void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Messages& messages);

@@ -133,7 +133,7 @@ int render(RenderFlags& flags) {
     if (flags.real_time && !flags.is_given("spp")) flags.render.samples = 1;
     check_render_flags(flags, reporter.messages());
     const Stopwatch watch;
-    const std::unique_ptr<ReadyScene> ready = make_ready(flags, reporter);
+    const std::unique_ptr<ReadyScene> ready = make_ready(flags, kRender, reporter);
     say_what_moves(flags, *ready->moving, reporter.messages());
     const RenderSettings& settings = ready->settings;
     Queue& queue = *ready->queue;

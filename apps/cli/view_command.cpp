@@ -208,7 +208,7 @@ int view(ViewFlags& flags) {
     flags.render.settings.read(flags.render, reporter.messages());
     check_host(flags.host);
     check_shown_picture_flags(flags.render);
-    const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, reporter);
+    const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, kView, reporter);
     if (!makes_frames(ready->settings.integrator) && ask_for_frames(flags.render.reconstruction)) {
         reporter.messages().note(fmt::format(
             "--integrator {}: its frames are samples as they are; --restir and --resolution-scale count once "

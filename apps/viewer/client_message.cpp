@@ -165,6 +165,8 @@ constexpr Form kForms[] = {
     {"hand", MessageKind::Hand, kHandKeys},
 };
 
+static_assert(std::size(kForms) == static_cast<std::size_t>(MessageKind::Hand) + 1);
+
 const Form& form_of(MessageKind kind) { return *std::ranges::find(kForms, kind, &Form::kind); }
 
 const Form* form_of(dom::object object) {

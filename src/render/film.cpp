@@ -64,7 +64,9 @@ FilmView Film::view() const {
 
 void Film::add(const Film& other) {
     PERTEV_CHECK(other.width_ == width_ && other.height_ == height_ && other.aovs_ == aovs_ &&
-                 other.light_layers_ == light_layers_ && other.targets_.size() == targets_.size());
+                 other.light_layers_ == light_layers_ && other.window_ == window_ &&
+                 other.targets_.size() == targets_.size());
+    for (std::size_t i = 0; i < targets_.size(); ++i) PERTEV_CHECK(targets_[i]->is_like(*other.targets_[i]));
     const std::optional<FilmPart> both = join(part_, other.part_);
     PERTEV_CHECK(both);
     for (std::size_t i = 0; i < targets_.size(); ++i) targets_[i]->add(*other.targets_[i]);
@@ -90,6 +92,7 @@ Image Film::picture(bool transparent) const { return resolve(0, transparent ? 4 
 
 void Film::display(ToneMap kind, float exposure_stops, bool transparent) {
     static_assert(kFilmColorChannels * sizeof(float) >= 4);
+    PERTEV_CHECK(part_.samples.count() > 0);
     if (display_ == nullptr) display_ = queue_->make_host_copy(std::size_t(pixel_count()) * 4);
     launch(*queue_, "display_film", pixel_count(),
            DisplayFilm{view(), part_.samples.count(), kind, exposure_scale(exposure_stops), transparent,

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "device/buffer.h"
 #include "image/image.h"
 #include "image/tone_map.h"
@@ -63,7 +64,7 @@ public:
     static std::size_t predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs,
                                        std::vector<std::string> light_layers = {});
 
-    /// Another one, which is cleared, added and kept with the film's own.
+    /// Adds a target. It is cleared, added and kept with the film's own.
     void hold(std::unique_ptr<FilmTarget> target) { targets_.push_back(std::move(target)); }
     std::span<const std::unique_ptr<FilmTarget>> targets() const { return targets_; }
 
@@ -74,8 +75,13 @@ public:
     const std::vector<std::string>& light_layers() const { return light_layers_; }
     void clear();
 
-    /// From now on the film is of this window of the picture.
-    void set_window(const PixelWindow& window) { window_ = window; }
+    /// From now on the film is of this window of the picture. Of integrators, `path`, `direct`, `indirect` and `hybrid`
+    /// render windows.
+    void set_window(const PixelWindow& window) {
+        PERTEV_CHECK(window.picture_width == 0 ||
+                     (window.width == width_ && window.x + window.width <= window.picture_width));
+        window_ = window;
+    }
     const PixelWindow& window() const { return window_; }
 
     /// Says what the samples are that have been added to view() until now: of all rows.
@@ -90,8 +96,8 @@ public:
 
     /// The means of all samples: RGB, or RGBA (colour times coverage, coverage) with `transparent`.
     Image picture(bool transparent) const;
-    /// The same, made to be shown: the bytes of tone_map_image(picture(transparent), kind, exposure_stops). Brings it
-    /// to the host.
+    /// Makes the picture's bytes for a display: those of tone_map_image(picture(transparent), kind, exposure_stops).
+    /// Brings it to the host.
     void display(ToneMap kind, float exposure_stops, bool transparent);
     /// What the last display() brought.
     Rgba8Image displayed() const;

@@ -38,7 +38,7 @@ struct AddIds {
     }
 };
 
-/// One pixel of a frame each: what `from` holds of it, where `to` has had no sample since it was cleared.
+/// Takes a pixel of `from` where `to` has had no sample since it was cleared.
 struct AddFrames {
     static constexpr uint32_t kNoSample = 0xffffffffu; // bits of the light's w
 
@@ -52,12 +52,12 @@ struct AddFrames {
     }
 };
 
-/// Means of some neighbouring channels, one pixel each.
+/// Makes the means of some neighbouring channels of one pixel.
 struct ResolveFilm {
     FilmView film;
     uint32_t first, channels; // of the film's
     bool over_hits;           // the mean over samples that hit something, 0 where none did
-    uint64_t samples;         // of each pixel, > 0
+    uint64_t samples;         // of each pixel; 0: all means are 0
     float* pixels;            // [pixels * channels]
 
     HD void operator()(uint32_t i) const {

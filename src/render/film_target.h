@@ -36,8 +36,9 @@ public:
     virtual void clear() = 0;
     /// Tells those who add samples where it lies.
     virtual void show(FilmView& view) const = 0;
-    /// Takes what `other`, of the same kind and size and from any queue, holds of other samples. Throws
-    /// std::logic_error where it is of another kind or size.
+    /// Returns whether `other` is of the same kind, name and size.
+    virtual bool is_like(const FilmTarget& other) const = 0;
+    /// Takes what `other` holds of other samples, from any queue. Throws std::logic_error unless it is like this one.
     virtual void add(const FilmTarget& other) = 0;
     /// Resolves to layers of the picture, of a film of `width` columns that has so many samples of each pixel. The
     /// film itself resolves its own targets.
@@ -64,10 +65,14 @@ public:
     const Buffer<T>& elements() const { return elements_; }
     void clear() override { elements_.fill(kEmpty); }
 
+    bool is_like(const FilmTarget& other) const override {
+        const auto* const same = dynamic_cast<const ElementTarget*>(&other);
+        return same != nullptr && std::string(same->name_) == name_ && same->elements_.size() == elements_.size();
+    }
+
     void add(const FilmTarget& other) override {
-        const auto* const from = dynamic_cast<const ElementTarget*>(&other);
-        PERTEV_CHECK(from != nullptr && std::string(from->name_) == name_ &&
-                     from->elements_.size() == elements_.size());
+        PERTEV_CHECK(is_like(other));
+        const auto* const from = static_cast<const ElementTarget*>(&other);
         const std::size_t all = elements_.size(), at_once = std::min(std::size_t(1) << 20, all);
         const bool is_here = queue_ == from->queue_;
         std::vector<T> on_host(is_here ? 0 : at_once);

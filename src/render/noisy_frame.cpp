@@ -48,11 +48,15 @@ void NoisyFrame::clear() {
     invalid_.zero();
 }
 
+bool NoisyFrame::is_like(const FilmTarget& other) const {
+    const auto* const same = dynamic_cast<const NoisyFrame*>(&other);
+    return same != nullptr && same->width_ == width_ && same->height_ == height_ &&
+           same->splits_light() == splits_light();
+}
+
 void NoisyFrame::add(const FilmTarget& other) {
-    const auto* const from = dynamic_cast<const NoisyFrame*>(&other);
-    PERTEV_CHECK(from != nullptr && from->width_ == width_ && from->height_ == height_ &&
-                 from->splits_light() == splits_light());
-    const std::vector<std::byte> theirs = from->bytes();
+    PERTEV_CHECK(is_like(other));
+    const std::vector<std::byte> theirs = other.bytes();
     NoisyFrame copy(*queue_, width_, height_, splits_light());
     copy.set_bytes(theirs);
     const uint32_t pixels = width_ * height_;

@@ -1,7 +1,8 @@
 #pragma once
 
 // Owns the arrays of a NoisyFrameView. A film view of it takes samples in a film's place; it holds one sample a pixel,
-// the last one. It is a target (render/film_target.h), so that frames whose pixels were taken apart are put together.
+// the last one. It is a target (render/film_target.h), so that frames whose pixels were taken apart are put together. A
+// film does not hold it beside its own targets.
 
 #include "device/buffer.h"
 #include "render/film_target.h"
@@ -22,7 +23,8 @@ public:
     /// Only parts of a frame need it: a whole one is written by the next sample of each pixel.
     void clear() override;
     void show(FilmView& view) const override;
-    /// Takes the pixels that this one has had no sample of since it was cleared.
+    bool is_like(const FilmTarget& other) const override;
+    /// Takes the pixels that this one has had no sample of since it was cleared, which it has been before.
     void add(const FilmTarget& other) override;
     std::vector<std::byte> bytes() const override;
     void set_bytes(std::span<const std::byte> bytes) override;

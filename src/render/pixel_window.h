@@ -15,10 +15,12 @@ struct PixelWindow {
     uint32_t x = 0, y = 0;      // of the film's upper left pixel
     uint32_t width = 0;         // of the film
 
+    bool operator==(const PixelWindow&) const = default;
+
     HD uint32_t pixel_at(uint32_t place) const {
         return picture_width == 0 ? place : (y + place / width) * picture_width + x + place % width;
     }
-    /// Of a pixel within.
+    /// `pixel` lies in the window.
     HD uint32_t place_of(uint32_t pixel) const {
         return picture_width == 0 ? pixel : (pixel / picture_width - y) * width + pixel % picture_width - x;
     }

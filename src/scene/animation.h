@@ -29,6 +29,7 @@ constexpr bool places_node(AnimatedPart part) { return part <= AnimatedPart::Sca
 /// Returns how many numbers a value has; 0 for weights, of which there are as many as a mesh has morph targets.
 constexpr std::size_t numbers_of(AnimatedPart part) {
     constexpr uint8_t kNumbers[] = {3, 4, 3, 0, 1, 1, 3, 1, 1, 1}; // in the order of the parts
+    static_assert(sizeof kNumbers == static_cast<std::size_t>(AnimatedPart::LightOuterCone) + 1);
     return kNumbers[static_cast<std::size_t>(part)];
 }
 

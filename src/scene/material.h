@@ -80,6 +80,7 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     texture(m.normal_texture, "normal_texture");
 }
 
+/// A material of a scene: its parameters, and what it is called.
 struct Material : MaterialParameters {
     std::string name, origin; // origin: where its file has it
 

@@ -19,6 +19,7 @@ Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& se
 /// Likewise returns a frame that takes single samples of the scene at this size.
 NoisyFrame& fit_frame(const DeviceScene& scene, std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height);
 bool is_film_of(const Film& film, const RenderSettings& settings);
+
 class PictureRenderer {
 public:
     /// `scene` outlives it.

@@ -33,8 +33,9 @@ std::optional<SettingConflict> find_conflict(const PictureOptions& options, uint
 /// otherwise, and where its value is the default, which a file may hold, too. Empty: neither does.
 std::string overruled_setting(const SettingConflict& conflict, const PictureOptions& options);
 
-/// Gives `options` the settings that a scene's file suggests, in its order, but for those that were given and those
-/// that do not go with what was. A suggestion that is no setting, or no value, is left out with a warning.
-void take_suggestions(const Scene& scene, PictureOptions& options, Messages& messages);
+/// Gives `options` the settings of `verbs` that a scene's file suggests, in its order, but for those that were given
+/// and those that do not go with what was. What is no setting, no value, or a setting by which files are opened is left
+/// out with a warning: the file has been opened already.
+void take_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& options, Messages& messages);
 
 } // namespace pertev

@@ -9,7 +9,7 @@
 namespace pertev {
 
 enum class RayKind : uint8_t { Camera, Bounce, Shadow };
-/// As on the command line.
+/// These are the names that people type.
 inline constexpr ValueName<RayKind> kRayKinds[] = {
     {RayKind::Camera, "camera"}, {RayKind::Bounce, "bounce"}, {RayKind::Shadow, "shadow"}};
 constexpr const auto& names_of_all(RayKind) { return kRayKinds; }
@@ -32,7 +32,7 @@ enum class TreeBuild : uint8_t {
     Balanced, // what the first picture already pays for
     Best,     // what many pictures pay for
 };
-/// As on the command line, each better than the one before.
+/// These are the names that people type; each is better than the one before.
 inline constexpr ValueName<TreeBuild> kTreeBuilds[] = {
     {TreeBuild::Fast, "fast"}, {TreeBuild::Balanced, "balanced"}, {TreeBuild::Best, "best"}};
 constexpr const auto& names_of_all(TreeBuild) { return kTreeBuilds; }

@@ -28,9 +28,11 @@ class SettingsFiles(CliTest):
                 self.succeed("render", "cornell-box", "-o", "a.exr", *SMALL, *flags)
                 settings = self.settings_of("a.exr")
                 self.assertEqual((settings["version"], settings["scene"]["name"]), (1, "cornell-box"))
+                self.assertNotIn("camera", settings["settings"])
                 outcome = self.succeed("render", "cornell-box", "-o", "b.exr", "--settings", "s.json", "--device", "cpu")
                 self.assertNotIn("s.json", outcome.stderr)
                 a, b = self.info("a.exr"), self.info("b.exr")
+                self.assertEqual(a.get("pertev.by_scene"), b.get("pertev.by_scene"))
                 for name in ["hash", "channels", "pertev.hash", "pertev.settings", "pertev.scene_hash", "width", "height"]:
                     self.assertEqual(a[name], b[name], name)
                 self.assertEqual(read_exr(self.path("a.exr")), read_exr(self.path("b.exr")))  # each number of each layer

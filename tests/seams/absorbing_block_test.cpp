@@ -68,7 +68,8 @@ TEST_CASE("rays of the camera and shadow rays lose in a block what Beer's law sa
     uint32_t seen_through = 0, in_shadow = 0;
     for (uint32_t column = 0; column < kBlockColumns; ++column) {
         const float x = column_of_block(column); // pixels with an edge of the block or of its shadow are left out
-        const bool through = std::abs(x)<0.5f, shadow = x> 2 && x < 2.5f;
+        const bool through = std::abs(x) < 0.5f;
+        const bool shadow = x > 2 && x < 2.5f;
         if (!through && !shadow && x > -1.5f && x < 4.1f) continue;
         seen_through += through ? 1 : 0, in_shadow += shadow ? 1 : 0;
         const double way = through ? kBlockDepth : shadow ? kBlockDepth * std::sqrt(2.0) : 0.0;

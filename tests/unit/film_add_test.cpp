@@ -130,6 +130,11 @@ TEST_CASE("targets that a film is given are added and cleared with its own, and 
     CHECK_THROWS_AS(a.add(with_counts(cpu, 4, "counts")), std::logic_error);
     CHECK_THROWS_AS(a.add(with_counts(cpu, 5, "other counts")), std::logic_error);
     CHECK_THROWS_AS(a.add(Film(cpu, kWidth, kHeight, 0)), std::logic_error);
+    Film other_window = with_counts(cpu, 5, "counts");
+    other_window.set_window({.picture_width = 100, .x = 3, .y = 2, .width = kWidth});
+    CHECK_THROWS_AS(a.add(other_window), std::logic_error);
+    CHECK_THROWS_AS(a.set_window({.picture_width = kWidth, .x = 1, .width = kWidth}), std::logic_error);
+    CHECK(counts_of(a).elements().download() == std::vector<uint64_t>(5, 7)); // as it was
     a.clear();
     CHECK(counts_of(a).elements().download() == std::vector<uint64_t>(5, 0));
 }

@@ -161,14 +161,14 @@ TEST_CASE("a picture's file records each setting that the table says, where the 
 }
 TEST_CASE("what a scene's file suggests holds where nothing was given that does not go with it") {
     Scene scene;
-    scene.suggested = {{"spp", "64"},       {"size", "320x240"}, {"integrator", "photon_map"},
-                       {"photons", "1000"}, {"seed", "7"},       {"sampler", "none such"},
-                       {"samples", "1"},    {"ambient", "1"}};
+    scene.suggested = {{"spp", "64"},       {"size", "320x240"},     {"integrator", "photon_map"},
+                       {"photons", "1000"}, {"seed", "7"},           {"sampler", "none such"},
+                       {"samples", "1"},    {"transparent", "true"}, {"ambient", "1"}};
     PictureOptions options;
     options.given["seed"] = SettingOrigin::Flag;
     options.render.path.seed = 3;
     Messages messages;
-    take_suggestions(scene, options, messages);
+    take_suggestions(scene, kRender, options, messages);
     CHECK(options.render.samples == 64);
     CHECK(options.size == PictureSize{320, 240});
     CHECK(options.render.integrator == IntegratorKind::PhotonMap);
@@ -176,12 +176,19 @@ TEST_CASE("what a scene's file suggests holds where nothing was given that does 
     CHECK(options.render.path.seed == 3);
     CHECK(options.given.at("seed") == SettingOrigin::Flag);
     CHECK_FALSE(options.is_given("ambient")); // photon mapping has none
-    CHECK(messages.left_out().size() == 2);   // no such sampler, and no such setting
+    CHECK(messages.left_out().size() == 3);   // no such sampler, no such setting, and one that comes too late
+    CHECK_FALSE(options.render.transparent);
+
+    PictureOptions real_time;
+    real_time.real_time = true;
+    real_time.render.samples = 1;
+    take_suggestions(scene, kRender, real_time, messages);
+    CHECK(real_time.render.samples == 1);
 
     PictureOptions whitted;
     whitted.render.integrator = IntegratorKind::Whitted;
     whitted.given["integrator"] = SettingOrigin::File;
-    take_suggestions(scene, whitted, messages);
+    take_suggestions(scene, kRender, whitted, messages);
     CHECK(whitted.render.integrator == IntegratorKind::Whitted);
     CHECK_FALSE(whitted.is_given("photons"));
     CHECK(whitted.given.at("ambient") == SettingOrigin::Scene);

@@ -26,7 +26,7 @@ enum class BvhBuilder {
     Reinsertion,        // Binned, then subtrees are moved to where they add least
     SpatialReinsertion, // SpatialSplits, then the same
 };
-/// As on the command line.
+/// These are the names that people type.
 inline constexpr ValueName<BvhBuilder> kBvhBuilders[] = {{BvhBuilder::Binned, "binned"},
                                                          {BvhBuilder::Sweep, "sweep"},
                                                          {BvhBuilder::Median, "median"},

@@ -190,6 +190,7 @@ private:
 
 std::size_t size_of(PlyType type) {
     constexpr std::size_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8, 8, 8}; // in the order of the types
+    static_assert(std::size(kSizes) == static_cast<std::size_t>(PlyType::UInt64) + 1);
     return kSizes[static_cast<std::size_t>(type)];
 }
 

@@ -60,8 +60,9 @@ struct PathListener {
     HD void begins(const PathState&) {}
     template <class K>
     HD void take_up(const K&) {}
-    /// The path's ray has met a surface, before which there were path.depth scatterings, or none.
+    /// The path's ray has met a surface, before which there were path.depth scatterings.
     HD void vertex(const PathState&, const Hit&, Surface&) {}
+    /// It has met none: it leaves the scene, or it has met a medium before a surface.
     HD void missed(const PathState&) {}
     /// Light that the ray has run into at `place`, which next-event estimation would have drawn by the density
     /// `light_pdf` (0: it could not), is to be added. True keeps it out of the path: the listener has taken it.

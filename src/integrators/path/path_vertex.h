@@ -49,8 +49,8 @@ HD inline Rgb emitted_light(const PathSettings& settings, const PathState& path,
     return clamp_contribution(settings, path.depth, weight, path.throughput * (weight * emission));
 }
 
-/// Returns the context by which next-event estimation has chosen a light where the ray begins. Who reads normals keeps
-/// none of a surface that lets light through.
+/// Returns the context by which next-event estimation has chosen a light where the ray begins, but for the offset of
+/// the ray's origin.
 HD inline LightContext context_before(const PathState& path) {
     return {path.origin, path.normal, path.normal == Vec3{0, 0, 0}, path.time};
 }
@@ -62,7 +62,7 @@ HD inline void add_emitted(PathState& path, Rgb light, Listener& listener) {
     path.radiance += light;
 }
 
-/// Light of the environment, of a ray that met nothing.
+/// Adds the light of the environment that a ray sees which met nothing.
 template <Features kFeatures, class Listener>
 HD INLINE_ON_DEVICE void add_background(const PathJob& job, PathState& path, Listener& listener) {
     const LightSetView& lights = job.picture.scene.lights;
@@ -77,7 +77,7 @@ HD INLINE_ON_DEVICE void add_background(const PathJob& job, PathState& path, Lis
     add_emitted(path, light, listener);
 }
 
-/// Light of the surface that the ray has hit.
+/// Adds the light that the surface which the ray has hit emits.
 template <Features kFeatures, class Listener>
 HD INLINE_ON_DEVICE void add_surface_emission(const PathJob& job, PathState& path, const Hit& hit,
                                               const Surface& surface, Listener& listener) {
@@ -94,7 +94,7 @@ HD INLINE_ON_DEVICE void add_surface_emission(const PathJob& job, PathState& pat
     add_emitted(path, light, listener);
 }
 
-/// One point of one light, drawn for the vertex. True when `shadow` is to be traced.
+/// Draws one point of one light for the vertex. Returns whether `shadow` is to be traced.
 template <Features kFeatures, class Vertex, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path, const Vertex& vertex,
                                        const Numbers& numbers, ShadowRay& shadow, Listener& listener) {
@@ -121,15 +121,15 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     if (!light.is_delta && settings.strategy == LightStrategy::Mis) {
         weight = power_heuristic(light.pdf, scattered.pdf);
     }
-    shadow.contribution = clamp_contribution(settings, path.depth + 1, weight,
-                                             path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
+    Rgb contribution = path.throughput * scattered.f * ((weight / light.pdf) * light.radiance);
     const float lamp_error = kMoves ? lamp_error_at(scene, light, path.time) : 0.0f;
     const Ray ray = vertex.ray_to(light, lamp_error);
     if constexpr (!Medium<kFeatures>::kIsVacuum) {
         const Rgb transmittance = Medium<kFeatures>(scene).transmittance(settings, path, ray);
         if (is_black(transmittance)) return false;
-        shadow.contribution = transmittance * shadow.contribution;
+        contribution = transmittance * contribution;
     }
+    shadow.contribution = clamp_contribution(settings, path.depth + 1, weight, contribution);
     shadow.origin = ray.origin;
     shadow.direction = ray.direction;
     shadow.t_max = ray.t_max;
@@ -145,7 +145,7 @@ HD inline float survival_probability(Roulette roulette, float throughput) {
     return roulette == Roulette::FourthRoot ? fourth : fourth * sqrt(sqrt(fourth));
 }
 
-/// Draws where the path goes on. False when it ends here.
+/// Draws where the path goes on. Returns false when it ends here.
 template <class Vertex, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathState& path, const Vertex& vertex,
                                            const Numbers& numbers, Listener& listener) {
@@ -173,7 +173,7 @@ HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathSta
     return true;
 }
 
-/// The surface that the path's ray has hit, where it is at the time of the ray.
+/// Returns the surface that the path's ray has hit, where it is at the time of the ray.
 template <Features kFeatures>
 HD INLINE_ON_DEVICE Surface make_vertex(const SceneView& scene, const PathState& path, const Hit& hit) {
     constexpr bool kMoves = (kFeatures & kMoving) != 0;
@@ -196,7 +196,7 @@ HD INLINE_ON_DEVICE bool shade_in_medium(const PathJob& job, PathState& path, co
     return sample_scattering(job.settings, path, vertex, numbers, listener);
 }
 
-/// What the ray of `path` met: `hit`, or nothing when hit.instance is kNoHit. Returns whether the path goes on;
+/// Takes the path over what its ray met: `hit`, or nothing when hit.instance is kNoHit. Returns whether it goes on;
 /// `wants_shadow` says whether `shadow` was written. `numbers`: DrawWhenAsked or DrawnNumbers.
 template <Features kFeatures, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const Hit& hit, const Numbers& numbers,
@@ -222,10 +222,7 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     const SurfaceVertex vertex = {surface, -path.direction};
     wants_shadow = listener.wants_direct(path, hit, surface) &&
                    sample_direct<kFeatures>(job, path, vertex, numbers, shadow, listener);
-    if constexpr (LightChoice<kFeatures>::kReadsNormal) {
-        const LightContext context = vertex.light_context(path.time);
-        path.normal = context.lets_through ? Vec3{0, 0, 0} : context.normal;
-    }
+    if constexpr (LightChoice<kFeatures>::kReadsNormal) path.normal = vertex.light_context(path.time).normal;
     return sample_scattering(job.settings, path, vertex, numbers, listener);
 }
 

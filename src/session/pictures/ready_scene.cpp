@@ -38,9 +38,10 @@ void tell_settings(PictureOptions options, const RenderSettings& settings, const
     const CameraChoice& choice = options.scene.camera;
     const Camera* const own = scene_camera(choice.camera, scene);
     const bool is_own = own != nullptr && !choice.eye && options.camera_path.empty();
-    if (is_own) options.given.try_emplace("camera", SettingOrigin::Scene);
-    if (own != nullptr && own->aspect > 0) options.given.try_emplace("size", SettingOrigin::Scene);
-    for (const auto& [name, origin] : options.given) {
+    auto told = options.given; // the scene's own camera has no value that a file of settings could give
+    if (is_own) told.try_emplace("camera", SettingOrigin::Scene);
+    if (own != nullptr && own->aspect > 0) told.try_emplace("size", SettingOrigin::Scene);
+    for (const auto& [name, origin] : told) {
         std::string& names = origin == SettingOrigin::Flag   ? source.by_flags
                              : origin == SettingOrigin::File ? source.by_settings
                                                              : source.by_scene;
@@ -55,7 +56,8 @@ void tell_settings(PictureOptions options, const RenderSettings& settings, const
 
 } // namespace
 
-std::unique_ptr<ReadyScene> make_ready(PictureOptions& options, Sink& sink, const SolveRadiosity& solve) {
+std::unique_ptr<ReadyScene> make_ready(PictureOptions& options, uint32_t verbs, Sink& sink,
+                                       const SolveRadiosity& solve) {
     Messages& messages = sink.messages();
     std::optional<CameraPath> path;
     if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
@@ -72,7 +74,7 @@ std::unique_ptr<ReadyScene> make_ready(PictureOptions& options, Sink& sink, cons
         options.render.integrator == IntegratorKind::Radiosity && !options.radiosity.solution.empty();
     if (shows_solution) open.use = SceneUse::Measurement; // as it was solved
     Scene scene = open_scene(open, messages);
-    take_suggestions(scene, options, messages);
+    take_suggestions(scene, verbs, options, messages);
     if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
     RenderSettings& settings = ready->settings;
     settings = render_settings(options, scene);

@@ -31,9 +31,10 @@ struct ReadyScene {
 /// Finds the light that radiosity shows of a scene.
 using SolveRadiosity = std::function<RadiosityLook(ReadyScene& ready)>;
 
-/// Makes all of it ready, and tells `sink` what goes on. Gives `options` what the scene's file suggests. `solve` is
-/// asked for if the integrator is radiosity. Throws Error.
-std::unique_ptr<ReadyScene> make_ready(PictureOptions& options, Sink& sink, const SolveRadiosity& solve);
+/// Makes all of it ready, and tells `sink` what goes on. Gives `options` what the scene's file suggests of the settings
+/// of `verbs`. `solve` is asked for if the integrator is radiosity. Throws Error.
+std::unique_ptr<ReadyScene> make_ready(PictureOptions& options, uint32_t verbs, Sink& sink,
+                                       const SolveRadiosity& solve);
 
 /// Returns how the picture of the first frame is made, with its camera, but without its display.
 PictureRecord picture_record(const PictureOptions& options, ReadyScene& ready, const Messages& messages);
