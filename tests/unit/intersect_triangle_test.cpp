@@ -136,7 +136,7 @@ TEST_CASE("hits agree with extended precision, and lie on the ray as closely as 
             worst_units = max(worst_units, away / (scale * 0x1p-24f));
             wrong += want.least < -1e-2L && size == 1.0f && far < 1e3f ? 1 : 0;
             const Vec3 normal = cross(b - a, c - a); // edge-on, t is ill-conditioned
-            if (far == 1.0f && abs(dot(normal, d)) > 0.05f * length(normal) * length(d)) {
+            if (far == 1.0f && pertev::abs(dot(normal, d)) > 0.05f * length(normal) * length(d)) {
                 wrong +=
                     std::fabs(static_cast<long double>(hit.t) - want.t) * static_cast<long double>(length(d)) > 1e-4L
                         ? 1

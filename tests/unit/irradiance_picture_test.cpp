@@ -48,7 +48,7 @@ TEST_CASE("under a point light a floor has I cos(t) / r^2, whatever it is made o
                 const Vec3 p = {(static_cast<float>(x) + 0.5f) * 0.4f - 2, 0,
                                 (static_cast<float>(y) + 0.5f) * 0.4f - 2};
                 const float r2 = length_squared(light - p);
-                const auto wanted = static_cast<double>(7 / (r2 * sqrt(r2)));
+                const auto wanted = static_cast<double>(7 / (r2 * pertev::sqrt(r2)));
                 CHECK(static_cast<double>(result.picture.at(x, y)[0]) ==
                       doctest::Approx(wanted).epsilon(is_lamp ? 0.02 : 2e-5));
             }

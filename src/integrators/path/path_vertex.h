@@ -121,15 +121,17 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     if (!light.is_delta && settings.strategy == LightStrategy::Mis) {
         weight = power_heuristic(light.pdf, scattered.pdf);
     }
-    Rgb contribution = path.throughput * scattered.f * ((weight / light.pdf) * light.radiance);
+    shadow.contribution = clamp_contribution(settings, path.depth + 1, weight,
+                                             path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
     const float lamp_error = kMoves ? lamp_error_at(scene, light, path.time) : 0.0f;
     const Ray ray = vertex.ray_to(light, lamp_error);
     if constexpr (!Medium<kFeatures>::kIsVacuum) {
         const Rgb transmittance = Medium<kFeatures>(scene).transmittance(settings, path, ray);
         if (is_black(transmittance)) return false;
-        contribution = transmittance * contribution;
+        const Rgb arriving = transmittance * ((weight / light.pdf) * light.radiance);
+        shadow.contribution =
+            clamp_contribution(settings, path.depth + 1, weight, path.throughput * scattered.f * arriving);
     }
-    shadow.contribution = clamp_contribution(settings, path.depth + 1, weight, contribution);
     shadow.origin = ray.origin;
     shadow.direction = ray.direction;
     shadow.t_max = ray.t_max;
@@ -222,7 +224,10 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     const SurfaceVertex vertex = {surface, -path.direction};
     wants_shadow = listener.wants_direct(path, hit, surface) &&
                    sample_direct<kFeatures>(job, path, vertex, numbers, shadow, listener);
-    if constexpr (LightChoice<kFeatures>::kReadsNormal) path.normal = vertex.light_context(path.time).normal;
+    if constexpr (LightChoice<kFeatures>::kReadsNormal) {
+        const LightContext context = vertex.light_context(path.time);
+        path.normal = context.lets_through ? Vec3{0, 0, 0} : context.normal;
+    }
     return sample_scattering(job.settings, path, vertex, numbers, listener);
 }
 
