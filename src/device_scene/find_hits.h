@@ -17,8 +17,8 @@ inline void find_hits(const HostTrees& trees, uint32_t count, RayOrder order, co
     trace_closest_many<WalkOptions{}>(trees, count, order, ray_of, accept_of, hits);
 }
 
-/// The same of rays that come from the camera, or have bounced. Backs that are hidden from the camera do not count to
-/// its own rays (AcceptCameraHit).
+/// Finds the same for rays that come from the camera, or have bounced. Backs that are hidden from the camera do not
+/// count to its own rays (AcceptCameraHit).
 template <class RayOf, class AcceptOf>
 inline void find_hits(const HostTrees& trees, const SceneView& scene, bool from_camera, uint32_t count,
                       const RayOf& ray_of, const AcceptOf& accept_of, Hit* hits) {

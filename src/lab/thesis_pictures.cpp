@@ -25,7 +25,7 @@ const ThesisRecipe& recipe_named(std::string_view name) {
     return *found;
 }
 
-/// Where the thesis has it: "figure-3.7a" is of "Figure 3.7", "section-2.1-flat" of "Section 2.1".
+/// Returns the place in the thesis: "figure-3.7a" is of "Figure 3.7", "section-2.1-flat" of "Section 2.1".
 std::string place_of(std::string_view name) {
     const std::size_t dash = name.find('-'), end = name.find_first_not_of("0123456789.", dash + 1);
     std::string place = fmt::format("{} {}", name.substr(0, dash), name.substr(dash + 1, end - dash - 1));

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a surface is made of: plain numbers and references to textures; shading/ turns them into BSDFs.
+// A material says by plain numbers and references to textures what a surface is made of; shading/ makes BSDFs of it.
 
 #include <cstdint>
 #include <string>
@@ -22,7 +22,7 @@ enum class MaterialKind : uint8_t {
 
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
-/// All that a material is, as plain data: the block that goes to a device as it stands. A new parameter is a member
+/// MaterialParameters is the block of plain data that goes to a device as it stands. A new parameter is a member
 /// here, a row of visit_parameters, what its reader reads, and the code that uses it.
 struct MaterialParameters {
     MaterialKind kind = MaterialKind::Diffuse;

@@ -13,7 +13,7 @@
 namespace pertev {
 namespace {
 
-/// What a structure's name has behind it for a layout that is not the one that its builder makes.
+/// These follow a structure's name where its layout is not the one that its builder makes.
 constexpr ValueName<TreeLayout> kSuffixes[] = {{TreeLayout::Woop, " woop"},
                                                {TreeLayout::Skip, " skip links"},
                                                {TreeLayout::Wide4, " wide4"},

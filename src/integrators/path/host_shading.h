@@ -23,7 +23,7 @@ template <class Listener>
 using ShadeOnHost = bool (*)(const PathJob&, PathState&, typename Listener::Kept&, const Hit&, const DrawnNumbers&,
                              AskedByVertex<Listener>&, bool& goes_on);
 
-/// The one with no more code than the job needs.
+/// Returns the one with no more code than the job needs.
 template <class Listener>
 ShadeOnHost<Listener> shading_for(const PathJob& job);
 template <>

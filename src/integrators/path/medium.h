@@ -1,7 +1,7 @@
 #pragma once
 
-// What fills the space between surfaces: a vacuum. A medium is a feature of the scene, and for the masks that hold it
-// Medium is specialised, with this interface:
+// A vacuum fills the space between surfaces. A medium is a feature of the scene, and for the masks that hold it Medium
+// is specialised, with this interface:
 //
 //   explicit Medium(const SceneView&)
 //   Vertex                                      where a path's ray has met the medium. It has the functions of

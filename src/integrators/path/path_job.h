@@ -61,8 +61,8 @@ inline Features features_for(const PathJob& job) {
     return features_of(picture.scene.known) | (has_times ? Features{kMoving} : 0);
 }
 
-/// How code for a mask of features chooses lights (shading/light_set.h). A light tree is a feature, for which this is
-/// specialised.
+/// Code for a mask of features chooses lights by this class (shading/light_set.h). A light tree is a feature, for which
+/// it is specialised.
 template <Features kFeatures>
 struct LightChoice : ChosenByPower {};
 
