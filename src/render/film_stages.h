@@ -68,7 +68,7 @@ struct ResolveFilm {
     }
 };
 
-/// What a display shows, one pixel each.
+/// One call per pixel: computes the bytes that a display shows.
 struct DisplayFilm {
     FilmView film;
     uint64_t samples; // per pixel, > 0
