@@ -53,7 +53,7 @@ protected:
     }
 
     Queue& queue_;
-    Settings settings_, picture_settings_; // of the next begin(), and of the current picture
+    Settings settings_, picture_settings_; // settings of the next begin(), and of the current picture
     uint32_t batch_;
     PictureView picture_{};
     SceneTracer* tracer_ = nullptr;

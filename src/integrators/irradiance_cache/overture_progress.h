@@ -37,10 +37,10 @@ private:
     bool has_begun_ = false;                 // whether the first round has begun
     uint64_t began_at_ = 0;                  // rays before the current paths or records
     double expected_ = 0, later_ = 0;        // expected rays of these, and of all that follows
-    uint32_t wanted_ = 0, records_ = 0;      // of the current round; of the rounds before
+    uint32_t wanted_ = 0, records_ = 0;      // records of the current round, and of the rounds before
     double wanting_ = 1, falls_by_ = 1;      // share of the last grid that requested records, and its ratio to the
                                              // one before
-    double rays_a_walk_ = 2, rays_a_record_; // of the last completed ones, or an estimate
+    double rays_a_walk_ = 2, rays_a_record_; // rays of the last completed ones, or an estimate
     double share_ = 0;
 };
 

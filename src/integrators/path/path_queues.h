@@ -19,12 +19,12 @@ namespace pertev {
 
 struct PathQueueView {
     Ray* rays;          // to trace next, endless; pixel and sample are stored in place of t_min and t_max
-    Uint2* starts;      // as in RayQueueView; with the keys, one array for both sets, because only the tracer reads
-                        // it
+    Uint2* starts;      // the starts of RayQueueView; with the keys, one array for both sets, because only the tracer
+                        // reads it
     uint32_t* keys;     // written if some surface is blended
     Float4* throughput; // rgb, bits of (depth | rough_depth << 16)
     Float4* radiance;   // rgb, bsdf_pdf; for an ended path rgb, bits of the pixel
-    float* times;       // as in RayQueueView; null unless something moves while the shutter is open
+    float* times;       // the times of RayQueueView; null unless something moves while the shutter is open
 
     /// Query of the rays at slots 0, 1, ..., or backwards from `last`.
     RayQueueView query() const {
@@ -83,7 +83,7 @@ struct ShadowQueueView {
     Uint2 *starts, *targets;
     uint32_t* keys;       // keys, and after tracing the results
     Float4* contribution; // rgb, bits of the path's slot in the next round's arrays
-    float* times;         // as in PathQueueView
+    float* times;         // the times of PathQueueView
 
     RayQueueView query() const {
         return {.rays = rays, .starts = starts, .targets = targets, .keys = keys, .times = times};

@@ -46,7 +46,7 @@ private:
 
     PhotonEnergy* energy_ = nullptr;
     WorldSphere world_{};
-    float global_radius_ = 0, caustic_radius_ = 0; // of the first pass
+    float global_radius_ = 0, caustic_radius_ = 0; // radii of the first pass
     PhotonMaps maps_;
     Buffer<Float4> targets_;
     uint32_t target_count_ = 0;

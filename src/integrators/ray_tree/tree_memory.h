@@ -64,13 +64,13 @@ struct TreesView {
     Float4* origins;      // origin, bits of the depth
     Float4* directions;   // direction, bsdf_pdf
     Float4* weights;      // weight, bits of the start's instance
-    uint32_t* primitives; // of the start
+    uint32_t* primitives; // primitive of the start
 
     // The current rays, contiguous. Rounds alternate between two arrays for their owners, the trees.
     Ray* rays;
     Uint2* starts;
     uint32_t* keys; // keys of coins
-    float* times;   // as in RayQueueView; null unless something moves while the shutter is open
+    float* times;   // the times of RayQueueView; null unless something moves while the shutter is open
     uint32_t* owners[2];
     Float4* hit_places;
     uint32_t* hit_instances;

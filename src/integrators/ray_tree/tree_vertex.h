@@ -13,8 +13,8 @@
 
 namespace pertev {
 
-/// What happens to a ray whose weight is below the minimum: it is dropped, which loses its light, or kept at random
-/// with a compensating weight (Russian roulette), which does not.
+/// Treatment of a ray whose weight is below the minimum: it is dropped, which loses its light, or kept at random with
+/// a compensating weight (Russian roulette), which does not.
 enum class WeakRays : uint8_t { LeftOut, ByChance };
 struct LeastWeight {
     float weight;

@@ -77,7 +77,7 @@ struct EmitFromKind {
     const SceneView& scene;
     const WorldSphere& world;
     Vec2 u;
-    uint32_t key; // as in find_lamp_place
+    uint32_t key; // the key that find_lamp_place takes
     Particle& particle;
 
     HD bool triangle(uint32_t light, Vec2 at, float) const {
