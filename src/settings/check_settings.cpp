@@ -59,7 +59,7 @@ std::optional<SettingConflict> conflict_of(const PictureOptions& options, const 
     return std::nullopt;
 }
 
-/// Returns whether a scene is opened by the setting, or another file is.
+/// Returns whether the setting causes a scene or another file to be opened.
 bool opens_files(const Setting& setting) {
     constexpr std::string_view kGroups[] = {"File", "Environment", "Lamps", "Faces", "Tracing", "Machine"};
     constexpr std::string_view kNames[] = {"transparent", "camera_path", "solution"};
@@ -101,7 +101,7 @@ std::string overruled_setting(const SettingConflict& conflict, const PictureOpti
 void take_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& options, Messages& messages) {
     for (const SuggestedSetting& suggested : scene.suggested) {
         if (options.is_given(suggested.name)) continue;
-        if (options.real_time && suggested.name == "spp") continue; // its frames have one sample
+        if (options.real_time && suggested.name == "spp") continue; // real-time frames have one sample
         const Setting* const setting = find_setting(suggested.name);
         try {
             if (setting == nullptr || !setting->is_kept || opens_files(*setting)) {

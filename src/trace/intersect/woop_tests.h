@@ -2,7 +2,7 @@
 
 // Woop's unit-triangle test, only for the laboratory: transforms the ray to the space in which the triangle is the
 // unit triangle. The tree has the transforms (accel/bvh/woop_bvh.h), so the vertices are not read. Boxes are tested
-// as in FastTests.
+// see FastTests.
 //
 // Sources: Woop, M.Sc. thesis, Saarland University, 2004, section 4.2; used by Aila, Laine, "Understanding the
 // Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.

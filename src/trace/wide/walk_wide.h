@@ -130,7 +130,7 @@ struct LeafOfFour {
 /// A pending child.
 struct WideEntry {
     float entry;
-    uint32_t link, count; // as in WideBvhNode
+    uint32_t link, count; // copied from WideBvhNode
 };
 using WideStack = WideEntry[kWideStackSize<kWideChildren>];
 

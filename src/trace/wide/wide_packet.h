@@ -24,7 +24,7 @@ inline constexpr int kPacketEights = 4, kWidePacket = 8 * kPacketEights;
 template <WalkOptions kOptions, class Visitor>
 class WidePacket {
     static_assert(kOptions.is_exact());
-    static constexpr float kMaxSpread = 0.25f; // of slopes; with more, rays share too few nodes
+    static constexpr float kMaxSpread = 0.25f; // maximum spread of slopes; with more, rays share too few nodes
 
 public:
     /// Makes a packet of eight rays; those that are not needed are copies of one of the others, with its visitor.
