@@ -76,13 +76,12 @@ public:
     void clear();
 
     /// From now on the film is of this window of the picture. Of integrators, `path`, `direct`, `indirect` and `hybrid`
-    /// render windows.
+    /// render windows; the others throw std::logic_error.
     void set_window(const PixelWindow& window) {
         PERTEV_CHECK(window.picture_width == 0 ||
                      (window.width == width_ && window.x + window.width <= window.picture_width));
         window_ = window;
     }
-    const PixelWindow& window() const { return window_; }
 
     /// Says what the samples are that have been added to view() until now: of all rows.
     void set_samples(SampleRange samples) { set_part({0, height_, samples}); }

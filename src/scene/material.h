@@ -80,6 +80,13 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     texture(m.normal_texture, "normal_texture");
 }
 
+/// Calls texture(reference, name) for each slot of a texture, with an image or without.
+template <class Parameters, class Texture>
+void visit_textures(Parameters& m, const Texture& texture) {
+    visit_parameters(
+        m, [](auto&&...) {}, texture);
+}
+
 /// A material of a scene: its parameters, and what it is called.
 struct Material : MaterialParameters {
     std::string name, origin; // origin: where its file has it
@@ -87,11 +94,9 @@ struct Material : MaterialParameters {
     /// Its slots that have an image.
     std::vector<const TextureRef*> textures() const {
         std::vector<const TextureRef*> found;
-        visit_parameters(
-            *this, [](auto&&...) {},
-            [&](const TextureRef& texture, const char*) {
-                if (texture.has_image()) found.push_back(&texture);
-            });
+        visit_textures(*this, [&](const TextureRef& texture, const char*) {
+            if (texture.has_image()) found.push_back(&texture);
+        });
         return found;
     }
 };

@@ -107,8 +107,9 @@ struct Setting {
     std::string_view needs = "";    // names of settings, or NAME=VALUE, of which at least one must hold
     std::string_view excludes = ""; // those that must not hold
     Recorded recorded = Recorded::No;
-    bool is_kept = true;    // files of settings hold it: the picture depends on it
-    bool is_common = false; // most people use it
+    bool is_kept = true;      // files of settings hold it: the picture depends on it
+    bool opens_scene = false; // it counts before the scene's file is read, which cannot suggest it
+    bool is_common = false;   // most people use it
 };
 
 bool is_switch(const Setting& setting);

@@ -99,14 +99,13 @@ struct LightSetView {
 
 /// Who asks for light: a point of a surface, or of space. What the draws leave alone costs nothing.
 struct LightContext {
-    Vec3 point;        // metres, moved world
-    Vec3 normal;       // unit, shading, on the side that the light is scattered to; zero: there is none
-    bool lets_through; // light may come from behind the normal
-    float time;        // of the ray, while the shutter is open
+    Vec3 point;  // metres, moved world
+    Vec3 normal; // unit, shading, on the side that the light is scattered to; zero where light may come from all sides
+    float time;  // of the ray, while the shutter is open
 
-    HD LightContext(Vec3 at, float at_time = kAtRest) : point(at), normal{0, 0, 0}, lets_through(true), time(at_time) {}
+    HD LightContext(Vec3 at, float at_time = kAtRest) : point(at), normal{0, 0, 0}, time(at_time) {}
     HD LightContext(Vec3 at, Vec3 shading_normal, bool is_translucent, float at_time)
-        : point(at), normal(shading_normal), lets_through(is_translucent), time(at_time) {}
+        : point(at), normal(is_translucent ? Vec3{0, 0, 0} : shading_normal), time(at_time) {}
 };
 
 struct LightSample {
