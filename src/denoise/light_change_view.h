@@ -5,7 +5,6 @@
 // their difference shows the change of light with little noise (some if an emitter's share of all light changes,
 // because the same numbers then occasionally select another emitter).
 //
-//
 // Source: Schied, Peters, Dachsbacher, "Gradient Estimation for Real-Time Adaptive Temporal Filtering", HPG 2018
 // (A-SVGF), for gradients from the same random numbers. There they shorten histories; here histories are scaled by
 // them first.

@@ -6,7 +6,6 @@
 // b. Every stage is one function for both devices. The picture is biased: it blurs light where no guide shows an
 // edge.
 //
-//
 // Sums are floats: beyond a hundred thousand samples per pixel their rounding becomes visible, long after noise has
 // vanished.
 

@@ -3,7 +3,6 @@
 // Data that stages of the reconstruction exchange, as arrays with one element per pixel, row by row. Data that lives
 // from frame to frame is double-buffered: the previous frame is read while the current one is written.
 //
-//
 // A *signal* is light that the first surface scatters, divided by its reflectance (demodulated), so that it is smooth
 // where a texture is not. There are two, for diffuse lobes and for others.
 

@@ -77,13 +77,12 @@ public:
     void clear();
 
     /// Restricts the film to this window of the picture. The integrators `path`, `direct`, `indirect` and `hybrid`
-    /// can render windows.
+    /// can render windows; the others throw std::logic_error.
     void set_window(const PixelWindow& window) {
         PERTEV_CHECK(window.picture_width == 0 ||
                      (window.width == width_ && window.x + window.width <= window.picture_width));
         window_ = window;
     }
-    const PixelWindow& window() const { return window_; }
 
     /// Sets which samples, of all rows, have been added to view() so far.
     void set_samples(SampleRange samples) { set_part({0, height_, samples}); }

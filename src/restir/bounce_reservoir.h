@@ -3,13 +3,11 @@
 // A pixel's GI reservoir: one surface point that the pixel's surface sees, and the light that diffuse lobes there
 // send; 48 bytes.
 //
-//
 // Diffuse lobes beneath a reflecting layer send A(wo) B: the transmittance on the way out, times the light that has
 // entered, which does not depend on the direction (shading/lobes/passage.h). B is stored, so that a point sends the
 // right light to any receiver. Thus reuse is exact; light of other lobes at the point stays with the path that found
 // it. If a normal map's normal is bent towards the viewer at grazing angles (shading_frame.h), the two differ
 // slightly.
-//
 //
 // Densities of points are measured in barycentric weights of their triangle. The ratio of solid angles between two
 // pixels (the Jacobian of Ouyang et al., "ReSTIR GI: Path Resampling for Real-Time Path Tracing", HPG 2021, equation

@@ -4,7 +4,6 @@
 // again in the same frame. It works for any reservoir with the functions of light_reservoir.h and bounce_reservoir.h:
 // light_scattered and find_sight.
 //
-//
 // Item i, the reservoir of pixel i, is picked by share(i, item i) target(own pixel, item i) weight i, with
 //   share(j, x) = count j target(j, x) / sum over all k of count k target(k, x)
 // This is the generalised balance heuristic over target functions without visibility (Lin et al., "Generalized

@@ -2,7 +2,6 @@
 
 // A camera path: keys with position and target at given times.
 //
-//
 // Between keys each component follows a cubic through the keys' values. Its slope at a key is that of the parabola
 // through the key and its neighbours in time (at the ends, of the line to the neighbour): the three-point Hermite
 // spline. Thus position and velocity are continuous, and keys are reached at their times. It uses only products and

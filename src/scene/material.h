@@ -82,6 +82,13 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     texture(m.normal_texture, "normal_texture");
 }
 
+/// Calls texture(reference, name) for each texture slot, with or without an image.
+template <class Parameters, class Texture>
+void visit_textures(Parameters& m, const Texture& texture) {
+    visit_parameters(
+        m, [](auto&&...) {}, texture);
+}
+
 /// A material of a scene: its parameters and its name.
 struct Material : MaterialParameters {
     std::string name, origin; // `origin` is its location in the file
@@ -89,11 +96,9 @@ struct Material : MaterialParameters {
     /// Texture slots that have an image.
     std::vector<const TextureRef*> textures() const {
         std::vector<const TextureRef*> found;
-        visit_parameters(
-            *this, [](auto&&...) {},
-            [&](const TextureRef& texture, const char*) {
-                if (texture.has_image()) found.push_back(&texture);
-            });
+        visit_textures(*this, [&](const TextureRef& texture, const char*) {
+            if (texture.has_image()) found.push_back(&texture);
+        });
         return found;
     }
 };

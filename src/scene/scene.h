@@ -5,7 +5,6 @@
 // `origin` is the location of an object in its file, for messages: a JSON pointer or a line; empty if the format has
 // neither.
 //
-//
 // All coordinates are relative to `origin_in_file`, which the reader subtracts in double before rounding to floats
 // (scene/scene_origin.h). It is 0 if the scene is near the file's origin.
 

@@ -110,12 +110,17 @@ uint32_t FilmRender::render(SampleRange range, const KeepGoing& keep_going) {
         };
         const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
         uint32_t added = pass;
-        if (has_steps) {
-            steps_.add(integrator, first + done, pass, into_film);
-        } else {
-            if (is_apart) into.clear();
-            added = integrator.render_while(first + done, pass, into.view(),
-                                            [&] { return !keep_going || keep_going(now()); });
+        try {
+            if (has_steps) {
+                steps_.add(integrator, first + done, pass, into_film);
+            } else {
+                if (is_apart) into.clear();
+                added = integrator.render_while(first + done, pass, into.view(),
+                                                [&] { return !keep_going || keep_going(now()); });
+            }
+        } catch (...) { // parts of the pass may be in the film
+            if (!is_apart) forget_samples();
+            throw;
         }
         if (pictures_.is_abandoned()) { // parts of a sample may be missing
             if (is_apart) break;

@@ -3,7 +3,6 @@
 // Renders a range of samples of one picture of a scene on a device into an exact film. Films of consecutive ranges
 // add up to the film of the whole range (Film::add). It needs no session.
 //
-//
 // The bytes do not depend on how calls split the samples, nor on earlier pictures: a picture of n samples is always
 // the same.
 

@@ -107,8 +107,9 @@ struct Setting {
     std::string_view needs = "";    // names of settings, or NAME=VALUE, at least one of which must be satisfied
     std::string_view excludes = ""; // names of settings, or NAME=VALUE, that must not be satisfied
     Recorded recorded = Recorded::No;
-    bool is_kept = true;    // settings files contain it, because the picture depends on it
-    bool is_common = false; // used by most people
+    bool is_kept = true;      // settings files contain it, because the picture depends on it
+    bool opens_scene = false; // takes effect before the scene's file is read, which thus cannot suggest it
+    bool is_common = false;   // used by most people
 };
 
 bool is_switch(const Setting& setting);

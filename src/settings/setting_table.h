@@ -56,7 +56,7 @@ struct Needs {
 struct Excludes {
     const char* text;
 };
-enum class Mark { Name, NotKept, Common };
+enum class Mark { Name, NotKept, Common, OpensScene };
 
 inline void put(Setting& s, Range range) { s.low = range.low, s.high = range.high; }
 inline void put(Setting& s, Above range) { s.low = range.low, s.high = range.high, s.above = true; }
@@ -73,6 +73,7 @@ inline void put(Setting& s, Mark mark) {
     if (mark == Mark::Name) s.is_name = true;
     if (mark == Mark::NotKept) s.is_kept = false;
     if (mark == Mark::Common) s.is_common = true;
+    if (mark == Mark::OpensScene) s.opens_scene = true;
 }
 
 /// Makes a row; the parts may be in any order.

@@ -3,7 +3,6 @@
 // Light from infinitely far away: radiance by direction, and sampling of directions. Conventions of scene/light.h:
 // the middle column looks along -z, +x is a quarter of the image to its right, row 0 is +y.
 //
-//
 // Radiance is bilinear between the centres of texels, and so is the sampling density. A patch lies between the
 // centres of four texels; at each pole a row of patches, half as high, repeats the texels of the last row. Cdfs with
 // guide tables select a patch (its row by y, its column by x), so that near pairs of numbers select near directions.

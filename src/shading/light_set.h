@@ -6,12 +6,10 @@
 // importance sampling needs (Veach 1997, section 9.2). A class that all three take as a parameter, ChosenByPower,
 // selects the light and defines its probability; a light tree is another such class.
 //
-//
 // A pair of numbers determines everything, and near pairs give near points: x selects the source (an emissive
 // instance, a punctual light, the environment) and y the instance's triangle, both by cdfs with guide tables; the
 // rest of x and y selects the point on the triangle. For the environment y selects the row and the rest of x the
 // column.
-//
 //
 // Order of sources: emissive instances, punctual lights, the environment; instances, their triangles and punctual
 // lights are sorted along Hilbert's curve, so that evenly spread numbers are evenly spread in space. A light's number
@@ -103,14 +101,13 @@ struct LightSetView {
 
 /// The receiver of light: a point of a surface, or of space. Members that the sampling does not use cost nothing.
 struct LightContext {
-    Vec3 point;        // metres, moved world
-    Vec3 normal;       // unit, shading normal on the side of the scattered light; zero: none
-    bool lets_through; // light may come from behind the normal
-    float time;        // time of the ray while the shutter is open
+    Vec3 point;  // metres, translated world
+    Vec3 normal; // unit, shading normal on the side of the scattered light; zero if light may come from all sides
+    float time;  // time of the ray while the shutter is open
 
-    HD LightContext(Vec3 at, float at_time = kAtRest) : point(at), normal{0, 0, 0}, lets_through(true), time(at_time) {}
+    HD LightContext(Vec3 at, float at_time = kAtRest) : point(at), normal{0, 0, 0}, time(at_time) {}
     HD LightContext(Vec3 at, Vec3 shading_normal, bool is_translucent, float at_time)
-        : point(at), normal(shading_normal), lets_through(is_translucent), time(at_time) {}
+        : point(at), normal(is_translucent ? Vec3{0, 0, 0} : shading_normal), time(at_time) {}
 };
 
 struct LightSample {

@@ -4,10 +4,8 @@
 // numbers never selects the smaller index, so evenly spread points select evenly spread indices, and the position
 // within an index's numbers can be used again ("the rest").
 //
-//
 // Source: the guide table is from Chen and Asau, "On Generating Random Variates from an Empirical Distribution", AIIE
 // Transactions 6(2), 1974. A slot with many indices is searched by bisection, so that none is slow.
-//
 //
 // The cdf consists of integers: index i owns the numbers [starts[i], starts[i + 1]) of 2^31. Each index is selected
 // with exactly the stored probability, and every weight above 0 owns at least one number.

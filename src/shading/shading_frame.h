@@ -4,7 +4,6 @@
 // and 3.9.3: x of the map is the tangent; y = cross(normal, tangent) * w points to the top of the image, thus against
 // growing v.
 //
-//
 // A bent normal may reflect into the surface, which shows as black spots. valid_normal turns it just far enough
 // (Keller et al., "The Iray Light Transport Simulation and Rendering System", 2017, appendix A.3).
 

@@ -3,7 +3,6 @@
 // Any-hit search: whether a ray hits anything between t_min and t_max, that is, whether a candidate exists
 // (trace_closest.h).
 //
-//
 // The order of candidates does not matter, so a traversal may start where a hit is likely. For a ray without an end
 // (to a sky or a sun) that is its far end: surfaces there are large and simple (the walls of a room, the ground),
 // while near its origin many boxes are entered without a hit. Rays to the sky from Sponza's surfaces visit half of

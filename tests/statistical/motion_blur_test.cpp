@@ -209,6 +209,7 @@ TEST_CASE("moving lamps are found alike by drawing them and by running into them
         RenderSettings settings = lit_settings(IntegratorKind::Path);
         const uint64_t more = strategy == LightStrategy::BsdfOnly ? 10 : 1; // few of its paths find the lamp
         settings.samples = static_cast<uint32_t>(more * test::effort(64, 512));
+        settings.path.max_depth = 1;
         settings.path.strategy = strategy;
         return test::estimate_picture(queue, moving.prepared(), lit_camera(), settings, 40, seed);
     };

@@ -208,11 +208,9 @@ void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
         scene.images.push_back(std::move(textures[i]));
     }
     for (Material& material : scene.materials) {
-        visit_parameters(
-            material, [](auto&&...) {},
-            [&](TextureRef& ref, const char*) {
-                if (ref.has_image()) ref.image = renumbered.at(static_cast<std::size_t>(ref.image));
-            });
+        visit_textures(material, [&](TextureRef& ref, const char*) {
+            if (ref.has_image()) ref.image = renumbered.at(static_cast<std::size_t>(ref.image));
+        });
     }
 }
 

@@ -7,7 +7,6 @@
 //   L (D|G) (D|G|S)* D      looked up, because a record's rays find it. Without a record, the path continues normally.
 // Light that other lobes there scatter is found by the same next ray.
 //
-//
 // Source: Ward, Rubinstein, Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988, section 2.
 
 #include "integrators/irradiance_cache/cache_memory.h"

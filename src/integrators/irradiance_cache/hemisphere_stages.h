@@ -19,7 +19,6 @@ namespace pertev {
 // distance to the surroundings. The light comes from a function of the cell, so tests can compare it with closed
 // forms.
 //
-//
 // Sources: Ward, Heckbert, "Irradiance Gradients", EGWR 1992, section 3 (the gradients; the mean of the tangent over
 // a row is in closed form here); Ward et al. 1988 (the harmonic mean of distances). The rotational gradient is stored
 // as the vector g of dE = g (n' - n).

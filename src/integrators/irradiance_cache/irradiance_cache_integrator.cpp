@@ -63,7 +63,7 @@ CacheJob IrradianceCacheIntegrator::make_job(uint32_t seed) const {
 }
 
 void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
-    PERTEV_CHECK(!film.frame.is_there());
+    PERTEV_CHECK(film.is_whole_picture());
     if (count == 0) return;
     if (!make_ready([this](double) { return !is_abandoned(); })) return;
     if (first == 0) tell_invalid(film.invalid);

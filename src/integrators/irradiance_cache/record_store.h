@@ -64,7 +64,6 @@ private:
 // farther from it, whatever their own rays have hit: by the triangle inequality a radius is at most a neighbour's
 // plus the distance. All records are clamped at once, so their order does not matter.
 //
-//
 // Source: Krivanek, Bouatouch, Pattanaik, Zara, "Making Radiance and Irradiance Caching Practical: Adaptive Caching
 // and Neighbor Clamping", EGSR 2006, section 5.
 

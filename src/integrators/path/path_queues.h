@@ -2,7 +2,6 @@
 
 // Paths in flight on the GPU and their shadow rays, as structures of arrays.
 //
-//
 // Paths are processed in rounds: a round traces one ray of every path in flight. Paths that continue are compacted at
 // the front of a second set of arrays, which the next round reads, and ended paths at its end, for the film. The next
 // round starts new paths there, so that all rounds but the last few are full and all accesses are contiguous. Only

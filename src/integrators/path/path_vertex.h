@@ -51,9 +51,7 @@ HD inline Rgb emitted_light(const PathSettings& settings, const PathState& path,
 
 /// Returns the context with which next-event estimation selected a light where the ray begins, except for the offset
 /// of the ray's origin.
-HD inline LightContext context_before(const PathState& path) {
-    return {path.origin, path.normal, path.normal == Vec3{0, 0, 0}, path.time};
-}
+HD inline LightContext context_before(const PathState& path) { return {path.origin, path.normal, false, path.time}; }
 
 /// Adds light that the path's own ray hit.
 template <class Listener>
@@ -225,8 +223,7 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     wants_shadow = listener.wants_direct(path, hit, surface) &&
                    sample_direct<kFeatures>(job, path, vertex, numbers, shadow, listener);
     if constexpr (LightChoice<kFeatures>::kReadsNormal) {
-        const LightContext context = vertex.light_context(path.time);
-        path.normal = context.lets_through ? Vec3{0, 0, 0} : context.normal;
+        path.normal = vertex.light_context(path.time).normal;
     }
     return sample_scattering(job.settings, path, vertex, numbers, listener);
 }

@@ -10,7 +10,6 @@
 // sets the radius and does not count itself, so that the mean is right for uniform photons (Loftsgaarden, Quesenberry
 // 1965).
 //
-//
 // Sums within a radius use integers, so they do not depend on the order in which a structure visits the photons; the
 // k nearest are added in their order (distance, number). Thus all structures give the same bytes, and threads may
 // share a lookup in a grid. The wavefront shares lookups where photons crowd, as under a glass ball; otherwise one

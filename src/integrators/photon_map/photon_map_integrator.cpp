@@ -74,7 +74,7 @@ PhotonJob PhotonMapIntegrator::make_job(uint32_t pass, const FilmView& film) {
 }
 
 void PhotonMapIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
-    PERTEV_CHECK(!film.frame.is_there());
+    PERTEV_CHECK(film.is_whole_picture());
     for (uint32_t pass = first; pass < first + count && !is_abandoned(); ++pass) render_pass(pass, film);
 }
 

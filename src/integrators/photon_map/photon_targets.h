@@ -6,7 +6,6 @@
 // distant light, a uniform point in their discs. If the targets are wider than the light's normal emission, normal
 // emission is used.
 //
-//
 // Source: Jensen, "Global Illumination using Photon Maps", 1996, section 4.1, whose projection maps are grids of
 // directions for one point each; spheres serve every point on an emitter.
 

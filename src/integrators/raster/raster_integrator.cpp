@@ -35,6 +35,7 @@ void RasterIntegrator::begin(const PictureView& picture, SceneTracer& tracer, ui
 }
 
 void RasterIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
+    PERTEV_CHECK(film.is_whole_picture());
     const auto triangles = static_cast<uint32_t>(picture_.scene.triangle_count);
     for (uint32_t sample = first; sample < first + count; ++sample) {
         if (is_abandoned()) return;

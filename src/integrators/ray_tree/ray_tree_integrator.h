@@ -49,7 +49,7 @@ void RayTreeIntegrator<Algorithm>::begin(const PictureView& picture, SceneTracer
 
 template <class Algorithm>
 void RayTreeIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const FilmView& film) {
-    PERTEV_CHECK(!film.frame.is_there());
+    PERTEV_CHECK(film.is_whole_picture());
     constexpr std::size_t kLoopBytes = std::size_t(1) << 19; // per thread, so that it fits the cache
     constexpr uint64_t kMostInLoop = 128;
     const bool has_times = picture_.scene.motions.is_there();

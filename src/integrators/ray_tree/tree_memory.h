@@ -4,7 +4,6 @@
 // rays, so its memory is known in advance however many rays it has. Each round traces the current ray of every live
 // tree, through one queue; then each tree pops its next ray.
 //
-//
 // One allocation holds all arrays, for the device as for a CPU thread.
 
 #include <cstddef>

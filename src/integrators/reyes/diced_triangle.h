@@ -3,7 +3,6 @@
 // A triangle of the scene as a surface to dice: the position of its points before and after displacement, and the
 // edges on it that are too long.
 //
-//
 // No cracks: a point is identified by its weights, multiples of 2^-23, whose sums and differences are exact. On an
 // edge one weight is 0, so a position there is a sum of two products with the same bits in both triangles that share
 // the edge, and so are its normal and height if they share those of the corners. Whether an edge is halved depends

@@ -4,7 +4,6 @@
 // rule of the rasterizer (render/raster/scan_row.h), so exactly one of the micropolygons that share an edge has a
 // sample on it.
 //
-//
 // Two passes run over all micropolygons: the first finds the least (depth, triangle) of a sample, the second the
 // least of that triangle's micropolygons with this depth. Both are minima, so the order of threads does not matter.
 
@@ -24,7 +23,6 @@ namespace pertev {
 // Sample positions of a pass: each pixel has its own, sampled like camera rays. Each position is on the list of the
 // pixel cell that contains it, which may not be its own pixel if the filter is wide. Thus a micropolygon tests only
 // the samples near it.
-//
 //
 // Source: Cook, "Stochastic Sampling in Computer Graphics", ACM TOG 5(1), 1986, for jittered samples.
 

@@ -3,7 +3,6 @@
 // Last stage of a pass: each sample shows its nearest micropolygon. A micropolygon has a single colour, that of its
 // middle, so it depends only on the scene and the camera, and samples of a pixel that share it are shaded once.
 //
-//
 // A displaced micropolygon is lit with its own normal, rotated as interpolation rotates the normal of the undisplaced
 // triangle, so that smooth meshes stay smooth.
 

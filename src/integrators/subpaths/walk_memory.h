@@ -21,7 +21,6 @@ namespace pertev {
 // lengths, connected. A weight needs the densities of all techniques; each subpath carries two numbers that summarize
 // its side, so that no vertex is visited twice.
 //
-//
 // Source: Georgiev, "Implementing Vertex Connection and Merging", 2012, whose dVCM and dVC these are, without
 // merging; the power heuristic (Veach 1997, section 9.2.4) with exponent 2, so all densities are squared. Delta
 // scatterings count as sampled with the same density from both sides, which is valid for any weights that add up to

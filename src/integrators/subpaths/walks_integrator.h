@@ -34,7 +34,7 @@ void WalksIntegrator<Algorithm>::reserve(const WorkSize& size) {
 
 template <class Algorithm>
 void WalksIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const FilmView& film) {
-    PERTEV_CHECK(!film.frame.is_there());
+    PERTEV_CHECK(film.is_whole_picture());
     constexpr std::size_t kLoopBytes = std::size_t(1) << 18; // per thread, so that it fits the cache
     WalkJob job = {};
     job.scene = {picture_, picture_settings_, sphere_round(tracer_->bounds()), Algorithm::kIsJoined};

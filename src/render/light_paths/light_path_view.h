@@ -2,7 +2,6 @@
 
 // Layers of light-path expressions in device code: the tables of the automaton, and the state of a path in it.
 //
-//
 // A surface may scatter by diffuse and glossy lobes at once. Light of a shadow ray is split between the two by their
 // shares. A path that continues cannot be split, so each of its colours is assigned to one of them at random, with
 // its share as probability. Thus a layer's mean is right, every contribution of a path is in one class to the last

@@ -4,7 +4,6 @@
 // (render/raster/tile_lists.h), and the ray of every sample tests only its tile's list. The ray-triangle test
 // decides, so hits equal those of any tracer to the bit.
 //
-//
 // Memory is known in advance: if the lists of 8 x 8 pixel tiles do not fit, tiles are larger.
 
 #include <cstdint>

@@ -4,7 +4,6 @@
 // homogeneous coordinates to the cone of rays only, so that triangles behind, across or through the camera need no
 // special case.
 //
-//
 // Proof that it covers all rays that the ray-triangle test accepts: that test (trace/intersect/intersect_triangle.h)
 // decides as an exact test of a triangle whose corners have moved by less than e in each coordinate. So a point q of
 // the original triangle lies within e of a point q' of the ray, and q' lies in the cone of the ray's pixels.

@@ -3,7 +3,6 @@
 // Lists of the triangles that rays of each tile of pixels can hit, nearest first. They are made once per scene and
 // camera by passes over triangles, and every sample reads them (render/raster/find_in_tile.h).
 //
-//
 // A triangle is added to the lists of all tiles that its bounds overlap, one row of tiles at a time, because a long
 // triangle covers few tiles of each row. A triangle that spans many rows is deferred to a second pass, which balances
 // the threads. Counters assign the positions, so the order before sorting is arbitrary. After it only triangles at

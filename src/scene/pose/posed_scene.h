@@ -4,11 +4,9 @@
 // written into the scene: instances, vertices of meshes, cameras, lights. The result depends only on the scene at
 // rest and the time, to the bit on every machine, not on earlier times.
 //
-//
 // Vertices with skins and morph targets are computed here or left to the renderer (device_scene/deforming_meshes.h),
 // which computes the same. If the constructor requests it, the vertices of meshes without emission are left, unless
 // at that time a joint mirrors or an instance is baked (is_skewed).
-//
 //
 // A transform that is singular or not finite at a time hides its instance; a camera whose direction it loses keeps
 // its pose at rest, and a light gives no light.

@@ -3,12 +3,10 @@
 // Results of sampling and evaluating a BSDF. In the local frame +z is the shading normal; wo and wi point away from
 // the surface and have unit length; either may lie on the back (z < 0).
 //
-//
 // Refraction carries radiance over the square of the refractive index, L / n^2, which does not change at an interface
 // (Veach 1997, section 5.2). So there is no factor 1 / eta^2: in a closed furnace the mean weight is 1 on both sides,
-// light and importance are transported by the same numbers, and Russian roulette sees no jump. In the medium of an
-// emitter its radiance is the stated one; seen from outside, an emitter inside glass thus counts as emitting n^2
-// times that.
+// light and importance are transported by the same numbers, and Russian roulette sees no jump. Emission is added to L
+// / n^2 unchanged, so an emitter inside glass counts as emitting n^2 times its stated radiance.
 
 #include <cstdint>
 

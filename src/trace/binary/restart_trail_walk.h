@@ -4,7 +4,6 @@
 // is pending. After a leaf, the traversal restarts at the root, repeats its path down to the deepest level with a
 // pending child, and visits that one.
 //
-//
 // Source: Laine, "Restart Trail for Stackless BVH Traversal", HPG 2010, where one bit per level says "far child" and
 // the order is recomputed on the way. That is ambiguous once a box on the path is beyond the nearest hit (possible
 // with spatial splits, where a hit can lie outside its leaf's box), so the path itself is stored here. If the path is

@@ -2,7 +2,6 @@
 
 // The stack of binary-tree traversals, and their step at an inner node.
 //
-//
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009: both boxes are tested at
 // once, traversal continues with the nearer child, and the other one is pushed. Redundant traversal avoidance (RTA)
 // drops entries beyond the nearest hit at each pop; without it no entry parameters are stored.

@@ -2,7 +2,6 @@
 
 // Traversal of one binary tree with a stack, near child first. The caller tests the leaves.
 //
-//
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009 (while-while); a node whose
 // entry is beyond the nearest hit is dropped when it is popped (redundant traversal avoidance). A node is skipped
 // only if its grown box is missed or its entry parameter is greater than the limit; it is entered if both are equal.

@@ -2,7 +2,6 @@
 
 // The part of a ray inside a cell of a kd-tree or an octree, grown as boxes are.
 //
-//
 // Why no hit is lost: planes move out by the e of ray_boxes.h, with the same products. So the span that a traversal
 // reaches by clipping equals, to the bit, what enters_child would find for the cell's own box, because min and max
 // are exact. It contains every t whose point lies within e of the cell, including errors of the triangle test. A hit

@@ -3,7 +3,6 @@
 // The eight box tests of a compressed node: conservative, as in ray_boxes.h, including the error of decoding. The ray
 // is a segment (ray_segment.h).
 //
-//
 // A plane of the node is o' + (2^15 + q) s, with the node's origin o', a byte q and the quantum s, a power of two.
 // The byte is placed in a float's mantissa, 0x4700qq00, which is exactly 2^15 + q, so that no conversion is needed
 // (one byte permutation on the device). With d = direction * end, a = s / d and m = (e + 2^-7 s) |1/d|, the crossing
@@ -12,14 +11,12 @@
 // which moves the plane out by e and by 2^-7 of a quantum, to a smaller parameter at the entry and to a greater one
 // at the exit, for either direction.
 //
-//
 // Why that never misses (in terms of shifts of the plane; u, S, e and the guard of d: ray_segment.h). The product a
 // is exact: s is within [2^-80, 2^34] and 1/d within [2^-42, 2^124], and their product is below 2^75. Rounding errors
 // are at most: three u S for 1/d, one for the last fma; u (S + 2^15 s) each for o' - o and for the inner fma; in
 // total slightly more than 6 u S, and 2^-8 s. The relative error of m is below 2^-21, even if it is denormal. The
 // triangle test's own error is at most 6 u S. All of this is within 16 u S + 2^-7 s, and 3 u S remain for the needs
 // of a segment.
-//
 //
 // The least and the greatest of three are found from the bits as integers (ray_boxes.h), which is right for
 // non-negative numbers. The node: accel/bvh/compressed_bvh.h. The arithmetic was developed for this file.

@@ -4,7 +4,6 @@
 // crossed is fixed, and the ray is a segment (ray_segment.h), so nothing needs clamping. A box takes 9 instructions
 // instead of the 17 of ray_boxes.h, and the test is as conservative.
 //
-//
 // Rounding errors as shifts of a plane (u, S: ray_segment.h): three u S for 1/d, one for o +- e, one for its product,
 // one for the fma; in total slightly more than 6 u S, which with the triangle test's 6 leaves 4 of 16.
 

@@ -2,7 +2,6 @@
 
 // A ray prepared for the box tests of one tree. The tests are conservative: no box that holds a hit is ever missed.
 //
-//
 // Every plane moves out by e = 2^-20 (|origin|max + |bounds|max), which is 16 units of 2^-24 of that sum S. The
 // parameter of a plane p is computed as fma(p, 1/d, -((o +- e) (1/d))). In terms of shifts of the plane, its rounding
 // errors are at most: one unit of |o| + e for o +- e, one for its product, one of |p - o| + e for the fma, one for

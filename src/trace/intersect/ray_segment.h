@@ -6,21 +6,17 @@
 // only if its exit is later than its entry. t_min is ignored: a box before it is entered unnecessarily. A hit
 // shortens the segment.
 //
-//
 // Box tests move planes out by e = 16 u S, u = 2^-24, S = |origin|max + |bounds|max, as ray_boxes.h does, and count
 // rounding errors as shifts of a plane. The error of 1/d, d = direction * end, is at most three u S: one for d, two
 // for its reciprocal (the device's is approximate).
-//
 //
 // Why strictly later is enough: to its end the ray moves by at most slightly more than S, so u S of its length is
 // about u of 1. If a test's own rounding and the triangle test's (6 u S) leave 3 of the 16, a hit at 1 or before is
 // later than the entry and earlier than the exit by more than 2 u, before both are clamped and thus afterwards.
 //
-//
 // The guard: |d_i| < 2^-40 S (and 2^-100 m) counts as that much, so that everything is finite. Along such an axis the
 // ray moves, to its end, by less than 2^-40 S, far less than e. (The 2^-100 m are, for S from 2^-76 m on.) Shortening
 // multiplies 1/d by the ratio of the ends: four roundings more, at most 4 u S, by which e grows each time.
-//
 //
 // The arithmetic was developed for this file.
 

@@ -4,7 +4,6 @@
 // 32-byte sectors that these loads touch. On the host a warp is one ray. It is for counting runs, because it slows
 // traversal down many times.
 //
-//
 // Which lanes test together depends on timing, so the figures may differ slightly between two runs.
 
 #include <cstdint>

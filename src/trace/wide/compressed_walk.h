@@ -9,12 +9,10 @@
 // go to the stack. How long they are postponed depends on the warp; the hits do not. On the host, where a warp is one
 // ray, nothing is postponed.
 //
-//
 // RTA: a hit shortens the segment against which boxes are tested, and a group stores the entry parameter of the
 // nearest of its pending children, so that it is dropped at a pop if that is beyond the hit. That saves 7 to 8 % of
 // the nodes in Sponza and costs more instructions than it saves; rta_at_pops switches it. Postponed triangles carry
 // no distance and are always tested.
-//
 //
 // near_first off means the order of slots. With it on, an any-hit search may visit far children first (trace_any.h).
 

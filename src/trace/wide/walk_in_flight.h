@@ -5,7 +5,6 @@
 // nodes step together, then those at leaves, so that no branch distinguishes them. Boxes and triangles are tested as
 // in walk_wide.h, and hits are the same to the bit; only the order of children differs.
 //
-//
 // Source of the idea: Kocberber, Falsafi, Grot, "Asynchronous Memory Access Chaining", VLDB 2015.
 
 #include <array>

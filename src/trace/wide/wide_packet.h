@@ -4,7 +4,6 @@
 // whole packet, with intervals that contain the eight origins and directions, and the remaining ones one by one for
 // the eight rays. A triangle is loaded once for all. Each ray gets the hit that it would get alone.
 //
-//
 // Source: Wald, Boulos, Shirley, "Ray Tracing Deformable Scenes Using Dynamic Bounding Volume Hierarchies", ACM TOG
 // 26(1), 2007, section 4: packets over a hierarchy with intervals; nodes of eight as in walk_wide.h. An any-hit
 // search keeps the builder's order, even for rays without an end (trace_any.h): coherent ones mostly go to one sun,

@@ -4,7 +4,6 @@
 // the radix tree, one cluster per lane, as in the source (accel/hploc/climb.h). Wide nodes are made by threads that
 // wait for their parents, as in Benthin, Drabinski, Tessari, Dittebrandt, "PLOC++", 2022, section 4.
 //
-//
 // The bytes equal those of the single-threaded form: the same pairs are compared by the same numbers, and each node's
 // number and position follow from the triangles.
 
