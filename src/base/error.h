@@ -20,7 +20,7 @@ enum class ErrorCode {
     OutOfMemory = 4,  // host or device; the message lists the largest buffers and what would fit
     DeviceFault = 5,  // the GPU failed; the context is dead, the last checkpoint is good
     FileWrite = 6,    // nothing was replaced
-    Interrupted = 75, // what has been rendered is written
+    Interrupted = 75, // samples rendered so far are written
 };
 
 /// The exit status of a code is its value.

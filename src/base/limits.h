@@ -23,7 +23,7 @@ inline constexpr uint64_t kMaxBakedExpansion = 8;               // further such 
 inline constexpr uint32_t kMaxSamplesPerPixel = (1u << 23) - 1; // even of the largest value they just fit the film's
                                                                 // sums
 inline constexpr uint32_t kMaxPathDepth = 1u << 16;
-inline constexpr uint32_t kMaxTreeDepth = 255;                // of a ray tree, whose branches wait in memory
+inline constexpr uint32_t kMaxTreeDepth = 255;                // depth of a ray tree, whose branches wait in memory
 inline constexpr int kMaxBvhDepth = 64;                       // levels; also the capacity of a traversal stack
 inline constexpr uint64_t kMaxBruteForceTriangles = 1u << 16; // for pictures whose rays test all triangles
 inline constexpr uint64_t kMaxRasterTriangles = 1u << 24;     // in view of a camera whose picture is rasterized

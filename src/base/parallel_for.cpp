@@ -41,7 +41,8 @@ int hardware_threads() { return std::max(1, static_cast<int>(std::thread::hardwa
 /// The threads that work for the calling thread.
 struct Team {
     int count = 0;               // 0: one per hardware thread
-    std::atomic<int> helpers{0}; // of parallel_invoke, because nested calls of a recursive builder would start a
+    std::atomic<int> helpers{0}; // helpers of parallel_invoke, because nested calls of a recursive builder would
+                                 // start a thread each
                                  // thread each
 };
 
