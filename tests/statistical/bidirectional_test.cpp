@@ -67,7 +67,7 @@ struct Case {
     bool light_is_even = true; // else few particles bring much, and Student's t does not hold
     PixelFilter filter = PixelFilter::BlackmanHarris;
     float filter_radius = 0; // the filter's default
-    uint32_t pixels = 12; // across
+    uint32_t pixels = 12;    // across
 
     /// `samples` of each pixel of a picture of 12x12, of fewer pixels so many more.
     uint32_t samples_for(uint32_t samples) const { return samples * (144 / (pixels * pixels)); }
