@@ -14,7 +14,7 @@ from cli_run import DEVICE, PATIENCE_S, PROGRAM, CliTest, main, write
 
 INTEGRATORS = ["path", "direct", "indirect", "hybrid", "cast", "whitted", "distributed", "raster", "reyes", "light", "bidirectional",
                "photon_map"]
-VIEW = ["--eye", "0.3,0.3,2", "--target", "0.3,0.3,0"]  # of the lit triangle
+VIEW = ["--eye", "0.3,0.3,2", "--target", "0.3,0.3,0"]  # the lit triangle
 
 
 def lit_triangle():

@@ -13,7 +13,7 @@ import zlib
 
 from cli_run import SANITIZED, UNMETERED, CliTest, limit_addresses, main
 
-MAX_SECONDS = 60 if SANITIZED else 5  # of processor time: the machine may be loaded
+MAX_SECONDS = 60 if SANITIZED else 5  # processor time, because the machine may be loaded
 IMAGES = (".png", ".jpg", ".exr", ".hdr")
 SCENES = (".obj", ".ply", ".gltf", ".glb", ".pbrt", ".xml")
 
@@ -181,7 +181,7 @@ def picture_of_one_colour(side, bits):
 
 
 class SmallFilesThatUnfold(MalformedTest):
-    gibibytes = 2  # of addresses, of which the program and its libraries take their part
+    gibibytes = 2  # address space, part of which the program and its libraries take
 
     def put(self, name, content):
         with open(self.path(name), "wb") as file:

@@ -184,7 +184,7 @@ class Pipes(CliTest):
                 self.assertNotIn("standard output", outcome.stderr)
         reading, writing = os.pipe()
         os.close(reading)
-        outcome = self.run_pertev("info", "nowhere.obj", "--json", stdout=writing)  # what went wrong is told, and counts
+        outcome = self.run_pertev("info", "nowhere.obj", "--json", stdout=writing)  # the error is reported, and counts
         os.close(writing)
         self.assertEqual(outcome.status, 2, outcome)
         self.assertIn("nowhere.obj", outcome.stderr)

@@ -162,7 +162,7 @@ TEST_CASE("bidirectional and light tracing give path tracing's picture where the
         if (c.light_finds_all) {
             CHECK(same > 0.001);
             CHECK(test::p_value(test::brightened(light, 1.1, 5e-3), path) < 1e-3);
-        } else { // what it connects to the camera: light that a surface scatters there, and lamps themselves
+        } else { // light that connects to the camera: scattered by a surface there, or emitted
             CHECK(same < 1e-6);
             RenderSettings settings = settings_of(c);
             settings.samples = c.samples_for(64);
@@ -199,7 +199,7 @@ TEST_CASE("distributed gives the light paths that it follows as bright as path t
 }
 
 TEST_CASE("light and bidirectional show a floor under a flat lamp as bright as the closed form, to 1 %") {
-    constexpr double kHalf = 0.3; // of the patch of floor that is seen, metres
+    constexpr double kHalf = 0.3; // half size of the visible patch of floor, metres
     Queue queue = test::queue_asked_for();
     const auto mean_of = [&](const Mesh& lamp, IntegratorKind integrator, uint32_t samples) {
         Scene scene;

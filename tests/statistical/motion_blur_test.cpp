@@ -129,7 +129,7 @@ RenderSettings lit_settings(IntegratorKind integrator) {
     return settings;
 }
 
-/// Of pictures of single moments, drawn at random while the shutter is open.
+/// Estimate from pictures of single moments, drawn at random while the shutter is open.
 test::PictureEstimate estimate_of_moments(Queue& queue, MovingScene& moving, const Camera& camera,
                                           RenderSettings settings, uint32_t renders) {
     test::Random random(5);
