@@ -138,7 +138,7 @@ class Sponza:
 
 
 class SponzaByDefault(Sponza):
-    """The same scene as a file for `pertev render`, whose paths end as they do by default."""
+    """Sponza as a file for `pertev render`, whose paths end by the default Russian roulette."""
 
     name = "S8 by the roulette of render"
 

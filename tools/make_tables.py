@@ -37,7 +37,7 @@ def load(text):
 
 
 def faults_of(name, measured):
-    """What keeps a file from being a measurement."""
+    """Messages about everything that keeps a file from being a measurement; empty if it is one."""
     if not isinstance(measured, dict) or measured.get("format") != "pertev-measurement" or measured.get("version") != 1:
         return [f"{name}: not a pertev-measurement of version 1"]
     faults = [f"{name}: lacks {key}" for key in sorted(KEYS - measured.keys())]

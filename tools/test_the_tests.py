@@ -100,7 +100,7 @@ def build(jobs, tests):
 
 
 def failed_tests(tests):
-    """Those of `tests` that fail."""
+    """Runs `tests` and returns the ones that fail."""
     report = WORK / "report.xml"
     report.unlink(missing_ok=True)
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PERTEV_")}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What holds of every integrator's pictures, and what belongs to one of them alone.
+"""Tests of every integrator's pictures, and of properties that only one integrator has.
 cli_integrators_test.py PERTEV [--device cuda]"""
 
 import base64

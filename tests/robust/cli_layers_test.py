@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What an EXR says beside its colours, as docs/formats.md has it: layers at edges and on the background, metadata."""
+"""An EXR file's layers (at edges and on the background) and metadata are those that docs/formats.md names."""
 
 import os
 import re

@@ -57,7 +57,7 @@ class MalformedTest(CliTest):
         return status
 
     def use_image(self, path, warns):
-        """As a picture, as the texture of an OBJ and of a glTF file, and as the environment."""
+        """Gives the image to each of its readers: as a picture, as an OBJ's and a glTF's texture, as environment."""
         name = os.path.basename(path)
         here = self.path(name)
         if os.path.abspath(path) != here:

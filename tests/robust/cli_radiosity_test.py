@@ -24,7 +24,7 @@ class Radiosity(CliTest):
         return self.succeed("render", scene, *SMALL, "-o", "x.png", "--json", *arguments).events("done")[0]["hash"]
 
     def hash_of(self, *flags):
-        """Of a picture whose size and samples flags may say."""
+        """The hash of a picture: 16x16 pixels with one sample unless flags say otherwise."""
         given = ["--integrator", "radiosity", "--device", "cpu", *UNMETERED, *flags]
         for flag, value in [("--size", "16x16"), ("--spp", "1")]:
             given += [] if flag in flags else [flag, value]

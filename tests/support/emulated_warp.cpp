@@ -291,7 +291,7 @@ void Machine::hold_meeting(EmulatedWarp& warp, uint32_t mask) {
 uint32_t Machine::wait_for_active_mask(const Meeting& meeting) {
     EmulatedLane& lane = *lane_;
     lane.meeting = meeting;
-    // The same source line may be called from two places, so the call stack distinguishes them.
+    // One source line may be called from two places, so the call stack distinguishes them.
     for_each_call(lane, [&](const void* address) {
         lane.meeting.value = (lane.meeting.value ^ reinterpret_cast<uint64_t>(address)) * 0x9e3779b97f4a7c15u;
     });

@@ -342,7 +342,7 @@ TEST_CASE("micromaps are made again when textures, materials or meshes change, a
         return count;
     };
     CHECK(opaque_places() > 400);
-    Scene clear = made.scene; // of equal sizes
+    Scene clear = made.scene; // equal in size, but all its texels are transparent
     for (TextureImage& image : clear.images) std::ranges::fill(image.rgba8.pixels, uint8_t(0));
     {
         const PreparedScene prepared_clear = prepare_scene(clear, {}, messages);

@@ -1,5 +1,5 @@
-// What a session keeps and what it remakes, and its reports. tests/consistency/session_test.cpp compares its pictures
-// with those of new sessions.
+// A session keeps what a change does not touch, remakes the rest, and reports it. tests/consistency/session_test.cpp
+// compares its pictures with those of new sessions.
 
 #include <unistd.h>
 
