@@ -10,7 +10,6 @@ tests/robust/cli_documents_test.py runs the commands that commands() finds.
 
 import pathlib
 import re
-import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -19,6 +18,7 @@ SOURCE = re.compile(r"`([\w./-]+\.(?:h|cpp|cu|py|sh|js|md|cmake))`")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 COMMAND = re.compile(r"(?:build/bin/|bench/|tools/|tests/)[\w./-]+|pertev\b|\./setup\.sh|cmake|ctest|python3")
 TARGETS = re.compile(r"(?i)\b(?:was|were) asked for|\basked for were|\bhoped for\b|(?<![`|\w])S[58](?![`|\w])")
+FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "docs", "scenes"]
 # This section names files that do not exist yet.
 ON_PAPER = "## Fourteen changes on paper"
 
@@ -59,6 +59,11 @@ def commands(text):
     return found
 
 
+def inline_commands(text):
+    """The program's commands within sentences, whose files and values are placeholders."""
+    return [" ".join(found.split()) for found in re.findall(r"(?<!`)`(pertev [a-z][^`]*)`", "\n".join(without_fences(text)))]
+
+
 def link_faults(document, text, read):
     for target in LINK.findall("\n".join(without_fences(text))):
         if re.match(r"[a-z]+:", target):
@@ -90,8 +95,8 @@ def command_faults(name, text, presets):
 
 
 def faults_of_all():
-    tracked = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=ROOT, check=True,
-                             capture_output=True, text=True).stdout.split()
+    tracked = [path.relative_to(ROOT).as_posix() for folder in FOLDERS for path in (ROOT / folder).rglob("*.*")]
+    tracked += [path.name for path in ROOT.glob("*.*")]
     presets = re.findall(r'"name": "([^"]+)"', (ROOT / "CMakePresets.json").read_text(encoding="utf-8"))
     words = 0
     for document in documents():
@@ -112,6 +117,7 @@ def self_test():
     text = "# Some `code`: a title\n\n```\npertev render a \\\n  -o b  # why\ntools/x.py && ./setup.sh\n# no\n```\n\n    pertev view c\n"
     assert anchors_of(text) == {"some-code-a-title"}, anchors_of(text)
     assert commands(text) == ["pertev render a    -o b", "tools/x.py", "./setup.sh", "pertev view c"], commands(text)
+    assert inline_commands("a `pertev render\nX` b\n```\n`pertev no`\n```\n") == ["pertev render X"]
     here = ROOT / "docs" / "tour.md"
     assert list(link_faults(here, "[a](none.md)", lambda _: "")) and list(link_faults(here, "[a](#none)", lambda _: "# some"))
     assert not list(link_faults(here, "[a](tour.md#some) [b](https://x.y)", lambda _: "# Some"))
