@@ -55,7 +55,7 @@ class Cycles:
         render.threads_mode, render.threads = "FIXED", threads
         render.resolution_x, render.resolution_y, render.resolution_percentage = width, height, 100
         render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
-        render.use_persistent_data = True  # what is read and built once is timed by nobody
+        render.use_persistent_data = True  # reading and building happen once and are not timed
         cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
         cycles.use_adaptive_sampling = cycles.use_denoising = False
         cycles.max_bounces = cycles.diffuse_bounces = depth
@@ -138,7 +138,7 @@ class Sponza:
 
 
 class SponzaByDefault(Sponza):
-    """The same scene as a file for `pertev render`, whose paths end as they do by default."""
+    """Sponza as a file for `pertev render`, whose paths end by the default Russian roulette."""
 
     name = "S8 by the roulette of render"
 

@@ -33,10 +33,10 @@ const char* name_of(EmbreeWay way);
 /// Rays in the form that a way takes, which making them is not part of its time. trace() overwrites them.
 struct EmbreeRays {
     bool any_hit = false;
-    bool coherent = false; // what Embree is told of them
+    bool coherent = false; // flag passed to Embree
     std::size_t count = 0;
     std::vector<RTCRayHit> singles;
-    std::vector<RTCRayHit8> of_8; // as of_16: of what is left over, the rays of the last packet are switched off
+    std::vector<RTCRayHit8> of_8; // see of_16; in the last packet the missing rays are switched off
     std::vector<RTCRayHit16> of_16;
 };
 EmbreeRays make_embree_rays(EmbreeWay way, std::span<const Ray> rays, bool any_hit, bool coherent);
@@ -55,7 +55,7 @@ private:
     RTCScene scene_;
 };
 
-/// Of rays that were traced: how many met something.
+/// Number of traced rays that hit something.
 std::size_t count_hits(EmbreeWay way, const EmbreeRays& rays);
 
 } // namespace pertev::bench

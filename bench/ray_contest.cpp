@@ -16,7 +16,7 @@ namespace {
 // Long enough that a tracer finds its tree in the cache again after the others.
 constexpr std::size_t kChunk = 1 << 16;
 
-/// Of this thread's own time.
+/// This thread's own time.
 double now_s() {
     timespec t;
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -36,7 +36,8 @@ double seconds_of(const F& f) {
     return now_s() - start;
 }
 
-constexpr WalkOptions kClosest = {}, kAny = {.near_first = false}; // as pictures have them (device_scene/find_hits.h)
+constexpr WalkOptions kClosest = {}, kAny = {.near_first = false}; // the options of pictures
+                                                                   // (device_scene/find_hits.h)
 
 double trace_one_by_one(const HostTrees& trees, std::span<const Ray> rays, bool any_hit, std::size_t& hits) {
     std::vector<Hit> results(rays.size());

@@ -27,8 +27,7 @@ struct EmbreePeers {
     const EmbreePeer& fast;
 };
 
-/// What pictures on a CPU do with many rays: from a camera and towards lights, those that go together in packets;
-/// bounces in flight.
+/// How pictures on a CPU trace many rays: camera and shadow rays that are coherent in packets; bounces in flight.
 enum class OurWay { Single, Scattered, Together };
 const char* name_of(OurWay way);
 
@@ -49,7 +48,7 @@ public:
 
 private:
     std::map<std::string, std::vector<double>> seconds_; // [contestant][round and chunk]
-    std::map<std::string, std::size_t> hits_;            // of one round
+    std::map<std::string, std::size_t> hits_;            // hits of one round
     std::size_t traced_;                                 // rays, all rounds together
 };
 

@@ -33,7 +33,8 @@ struct Work {
     double nodes = 0, triangles = 0; // a ray
 };
 
-constexpr WalkOptions kClosest = {}, kAny = {.near_first = false}; // as pictures have them (device_scene/find_hits.h)
+constexpr WalkOptions kClosest = {}, kAny = {.near_first = false}; // the options of pictures
+                                                                   // (device_scene/find_hits.h)
 
 Work count_work(const HostTrees& trees, const RaySet& set) {
     uint64_t nodes = 0, triangles = 0;
@@ -53,7 +54,7 @@ Work count_work(const HostTrees& trees, const RaySet& set) {
 void measure(const HostTrees& trees, const EmbreePeers& peers, const RaySet& set, const Flags& flags) {
     const bool coherent = set.name == "primary" || set.name == "sun";
     const Contest contest(make_contestants(trees, peers, set.any_hit, coherent), set.rays, flags.rounds);
-    // As pictures trace them: bounces in flight, the others together where they go together.
+    // Like pictures: bounces in flight, other rays in packets if they are coherent.
     const bool is_bounce = !set.any_hit && set.name != "primary";
     const std::string many = name_of(is_bounce ? OurWay::Scattered : OurWay::Together), one = name_of(OurWay::Single);
     const std::string robust = embree_name("robust", EmbreeWay::Single), fast = embree_name("fast", EmbreeWay::Single);
@@ -92,7 +93,7 @@ RaySet make_sun(const RaySet& shadow) {
     RaySet sun = {"sun", true, shadow.rays};
     for (Ray& ray : sun.rays) {
         ray.direction = normalize(Vec3{0.25f, 1.0f, 0.1f});
-        ray.t_max = kInfinity; // as in pictures
+        ray.t_max = kInfinity; // the end of the rays of pictures
     }
     return sun;
 }

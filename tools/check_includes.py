@@ -94,7 +94,7 @@ def circles(includes):
 
 
 def by_folder(includes):
-    """The same of folders: {folder: folders that its own files include}."""
+    """Includes between folders: {folder: folders that its own files include}."""
     folders = {}
     for file, included in includes.items():
         folder = str(pathlib.PurePath(file).parent)

@@ -38,7 +38,7 @@ RED = """
 .058 .058 .056 .055 .056 .059 .057 .055 .059 .059 .058 .059 .061 .061 .063 .063 .067 .068 .072 .080 .090 .099 .124 .154
 .192 .255 .287 .349 .402 .443 .487 .513 .558 .584 .620 .606 .609 .651 .612 .610 .650 .638 .627 .620 .630 .628 .642 .639
 .657 .639 .635 .642"""
-LIGHT_REFLECTANCE = 0.78  # the same at every wavelength
+LIGHT_REFLECTANCE = 0.78  # equal at every wavelength
 LIGHT = {400: 0.0, 500: 8.0, 600: 15.6, 700: 18.4}  # emitted radiance; the page states no unit
 
 # CIE 1931 2-degree colour matching functions, 400 to 700 nm in steps of 5 nm.

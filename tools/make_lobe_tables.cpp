@@ -2,8 +2,9 @@
 // microfacets lose to single scattering, and sheen_table_data.h, the directional albedo of the sheen lobe.
 //
 // The build runs it. Axes and meaning are stated in src/shading/lobes/energy_tables.h and sheen_lobe.h, which must
-// agree with this file. Doubles leave eight digits to spare, so the values do not depend on the compiler or on libm,
-// and tests/unit/lobe_tables_test.cpp holds their hash.
+// agree with this file. Doubles leave eight digits to spare, so the values do not depend on the compiler or on libm;
+// other text than that of kHash is refused. tests/unit/lobe_tables_test.cpp holds the floats that a program reads of
+// it.
 //
 // Each value is an integral by a product rule: Gauss-Legendre along one axis, and midpoints about the other, along
 // which the integrand is even and periodic. Energy is integrated over the distribution of visible normals (Heitz 2018;
@@ -33,7 +34,7 @@ constexpr int kMuNodes = 36, kRoughnessNodes = 20, kIorNodes = 14, kAverageNodes
 constexpr double kAlphaMin = 1e-3, kIorMin = 1.1, kIorMax = 3, kOvershoot = 2e-4;
 constexpr int kSheenMuNodes = 24, kSheenRoughnessNodes = 16;
 constexpr double kSheenRoughnessMin = 0.2;
-constexpr uint64_t kHash = 0x53a88e4540018592; // of the text of all tables
+constexpr uint64_t kHash = 0x53a88e4540018592; // hash of the text of all tables
 
 struct Node {
     double x, weight;
@@ -59,7 +60,7 @@ std::vector<Node> gauss_legendre(int count) {
     return nodes;
 }
 
-constexpr int kHeights = 96, kAngles = 48; // of the rule over the cap of visible normals
+constexpr int kHeights = 96, kAngles = 48; // sizes of the rule over the cap of visible normals
 
 struct Angles {
     std::array<double, kAngles> cosine, sine;
@@ -80,7 +81,7 @@ double smith_lambda(double z, double alpha) {
 struct View {
     struct Row {
         std::array<double, kAngles> z, cosine,
-            reflected; // of the normal; between normal and view; masking of reflection
+            reflected; // about the normal; between normal and view; masking of reflection
         double weight;
     };
     double mu, alpha, lambda;
@@ -123,7 +124,7 @@ struct View {
     double reflected() const {
         return integrate([](double, double, double masked) { return masked; });
     }
-    /// The same, weighted by Schlick's (1 - cos)^5.
+    /// Reflected light weighted by Schlick's (1 - cos)^5.
     double reflected_by_schlick() const {
         return integrate([](double c, double, double masked) { return masked * std::pow(1 - c, 5); });
     }

@@ -21,7 +21,7 @@ from gltf_buffer import GltfBuffer
 TARGET = pathlib.Path(__file__).resolve().parent.parent / "scenes/many-lights/many-lights.gltf"
 SWARMS, TRIANGLES = 100, 100
 HALF_WIDTH, HEIGHT, HALF_LENGTH = 8.0, 6.0, 12.0
-RADIUS = 0.4  # of a swarm
+RADIUS = 0.4  # radius of a swarm
 SIZE = 0.015  # about the length of a triangle's edges
 EMISSION = 800.0  # W/(sr m2), of the brightest channel
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 @dataclass
 class Mutation:
     name: str
-    edits: list  # of (file, text that is there once, what replaces it)
+    edits: list  # list of (file, text that is there once, replacement)
     tests: list  # CTest's names; each must notice
 
 

@@ -25,8 +25,8 @@ from mutations import MUTATIONS
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 WORK = ROOT / "build-mutations"
-TREE, BUILD = WORK / "tree", WORK / "tree/build"  # as in a checkout, so that ccache finds what was built there
-TIMEOUT_S = 300  # of one test; a mutation may make it hang, which is noticing
+TREE, BUILD = WORK / "tree", WORK / "tree/build"  # paths like in a checkout, so that ccache finds earlier results
+TIMEOUT_S = 300  # for one test; a mutation may make it hang, which counts as noticed
 
 
 def tracked_files():
@@ -100,7 +100,7 @@ def build(jobs, tests):
 
 
 def failed_tests(tests):
-    """Those of `tests` that fail."""
+    """Runs `tests` and returns the ones that fail."""
     report = WORK / "report.xml"
     report.unlink(missing_ok=True)
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PERTEV_")}

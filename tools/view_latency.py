@@ -67,7 +67,8 @@ def rows_of(state):
 
 
 def off_by(viewer, jpeg):
-    """Of the still picture's JPEG against its PNG: mean difference of a channel, and of a channel's mean; of 255."""
+    """The largest mean absolute difference of a channel between the still picture's JPEG and its PNG, and the largest
+    absolute mean difference; both on a scale of 255."""
     with Client(viewer) as client:
         header, data = client.picture(lambda h: h["kind"] == 1 and h["flags"] & 1)
         exact = decode_png(client.png())
@@ -79,7 +80,7 @@ def off_by(viewer, jpeg):
 
 
 class Steered:
-    """What came while somebody steered for some seconds."""
+    """Times and sizes of the pictures that arrive while a person steers for some seconds."""
 
     def __init__(self, viewer, jpeg, seconds):
         self.waits, self.frame_ms, self.pack_ms, self.decode_ms = [], [], [], []

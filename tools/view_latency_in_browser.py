@@ -17,7 +17,7 @@ sys.path.insert(0, str(HERE.parent / "tests" / "robust"))
 from chromium import Chromium, find_chromium  # pylint: disable=wrong-import-position
 from viewer_client import Viewer  # pylint: disable=wrong-import-position
 
-# What each picture that is drawn says of its input; none where it shows no new one.
+# Input numbers of each drawn picture; none if it shows no new one.
 WATCH = """(() => { window.waits = []; new MutationObserver(() => {
   if (document.body.dataset.latency) window.waits.push(Number(document.body.dataset.latency));
 }).observe(document.body, {attributeFilter: ['data-frame']}); })()"""

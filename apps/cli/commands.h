@@ -1,7 +1,7 @@
 #pragma once
 
-// One function a verb: adds it to the command line; what it does runs while the line is parsed. `status` becomes the
-// process's exit status.
+// One function per verb: adds the verb to the command line. A verb runs while the line is parsed. `status` becomes
+// the process's exit status.
 
 namespace CLI {
 class App;

@@ -75,11 +75,11 @@ std::string describe_words(const std::vector<std::string>& words, const CLI::App
     return takes(verb, "--scene") ? text + "; scenes are named by --scene" : text;
 }
 
-/// What no verb of the line takes, in its order; empty where there is nothing. Words that are no flags are told only
-/// where there is no unknown flag: they may be values of that.
+/// The words of the line that no verb accepts, in order; empty if there are none. Words that are no flags are listed
+/// only if there is no unknown flag, because they may be values of that.
 std::string describe_strangers(const std::vector<const CLI::App*>& verbs) {
     std::vector<std::string> flags, words;
-    const CLI::App* place = verbs.front(); // of the first word
+    const CLI::App* place = verbs.front(); // verb of the first word
     for (std::size_t i = 0; i < verbs.size(); ++i) {
         for (const std::string& word : verbs[i]->remaining()) {
             if (is_flag(word)) {
@@ -90,7 +90,8 @@ std::string describe_strangers(const std::vector<const CLI::App*>& verbs) {
             }
         }
     }
-    if (verbs.size() == 1 && !words.empty()) return describe_words({words.front()}, *place); // a verb, and what is its
+    if (verbs.size() == 1 && !words.empty())
+        return describe_words({words.front()}, *place); // a verb with its own words
     if (flags.empty() && !words.empty()) return describe_words(words, *place);
     return fmt::format("{}", fmt::join(flags, "; "));
 }

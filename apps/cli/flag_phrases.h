@@ -1,6 +1,6 @@
 #pragma once
 
-// Remarks of the libraries (base/remark.h) as the command line phrases them: a setting becomes its flag, with a value
+// Formats remarks of the libraries (base/remark.h) for the command line: a setting becomes its flag, with a value
 // that can be copied into a shell.
 
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace pertev {
 
-/// "--max-depth" of "max_depth".
+/// The flag of a setting: "--max-depth" for "max_depth".
 std::string flag_of(std::string_view setting);
 
-/// All parts of it as one text: "with --integrator cast at most 12" of "with `integrator=cast` at most 12".
+/// All parts as one text: "with --integrator cast at most 12" for "with `integrator=cast` at most 12".
 std::string phrase(const Remark& remark);
 
-/// The remark's parts as members of a JSON object, each with a comma before it: "place", "setting", "value" and
-/// "settings" where it has them, and "reason". Settings have their own names here, not those of flags.
+/// The remark's parts as members of a JSON object, each preceded by a comma: "place", "setting", "value" and
+/// "settings" if present, and "reason". Settings have their own names here, not those of flags.
 std::string json_parts(const Remark& remark);
 
 } // namespace pertev

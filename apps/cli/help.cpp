@@ -12,8 +12,8 @@ namespace pertev {
 namespace {
 
 constexpr std::size_t kColumns = 80, kTextColumn = 27;
-constexpr const char* kOwnGroup = "Options";  // of flags that are no settings, as CLI11 names it
-constexpr const char* kSettings = "Settings"; // of a short help
+constexpr const char* kOwnGroup = "Options";  // CLI11's name of the group of flags that are no settings
+constexpr const char* kSettings = "Settings"; // heading of a short help
 
 std::string small_letters(std::string text) {
     std::ranges::transform(text, text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
@@ -115,8 +115,8 @@ std::string Help::make_help(const CLI::App* verb, std::string, CLI::AppFormatMod
     }
     std::vector<std::string> groups = verb->get_groups();
     std::ranges::stable_partition(groups, [](const std::string& group) { return group == kOwnGroup; });
-    std::string
-        heading; // of the last; a short help gathers all settings under one, the verb's own where these come before
+    std::string heading; // heading of the last group; a short help lists all settings under one, the verb's own if they
+                         // come first
     for (const std::string& group : groups) {
         if (group.empty() || !(has_all || small_letters(group) == group_)) continue;
         std::string entries;

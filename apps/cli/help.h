@@ -1,6 +1,6 @@
 #pragma once
 
-// Verbs describe themselves by what is made of their flags: help, a page for man, completion for shells.
+// Help, a man page and shell completion, generated from the flags of verbs.
 
 #include <string>
 #include <vector>
@@ -9,27 +9,27 @@
 
 namespace pertev {
 
-/// Writes the help of verbs, in 80 columns. Of flags that are settings it has those that most people use, and of other
-/// groups the names, unless it is made for a group, or for "all".
+/// Writes the help of verbs in 80 columns. It lists common settings and the names of other groups, or everything for
+/// a given group or "all".
 class Help : public CLI::FormatterBase {
 public:
     explicit Help(std::string group) : group_(std::move(group)) {}
     std::string make_help(const CLI::App* verb, std::string name, CLI::AppFormatMode mode) const override;
 
 private:
-    std::string group_; // in small letters; empty: none
+    std::string group_; // in lower case; empty: none
 };
 
-/// Takes the word after --help or -h off the line where it names a group of flags, or all: it is returned. `words`: the
-/// command line.
+/// Removes and returns the word after --help or -h if it names a group of flags, or is "all". `words` is the command
+/// line.
 std::string take_help_group(std::vector<std::string>& words);
 
-/// A page in the language of man, of all verbs.
+/// A man page of all verbs.
 std::string man_page(const CLI::App& app);
-/// A script that completes verbs and flags, and the values of settings that have names. Throws Error(BadInput) for
-/// another shell than bash, zsh and fish.
+/// A completion script for verbs, flags, and the named values of settings. Throws Error(BadInput) for another shell
+/// than bash, zsh and fish.
 std::string completion(const CLI::App& app, const std::string& shell);
-/// docs/settings.md: the table of settings.
+/// The content of docs/settings.md: the table of settings.
 std::string settings_document();
 
 } // namespace pertev

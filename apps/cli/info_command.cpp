@@ -118,14 +118,14 @@ std::string settings_of(const std::string& picture) {
 
 /// Which animations and scenes the file has, and which of them a render plays and shows unless flags say otherwise.
 void describe_choices(const Scene& scene, Facts& facts) {
-    std::vector<std::string> animations = list_clips(scene.clips); // what --animation takes
+    std::vector<std::string> animations = list_clips(scene.clips); // values of --animation
     for (std::size_t i = 0; i < animations.size(); ++i) {
         animations[i] += fmt::format(" ({:.6g} s)", scene.clips[i].end_s);
     }
     facts.add("animations", animations);
     if (animations.size() > 1) facts.add("plays", clip_choice(scene.clips));
     if (scene.file_scenes.size() < 2) return;
-    facts.add("file_scenes", list_file_scenes(scene)); // what --file-scene takes
+    facts.add("file_scenes", list_file_scenes(scene)); // values of --file-scene
     facts.add("shows", file_scene_choice(scene));
 }
 
@@ -141,7 +141,7 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
     facts.add("materials", scene.materials.size());
     facts.add("images", scene.images.size());
     const uint64_t emissive = count_emissive_triangles(scene);
-    facts.add("lights", emissive + scene.lights.size() + (scene.environment ? 1 : 0)); // as render counts them
+    facts.add("lights", emissive + scene.lights.size() + (scene.environment ? 1 : 0)); // counted like render does
     facts.add("emissive_triangles", emissive);
     facts.add("environment", scene.environment ? "yes" : "no");
     const Bounds3 bounds = bounds_of(scene);
@@ -153,7 +153,7 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
         facts.add("bounds_high", in_file(scene, bounds.hi));
     }
     std::vector<std::string> cameras;
-    for (const Camera& camera : scene.cameras) { // what --camera takes
+    for (const Camera& camera : scene.cameras) { // values of --camera
         cameras.push_back(camera.name.empty() ? fmt::format("{}", cameras.size()) : camera.name);
     }
     facts.add("cameras", cameras);

@@ -1,17 +1,17 @@
 #pragma once
 
-// Ctrl-C and SIGTERM. While nothing has been made yet, the first ends the process at once; later it asks for an orderly
-// end, and the second ends the process.
+// Ctrl-C and SIGTERM. Before there is any result, the first one ends the process at once; later it requests an
+// orderly end, and the second one ends the process.
 
 namespace pertev {
 
-/// From now on a signal ends the process with the status of ErrorCode::Interrupted after one line that says so, with
-/// `json` an object on stdout.
+/// Lets a signal end the process with the status of ErrorCode::Interrupted after one line that says so, with `json`
+/// an object on stdout.
 void end_at_interrupt(bool json);
-/// From now on interrupted() hears the signals.
+/// Lets signals set interrupted() instead.
 void listen_for_interrupt();
 bool interrupted();
-/// Throws Error(Interrupted): for what has nothing to bring to an end.
+/// Throws Error(Interrupted) if there was a signal, for work without partial results.
 void throw_if_interrupted();
 
 } // namespace pertev

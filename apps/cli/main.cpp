@@ -46,7 +46,7 @@ void turn_signals_into_errors() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-/// What CLI11 takes for a no as a flag's value, in any case.
+/// Whether CLI11 takes the value of a flag as false, case-insensitively.
 bool is_no(std::string_view value) {
     std::string small(value);
     std::ranges::transform(small, small.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
@@ -59,14 +59,14 @@ bool wants_json(int argc, char** argv) {
     bool json = false; // by the last that says so, as the verb reads it
     for (int i = 1; i < argc; ++i) {
         const std::string_view word = argv[i];
-        if (word == "--") break; // what follows is no flag
+        if (word == "--") break; // only positional words follow
         if (word == "--json") json = true;
         if (word.starts_with("--json=")) json = !is_no(word.substr(std::string_view("--json=").size()));
     }
     return json;
 }
 
-/// Writes what is made of all flags, where the line asks for it.
+/// Writes documents generated from the flags, if the line requests them.
 bool write_document(const CLI::App& app, const std::vector<std::string>& words) {
     if (words.empty()) return false;
     if (words[0] == "--man")
@@ -103,7 +103,7 @@ int run(std::vector<std::string> words, bool json) {
         ->check(one_of({"bash", "zsh", "fish"}));
     try {
         if (write_document(app, words)) return 0;
-        std::ranges::reverse(words); // as CLI11 takes them
+        std::ranges::reverse(words); // the order that CLI11 expects
         app.parse(std::move(words));
         return status;
     } catch (const CLI::ParseError& error) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// How frames in real time are made: reconstructed, by shared light, at a lower resolution. All verbs that make such
-// frames have these settings.
+// Options of real-time frames: reconstruction, ReSTIR, lower resolution. All verbs with such frames have these
+// settings.
 
 #include <string>
 
@@ -9,11 +9,11 @@
 
 namespace pertev {
 
-/// Returns what is asked for; without reconstruction it is of_samples_alone.
+/// Returns the requested settings; without reconstruction of_samples_alone.
 ReconstructionSettings reconstruction_settings(const ReconstructionOptions& options);
-/// Whether there is something that frames of integrators alone have that make them (makes_frames).
+/// Whether an option is set that only integrators with frames have (makes_frames).
 bool ask_for_frames(const ReconstructionOptions& options);
-/// Returns all of it as a JSON object: what makes the bytes of a frame, beside the picture's own settings.
+/// Returns everything that determines the bytes of a frame, besides the picture's own settings, as a JSON object.
 std::string json_of(const ReconstructionOptions& options);
 
 } // namespace pertev

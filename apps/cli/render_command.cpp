@@ -25,7 +25,7 @@
 namespace pertev {
 namespace {
 
-/// What is under way: what the integrator makes before the first sample, or the samples.
+/// The current step: the integrator's precomputation, or the samples.
 struct Step {
     const char* name;
     double share, seconds; // done, [0, 1]; since it began
@@ -36,7 +36,7 @@ struct Step {
     }
 };
 
-/// Of the samples, or of the time where that ends first.
+/// Progress of the samples, or of the time if that ends first.
 Step step_of(const RenderProgress& now, double time_limit_s) {
     if (now.made_share < 1) return {"before_samples", now.made_share, now.seconds, 0.01};
     const double of_samples = static_cast<double>(now.samples_done) / now.samples,
@@ -69,7 +69,7 @@ void say_hidden_backs(double share, Messages& messages) {
                               100 * share));
 }
 
-/// What is about to be rendered, and on what. Throws Error(OutOfMemory) where that is too much.
+/// Reports what will be rendered, and on which device. Throws Error(OutOfMemory) if that is too much.
 void report_start(const RenderFlags& flags, const Scene& scene, const PreparedScene& prepared,
                   const RenderSettings& settings, const Queue& queue, double load_s, Reporter& reporter) {
     const std::size_t bytes =
@@ -94,7 +94,7 @@ void report_start(const RenderFlags& flags, const Scene& scene, const PreparedSc
     check_render_memory(bytes, settings, memory_to_render_in(queue, settings, max_memory_bytes(flags.radiosity)));
 }
 
-/// Of a picture that an integrator had not begun to sample.
+/// Error for a picture that was interrupted before its first sample.
 Error ended_before_samples(const RenderSettings& settings) {
     if (interrupted()) return {ErrorCode::Interrupted, "interrupted before there was anything to keep"};
     return {ErrorCode::Interrupted,

@@ -31,8 +31,8 @@ bool writes_any(const RenderFlags& flags, std::initializer_list<ImageFormat> for
 /// The file that is written, however it is named: without links, also one to a file that is not there yet, "." and
 /// "..".
 std::filesystem::path place_of(const std::string& file) {
-    constexpr int kMostLinks = 40; // as many as Linux follows
-    std::error_code fault;         // then the place as far as it is known
+    constexpr int kMostLinks = 40; // limit of Linux
+    std::error_code fault;         // after an error the path is resolved as far as possible
     std::filesystem::path place = std::filesystem::absolute(file, fault);
     for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(place, fault); ++i) {
         place = place.parent_path() / std::filesystem::read_symlink(place, fault);
@@ -69,7 +69,7 @@ void check_shown_picture_flags(const RenderFlags& flags) {
     const RenderSettings settings = light_settings(flags);
     check_radiosity_flags(flags.radiosity, settings, flags.limits_memory);
     if (!flags.shutter.empty()) check_shutter(settings);
-    Camera asked; // as far as flags say it
+    Camera asked; // defined by flags only
     asked.aperture_radius = std::max(flags.scene.camera.aperture.value_or(0), 0.0f);
     check_camera(settings, asked);
     check_scene_options(flags.scene);

@@ -1,6 +1,6 @@
 #pragma once
 
-// These are the flags of pertev render and what follows from them. They are made of the table of settings.
+// The flags of pertev render, made from the table of settings, and their checks.
 
 #include <optional>
 #include <string>
@@ -21,21 +21,22 @@ namespace pertev {
 
 struct RenderFlags : PictureOptions {
     std::vector<std::string> outputs;
-    bool limits_memory = false; // --max-memory counts for all integrators
+    bool limits_memory = false; // --max-memory applies to all integrators
     SettingFlags settings;
     ReportFlags report;
 };
 
-/// Whether a picture is asked for that light is mapped to tones for: PNG or JPEG.
+/// Whether an output is tone-mapped: PNG or JPEG.
 bool writes_tone_mapped(const RenderFlags& flags);
 
-/// Checks what can be told before the scene is read. Throws Error, above all for an output that could not be written.
+/// Checks everything that can be checked before the scene is read. Throws Error, especially for an output that cannot
+/// be written.
 void check_render_flags(const RenderFlags& flags, Messages& messages);
-/// Checks the part of it that a picture on a screen has, too.
+/// Checks the part that also applies to a picture on a screen.
 void check_shown_picture_flags(const RenderFlags& flags);
-/// Checks what moves, and when.
+/// Checks flags of motion and time.
 void check_motion_flags(const RenderFlags& flags);
-/// Checks frames in real time. Throws Error(BadInput) for what such frames have not got.
+/// Checks real-time frames. Throws Error(BadInput) for features that they lack.
 void check_real_time_flags(const RenderFlags& flags);
 
 } // namespace pertev

@@ -60,7 +60,7 @@ SequenceRecord::Settings settings_of(const RenderFlags& flags, const FrameRange&
     return settings;
 }
 
-/// What is said of a whole sequence.
+/// Totals reported for a whole sequence.
 struct Tally {
     bool has_begun = false;                    // a frame was rendered, written or not
     uint32_t written = 0, kept = 0, again = 0; // again: of those that were kept, rendered for the history of others
@@ -74,7 +74,7 @@ std::string kept_text(const Tally& tally) {
     return fmt::format(", {} kept ({} of them rendered again for the history of others)", tally.kept, tally.again);
 }
 
-/// What every frame is rendered with, and for.
+/// Everything needed to render and write any frame.
 struct SequenceRun : SequenceOfFrames {
     const RenderFlags& flags;
     Reporter& reporter;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a render says: the camera at its start, files, time and rates at its end.
+// Reports of a render: the camera at its start; files, time and rates at its end.
 
 #include <cstdint>
 #include <string>
@@ -11,24 +11,24 @@
 
 namespace pertev {
 
-/// Of the host's memory, the most that this process has had.
+/// Peak host memory of this process.
 uint64_t peak_memory_bytes();
 
-/// With --json, an object of the flags that place this camera, under the names and with the values that they have in an
-/// EXR's metadata, where vectors are texts and here arrays.
+/// With --json, writes an object with the flags that place this camera, with the names and values of an EXR's
+/// metadata, where vectors are texts and here arrays.
 void report_camera(const CameraSource& camera, Reporter& reporter);
 
-/// Says which files were written. Returns what went wrong with the others; empty where nothing has.
+/// Reports the files that were written. Returns what went wrong with the others; empty if nothing did.
 std::string report_files(const WrittenPicture& written, Reporter& reporter);
 
-/// As members of a JSON object: `hash`, `layers_hash` and `denoised_hash`, null where there are none.
+/// Members of a JSON object: `hash`, `layers_hash` and `denoised_hash`, null if there are none.
 std::string hashes_json(const WrittenPicture& written);
 
-/// What --strict ends with where samples are not finite.
+/// Error of --strict for samples that are not finite.
 Error not_finite(uint64_t invalid_samples);
 
-/// Says time, rates, memory, invalid samples and hashes. `total_seconds` since the scene began to load; `queue`: that
-/// it was rendered on; `interrupted`: before all samples were done.
+/// Reports time, rates, memory, invalid samples and hashes. `total_seconds` counts from the start of loading the
+/// scene; `queue` is the one it was rendered on; `interrupted` means before all samples were done.
 void report_result(const RenderResult& result, const WrittenPicture& written, const Queue& queue, double total_seconds,
                    bool interrupted, Reporter& reporter);
 

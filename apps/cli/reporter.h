@@ -1,6 +1,6 @@
 #pragma once
 
-// What a verb says: messages and a progress line for people on stderr, or one JSON object a line on stdout.
+// Output of a verb: messages and a progress line for people on stderr, or one JSON object per line on stdout.
 
 #include <cstdint>
 #include <functional>
@@ -17,7 +17,7 @@ class App;
 
 namespace pertev {
 
-/// -q silences all but errors; --json turns everything into JSON lines on stdout. Every verb has both.
+/// -q silences everything but errors; --json turns everything into JSON lines on stdout. Every verb has both.
 struct ReportFlags {
     bool quiet = false, json = false;
     std::string measurement; // file that a benchmark writes its measurement into; empty: none
@@ -32,27 +32,27 @@ public:
     Reporter(const Reporter&) = delete;
     Reporter& operator=(const Reporter&) = delete;
 
-    /// Says the messages. The destructor says what was not said: before an error, it may tell why.
+    /// Writes the messages. The destructor writes remaining ones, which may explain an error.
     void say_messages() override;
-    /// Returns whether Ctrl-C was heard.
+    /// Returns whether Ctrl-C was pressed.
     bool is_cancelled() override;
-    /// One line for people, on stderr.
+    /// Writes a line for people to stderr.
     void say(const std::string& line);
-    /// Share done in [0, 1], and what stands behind the bar. Redrawn in place on a terminal; where there is none, or a
-    /// dumb one, a line every 10 s.
+    /// Shows the share that is done, in [0, 1], and a text after the bar. It is redrawn in place on a terminal;
+    /// otherwise, or on a dumb one, there is a line every 10 s.
     void progress(double share, const std::string& detail) override;
-    /// What is being done from now on, for these lines: where there is no share yet.
+    /// Names the current work for these lines until there is a share.
     void set_work(const std::string& work) override;
-    /// A JSON object ("{...}") of the given event; only with --json.
+    /// Writes a JSON object ("{...}") of the given event; only with --json.
     void event(const std::string& object);
-    /// The event that tells a verb's result: `object` with the lists `made_up` and `left_out` of all messages before
+    /// Writes the event with a verb's result: `object` with the lists `made_up` and `left_out` of all messages before
     /// it.
     void result(const std::string& object);
-    /// What the verb was asked for, for people, on stdout.
+    /// Writes the requested information for people to stdout.
     void answer(const std::string& lines);
-    /// A file that was written, or with a reason one that was not; only with --json.
+    /// Reports a file that was written, or that could not be written and why; only with --json.
     void output(const std::string& path, const std::string& why_not = "");
-    /// Has `write` write this file, and says so, or why it did not. Throws as `write`.
+    /// Lets `write` write this file, and reports that, or why it failed. Throws as `write`.
     void write_output(const std::string& path, const std::function<void()>& write);
     void end_progress();
 
@@ -62,10 +62,10 @@ private:
     bool is_silent() const { return flags_.quiet || flags_.json; }
 
     ReportFlags flags_;
-    bool redraws_; // a terminal that takes escapes
+    bool redraws_; // a terminal with escape sequences
     bool drawn_ = false;
     std::size_t said_ = 0;
-    std::unique_ptr<Heartbeat> heartbeat_; // where nobody sees a bar
+    std::unique_ptr<Heartbeat> heartbeat_; // used if nobody sees a bar
 };
 
 } // namespace pertev

@@ -1,7 +1,6 @@
 #pragma once
 
-// What every verb that takes a scene shares: the session's functions for the options of a scene, whose texts are read
-// here.
+// Scene options of all verbs with a scene: wrappers of the session's functions that parse the texts of flags.
 
 #include <string>
 
@@ -17,20 +16,20 @@ class Option;
 
 namespace pertev {
 
-/// Adds SCENE.
+/// Adds the positional argument SCENE.
 CLI::Option* add_scene_name(CLI::App& verb, SceneOptions& options);
-/// The names of all built-in scenes, for help.
+/// Names of all built-in scenes, for help.
 std::string builtin_scene_list();
 
-/// What can be told before the scene is read. Throws Error(BadInput) for a flag that another one makes useless.
+/// Checks what can be checked before the scene is read. Throws Error(BadInput) for a flag that another one overrides.
 void check_scene_options(const SceneOptions& options);
 
-/// A file, or a built-in scene by its name, with nothing added (session/opening/open_scene.h's read_scene_and_lamps).
-/// Throws Error.
+/// Reads a file, or a built-in scene by its name, and adds nothing (session/opening/open_scene.h's
+/// read_scene_and_lamps). Throws Error.
 Scene read_any_scene(const SceneOptions& options, Messages& messages);
 
-// The rest is session/opening/open_scene.h and session/opening/choose_camera.h for flags as they stand on the command
-// line. Each throws Error(BadInput) also for text that is no value.
+// Wrappers of session/opening/open_scene.h and session/opening/choose_camera.h for flags as text. Each throws
+// Error(BadInput) for invalid text too.
 
 Scene load_scene(const SceneOptions& options, SceneUse use, Messages& messages);
 

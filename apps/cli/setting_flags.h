@@ -1,6 +1,6 @@
 #pragma once
 
-// The flags of a verb that are settings: made of the rows of the table (settings/setting_table.h). A flag is a
+// The flags of a verb that are settings, made from the rows of the table (settings/setting_table.h). A flag is a
 // setting's name with dashes.
 
 #include <list>
@@ -19,20 +19,20 @@ class Option;
 
 namespace pertev {
 
-/// The setting that a flag is made of; null where it is none.
+/// The setting of a flag; null if it is none.
 const Setting* setting_of(const CLI::Option& flag);
 
-/// The texts of a line's flags, until it has been read to its end.
+/// The texts of a line's flags until all of it has been parsed.
 class SettingFlags {
 public:
-    /// Adds a flag for each setting of `verbs`, one bit or several. The values in `options` are what holds without it.
+    /// Adds a flag for each setting of `verbs`, one bit or several. The values in `options` are the defaults.
     void add(CLI::App& verb, uint32_t verbs, const PictureOptions& options,
              std::span<const Setting> table = all_settings());
-    /// Adds --settings FILE, too.
+    /// Adds --settings FILE.
     void add_file(CLI::App& verb);
 
-    /// Gives `options` what the file of settings says, then what the flags say. Throws Error for values that are none,
-    /// and for settings that do not go together.
+    /// Sets `options` from the settings file, then from the flags. Throws Error for invalid values and for
+    /// incompatible settings.
     void read(PictureOptions& options, Messages& messages) const;
 
 private:
@@ -43,7 +43,7 @@ private:
         std::vector<std::string> texts;
         bool is_on = false;
     };
-    std::list<Flag> flags_; // CLI11 writes into them
+    std::list<Flag> flags_; // a list, because CLI11 writes into its elements
     std::string file_;
     uint32_t verbs_ = 0;
 

@@ -38,7 +38,7 @@ namespace pertev {
 namespace {
 
 constexpr double kFrameOnCpu = 0.12, kFrameOnGpu = 1.0 / 60; // seconds that a frame may take while the camera moves
-constexpr double kTurntableFps = 24;                         // as --frames has them
+constexpr double kTurntableFps = 24;                         // the default of --frames
 constexpr auto kLongestEnd = std::chrono::milliseconds(800); // from Ctrl-C to the end
 
 struct ViewFlags {
@@ -122,7 +122,7 @@ void tell_choices(const Scene& scene, ViewerStart& start) {
     tell("scene of the file", file_scene_choice(scene), list_file_scenes(scene), "--file-scene");
 }
 
-/// What time does to the camera, and when all of it is over.
+/// Sets how time moves the camera, and when all motion ends.
 void let_time_move(const ViewFlags& flags, const ReadyScene& ready, ViewerStart& start) {
     const MovingScene& moving = *ready.moving;
     const uint32_t turntable = flags.render.turntable;
@@ -167,7 +167,7 @@ Pose start_pose(const PictureRecord& record, const Scene& scene, FrameSource& so
     return pose_of(record.camera, scene, distance);
 }
 
-/// Of the GPU that renders; null where pictures are packed by the CPU.
+/// Queue of the GPU that renders; null if the CPU encodes pictures.
 std::unique_ptr<Queue> queue_for_jpeg(const ViewFlags& flags) {
     if (flags.jpeg == "cpu") return nullptr;
     try {
@@ -179,7 +179,7 @@ std::unique_ptr<Queue> queue_for_jpeg(const ViewFlags& flags) {
     }
 }
 
-/// Those that would show the scene as black, and why.
+/// Integrators that would show the scene as black, and why.
 std::vector<std::pair<IntegratorKind, std::string>> dark_integrators(RenderSettings settings, const Scene& scene) {
     std::vector<std::pair<IntegratorKind, std::string>> dark;
     for (const std::string& name : integrator_names()) {

@@ -1,17 +1,17 @@
 #pragma once
 
-// Secrets of the viewer: random text that a stranger cannot guess, and a comparison that tells nothing by how long it
-// takes.
+// Secrets of the viewer: unguessable random text, and a comparison in constant time.
 
 #include <string>
 #include <string_view>
 
 namespace pertev {
 
-/// `bytes` random bytes of the system as hexadecimal digits. Throws Error(DeviceFault) where the system has none.
+/// Returns `bytes` random bytes of the system as hexadecimal digits. Throws Error(DeviceFault) if the system has
+/// none.
 std::string make_token(int bytes = 16);
 
-/// Whether both are the same text. The time depends on the length of `given` alone, never on how much of it is right.
+/// Whether both texts are equal. The time depends only on the length of `given`, never on how much of it matches.
 bool equal_in_constant_time(std::string_view given, std::string_view secret);
 
 } // namespace pertev

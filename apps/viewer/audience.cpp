@@ -12,7 +12,7 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kMostTold = 8; // texts that wait for one client; the oldest goes
+constexpr std::size_t kMostTold = 8; // texts queued for one client; the oldest is dropped
 constexpr double kGreeting = 10;     // seconds within which a client must say hello
 constexpr double kTellWhyEvery = 4;  // seconds between two answers to a client that does not steer
 constexpr double kPiece = 0.2;       // seconds of the link that a piece of a PNG takes
@@ -52,7 +52,7 @@ std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
         return {};
     }
     if (message->kind == MessageKind::Hello) return "a second hello";
-    if (message->kind == MessageKind::Ack) { // of one that a later one has overtaken: nothing to do
+    if (message->kind == MessageKind::Ack) { // an acknowledgement of an outdated frame has no effect
         client.pace.acknowledged(message->frame, now_s, 1e-3 * static_cast<double>(message->milliseconds));
         changed_.notify_one();
         return {};
@@ -66,21 +66,21 @@ std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
         if (wheel_.hand(id, message->client, now_s)) people_changed();
         return {};
     }
-    // Whoever has just lost the wheel may not know it yet: no reason to drop it. Looking at a place is free.
+    // A client that has just lost the wheel may not know it yet, which is no reason to drop it. Anyone may pick.
     if (!wheel_.steers(id)) note_wish(id, client, *message, now_s);
     const bool may = wheel_.steers(id) || (message->kind == MessageKind::Pick && message->use == PickUse::Show);
     if (may && !inbox_.put(Steer{id, *std::move(message)}) && !inbox_.is_closed()) return "too many messages wait";
     return {};
 }
 
-/// Tells a client that does not steer why nothing happens, and the one that steers what was wished for.
+/// Tells a client that does not steer why nothing happens, and the one that steers what was requested.
 void Audience::note_wish(uint32_t id, Client& client, const ClientMessage& message, double now_s) {
-    if (message.kind == MessageKind::Pick && message.use == PickUse::Show) return; // is free
+    if (message.kind == MessageKind::Pick && message.use == PickUse::Show) return; // anyone may do that
     const std::string wish = wish_text(message);
     const Wheel::Wish is = wish.empty() ? Wheel::Wish::None : wheel_.wish(id, wish, now_s);
     if (is == Wheel::Wish::None) return;
     if (is == Wheel::Wish::New) people_changed();
-    if (now_s - client.told_why_s < kTellWhyEvery) return; // a drag is many messages
+    if (now_s - client.told_why_s < kTellWhyEvery) return; // a drag consists of many messages
     client.told_why_s = now_s;
     const std::string why =
         wheel_.holder() != 0
@@ -205,7 +205,7 @@ std::optional<SendJob> Audience::picture_job(uint32_t id, Client& client, double
         client.offset = 0;
         return job;
     }
-    // The last picture, without loss, once what was before it has come through.
+    // Sends the last picture losslessly after everything before it has arrived.
     if (!latest_->frame.is_final || client.has_png || !client.pace.is_idle()) return std::nullopt;
     job.is_piece = true;
     job.offset = client.offset;
@@ -213,7 +213,7 @@ std::optional<SendJob> Audience::picture_job(uint32_t id, Client& client, double
     return job;
 }
 
-/// From the one behind the last served, round to it.
+/// Round robin, starting after the client served last.
 std::optional<SendJob> Audience::job_for_anyone(double now_s) {
     std::vector<uint32_t> order;
     for (const auto& [id, client] : clients_) order.push_back(id);
@@ -230,7 +230,7 @@ std::optional<SendJob> Audience::job_for_anyone(double now_s) {
     return std::nullopt;
 }
 
-/// When the first of the pictures that are held back may leave; infinity where there is none.
+/// Time when the first held-back picture may leave; infinity if there is none.
 double Audience::next_send_at_s(double now_s) const {
     double at_s = std::numeric_limits<double>::infinity();
     for (const auto& [id, client] : clients_) {

@@ -1,8 +1,8 @@
 #pragma once
 
-// The clients: who is there, who steers, what each still has to be sent and what its link takes. Safe for any thread.
-// Nothing here grows with a client that does not listen: at most two pictures and one text are under way to each, and
-// only the newest picture and state wait.
+// The clients: who is connected and who steers, what must be sent to each, and the capacity of its link. Thread-safe.
+// Memory does not grow with a client that does not read: at most two pictures and one text are in flight to each, and
+// only the newest picture and state are queued.
 
 #include <condition_variable>
 #include <cstdint>
@@ -26,15 +26,15 @@ namespace pertev {
 /// A picture that was published.
 struct PublishedFrame {
     ShownFrame frame;
-    uint32_t number = 0; // counts up from 1
+    uint32_t number = 0; // starts at 1
     uint32_t input = 0;
 };
 
-/// The next thing to be sent to one client.
+/// The next thing to send to one client.
 struct SendJob {
     uint32_t client = 0;
-    std::string text;                              // where it is not empty, that
-    std::shared_ptr<const PublishedFrame> picture; // else this: as JPEG,
+    std::string text;                              // if not empty, this text
+    std::shared_ptr<const PublishedFrame> picture; // otherwise this picture: as JPEG,
     int quality = 80;
     float scale = 1;
     bool is_piece = false; // or as a piece of a PNG
@@ -44,41 +44,42 @@ struct SendJob {
 class Audience {
 public:
     static constexpr std::size_t kMostClients = 16;
-    static constexpr double kMessagesPerSecond = 400; // of one client, on average; a burst may be twice as many
+    static constexpr double kMessagesPerSecond = 400; // per client, on average; bursts may have twice as many
 
-    /// `inbox` outlives it. `welcome`: the text that each client is sent first.
+    /// `inbox` outlives it. `welcome` is the first text that each client gets.
     Audience(Inbox& inbox, std::string welcome) : inbox_(inbox), welcome_(std::move(welcome)) {}
 
     // For the network's thread. Times are seconds of a steady clock.
 
-    /// False: there are too many.
+    /// Returns false if there are too many clients.
     bool open(uint32_t client, double now_s);
-    /// Empty where that was taken; else why the client is to be dropped.
+    /// Handles a message. Returns empty on success, else why the client must be dropped.
     std::string said(uint32_t client, std::string_view text, double now_s);
     void text_was_sent(uint32_t client);
     void close(uint32_t client, double now_s);
-    /// To be called now and then. Gives the clients that have not said hello in time.
+    /// Must be called regularly. Returns the clients that have not said hello in time.
     std::vector<uint32_t> look(double now_s);
 
     // For the render's thread.
 
     void publish(ShownFrame frame, uint32_t input);
-    /// What the panel shows, for all; a text that waits is replaced.
+    /// Sends the panel's state to all clients; a queued one is replaced.
     void tell_state(std::string text);
-    /// Something that was asked for, to one client; 0: to all.
+    /// Sends an answer to one client; 0: to all.
     void tell(uint32_t client, const std::string& text);
     bool is_anyone_there() const;
-    /// Whether the last picture has gone to nobody yet who would take it now.
+    /// Whether some client is ready but has not got the last picture.
     bool is_behind(double now_s) const;
 
     // For the thread that packs pictures.
 
-    /// Waits for something to be sent until the timeout is over. What it gives counts as under way. `now_s`: the clock
-    /// of the times that the others are told.
+    /// Waits for something to send until the timeout. The result counts as in flight. `now_s` is the clock of the
+    /// other functions' times.
     std::optional<SendJob> next_job(std::chrono::milliseconds timeout, const std::function<double()>& now_s);
-    /// A picture, packed, leaves now. `total_bytes` of the whole file of a piece. Gives the number of the message.
+    /// Records that an encoded picture is sent. `total_bytes` is the size of the whole file of a piece. Returns the
+    /// number of the message.
     uint32_t picture_leaves(const SendJob& job, std::size_t bytes, std::size_t total_bytes, double now_s);
-    /// Of the picture sent last: how long its client's link took, and how it was packed; for the panel.
+    /// Transfer time of the last picture, and its encoding; for the panel.
     struct LinkNumbers {
         uint32_t client;
         int quality;
@@ -93,13 +94,13 @@ private:
         double opened_s = 0;
         double allowance = 2 * kMessagesPerSecond, counted_s = 0;
         LinkPace pace;
-        uint32_t seen = 0; // number of the last picture that was sent
+        uint32_t seen = 0; // number of the last picture sent
         std::size_t offset = 0;
-        bool has_png = false; // all of the last picture's
+        bool has_png = false; // whether the client has the whole PNG of the last picture
         bool text_under_way = false, wants_welcome = true, wants_people = true;
         uint64_t state_seen = 0;
         std::deque<std::string> told;
-        double told_why_s = -1e9; // when it was told why it does not steer
+        double told_why_s = -1e9; // when it was last told why it cannot steer
     };
     std::string people_text(uint32_t you) const;
     std::optional<SendJob> text_job(uint32_t id, Client& client);
@@ -116,7 +117,7 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::map<uint32_t, Client> clients_;
-    uint32_t last_served_ = 0; // clients are served in turns
+    uint32_t last_served_ = 0; // clients are served round robin
     Wheel wheel_;
     std::shared_ptr<const PublishedFrame> latest_;
     uint32_t published_ = 0, serial_ = 0;

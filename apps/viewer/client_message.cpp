@@ -135,8 +135,8 @@ constexpr Key kHandKeys[] = {{"to", read_whole<&ClientMessage::client>}};
 struct Form {
     const char* type;
     MessageKind kind;
-    std::span<const Key> keys; // all of them must be there, each once
-    const char* wish = "";     // of who does not steer
+    std::span<const Key> keys; // each must be present exactly once
+    const char* wish = "";     // wish of a client that does not steer
     bool moves_the_picture = false;
 };
 

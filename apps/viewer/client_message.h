@@ -1,8 +1,8 @@
 #pragma once
 
-// What a page says to the viewer: one JSON object a message. Parsing is strict: an unknown kind, an unknown or missing
-// key, a key that stands twice, a number out of range or of the wrong type, a text too long: no message. Nothing of it
-// reaches the renderer unchecked.
+// Messages of a page to the viewer: one JSON object each. Parsing is strict: an unknown kind, an unknown, missing or
+// repeated key, a number out of range or of the wrong type, or a text that is too long is an error. Everything that
+// reaches the renderer has been checked.
 
 #include <cstdint>
 #include <optional>
@@ -15,28 +15,28 @@ namespace pertev {
 inline constexpr std::size_t kMaxMessageBytes = 1024;
 
 enum class MessageKind : uint8_t {
-    Hello,  // the first of a client: its key, by which a reconnect is known
+    Hello,  // the first message of a client: its key, by which it is recognised after a reconnect
     Move,   // keys held for a while
-    Orbit,  // about the orbit's centre
-    Look,   // about the eye
+    Orbit,  // around the orbit's centre
+    Look,   // around the eye
     Pan,    // across the view
     Zoom,   // towards the orbit's centre
-    Speed,  // of Move
-    Pick,   // what is at a place of the picture
-    Home,   // back to the camera of the start
+    Speed,  // speed of Move
+    Pick,   // query at a position of the picture
+    Home,   // back to the initial camera
     Camera, // to one of the scene's cameras
     Set,    // one setting
     Meter,  // exposure by the light meter
-    Play,   // time runs or stands, and how
-    Time,   // to a time of the scene
-    Key,    // the present view becomes a key of the camera's path
-    Unkey,  // a key goes
-    Follow, // the camera goes its path, from its beginning
-    Rate,   // of the page's screen
-    Shape,  // of the page's window
+    Play,   // starts or stops time
+    Time,   // sets the scene's time
+    Key,    // adds the current view as a key of the camera's path
+    Unkey,  // removes a key
+    Follow, // starts the camera's path from its beginning
+    Rate,   // refresh rate of the page's screen
+    Shape,  // size of the page's window
     Ack,    // a picture was drawn
-    Ask,    // for the wheel
-    Hand,   // the wheel, to another client
+    Ask,    // requests the wheel
+    Hand,   // hands the wheel to another client
 };
 
 enum class Pace : uint8_t { Normal, Fast, Slow };
@@ -44,36 +44,37 @@ enum class PickUse : uint8_t { Show, Orbit, Focus };
 
 struct ClientMessage {
     MessageKind kind = MessageKind::Hello;
-    uint32_t input = 0;                      // its number, which comes back with the first picture that shows it
+    uint32_t input = 0;                      // its number, which is returned with the first picture that shows its
+                                             // effect
     float right = 0, up = 0, forward = 0;    // Move: [-1, 1]
-    float seconds = 0;                       // Move: how long, [0, 0.25]
+    float seconds = 0;                       // Move: duration, [0, 0.25]
     Pace pace = Pace::Normal;                // Move
-    float dx = 0, dy = 0;                    // Orbit, Look, Pan: in heights of the picture, [-4, 4]
-    float steps = 0;                         // Zoom, Speed: of the wheel, [-20, 20]
-    float x = 0, y = 0;                      // Pick: of the picture's width and height, [0, 1]
+    float dx = 0, dy = 0;                    // Orbit, Look, Pan: in picture heights, [-4, 4]
+    float steps = 0;                         // Zoom, Speed: steps of the mouse wheel, [-20, 20]
+    float x = 0, y = 0;                      // Pick: fraction of the picture's width and height, [0, 1]
     PickUse use = PickUse::Show;             // Pick
     uint32_t index = 0;                      // Camera, Unkey
     bool on = false, loops = false;          // Play
-    float speed = 1;                         // Play: of time, [0, 64]
+    float speed = 1;                         // Play: speed of time, [0, 64]
     float at = 0;                            // Time, Key: seconds, [0, 1e9]
-    float hertz = 0;                         // Rate: pictures a second, [1, 1000]
-    uint32_t width = 0, height = 0;          // Shape: pixels of the screen, [1, 65535]
+    float hertz = 0;                         // Rate: pictures per second, [1, 1000]
+    uint32_t width = 0, height = 0;          // Shape: screen pixels, [1, 65535]
     uint32_t frame = 0;                      // Ack
-    float milliseconds = 0;                  // Ack: of decoding and drawing, [0, 1e6]
+    float milliseconds = 0;                  // Ack: time of decoding and drawing, [0, 1e6]
     uint32_t client = 0;                     // Hand
     std::string key;                         // Hello
     std::string name;                        // Set
     std::variant<double, std::string> value; // Set: finite
 };
 
-/// Throws nothing. Not for use from several threads at once with one parser's state: it has none.
+/// Parses a message; does not throw. Thread-safe.
 std::optional<ClientMessage> parse_client_message(std::string_view text);
 
-/// Whether it asks for another view or another time: the picture before it is of no use any more.
+/// Whether it changes the view or the time, which makes the previous picture useless.
 bool moves_the_picture(MessageKind kind);
 
-/// Returns what it asks for, as the end of a sentence that begins with "viewer 2 would like to". It is empty where it
-/// steers nothing.
+/// Returns its meaning as the end of a sentence that begins with "viewer 2 would like to"; empty if it steers
+/// nothing.
 const char* wish_of(MessageKind kind);
 
 } // namespace pertev

@@ -1,8 +1,8 @@
 #pragma once
 
-// The first bytes of a binary message to a page; the picture's bytes follow. Little endian, 32 bytes:
+// The header of a binary message to a page; the picture's bytes follow. Little endian, 32 bytes:
 //   0 uint8 version (1)   1 uint8 kind   2 uint16 flags   4 uint32 frame   8 uint32 input   12 uint32 samples
-//   16 uint16 width, 18 uint16 height: of the picture as it is packed   20 uint16, 22 uint16: of the full picture
+//   16 uint16 width, 18 uint16 height: of the encoded picture   20 uint16, 22 uint16: of the full picture
 //   24 uint32 offset, 28 uint32 total: of a piece, in bytes of the whole file
 
 #include <array>
@@ -13,17 +13,17 @@ namespace pertev {
 
 enum class PictureKind : uint8_t {
     Jpeg = 1,  // one whole picture
-    Piece = 2, // of a PNG: pieces come in order, and a newer frame between them says that no more will come
+    Piece = 2, // a piece of a PNG: pieces come in order, and a newer frame ends them
 };
 
-inline constexpr uint16_t kFrameIsFinal = 1; // all samples are there
+inline constexpr uint16_t kFrameIsFinal = 1; // all samples are done
 
 struct FrameHeader {
     PictureKind kind = PictureKind::Jpeg;
     uint16_t flags = 0;
-    uint32_t frame = 0;   // counts up; what an acknowledgement names
-    uint32_t input = 0;   // the last that this picture shows, of whoever steered
-    uint32_t samples = 0; // a pixel
+    uint32_t frame = 0;   // ascending; acknowledgements refer to it
+    uint32_t input = 0;   // the last input, of whoever steered, that this picture shows
+    uint32_t samples = 0; // per pixel
     uint16_t width = 0, height = 0, full_width = 0, full_height = 0;
     uint32_t offset = 0, total = 0;
 };

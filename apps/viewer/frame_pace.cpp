@@ -8,8 +8,8 @@ namespace {
 
 constexpr float kScales[] = {1.0f, 0.75f, 0.5f, 0.375f, 0.25f, 0.1875f, 0.125f, 0.09375f, 0.0625f, 0.046875f, 0.03125f};
 constexpr int kLast = static_cast<int>(std::size(kScales)) - 1;
-constexpr double kRoom = 0.8;  // of the time that a larger picture must fit in
-constexpr double kLeast = 0.3; // of the frame's time, which is the picture's whatever else there is
+constexpr double kRoom = 0.8;  // fraction of the time in which a larger picture must fit
+constexpr double kLeast = 0.3; // minimum fraction of the frame's time that is attributed to the picture
 
 } // namespace
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// Which part of the full resolution a moving picture has, so that frames keep a rate: pure arithmetic over measured
-// times. Few steps, and no step back at once: each change of size is a new film and a jump to the eye. The first frame
-// is small, and the next as large as that one says.
+// Chooses the resolution of moving pictures for a frame rate, from measured times only. There are few steps, and
+// changes are delayed, because each change of size needs a new film and is visible. The first frame is small, and the
+// next is as large as its time permits.
 
 #include <cstdint>
 
@@ -10,32 +10,32 @@ namespace pertev {
 
 class FramePace {
 public:
-    /// Seconds that a whole frame may take.
+    /// Target time of a frame in seconds.
     explicit FramePace(double frame_s) : frame_s_(frame_s) {}
 
-    /// A frame of `scale` took so long, all its stages together; and before it `beside_s`, whatever its size (the scene
-    /// moved).
+    /// Records a frame at `scale` that took `seconds` for all its stages, and before it `beside_s`, independently of
+    /// its size (for moving the scene).
     void took(float scale, double seconds, double beside_s = 0);
-    /// Of each side of the picture: 1, 3/4, 1/2, 3/8, 1/4, 3/16, 1/8, 3/32, 1/16, 3/64 or 1/32.
+    /// Scale of each side of the picture: 1, 3/4, 1/2, 3/8, 1/4, 3/16, 1/8, 3/32, 1/16, 3/64 or 1/32.
     float scale() const;
     double frame_s() const { return frame_s_; }
-    /// Seconds that a frame of full size would take, by those before; 0: nothing is known.
+    /// Estimated time of a full-size frame, in seconds; 0 if unknown.
     double full_s() const { return full_s_; }
-    /// Another time that a whole frame may take: the next scales keep that.
+    /// Sets another target time for the next scales.
     void keep(double frame_s) { frame_s_ = frame_s; }
-    /// Whether frames of this scale take no longer, by those before.
+    /// Whether frames of this scale meet the target time, by earlier frames.
     bool keeps_rate() const;
 
 private:
     bool fits(int step, double room) const;
 
     double frame_s_;
-    double full_s_ = 0;   // of a frame at full size, by those before; 0: nothing is known
-    double beside_s_ = 0; // of the last frame
-    int step_ = 8;        // small, until a frame has told how fast the machine is
+    double full_s_ = 0;   // estimated time of a full-size frame; 0 if unknown
+    double beside_s_ = 0; // time beside the last frame
+    int step_ = 8;        // small until a frame has shown the speed of the machine
 };
 
-/// A side of the picture at this scale, pixels; at least 1.
+/// Side of the picture at this scale in pixels; at least 1.
 uint32_t scaled_side(uint32_t side, float scale);
 
 } // namespace pertev

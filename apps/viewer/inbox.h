@@ -1,7 +1,7 @@
 #pragma once
 
-// What the network's thread hands to the render's thread: a plain queue behind a mutex. It cannot grow without bound:
-// the clients' rates are limited, and what does not fit is refused.
+// A queue with a mutex from the network's thread to the render's thread. Its size is bounded: clients' rates are
+// limited, and commands that do not fit are refused.
 
 #include <atomic>
 #include <chrono>
@@ -18,20 +18,20 @@
 
 namespace pertev {
 
-/// What somebody who steers has asked for.
+/// A request of a client that steers.
 struct Steer {
     uint32_t client = 0;
     ClientMessage message;
 };
 
-/// A picture to be saved: "png" or "exr". `reply` is called once, from the render's thread, with the file's bytes; or
-/// with none where that failed.
+/// A request to save a picture as "png" or "exr". `reply` is called once, from the render's thread, with the file's
+/// bytes, or with none on failure.
 struct Save {
     std::string format;
     std::function<void(std::vector<std::byte>)> reply;
 };
 
-/// Somebody came, whom the present state is news to.
+/// A client has connected and needs the current state.
 struct Joined {};
 
 using Command = std::variant<Steer, Save, Joined>;
@@ -40,15 +40,15 @@ class Inbox {
 public:
     static constexpr std::size_t kMost = 4096;
 
-    /// While commands wait that make the samples under way useless, `abandon` is true. While commands wait that show
-    /// the same samples in another way, or that, `hurry` is true. Both outlive the inbox.
+    /// Sets `abandon` while commands wait that make the current samples useless, and `hurry` while commands wait that
+    /// do that or only change how samples are shown. Both outlive the inbox.
     void raise(std::atomic<bool>& abandon, std::atomic<bool>& hurry) {
         abandon_ = &abandon;
         hurry_ = &hurry;
     }
 
-    /// Tells what settings that are yet to come will change. One that this view refuses, or has already, raises no
-    /// flag: it must cost no sample.
+    /// Sets the view from which the effect of further settings is predicted. A setting that this view refuses, or has
+    /// already, sets no flag, because it must not cost any sample.
     void expect(const ViewState& view) {
         const std::lock_guard lock(mutex_);
         expected_ = view;
@@ -57,7 +57,7 @@ public:
         }
     }
 
-    /// False where there is no room, or it is closed.
+    /// Returns false if there is no room, or it is closed.
     bool put(Command command) {
         const std::lock_guard lock(mutex_);
         if (is_closed_ || commands_.size() >= kMost) return false;
@@ -68,13 +68,13 @@ public:
         return true;
     }
 
-    /// Whether the viewer is ending: no fault of whoever still sends.
+    /// Whether the viewer is ending, so that refusals are not the sender's fault.
     bool is_closed() const {
         const std::lock_guard lock(mutex_);
         return is_closed_;
     }
 
-    /// All there are, in their order; waits for the first until `timeout` is over.
+    /// Returns all commands in order; waits for the first until `timeout`.
     std::vector<Command> take(std::chrono::milliseconds timeout) {
         std::unique_lock lock(mutex_);
         there_is_more_.wait_for(lock, timeout, [&] { return !commands_.empty(); });
@@ -82,9 +82,9 @@ public:
         return std::exchange(commands_, {});
     }
 
-    /// Forgets what waits, and takes no more.
+    /// Discards queued commands and accepts no more.
     void close() {
-        std::vector<Command> forgotten; // goes after the lock: a reply may lead back to whoever put it here
+        std::vector<Command> forgotten; // destroyed after the lock is released, because a reply may call the sender
         const std::lock_guard lock(mutex_);
         is_closed_ = true;
         forgotten.swap(commands_);
@@ -93,7 +93,7 @@ public:
 private:
     enum class Effect : uint8_t { None, ShownOtherwise, BeginsAnew };
 
-    /// Takes the message into the expected view. Returns what it does to the picture.
+    /// Applies the message to the expected view. Returns its effect on the picture.
     Effect foresee(const ClientMessage& message) {
         if (moves_the_picture(message.kind)) return Effect::BeginsAnew;
         if (message.kind == MessageKind::Meter) return Effect::ShownOtherwise;
@@ -117,7 +117,7 @@ private:
     }
 
     mutable std::mutex mutex_;
-    ViewState expected_; // once all commands that wait are done
+    ViewState expected_; // after all queued commands
     bool is_closed_ = false;
     std::condition_variable there_is_more_;
     std::vector<Command> commands_;

@@ -8,7 +8,7 @@ namespace pertev {
 JpegEncoder::JpegEncoder(Queue* queue, std::span<const char* const> libraries) {
     try {
         if (queue != nullptr) nvjpeg_ = Nvjpeg::load(*queue, libraries);
-    } catch (const Error&) { // whoever renders meets a lost device, too, and says so
+    } catch (const Error&) { // the renderer also detects a lost device, and reports it
     }
 }
 

@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-/// `color(i)` gives the pixel's three bytes.
+/// `color(i)` returns the pixel's three bytes.
 template <class Color>
 Rgba8Image paint(uint32_t width, uint32_t height, const Color& color) {
     Rgba8Image shown = {width, height, std::vector<uint8_t>(std::size_t(width) * height * 4, 255)};
@@ -40,7 +40,7 @@ uint32_t id_of(const PixelIds& ids, IdKind kind) {
 
 namespace {
 
-/// What one in two hundred exceeds; 0 where there are none.
+/// Value that one in two hundred exceeds; 0 for an empty list.
 float nearly_largest(std::vector<float> values) {
     if (values.empty()) return 0;
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() - 1 - values.size() / 200);

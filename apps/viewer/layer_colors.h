@@ -1,7 +1,7 @@
 #pragma once
 
-// Layers of a picture in colours to look at: reflectance as it is, directions by their axes, distances and counts from
-// dark to bright, ids each in a colour of its own.
+// Colours for layers of a picture: reflectance as it is, directions by their axes, distances and counts from dark to
+// bright, ids in distinct colours.
 
 #include <span>
 
@@ -13,22 +13,23 @@ namespace pertev {
 
 /// Linear reflectance, encoded as sRGB.
 Rgba8Image show_albedo(const Image& albedo);
-/// x, y, z in [-1, 1] as red, green, blue; black where nothing is.
+/// x, y, z in [-1, 1] as red, green, blue; black for no hit.
 Rgba8Image show_normal(const Image& normal);
-/// The nearest is bright; by the logarithm of the distance between the nearest and the farthest. Black: nothing is
-/// there.
+/// The nearest point is brightest, on a logarithmic scale to the farthest. Black for no hit.
 Rgba8Image show_depth(const Image& depth);
 enum class IdKind : uint8_t { Instance, Primitive, Material };
-/// Black where nothing is.
+/// Distinct colours; black for no hit.
 Rgba8Image show_ids(std::span<const PixelIds> ids, uint32_t width, uint32_t height, IdKind kind);
 enum class WorkKind : uint8_t { Nodes, Triangles };
-/// Pale yellow at `most` and above, dark at none (lab/heat_map.h); `most` is what one pixel in two hundred exceeds.
+/// Pale yellow at `most` and above, dark at zero (lab/heat_map.h); `most` is the value that one pixel in two hundred
+/// exceeds.
 Rgba8Image show_work(std::span<const RayWork> work, uint32_t width, uint32_t height, WorkKind kind, uint32_t& most);
 
-/// Of two channels, pixels to the right and down: grey stands still, red goes to the right, green down, and blue what
-/// is left of both; full at `most`, what one pixel in two hundred exceeds, at least 1.
+/// Two channels, pixels to the right and down: grey means no motion, red to the right, green down, and blue the
+/// opposite of both; saturated at `most`, which one pixel in two hundred exceeds, at least 1.
 Rgba8Image show_motion(const Image& motion, float& most);
-/// Dark at none, pale yellow at `most` and above: what one pixel in two hundred of those exceeds that are below 1000.
+/// Dark at zero, pale yellow at `most` and above: the value that one pixel in two hundred of those below 1000
+/// exceeds.
 Rgba8Image show_deviation(const Image& deviation, float& most);
 
 } // namespace pertev

@@ -6,11 +6,12 @@
 namespace pertev {
 namespace {
 
-constexpr double kLate = 0.1, kEarly = 0.04; // seconds that a picture's bytes take, beyond the way itself
-constexpr double kMemory = 0.15;             // share of the newest in the running means
+constexpr double kLate = 0.1, kEarly = 0.04; // transfer time of a picture's bytes, without the latency
+constexpr double kMemory = 0.15;             // weight of the newest value in the running means
 constexpr int kLowest = 30, kHighest = 92;
-// Of holding back: seconds that round trips stray by without a queue; share of what is beyond that, taken at once; what
-// is kept where nothing is; the most, in pictures of the client: more than one, or a queue would stay what it is.
+// Parameters of holding back: deviation of round trips without a queue, in seconds; fraction of any excess that is
+// added at once; factor without excess; the maximum in units of the client's time per picture, more than one, because
+// otherwise a queue would never shrink.
 constexpr double kStray = 0.002, kStep = 0.5, kRelease = 0.98, kMostHold = 1.2;
 
 double least_of_late(double least, double value) { return least == 0 ? value : std::min(1.01 * least, value); }
@@ -36,13 +37,13 @@ bool LinkPace::acknowledged(uint32_t frame, double now_s, double client_s) {
         learn(static_cast<double>(found->bytes), round_trip_s_);
         hold(client_s);
     }
-    // While two are under way, the second arrives a transfer's time after the first.
+    // While two are in flight, the second arrives one transfer time after the first.
     const double transfer_s = std::max(now_s - std::max(found->at_s, last_ack_s_), 1e-4);
     const double rate = static_cast<double>(found->bytes) / transfer_s;
     rate_ = rate_ == 0 ? rate : rate_ + 0.25 * (rate - rate_);
     last_ack_s_ = now_s;
     const double bytes = static_cast<double>(found->bytes);
-    under_way_.erase(under_way_.begin(), found + 1); // one before it that was not acknowledged never will be
+    under_way_.erase(under_way_.begin(), found + 1); // earlier ones that were not acknowledged never will be
     if (!is_piece) adapt(bytes);
     return true;
 }
@@ -63,7 +64,7 @@ void LinkPace::hold(double client_s) {
 }
 
 void LinkPace::adapt(double bytes) {
-    // What the way takes, known from a time when sizes differed, stays known while they do not.
+    // The latency, known from a time when sizes varied, stays known while they do not.
     const double spread = bytes_squared_ - bytes_ * bytes_;
     if (spread > 0.01 * bytes_ * bytes_) {
         const double a_byte = std::max(0.0, (bytes_seconds_ - bytes_ * seconds_) / spread);

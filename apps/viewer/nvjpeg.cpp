@@ -10,7 +10,7 @@ namespace {
 
 using Status = int; // nvjpegStatus_t: 0 is success
 
-/// nvjpegImage_t.
+/// Layout of nvjpegImage_t.
 struct Channels {
     unsigned char* channel[4];
     std::size_t pitch[4]; // bytes from row to row
@@ -18,7 +18,7 @@ struct Channels {
 
 constexpr int kInterleavedRgb = 5;                           // NVJPEG_INPUT_RGBI
 constexpr int kFullChroma = 0, kHalfChroma = 2;              // NVJPEG_CSS_444, NVJPEG_CSS_420
-constexpr std::byte kMarker{0xff}, kStart{0xd8}, kEnd{0xd9}; // of a JPEG
+constexpr std::byte kMarker{0xff}, kStart{0xd8}, kEnd{0xd9}; // markers of a JPEG file
 
 constexpr const char* kLibraries[] = {"libnvjpeg.so.13", "libnvjpeg.so.12", "libnvjpeg.so.11",
                                       "/usr/local/cuda/lib64/libnvjpeg.so"};
@@ -30,7 +30,7 @@ bool is_whole(const std::vector<std::byte>& file) {
 
 } // namespace
 
-/// Handles and streams are pointers to what the library alone knows.
+/// Handles and streams are opaque pointers of the library.
 struct Nvjpeg::Functions {
     Status (*create)(void** handle);
     Status (*destroy)(void* handle);
@@ -44,7 +44,7 @@ struct Nvjpeg::Functions {
                      int height, void* stream);
     Status (*retrieve)(void* handle, void* state, unsigned char* data, std::size_t* bytes, void* stream);
 
-    /// False where the library lacks one.
+    /// Returns false if the library lacks one.
     bool find(void* library) {
         const auto find_one = [&](const char* name, auto& function) {
             function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(::dlsym(library, name));
@@ -65,7 +65,7 @@ std::span<const char* const> Nvjpeg::libraries() { return kLibraries; }
 
 std::unique_ptr<Nvjpeg> Nvjpeg::load(Queue& queue, std::span<const char* const> libraries) {
     for (const char* const name : libraries) {
-        // Once it is there it stays: it has handlers of its own that run when the program ends.
+        // It is never unloaded, because its own handlers run when the program ends.
         void* const library = ::dlopen(name, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
         if (library == nullptr) continue;
         auto functions = std::make_unique<Functions>();
@@ -86,7 +86,7 @@ Nvjpeg::~Nvjpeg() {
     try {
         const Queue::Scope scope(queue_, "end of nvJPEG");
         queue_.wait();
-    } catch (const Error&) { // the device is lost, and with it what there was
+    } catch (const Error&) { // the device and all of this is lost
     }
     if (parameters_ != nullptr) functions_->destroy_parameters(parameters_);
     if (state_ != nullptr) functions_->destroy_state(state_);

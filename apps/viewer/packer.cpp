@@ -15,7 +15,7 @@ namespace {
 
 using Bytes = std::shared_ptr<const std::vector<std::byte>>;
 
-constexpr int kFullColor = 85; // from this quality on, colour is packed at full resolution
+constexpr int kFullColor = 85; // from this quality on, chroma has full resolution
 
 uint32_t shrink_factor(float scale) { return static_cast<uint32_t>(std::max(1.0f, 1 / scale)); }
 
@@ -65,7 +65,7 @@ void Packer::run() {
         } else {
             try {
                 send_picture(*job, encoder);
-            } catch (const std::exception& error) { // above all no memory: the next one may fit again
+            } catch (const std::exception& error) { // usually out of memory; the next picture may fit again
                 audience_.tell(0, notice_text("error", panel_phrase(error.what())));
                 std::this_thread::sleep_for(std::chrono::seconds(1));
             }

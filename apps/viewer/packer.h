@@ -1,7 +1,7 @@
 #pragma once
 
-// The thread that packs pictures for each client's link and gives them to the server: JPEG while something moves or
-// gathers, PNG of the last picture. What two clients want alike is packed once.
+// The thread that encodes pictures for each client's link and passes them to the server: JPEG while something moves
+// or samples accumulate, PNG for the last picture. A version that several clients need is encoded once.
 
 #include <atomic>
 #include <functional>
@@ -17,17 +17,17 @@ namespace pertev {
 
 class Packer {
 public:
-    /// All outlive it. `now_s`: seconds of the clock that the audience is told. `jpeg_queue`: as JpegEncoder.
+    /// All arguments outlive it. `now_s` returns seconds of the audience's clock. `jpeg_queue`: see JpegEncoder.
     Packer(Audience& audience, WebServer& server, std::function<double()> now_s, Queue* jpeg_queue);
     /// Ends the thread.
     ~Packer();
     Packer(const Packer&) = delete;
     Packer& operator=(const Packer&) = delete;
 
-    /// Of the last JPEG.
+    /// Time and size of the last JPEG.
     double milliseconds() const { return milliseconds_; }
     std::size_t bytes() const { return bytes_; }
-    /// Which encoder made it.
+    /// The encoder that made it.
     const char* encoder() const { return encoder_name_; }
 
 private:
@@ -46,7 +46,7 @@ private:
         float scale = 0;
         std::shared_ptr<const std::vector<std::byte>> bytes;
     };
-    std::vector<Packed> jpegs_; // of one picture
+    std::vector<Packed> jpegs_; // versions of one picture
     Packed png_;
     std::atomic<double> milliseconds_{0};
     std::atomic<std::size_t> bytes_{0};
@@ -55,8 +55,8 @@ private:
     std::thread thread_;
 };
 
-/// The picture at 1/`factor` of its size, each pixel the mean of those it stands for; what is left over at the right
-/// and lower border counts with the last. Factor 1: the picture itself.
+/// The picture at 1/`factor` of its size, as means of pixels; remaining columns and rows at the right and lower
+/// border count with the last. Factor 1 returns the picture itself.
 Rgba8Image shrunk(const Rgba8Image& picture, uint32_t factor);
 
 } // namespace pertev

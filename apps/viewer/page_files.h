@@ -1,6 +1,6 @@
 #pragma once
 
-// The page's files, which embed_page.cmake has put into the program.
+// The page's files, which embed_page.cmake embeds in the program.
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Remarks of the libraries (base/remark.h) as the viewer phrases them: a setting becomes the label of its row in the
+// Formats remarks of the libraries (base/remark.h) for the viewer: a setting becomes the label of its row in the
 // panel.
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace pertev {
 
-/// All parts of it as one text: "with \"Light\" cast at most 12" of "with `integrator=cast` at most 12". A setting
-/// without a row has its own name, with spaces.
+/// All parts as one text: "with \"Light\" cast at most 12" for "with `integrator=cast` at most 12". A setting without
+/// a row keeps its own name, with spaces.
 std::string panel_phrase(const Remark& remark);
 
 } // namespace pertev

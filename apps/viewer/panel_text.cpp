@@ -18,7 +18,7 @@ std::string json_of(const SettingValue& value) {
     return json_string(std::get<std::string>(value));
 }
 
-constexpr const char* kKinds[] = {"choice", "number", "whole"}; // of ViewSetting::Kind
+constexpr const char* kKinds[] = {"choice", "number", "whole"}; // names of ViewSetting::Kind
 
 void append(std::string& list, const std::string& item) {
     if (!list.empty()) list += ',';
@@ -41,14 +41,14 @@ std::string settings_json() {
     return list;
 }
 
-/// One row of the panel's numbers: its group, its label and how it is told. Empty: not now.
+/// A row of the panel's numbers: its group, its label and its text, which is empty if it does not apply now.
 struct NumberRow {
     const char* group;
     const char* label;
     std::string (*tell)(const ViewState&, const ViewNumbers&);
 };
 
-/// `kind_s`: what the rays of this kind took; 0 where they were not timed: then by all the time of the frame.
+/// `kind_s` is the time of this kind of rays; 0 if it was not measured, when the frame's total time is used.
 std::string rays_per_second(uint64_t rays, double kind_s, const ViewNumbers& numbers) {
     const double seconds = kind_s > 0 ? kind_s : numbers.frame->render_s;
     if (rays == 0 || !(seconds > 0)) return "";
@@ -122,7 +122,7 @@ std::string rows_json(const ViewState& view, const ViewNumbers& numbers) {
     return rows;
 }
 
-/// To all their digits, because places may be far from the origin.
+/// With all digits, because positions may be far from the origin.
 std::string json_of(DoubleVec3 v) {
     const auto number = [](double x) { return std::isfinite(x) ? fmt::format("{}", x) : "null"; };
     return fmt::format("[{},{},{}]", number(v.x), number(v.y), number(v.z));
@@ -133,7 +133,7 @@ std::string clock_json(const SceneClock& clock) {
                        json_number(clock.end_s), clock.plays, clock.loops, json_number(clock.speed));
 }
 
-/// As formats/read_camera_path.h reads them.
+/// In the format of formats/read_camera_path.h.
 std::string keys_json(const CameraPath* path) {
     std::string list;
     if (path == nullptr) return list;

@@ -1,7 +1,7 @@
 #pragma once
 
-// What the viewer says to its pages, as JSON: what there is to set (once), what is shown now (often), and answers. The
-// rows of numbers come from one table here; the page shows whatever rows it is given.
+// Messages of the viewer to its pages as JSON: the settings (once), the current state (often), and answers. The rows
+// of numbers come from one table here; the page shows whatever rows it gets.
 
 #include <string>
 
@@ -9,29 +9,29 @@
 
 namespace pertev {
 
-/// Once for each client: the scene, its cameras, all settings with their choices.
+/// Sent once to each client: the scene, its cameras, all settings with their choices.
 std::string welcome_text(const ViewerStart& start);
 
-/// What the panel's numbers are made of.
+/// Inputs of the panel's numbers.
 struct ViewNumbers {
-    const ShownFrame* frame = nullptr; // its image may be gone
+    const ShownFrame* frame = nullptr; // its image may have been moved out
     double frames_per_second = 0;
-    double made_share = 1; // of what is made before the next picture's samples
+    double made_share = 1; // progress of the precomputation for the next picture
     double pack_ms = 0;
     std::size_t packed_bytes = 0;
-    const char* encoder = "";         // that packed them
+    const char* encoder = "";         // the encoder that made them
     std::string phase;                // "moving", "gathering", "done"
-    std::string flags;                // of the camera and the time
-    uint32_t input = 0, steerer = 0;  // the last input that all this knows of, and the client that it came from
-    SceneClock clock;                 // end_s is 0 where time changes nothing
-    const CameraPath* path = nullptr; // that is recorded; null: none
-    std::string why_still;            // ViewerStart's
+    std::string flags;                // flags of the camera and the time
+    uint32_t input = 0, steerer = 0;  // the last input that is included, and its client
+    SceneClock clock;                 // end_s is 0 if time changes nothing
+    const CameraPath* path = nullptr; // the recorded path; null: none
+    std::string why_still;            // see ViewerStart
 };
 
 std::string state_text(const ViewState& view, const ViewNumbers& numbers);
-/// "error" or "note".
+/// `kind` is "error" or "note".
 std::string notice_text(const char* kind, const std::string& text);
-/// What a client pointed at; null: the background.
+/// Answer to a pick; null for the background.
 std::string picked_text(const Scene& scene, const PickedPoint* point, float x, float y);
 
 } // namespace pertev

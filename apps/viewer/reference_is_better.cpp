@@ -6,7 +6,7 @@
 namespace pertev {
 namespace {
 
-/// Place of the middle of pixel `at` of `of` among `among` pixels: the first of two, and the share of the other.
+/// Position of the middle of pixel `at` of `of` among `among` pixels: the first of two, and the weight of the other.
 struct Between {
     uint32_t first, second;
     double share;

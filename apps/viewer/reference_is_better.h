@@ -1,18 +1,17 @@
 #pragma once
 
-// When a picture that gathers samples is shown in place of a reconstruction: once its own error, as it is estimated, is
-// the smaller one.
+// Decides when an accumulating picture replaces a reconstruction: once its estimated error is the smaller one.
 //
-// Neither is known, but their sum is. Let the picture be the mean of two halves of its samples, which err
-// independently: then the mean square of what lies between it and its first half is the square of its own error; and
-// what lies between it and the reconstruction has both errors in it.
+// Neither error is known, but two differences are. If the picture is the mean of two halves of its samples, whose
+// errors are independent, the mean square of the difference between it and its first half is the square of its own
+// error; and the difference between it and the reconstruction contains both errors.
 
 #include "image/image.h"
 
 namespace pertev {
 
-/// All three are shown alike, `whole` and `half` have one size. `reconstruction` is looked at as a page stretches it to
-/// that size.
+/// All three have the same display; `whole` and `half` have the same size. `reconstruction` is stretched to that size
+/// as on a page.
 bool reference_is_better(const Rgba8Image& whole, const Rgba8Image& half, const Rgba8Image& reconstruction);
 
 } // namespace pertev

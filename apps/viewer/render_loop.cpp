@@ -15,12 +15,12 @@
 namespace pertev {
 namespace {
 
-constexpr double kStillAfter = 0.15; // seconds without a step, and the camera is at rest
+constexpr double kStillAfter = 0.15; // seconds without a step after which the camera is at rest
 constexpr double kTellEvery = 0.2;   // seconds between two states, while nothing else is new
 constexpr double kFirstBudget = 0.1, kLongestBudget = 1;
 constexpr float kSpeedStep = 1.25f;
-constexpr double kSlowestTime = 1.0 / 64; // seconds of the scene a second
-constexpr double kLongestStep = 0.5;      // seconds: while nobody looked, time stood
+constexpr double kSlowestTime = 1.0 / 64; // seconds of the scene per second
+constexpr double kLongestStep = 0.5;      // seconds; time stops while nobody watches
 
 } // namespace
 
@@ -30,7 +30,7 @@ RenderLoop::RenderLoop(const ViewerStart& start, FrameSource& source, Inbox& inb
       view_(start.view), shown_(start.view), camera_(start.camera, *start.scene), clock_(start.clock),
       shown_s_(start.clock.time_s), speed_(start.speed) {}
 
-/// Whether another time is another picture.
+/// Whether another time gives another picture.
 bool RenderLoop::time_matters() const { return clock_.end_s > 0 && (start_.is_animated || camera_.moves_with_time()); }
 
 bool RenderLoop::time_runs() const { return clock_.plays && time_matters() && saves_.empty(); }
@@ -41,7 +41,7 @@ FrameRequest RenderLoop::request() const {
     FrameRequest request;
     request.camera = camera_.camera(view_.lens);
     request.view = view_;
-    // The first picture is a small one: a sample of a large one may take long.
+    // The first picture is small, because a sample of a large one may take long.
     request.is_moving = (is_moving() || !last_) && saves_.empty();
     if (!saves_.empty()) request.view.is_real_time = false;
     request.budget_s = budget_s_;
@@ -55,11 +55,11 @@ void RenderLoop::run(const std::function<bool()>& goes_on) {
         for (const Command& command : inbox_.take(std::chrono::milliseconds(works ? 0 : 50))) handle(command);
         if (!goes_on()) return;
         if (is_done_ && saves_.empty()) {
-            if (now_s_() - told_at_s_ > 1) tell_state(); // how the picture was packed is known by now
+            if (now_s_() - told_at_s_ > 1) tell_state(); // the encoding time is known by now
             continue;
         }
         if (!audience_.is_anyone_there() && saves_.empty()) continue;
-        // No faster than somebody can be shown it: what is shown late is old.
+        // Not faster than it can be shown, because a delayed picture is outdated.
         if (audience_.is_behind(now_s_()) && is_moving()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
             continue;
@@ -74,15 +74,15 @@ void RenderLoop::handle(const Command& command) {
     if (const Steer* asked = std::get_if<Steer>(&command)) {
         try {
             steer(*asked);
-        } catch (const Error& error) { // of a place that was looked at, or of a light meter
+        } catch (const Error& error) { // from a pick, or from the light meter
             if (error.code() == ErrorCode::DeviceFault) throw;
             tell_error(asked->client, error);
         }
         return inbox_.expect(view_);
     }
     if (const Save* save = std::get_if<Save>(&command)) return saves_.push_back(*save);
-    is_done_ = false;                   // somebody came: shows the present picture again
-    if (!last_) moved_at_s_ = now_s_(); // or a small one at once: a sample of a large picture may take long
+    is_done_ = false;                   // a client has connected, so the current picture is sent again
+    if (!last_) moved_at_s_ = now_s_(); // or a small one at once, because a sample of a large picture may take long
 }
 
 void RenderLoop::steer(const Steer& asked) {
@@ -104,7 +104,7 @@ void RenderLoop::steer(const Steer& asked) {
         budget_s_ = kFirstBudget;
         return;
     }
-    is_done_ = is_done_ && message.kind == MessageKind::Pick; // to look at a place changes nothing
+    is_done_ = is_done_ && message.kind == MessageKind::Pick; // a pick changes nothing
     switch (message.kind) {
     case MessageKind::Move:
     case MessageKind::Orbit:
@@ -141,13 +141,13 @@ void RenderLoop::steer(const Steer& asked) {
     case MessageKind::Meter:
         view_.display.exposure_stops = view_.finds_exposure ? 0 : source_.meter(request());
         break;
-    case MessageKind::Rate: // above
+    case MessageKind::Rate: // handled above
     case MessageKind::Shape:
     case MessageKind::Hello:
     case MessageKind::Ack:
     case MessageKind::Ask:
     case MessageKind::Hand:
-        break; // the audience's
+        break; // handled by the audience
     }
     budget_s_ = kFirstBudget;
 }
@@ -175,7 +175,7 @@ void RenderLoop::steer_path(const Steer& asked) {
     } else if (message.kind == MessageKind::Unkey) {
         camera_.remove_key(message.index);
     }
-    followed_s_.reset(); // it may lead elsewhere now
+    followed_s_.reset(); // the changed path may lead elsewhere
     const std::vector<CameraKey>& keys = camera_.path().keys;
     clock_.end_s = std::max(start_.clock.end_s, keys.empty() ? 0 : keys.back().time_s);
     if (message.kind == MessageKind::Follow && !keys.empty()) {
@@ -187,19 +187,19 @@ void RenderLoop::steer_path(const Steer& asked) {
     tell_state();
 }
 
-/// Since the last call, where time runs.
+/// Advances time since the last call, if it runs.
 void RenderLoop::let_time_pass() {
     const double now = now_s_(), passed = now - std::exchange(clocked_at_s_, now);
     if (time_runs()) clock_.advance(std::min(passed, kLongestStep));
 }
 
-/// `client`: who asked for it; 0: all are told.
+/// `client` is the one that made the request; 0: all are informed.
 void RenderLoop::tell_error(uint32_t client, const Error& error) {
     audience_.tell(client,
                    notice_text("error", without_folders(panel_phrase(error.remark()), start_.record.scene.scene)));
 }
 
-/// Scene and camera to the clock's time, as far as it moves them. Throws as FrameSource::set_time.
+/// Moves scene and camera to the clock's time, if it affects them. Throws as FrameSource::set_time.
 void RenderLoop::follow_time() {
     if (!clock_.time_s || clock_.time_s == followed_s_) return;
     followed_s_.reset();
@@ -238,7 +238,7 @@ void RenderLoop::set(const Steer& asked) {
     tell_state();
 }
 
-/// Where something of it cannot be had, all is told so, and the view goes back to what could be.
+/// If something cannot be provided, all clients are informed, and the view returns to the last one that worked.
 std::optional<ShownFrame> RenderLoop::next_frame(const FrameRequest& wanted) {
     try {
         return source_.next(wanted);
@@ -246,10 +246,10 @@ std::optional<ShownFrame> RenderLoop::next_frame(const FrameRequest& wanted) {
         if (error.code() == ErrorCode::DeviceFault) throw;
         tell_error(0, error);
         made_share_ = 1;
-        is_done_ = error.code() == ErrorCode::OverLimit; // what is in view asks for too much: until it is another view
+        is_done_ = error.code() == ErrorCode::OverLimit; // the view itself exceeds a limit, until it changes
         const ViewState failed = std::exchange(view_, shown_);
         view_.display = failed.display;
-        // What was set at rest is first asked for by a frame of the movement.
+        // A setting changed at rest takes effect with the next moving frame.
         if (failed.restir == shown_.restir) view_.restir.light = RestirLight::Off;
         inbox_.expect(view_);
         tell_state();
@@ -265,7 +265,7 @@ void RenderLoop::show_next() {
         if (error.code() == ErrorCode::DeviceFault) throw;
         tell_error(0, error);
         const double back_s = shown_s_.value_or(0);
-        is_done_ = clock_.time_s == back_s; // there is no way out of it but another time
+        is_done_ = clock_.time_s == back_s; // only another time can help
         clock_.plays = false;
         clock_.time_s = back_s;
         return tell_state();
@@ -276,13 +276,13 @@ void RenderLoop::show_next() {
         if (now_s_() - told_at_s_ > kTellEvery) tell_state();
     };
     if (wanted.is_moving && !is_new_ && !time_runs() && last_ &&
-        last_->samples >= view_.picture.samples) { // nothing new to be seen
+        last_->samples >= view_.picture.samples) { // nothing new to show
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         return;
     }
     std::optional<ShownFrame> frame = next_frame(wanted);
     made_share_ = 1;
-    if (!frame) { // a picture gathers that is not shown yet
+    if (!frame) { // samples accumulate in a picture that is not shown yet
         if (now_s_() - told_at_s_ > kTellEvery) tell_state();
         return;
     }
@@ -294,7 +294,7 @@ void RenderLoop::show_next() {
     const double since = now - std::exchange(framed_at_s_, now);
     frames_per_second_ = since > 1 ? 0 : frames_per_second_ + 0.3 * (1 / std::max(since, 1e-4) - frames_per_second_);
     budget_s_ = wanted.is_moving ? kFirstBudget : std::min(1.5 * budget_s_, kLongestBudget);
-    // A small picture has all its samples: nothing is left to do unless it is to become a large one.
+    // A small picture has all its samples, so nothing is left to do unless it grows.
     const bool rests_small = !wanted.is_moving && wanted.view.is_real_time && frame->samples >= view_.picture.samples;
     is_done_ = (frame->is_final || rests_small) && !is_moving();
     last_ = *frame;
@@ -303,10 +303,10 @@ void RenderLoop::show_next() {
     if (is_done_ || now - told_at_s_ > kTellEvery) tell_state();
 }
 
-/// How the present picture is made.
+/// Record of how the current picture is made.
 PictureRecord RenderLoop::record() const {
     PictureRecord record = start_.record;
-    // Where the files lie is nobody's business but the machine's.
+    // The location of files is private to the machine.
     for (std::vector<std::string>* list : {&record.scene.made_up, &record.scene.left_out}) {
         for (std::string& text : *list) text = without_folders(std::move(text), record.scene.scene);
     }
@@ -357,7 +357,7 @@ void RenderLoop::tell_state() {
     if (view_.window_pixels > 0) {
         numbers.flags += fmt::format(" --size {}x{}", view_.picture.width, view_.picture.height);
     }
-    if (start_.record.scene.has_ground) numbers.flags += " --ground on"; // an --eye alone leaves it out
+    if (start_.record.scene.has_ground) numbers.flags += " --ground on"; // an --eye alone removes it
     numbers.why_still = start_.why_still;
     numbers.input = input_;
     numbers.steerer = steerer_;

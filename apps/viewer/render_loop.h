@@ -1,7 +1,7 @@
 #pragma once
 
-// The render's thread: takes what clients ask for, lets time pass, steps the camera, asks the frame source for pictures
-// and publishes them. It renders only while somebody looks and there is something left to do.
+// The render's thread: handles requests of clients, advances time, moves the camera, gets pictures from the frame
+// source and publishes them. It renders only while somebody watches and there is something to do.
 
 #include <functional>
 #include <optional>
@@ -16,11 +16,11 @@ namespace pertev {
 
 class RenderLoop {
 public:
-    /// All outlive it.
+    /// All arguments outlive it.
     RenderLoop(const ViewerStart& start, FrameSource& source, Inbox& inbox, Audience& audience, const Packer& packer,
                std::function<double()> now_s);
 
-    /// Until `goes_on` says no. Throws Error(DeviceFault).
+    /// Runs until `goes_on` returns false. Throws Error(DeviceFault).
     void run(const std::function<bool()>& goes_on);
 
 private:
@@ -51,20 +51,20 @@ private:
     std::function<double()> now_s_;
 
     ViewState view_;
-    ViewState shown_; // of the last picture: what to go back to where a setting cannot be had
+    ViewState shown_; // state of the last picture, to which the view returns if a setting fails
     ViewCamera camera_;
     SceneClock clock_;
-    std::optional<double> followed_s_, shown_s_; // time that scene and camera are at, and that of the last picture
+    std::optional<double> followed_s_, shown_s_; // time of scene and camera, and that of the last picture
     double clocked_at_s_ = 0;
     float speed_;
-    uint32_t input_ = 0, steerer_ = 0; // number of the last input, and the client that it came from
+    uint32_t input_ = 0, steerer_ = 0; // number of the last input, and its client
     double moved_at_s_ = -1e9, told_at_s_ = -1e9, framed_at_s_ = -1e9;
     double frames_per_second_ = 0;
-    double made_share_ = 1;          // of what the picture under way needs before its samples
-    double budget_s_ = 0.1;          // of the next picture at rest
-    bool is_new_ = true;             // something was asked for since the last picture
-    bool is_done_ = false;           // nothing is left to be rendered for this state
-    std::optional<ShownFrame> last_; // without its pixels, but for their number
+    double made_share_ = 1;          // progress of the precomputation for the current picture
+    double budget_s_ = 0.1;          // for the next picture at rest
+    bool is_new_ = true;             // something was requested since the last picture
+    bool is_done_ = false;           // nothing is left to render for this state
+    std::optional<ShownFrame> last_; // without its pixels, except for their number
     std::vector<Save> saves_;
 };
 

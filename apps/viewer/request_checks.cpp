@@ -23,7 +23,7 @@ bool is_name_letter(char c) {
     return (c >= '0' && c <= '9') || (lower(c) >= 'a' && lower(c) <= 'z') || c == '-' || c == '.' || c == '_';
 }
 
-/// --host as a Host header would write it: an IPv6 address has brackets there.
+/// --host in the form of a Host header: an IPv6 address has brackets there.
 std::string as_header(std::string_view own) {
     const bool is_ipv6 = own.find(':') != std::string_view::npos && !own.starts_with('[');
     return is_ipv6 ? "[" + std::string(own) + "]" : std::string(own);
@@ -35,7 +35,7 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-/// The value of the one part "name=value" among those that `separator` parts.
+/// The value of the only part "name=value", where `separator` separates parts.
 std::optional<std::string_view> only_value(std::string_view text, char separator, std::string_view name) {
     std::optional<std::string_view> found;
     while (!text.empty()) {
@@ -90,7 +90,7 @@ bool is_own_host(std::string_view header, std::string_view own) {
 }
 
 bool is_same_origin(std::string_view origin, std::string_view host_header) {
-    for (const std::string_view scheme : {"http://", "https://"}) { // the second: a proxy that speaks TLS stands before
+    for (const std::string_view scheme : {"http://", "https://"}) { // https: a TLS proxy is in front
         if (origin.starts_with(scheme)) {
             return !host_header.empty() && equal_in_any_case(origin.substr(scheme.size()), host_header);
         }
@@ -117,7 +117,7 @@ RequestVerdict check_request(const RequestText& request, const ServerIdentity& s
     if (!is_own_host(request.host, server.host)) return refuse(403, "This server has another name.");
     if (request.method != "GET") return refuse(405, "GET alone is answered.");
     if (!is_plain_target(request.target)) return refuse(400, "This is no path.");
-    // A WebSocket is not held back by the same-origin rule of browsers, so there the page must show where it is from.
+    // Browsers do not apply the same-origin rule to WebSockets, so the page's origin must be checked.
     if ((request.is_upgrade || !request.origin.empty()) && !is_same_origin(request.origin, request.host)) {
         return refuse(403, "A page of another origin asks.");
     }

@@ -11,7 +11,7 @@ constexpr float kScales[] = {0.03125f, 0.0625f, 0.125f, 0.25f, 0.5f, 1.0f};
 
 void RestGrowth::begin(float shown, double guess_s) {
     shown_ = shown;
-    full_s_ = std::max(full_s_, guess_s); // where that is too much, the first picture tells
+    full_s_ = std::max(full_s_, guess_s); // if that is too much, the first picture will correct it
 }
 
 void RestGrowth::took(float scale, double seconds) {

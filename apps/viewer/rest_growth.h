@@ -1,8 +1,8 @@
 #pragma once
 
-// The sizes that a picture at rest goes through before its samples gather, where a sample of all pixels takes long:
-// first one that is there at once, then each twice as wide and high. Pure arithmetic over measured times. The sizes
-// before the full one take a third of a sample's time together.
+// Sizes of the pictures at rest before samples accumulate, if a sample of all pixels takes long: first one that is
+// available at once, then each twice as wide and high. It computes only with measured times. All sizes before the
+// full one together take a third of a sample's time.
 
 #include <optional>
 
@@ -10,35 +10,35 @@ namespace pertev {
 
 class RestGrowth {
 public:
-    /// A sample that takes less needs nothing before it, seconds. A new setting may take twice as long as the one
-    /// before.
+    /// A shorter sample, in seconds, needs no smaller pictures before it. A new setting may take twice as long as the
+    /// previous one.
     static constexpr double kSoon = 0.5;
-    /// The first picture takes no longer than this, by what is known, seconds. A new setting may take 4 times as long.
+    /// Maximum estimated time of the first picture in seconds. A new setting may take 4 times as long.
     static constexpr double kFirst = 0.25;
 
-    /// `soon_s`: as kSoon.
+    /// `soon_s` replaces kSoon.
     explicit RestGrowth(double soon_s = kSoon) : soon_s_(soon_s) {}
 
-    /// Another picture begins. `shown`: the scale of one of the same view that is shown already; 0: there is none.
-    /// `guess_s`: what a sample of all pixels takes by the frames of the movement, seconds; 0: nothing is known.
+    /// Begins another picture. `shown` is the scale of a picture of the same view that is already shown; 0: none.
+    /// `guess_s` is the estimated time of a sample of all pixels from moving frames, in seconds; 0: unknown.
     void begin(float shown, double guess_s);
-    /// A picture of this scale took so long. That is what counts from now on.
+    /// A picture at this scale took this long, which replaces earlier estimates.
     void took(float scale, double seconds);
-    /// A picture of this scale is shown now.
+    /// A picture at this scale is shown now.
     void showed(float scale) { shown_ = scale; }
-    /// Whether a sample takes long, so that nobody should have to wait for one.
+    /// Whether a sample takes so long that nobody should have to wait for it.
     bool is_slow() const { return full_s_ > soon_s_; }
-    /// Whether a sample that takes so long may be waited for, even by somebody who moves the camera.
+    /// Whether a sample with this time may be waited for, even by somebody who moves the camera.
     bool is_short(double sample_s) const { return sample_s <= kShort * soon_s_; }
-    /// Returns the scale of the next picture, or nothing where the samples of the full one may gather. `has_whole`:
-    /// a last picture of full size comes before the samples.
+    /// Returns the scale of the next picture, or nothing if full-size samples may accumulate. `has_whole` adds a last
+    /// picture of full size before the samples.
     std::optional<float> next(bool has_whole) const;
 
 private:
     static constexpr double kShort = 0.4;
     double soon_s_;
     float shown_ = 0;
-    double full_s_ = 0; // of a sample of all pixels
+    double full_s_ = 0; // time of a sample of all pixels
 };
 
 } // namespace pertev

@@ -1,7 +1,6 @@
 #pragma once
 
-// The time of a scene that moves, as it runs and stands: pure arithmetic. Whoever owns it says how many seconds have
-// passed.
+// The time of a moving scene, running or stopped. Its owner reports the seconds that have passed.
 
 #include <algorithm>
 #include <cmath>
@@ -10,12 +9,12 @@
 namespace pertev {
 
 struct SceneClock {
-    double end_s = 0;             // all that moves has come to its end; 0: nothing moves
+    double end_s = 0;             // end of all motion; 0: nothing moves
     std::optional<double> time_s; // none: at rest, before any time
     bool plays = false, loops = true;
-    double speed = 1; // seconds of the scene a second
+    double speed = 1; // seconds of the scene per second
 
-    /// So many seconds have passed. From rest it starts at 0. At the end it begins anew, or stops there.
+    /// Advances by `seconds`. From rest it starts at 0. At the end it restarts or stops.
     void advance(double seconds) {
         if (!plays) return;
         time_s = time_s ? *time_s + seconds * speed : 0;
@@ -28,7 +27,7 @@ struct SceneClock {
         }
     }
 
-    /// Runs or stands. One that has come to its end begins anew.
+    /// Starts or stops. A clock at its end restarts.
     void play(bool on) {
         if (on && !plays && time_s && *time_s >= end_s) time_s = 0;
         plays = on;

@@ -19,12 +19,14 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kFramesOfLayer = 32;            // at rest, after which a layer of the reconstruction stays as it is
-constexpr uint32_t kSamplesWorthAFrame = 16;       // of a picture at rest that a frame of its size comes before
-constexpr double kPass = 0.03;                     // seconds after which a render looks whether it is still wanted
-constexpr double kLeastRate = 30, kMostRate = 240; // of screens that a GPU's frames keep up with, a second
+constexpr uint32_t kFramesOfLayer = 32;            // at rest, after which a layer of the reconstruction does not
+                                                   // change
+constexpr uint32_t kSamplesWorthAFrame = 16;       // samples of a picture at rest from which on a frame of its size
+                                                   // comes first
+constexpr double kPass = 0.03;                     // seconds between checks whether a render is still needed
+constexpr double kLeastRate = 30, kMostRate = 240; // limits of the screen rates that a GPU's frames match, per second
 
-/// What the film must hold beside the picture for this layer.
+/// Auxiliary channels that the film needs for this layer.
 uint32_t aovs_of(ShownLayer layer) {
     switch (layer) {
     case ShownLayer::Beauty:
@@ -49,8 +51,8 @@ uint32_t aovs_of(ShownLayer layer) {
 
 bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
 
-/// Whether a frame of the movement is one of the session's sequence (Session::render_frame), as all are that ask for
-/// more than samples.
+/// Whether a moving frame belongs to the session's sequence (Session::render_frame), as all do that show more than
+/// raw samples.
 bool is_of_sequence(const ViewState& view) {
     return makes_frames(view.picture.integrator) &&
            (view.is_reconstructed || view.restir.light != RestirLight::Off || view.reconstruction.resolution_scale < 1);
@@ -60,20 +62,19 @@ bool same_metering(const RenderSettings& a, const RenderSettings& b) {
     return same_light(a, b) && a.width == b.width && a.height == b.height && a.transparent == b.transparent;
 }
 
-/// Whether a picture that is shown `as` this has the tones and the exposure that are asked for. `exposed` has the stops
-/// of now.
+/// Whether a picture displayed `as` this has the requested tones and exposure. `exposed` has the current stops.
 bool is_shown_as(const Display& as, const FrameRequest& request, const ShownFrame& exposed) {
     return as.tone_map == request.view.display.tone_map && as.exposure_stops == exposed.exposure_stops;
 }
 
-/// `picture`: a Session, or its Reconstruction.
+/// `picture` is a Session, or its Reconstruction.
 template <class Picture>
 Rgba8Image shown_picture(Picture& picture, ToneMap tone_map, float exposure_stops) {
     picture.display(tone_map, exposure_stops);
     return picture.displayed();
 }
 
-/// Rendering took `seconds`.
+/// Records that rendering took `seconds`.
 void tell_rendering(double seconds, ShownFrame& frame) {
     const SceneTracer::Seconds& rays = frame.kind_seconds;
     if (rays.total() <= 0) return void(frame.stages.emplace_back("render", 1e3 * seconds));
@@ -99,11 +100,11 @@ SessionFrames::SessionFrames(Session& session, MovingScene& scene, double frame_
 void SessionFrames::set_time(double time_s) {
     if (scene_.time_s() == time_s && !is_behind_) return;
     const Stopwatch watch;
-    Messages said_already; // what there is to say of the scene was said at the start
+    Messages said_already; // discards messages about the scene, which were shown at the start
     const bool was_behind = std::exchange(is_behind_, true);
     const uint32_t parts = scene_.set_time(time_s, said_already);
     if (was_behind) {
-        shows_reconstruction_ = false; // its frames are forgotten
+        shows_reconstruction_ = false; // its frames are discarded
         session_.set_scene(scene_.prepared());
     } else if (parts != 0) {
         session_.update_scene(scene_.prepared(), parts);
@@ -122,21 +123,21 @@ RenderSettings SessionFrames::settings_for(const FrameRequest& request, float sc
     settings.frame_depth = request.view.moving_depth;
     // Layers and heat maps need no light.
     if (!is_beauty(request.view.layer) && !is_of_frames(request.view.layer)) settings.path.max_depth = 0;
-    if (settings.time_kinds) settings.body = PathBody::Wavefront; // a loop over paths has no kinds to time
+    if (settings.time_kinds) settings.body = PathBody::Wavefront; // a loop over paths cannot time kinds of rays
     settings.pass_samples = 1;
     if (sample_s_ > 0 && scale == 1)
         settings.pass_samples = static_cast<uint32_t>(std::clamp(kPass / sample_s_, 1.0, 4096.0));
     return settings;
 }
 
-/// Of a picture of the movement that is none of a sequence.
+/// Settings of a moving picture that belongs to no sequence.
 RenderSettings SessionFrames::small_settings_for(const FrameRequest& request, float scale) {
     RenderSettings settings = settings_for(request, scale);
     settings.path.max_depth = std::min(settings.path.max_depth, request.view.moving_depth);
     return settings;
 }
 
-/// Of the movement's pictures: what was asked for, or what keeps up with the screen; a CPU cannot.
+/// Scale of moving pictures: the requested one, or one that keeps up with the screen; a CPU cannot.
 float SessionFrames::scale_for(const FrameRequest& request) {
     const ViewState& view = request.view;
     if (view.on_cuda && view.screen_rate > 0) {
@@ -145,12 +146,12 @@ float SessionFrames::scale_for(const FrameRequest& request) {
     return view.moving_scale > 0 ? view.moving_scale : pace_.scale();
 }
 
-/// Tracers that the device has no room for are given up, for those before.
+/// If the device has no room for new tracers, the previous ones are kept.
 void SessionFrames::use(const RenderSettings& settings) {
     const RenderSettings before = session_.settings();
     try {
         session_.set_settings(settings);
-        // The picture stays, but its rays are to be seen at work.
+        // The picture does not change, but restarts to show its rays at work.
         if (settings.tracers != before.tracers) session_.cut();
     } catch (const Error&) {
         RenderSettings as_before = settings;
@@ -198,7 +199,7 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
     return image;
 }
 
-/// What the layer of the last reconstructed frame looks like.
+/// Colours of the layer of the last reconstructed frame.
 Rgba8Image SessionFrames::show_layer(const FrameRequest& request, ShownFrame& frame) {
     float most = 0;
     if (request.view.layer == ShownLayer::Motion) {
@@ -211,15 +212,15 @@ Rgba8Image SessionFrames::show_layer(const FrameRequest& request, ShownFrame& fr
     return image;
 }
 
-/// The stops that the present picture is shown with.
+/// Sets the stops with which the current picture is shown.
 void SessionFrames::expose(const FrameRequest& request, ShownFrame& frame) {
     frame.found_stops = exposure_.stops();
     frame.exposure_stops = request.view.display.exposure_stops;
     if (request.view.finds_exposure) frame.exposure_stops += frame.found_stops;
 }
 
-/// A picture at rest has the exposure that pertev render meters for it. A small one, whose size follows the machine's
-/// speed, keeps that of another size.
+/// A picture at rest has the exposure that pertev render meters for it. A small one, whose size depends on the
+/// machine's speed, keeps that of another size.
 void SessionFrames::meter_still(const FrameRequest& request, bool is_small) {
     if (!request.view.finds_exposure) return;
     const Metered& last = metered_;
@@ -232,20 +233,20 @@ void SessionFrames::meter_still(const FrameRequest& request, bool is_small) {
     begin_exposed(request, session_.meter(request.view.display.tone_map));
 }
 
-/// Whether the film has samples of this very picture at rest.
+/// Whether the film has samples of exactly this picture at rest.
 bool SessionFrames::film_goes_on(const FrameRequest& request) {
     return session_.history().samples > 0 && session_.camera() == request.camera &&
            same_picture(session_.settings(), settings_for(request, 1));
 }
 
-/// The scale of the picture that comes before the samples at rest; nothing where these may gather.
+/// Scale of the picture before the samples at rest; nothing if these may accumulate.
 std::optional<float> SessionFrames::growth_scale(const FrameRequest& request) {
     if (film_goes_on(request)) return std::nullopt;
     if (!grown_.is_of(request, scene_changes_)) {
         growth_.begin(seen_.is_of(request, scene_changes_) ? seen_.scale : 0, pace_.full_s());
         grown_ = {request.view.picture, request.camera, request.view.layer, scene_changes_, 1};
     }
-    // A frame of full size costs as much as a sample that the film does not get: where there are many, it is worth it.
+    // A frame of full size costs as much as a sample, which the film does not get: with many samples it pays.
     const bool has_whole = request.view.picture.samples >= kSamplesWorthAFrame && request.view.is_reconstructed &&
                            is_beauty(request.view.layer) && is_of_sequence(request.view);
     return growth_.next(has_whole);
@@ -256,7 +257,7 @@ void SessionFrames::begin_exposed(const FrameRequest& request, float stops) {
     exposure_.set(stops);
 }
 
-/// `is_growing`: at rest, before its samples: with all their scatterings, and broken off where nobody waits for it.
+/// `is_growing` means at rest before the samples: with all scatterings, and stopped if nobody waits for it.
 std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request, float scale, bool is_growing) {
     const Stopwatch whole;
     const double update_s = std::exchange(update_s_, 0);
@@ -294,7 +295,7 @@ std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request
     const double reconstruction_s = session_.frame().seconds(), sharing_s = session_.frames().sharing_seconds();
     frame.render_s = std::max(render.seconds() - reconstruction_s, 0.0);
     const Stopwatch display;
-    if (is_growing) { // smaller ones keep the exposure: the meter takes longer than they do
+    if (is_growing) { // smaller ones keep the exposure, because metering takes longer than they do
         if (scale == 1 && !shows_layer) meter_still(request, false);
     } else if (request.view.finds_exposure && !shows_layer) {
         exposure_.next(session_.frames().tones(), request.view.display.tone_map);
@@ -322,7 +323,7 @@ std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request
     return frame;
 }
 
-/// The reconstruction that samples have not caught up with yet, where it is to be shown otherwise than it is.
+/// Shows the reconstruction again with another display, if samples have not replaced it yet.
 std::optional<ShownFrame> SessionFrames::show_reconstruction_again(const FrameRequest& request) {
     ShownFrame frame;
     expose(request, frame);
@@ -353,12 +354,12 @@ const std::string& SessionFrames::film_hash() {
     return hashed_.hash;
 }
 
-/// Whether the picture at rest is to be shown in place of the reconstruction. Told at powers of two alone, each of
-/// which has that before it as its half.
+/// Whether the picture at rest should replace the reconstruction. Tested only at powers of two, each of which has the
+/// previous one as its half.
 bool SessionFrames::beats_reconstruction(const FrameRequest& request) {
     const uint32_t samples = session_.history().samples;
     if (!std::has_single_bit(samples)) return false;
-    ShownFrame frame; // shown as the reconstruction is
+    ShownFrame frame; // with the display of the reconstruction
     expose(request, frame);
     Rgba8Image whole = shown_picture(session_, request.view.display.tone_map, frame.exposure_stops);
     const bool is_better =
@@ -395,8 +396,8 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     const double update_s = std::exchange(update_s_, 0);
     const bool competes = shows_reconstruction_ && !shows_layer_ && !is_small && is_beauty(request.view.layer) &&
                           request.view.is_reconstructed && same_light(reconstructed_as_, settings_for(request, scale));
-    if (!competes) shows_reconstruction_ = false;     // another size forgets it
-    if (competes && reconstruction_.pixels.empty()) { // before another size forgets it
+    if (!competes) shows_reconstruction_ = false;     // another size discards it
+    if (competes && reconstruction_.pixels.empty()) { // before another size discards it
         ShownFrame frame;
         expose(request, frame);
         reconstruction_ = shown_picture(session_.frame(), request.view.display.tone_map, frame.exposure_stops);
@@ -412,9 +413,9 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     const bool was_begun = before > 0;
     if (!was_begun) half_samples_ = 0;
     const uint32_t until = competes ? std::min(wanted, std::bit_floor(before) * 2 + !was_begun) : wanted;
-    // A picture of the movement is finished whatever comes: input comes faster than pictures, and would break off each.
-    // At rest no whole sample is lost: who asked for another picture may get the same one after all. A short sample is
-    // waited for, and a long one goes through a film of its own. The first has none before it.
+    // A moving picture is always finished, because input comes faster than pictures and would stop each. At rest no
+    // whole sample is lost, because a request for another picture may end with the same one. A short sample is waited
+    // for, and a long one uses a film of its own. The first has none before it.
     const bool is_slow = growth_.is_slow(), is_short = was_begun && growth_.is_short(sample_s_);
     const std::atomic<bool>& stops = is_slow ? hurry_ : abandon_;
     session_.abandon_when(is_of_movement || is_short ? nullptr : &stops);
@@ -424,13 +425,14 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     uint32_t added = 0;
     ShownFrame exposed;
     expose(request, exposed);
-    // A change of tones first shows the samples that are there.
+    // After a change of tones the existing samples are shown first.
     const bool waits = was_begun && !is_small && is_slow && shows_film_ && !is_shown_as(shown_as_, request, exposed);
     if (before < wanted && !waits) {
         added = session_.render(is_small ? 1 : until - before, [&](const RenderProgress& now) {
             frame.rays = now.rays;
             if (now.made_share < 1 && request.tell_made) request.tell_made(now.made_share);
-            const bool has_begun = now.samples_done > before; // a picture has a sample, whatever that takes
+            const bool has_begun = now.samples_done > before; // a picture has at least one sample, however long it
+                                                              // takes
             return (is_of_movement || !stops) && (!has_begun || now.seconds < request.budget_s);
         });
     }
@@ -445,7 +447,7 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     if (frame.samples == 0) return std::nullopt;
     if (competes && frame.samples < wanted && !beats_reconstruction(request)) return std::nullopt;
     shows_reconstruction_ = false;
-    // A frame that moves and is none of a sequence keeps the exposure of the one before.
+    // A moving frame outside a sequence keeps the previous exposure.
     if (!request.is_moving && !is_growing && is_beauty(request.view.layer)) meter_still(request, is_small);
     expose(request, frame);
     const Stopwatch display;

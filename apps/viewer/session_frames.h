@@ -1,9 +1,9 @@
 #pragma once
 
-// The pictures of a Session, as the viewer shows them. While the camera or time moves: frames of one sample,
-// reconstructed with what those before have seen, at the resolution that keeps the frame rate. At rest, where a sample
-// of all pixels takes long: pictures that grow (rest_growth.h). Then samples gather at full size until all that were
-// asked for are there; that film is the one of `pertev render`, to the bit.
+// Pictures of a Session for the viewer. While the camera or time moves: frames of one sample, reconstructed with the
+// history of earlier ones, at a resolution that meets the frame rate. At rest, if a sample of all pixels takes long:
+// pictures that grow (rest_growth.h). Then samples accumulate at full size until all requested ones are done; that
+// film equals the one of `pertev render`, to the bit.
 
 #include "apps/viewer/frame_pace.h"
 #include "apps/viewer/frame_source.h"
@@ -16,8 +16,8 @@ namespace pertev {
 
 class SessionFrames final : public FrameSource {
 public:
-    /// `frame_s`: seconds that a frame may take while the view moves; on a GPU until the screen's rate is known.
-    /// `session` has the scene of `scene`; both outlive it. `soon_s`: RestGrowth's.
+    /// `frame_s` is the target time of moving frames in seconds; on a GPU until the screen's rate is known. `session`
+    /// has the scene of `scene`; both outlive it. `soon_s`: see RestGrowth.
     SessionFrames(Session& session, MovingScene& scene, double frame_s, double soon_s = RestGrowth::kSoon);
 
     void set_time(double time_s) override;
@@ -27,7 +27,7 @@ public:
     std::optional<PickedPoint> pick(const Camera& camera, float x, float y) override;
     float meter(const FrameRequest& request) override;
     RenderResult result() override { return session_.result(); }
-    /// What the meter has found for this view, so that it need not look again.
+    /// Uses an exposure that was already metered for this view.
     void begin_exposed(const FrameRequest& request, float stops);
 
 private:
@@ -51,36 +51,36 @@ private:
     MovingScene& scene_;
     uint64_t scene_changes_ = 0;
     bool is_behind_ = false; // the last set_time threw
-    double update_s_ = 0;    // of the scene, since the last frame
+    double update_s_ = 0;    // time of the scene's update since the last frame
     FramePace pace_;
     RestGrowth growth_;
-    /// A view, and how large its picture was.
+    /// A view, and the size of its picture.
     struct Seen {
         RenderSettings picture;
         Camera camera;
         ShownLayer layer = ShownLayer::Beauty;
         uint64_t scene_changes = 0;
-        float scale = 0; // 0: of nothing
+        float scale = 0; // 0: none
         /// Whether it is the view of this request, at any size.
         bool is_of(const FrameRequest& request, uint64_t changes) const;
     };
-    Seen grown_;       // the view that growth_ is about
-    Seen seen_;        // that of the last small picture, while nothing larger is shown
-    Display shown_as_; // the last picture: its tones, with all stops
+    Seen grown_;       // the view of growth_
+    Seen seen_;        // view of the last small picture, while nothing larger is shown
+    Display shown_as_; // display of the last picture, with all stops
     std::atomic<bool> abandon_{false}, hurry_{false};
-    ReconstructionSettings reconstruction_settings_; // of the last frame
-    RenderSettings reconstructed_as_;                // that the last frame was made with
+    ReconstructionSettings reconstruction_settings_; // settings of the last frame
+    RenderSettings reconstructed_as_;                // settings of the last frame
     RestirSettings restir_settings_;
-    uint32_t next_sample_ = 0;  // of the frames in real time
-    uint32_t still_frames_ = 0; // of which the last ones were seen by one camera
+    uint32_t next_sample_ = 0;  // sample number of real-time frames
+    uint32_t still_frames_ = 0; // frames since the camera stopped
     bool shows_reconstruction_ = false;
-    bool shows_layer_ = false;   // of it
+    bool shows_layer_ = false;   // whether it shows a layer of the reconstruction
     bool shows_film_ = false;    // the last picture was that at rest
-    Rgba8Image reconstruction_;  // the last, as it is shown; empty while nothing competes with it
-    Image reconstruction_light_; // the same, linear
+    Rgba8Image reconstruction_;  // the last one as displayed; empty while nothing competes with it
+    Image reconstruction_light_; // the last one in linear light
     Rgba8Image half_;            // the picture at rest that is not shown yet, at half_samples_ of its samples
     uint32_t half_samples_ = 0;
-    /// The hash of the film as it is; the one before where that is the same film.
+    /// The hash of the current film; cached while the film does not change.
     const std::string& film_hash();
     struct Hashed {
         std::string hash;
@@ -89,7 +89,7 @@ private:
         uint32_t samples = 0;
     } hashed_;
     AdaptiveExposure exposure_;
-    /// The view that exposure_ was metered for, as long as no frame has moved it on.
+    /// The view for which exposure_ was metered, as long as no frame has adapted it.
     struct Metered {
         RenderSettings picture;
         Camera camera;
@@ -97,7 +97,7 @@ private:
         uint64_t scene_changes = 0;
         bool is_there = false;
     } metered_;
-    double sample_s_ = 0; // of one sample of all pixels of the last reference; 0: not known
+    double sample_s_ = 0; // time of one sample of all pixels of the last reference; 0: unknown
 };
 
 } // namespace pertev

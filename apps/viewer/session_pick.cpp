@@ -1,4 +1,4 @@
-// The part of SessionFrames that looks at one place of the picture.
+// The part of SessionFrames that answers picks.
 
 #include <algorithm>
 

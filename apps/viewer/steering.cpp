@@ -9,9 +9,9 @@ namespace pertev {
 namespace {
 
 constexpr float kSteepest = 1.55334f; // radians above the horizon: 89 degrees
-constexpr float kPixelFov = 1e-3f;    // radians; of the camera that looks through one place
+constexpr float kPixelFov = 1e-3f;    // radians; for the camera of a single pixel
 
-/// `v` turned about the unit `axis`, counter-clockwise seen from its tip.
+/// Rotates `v` around the unit `axis`, counter-clockwise as seen from its tip.
 Vec3 turned(Vec3 v, Vec3 axis, float angle) {
     float s = 0, c = 0;
     sin_cos(angle, s, c);
@@ -19,7 +19,7 @@ Vec3 turned(Vec3 v, Vec3 axis, float angle) {
 }
 
 struct Axes {
-    Vec3 right, above, back; // of the view, unit
+    Vec3 right, above, back; // unit axes of the view
 };
 
 Axes axes_of(const Pose& pose) {
@@ -27,10 +27,10 @@ Axes axes_of(const Pose& pose) {
     return {column(placed, 0), column(placed, 1), column(placed, 2)};
 }
 
-/// How far above the horizon the view looks.
+/// Elevation of the view direction above the horizon.
 float elevation(Vec3 back, Vec3 up) { return -asin(clamp(dot(back, normalize(up)), -1.0f, 1.0f)); }
 
-/// Pitch that keeps the view off the poles.
+/// Pitch that keeps the view away from the poles.
 float allowed_pitch(Vec3 back, Vec3 up, float pitch) {
     const float now = elevation(back, up);
     return clamp(now + pitch, min(-kSteepest, now), max(kSteepest, now)) - now;

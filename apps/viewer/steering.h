@@ -1,9 +1,9 @@
 #pragma once
 
-// Steps of the camera, the one place for them: pure functions from one pose to the next. A pose is kept in the words of
-// the command line (eye, target, up), of which look_at makes the very camera that `pertev render` makes of its flags:
-// so a view can be taken from the viewer to a render, and the pictures are the same to the bit. Lengths are metres,
-// angles radians; a drag is given in heights of the picture.
+// Steps of the camera, defined only here: pure functions from one pose to the next. A pose has the form of the
+// command line (eye, target, up), from which look_at makes exactly the camera that `pertev render` makes of its
+// flags, so that a view can be copied from the viewer to a render with bit-identical pictures. Lengths are in metres,
+// angles in radians, drags in picture heights.
 
 #include <optional>
 #include <string>
@@ -17,40 +17,41 @@ namespace pertev {
 
 struct Pose { // in the scene's coordinates
     Vec3 eye, target, up;
-    Vec3 centre; // of the orbit
+    Vec3 centre; // centre of the orbit
     bool operator==(const Pose&) const = default;
 };
 
-/// The pose of a camera. `target`, `up`: where they were asked for; else `distance` ahead, and +y or, for a camera that
-/// leans, its own.
+/// The pose of a camera. `target` and `up` are used if requested; otherwise the target is `distance` ahead, and up is
+/// +y or, for a rolled camera, its own.
 Pose pose_of(const Camera& camera, std::optional<Vec3> target, std::optional<Vec3> up, float distance);
-/// `lens` placed at the pose. What is in focus stays as far away, but for a pinhole, which has it at its target.
+/// `lens` placed at the pose. The focus distance is kept, except for a pinhole, which focuses on its target.
 Camera camera_at(const Pose& pose, const Camera& lens);
 
-/// Along the view's own axes. The target and the orbit's centre go along.
+/// Moves along the view's own axes, together with the target and the orbit's centre.
 Pose fly(const Pose& pose, float right, float up, float forward);
-/// About the centre; stops short of straight up and down. Full height of the picture: half a turn.
+/// Rotates around the centre; stops short of straight up and down. A drag of the picture's height is half a turn.
 Pose orbit(const Pose& pose, float dx, float dy);
-/// Turns about the eye by what the drag covers of the view. The centre is then the target. `fov_y`: of the view.
+/// Rotates around the eye by the dragged angle of the view. The centre becomes the target. `fov_y` is that of the
+/// view.
 Pose look(const Pose& pose, float dx, float dy, float fov_y);
-/// Across the view, so that what lies at the centre's distance follows the pointer. `view_height`: of the picture at
-/// distance 1, or of an orthographic view.
+/// Moves across the view, so that points at the centre's distance follow the pointer. `view_height` is the picture's
+/// height at distance 1, or that of an orthographic view.
 Pose pan(const Pose& pose, float dx, float dy, float view_height, bool is_orthographic);
-/// To the centre, or away from it: a step is a seventh of the distance. Never reaches it.
+/// Moves towards the centre, or away from it: a step is a seventh of the distance, so it is never reached.
 Pose zoom(const Pose& pose, float steps);
 
-/// Metres for `message`, a Move, at `speed` metres a second.
+/// Distance in metres of `message`, a Move, at `speed` metres per second.
 float metres_of(const ClientMessage& message, float speed);
 
-/// The flags of pertev render that place this camera: --eye --target --up, and the lens, as far as it is not what they
-/// leave as it is. `name`: of --camera; empty for none. `origin`: of the scene, in its file.
+/// The flags of pertev render that place this camera: --eye --target --up, and the lens if it differs from their
+/// defaults. `name` is that of --camera; empty for none. `origin` is the scene's in its file.
 std::string camera_flags(const Pose& pose, const Camera& camera, const std::string& name,
                          DoubleVec3 origin = {0, 0, 0});
-/// The same of the scene's camera `name`, where it stands, with the lens of `camera`.
+/// Flags for the scene's camera `name` at its own position, with the lens of `camera`.
 std::string scene_camera_flags(const Camera& camera, const std::string& name);
 
-/// A camera of one pixel that looks through the place (x, y) of the picture of `camera`, [0, 1] each from the upper
-/// left: without a lens. Its depth is the distance along that ray.
+/// A one-pixel camera without a lens that looks through the position (x, y) of the picture of `camera`, [0, 1] each
+/// from the upper left. Its depth is the distance along that ray.
 Camera camera_through(const Camera& camera, float aspect, float x, float y);
 
 } // namespace pertev

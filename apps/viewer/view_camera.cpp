@@ -12,15 +12,15 @@
 namespace pertev {
 namespace {
 
-constexpr float kLeastFov = 0.01f, kMostFov = 179; // degrees, as a path's file may have them
-constexpr int kMostTargets = 256;                  // that are tried to say a place to the bit
+constexpr float kLeastFov = 0.01f, kMostFov = 179; // degrees; the limits of a path's file
+constexpr int kMostTargets = 256;                  // number of targets tried to state a position to the bit
 constexpr float kFarthest = 1e9f;                  // metres that anybody may go
 
 bool is_finite_place(const Transform& m) {
     return is_finite(m.row0) && is_finite(m.row1) && is_finite(m.row2) && is_finite(m.translation);
 }
 
-/// `now`, where the lens was as `before` had it: what was set by hand stays.
+/// Sets `now` unless the user has changed the lens from `before`.
 void follow(float& lens, float before, float now) {
     if (lens == before) lens = now;
 }
@@ -32,8 +32,7 @@ Pose pose_of(const CameraSource& source, const Scene& scene, float distance) {
     Pose pose = pose_of(source.camera, asked, source.up, distance);
     const Transform& placed = source.camera.world_from_camera;
     if (asked || look_at(pose.eye, pose.target, pose.up) == placed) return pose;
-    // The first of the points near what is in focus that leads back to these axes is taken: most are off by a last
-    // digit.
+    // Takes the first point near the focus that reproduces these axes; most differ in the last digit.
     for (int i = 0; i < kMostTargets; ++i) {
         const float away = source.camera.focus_distance * (1 + static_cast<float>(i) / kMostTargets);
         const Vec3 target = told_in_file(scene, pose.eye - away * column(placed, 2));
@@ -48,7 +47,7 @@ ViewCamera::ViewCamera(const StartCamera& start, const Scene& scene)
     : start_(start), scene_(scene), base_(start.camera), pose_(start.pose), name_(start.name), path_(start.path),
       is_path_of_file_(!start.path.keys.empty()) {
     if (is_path_of_file_) guide_ = Guide::Path;
-    for (CameraKey& key : path_.keys) { // so that keys of one's own can join them
+    for (CameraKey& key : path_.keys) { // so that the user's own keys can join them
         if (key.fov_deg == 0) key.fov_deg = degrees_for(start.camera.fov_y);
     }
 }
@@ -109,7 +108,7 @@ void ViewCamera::go_to(std::optional<double> time_s, Camera& lens) {
         return;
     case Guide::Path: {
         const CameraSource source = on_path(time_s.value_or(path_.keys.front().time_s));
-        // Where a path leads through what it looks at, there is no view: it stays at the one before.
+        // Where a path's eye passes through its target there is no view, so the previous one stays.
         if (is_finite_place(source.camera.world_from_camera)) place(source, lens);
         return;
     }
@@ -141,7 +140,7 @@ bool ViewCamera::take_scene_camera(uint32_t index, std::optional<double> time_s,
     guide_ = Guide::SceneCamera;
     index_ = index;
     name_ = fmt::format("{}", index);
-    pose_ = start_.pose; // how far away it looks
+    pose_ = start_.pose; // for its viewing distance
     place({.camera = scene_.cameras[index]}, lens);
     lens = base_;
     go_to(time_s, lens);
@@ -156,14 +155,14 @@ bool ViewCamera::follow_path(std::optional<double> time_s, Camera& lens) {
     base_ = start_.camera;
     pose_ = start_.pose;
     go_to(time_s, lens);
-    lens.fov_y = base_.fov_y; // keys say these
+    lens.fov_y = base_.fov_y; // keys define these
     lens.focus_distance = base_.focus_distance;
     return true;
 }
 
 void ViewCamera::step(const ClientMessage& message, const Camera& lens, float speed) {
     const Pose before = pose_;
-    if (!is_own_) pose_.target = pose_.centre; // what the view turns about is what it looks at from now on
+    if (!is_own_) pose_.target = pose_.centre; // the orbit's centre becomes the target
     const bool is_flat = has_parallel_rays(base_.projection);
     const float height = is_flat ? base_.ortho_height : 2 * tan(0.5f * lens.fov_y);
     if (message.kind == MessageKind::Move) {
@@ -184,7 +183,7 @@ void ViewCamera::step(const ClientMessage& message, const Camera& lens, float sp
     pose_.target = told_in_file(scene_, pose_.target);
     const bool is_good = is_finite_place(look_at(pose_.eye, pose_.target, pose_.up)) &&
                          max_component(abs(pose_.eye)) < kFarthest && max_component(abs(pose_.target)) < kFarthest;
-    if (!is_good) pose_ = before; // a step too far
+    if (!is_good) pose_ = before; // the step went too far
     is_own_ = true;
 }
 
@@ -211,7 +210,7 @@ void ViewCamera::remove_key(uint32_t index) {
     if (index >= path_.keys.size()) return;
     path_.keys.erase(path_.keys.begin() + index);
     is_path_of_file_ = false;
-    if (path_.keys.empty() && guide_ == Guide::Path) { // it stays where it is
+    if (path_.keys.empty() && guide_ == Guide::Path) { // it stays at its position
         guide_ = Guide::Start;
         is_own_ = true;
     }

@@ -25,7 +25,7 @@ constexpr const char* kLayers[] = {"picture",   "albedo",      "normal",        
 
 constexpr const char* kScales[] = {"automatic", "1", "1/2", "1/4", "1/8"};
 constexpr float kScaleValues[] = {0, 1, 0.5f, 0.25f, 0.125f};
-constexpr double kLeastShown = 1e-6; // of numbers above 0
+constexpr double kLeastShown = 1e-6; // minimum of settings that must be above 0
 
 float number_of(const SettingValue& value) { return static_cast<float>(std::get<double>(value)); }
 const std::string& text_of(const SettingValue& value) { return std::get<std::string>(value); }
@@ -35,7 +35,7 @@ std::vector<std::string> strings(const Names& names) {
     return {std::begin(names), std::end(names)};
 }
 
-/// What the panel shows of the tracers: those of camera rays. A change is one of all kinds of ray.
+/// The combination shown in the panel: that of camera rays. A change applies to all kinds of ray.
 Combination shown_combination(const ViewState& state) {
     return state.picture.tracers.value_or(default_tracers(state.on_cuda)).camera;
 }
@@ -53,7 +53,7 @@ std::string set_combination(ViewState& state, const Combination& combination) {
 
 bool is_cells(WalkKind walk) { return walk == WalkKind::Kd || walk == WalkKind::Octree; }
 
-/// A structure brings a walk that goes over it where the present one does not.
+/// A structure implies a traversal that supports it if the present one does not.
 std::string set_structure(ViewState& state, const std::string& name) {
     Combination wanted = shown_combination(state);
     wanted.structure = *value_named<StructureKind>(name);
@@ -67,7 +67,7 @@ std::string set_structure(ViewState& state, const std::string& name) {
     return set_combination(state, wanted);
 }
 
-/// And the other way round.
+/// A traversal implies a structure that it supports if the present one is unsupported.
 std::string set_walk(ViewState& state, const std::string& name) {
     const Combination now = shown_combination(state);
     Combination wanted = {.structure = now.structure, .walk = *value_named<WalkKind>(name)};
@@ -87,7 +87,7 @@ std::string set_rta(ViewState& state, const std::string& name) {
     return set_combination(state, wanted);
 }
 
-/// Some layers are of frames, which not every integrator makes.
+/// Some layers need frames, which not every integrator makes.
 std::string why_no_layer(ShownLayer layer, const RenderSettings& settings) {
     if (!is_of_frames(layer) || makes_frames(settings.integrator)) return {};
     return fmt::format("{}: a layer of reconstructed frames, which {} does not make", name_of(layer),
@@ -133,7 +133,7 @@ std::vector<ViewSetting> make_settings() {
                        }});
     };
 
-    // Settings that pictures by flags have, too: what they are, and their values, are those of the table of settings.
+    // Settings that are also flags of pictures: their description and values come from the table of settings.
     const auto shared_choice = [&](const char* name, const char* label, const char* group, auto get, auto set) {
         const Setting& setting = *find_setting(name);
         choice(name, label, group, *setting.more != '\0' ? setting.more : setting.sentence, choices_of(setting), get,
@@ -270,7 +270,7 @@ std::vector<ViewSetting> make_settings() {
     return all;
 }
 
-/// Why the value is none for the setting; empty where it is one.
+/// Why the value is invalid for the setting; empty if it is valid.
 std::string why_no_value(const ViewSetting& setting, const SettingValue& value) {
     if (setting.kind == Kind::Choice) {
         const std::string* text = std::get_if<std::string>(&value);

@@ -1,7 +1,7 @@
 #pragma once
 
-// What the viewer shows besides the camera's pose, and the table of settings that a page may change. A setting is one
-// row of that table: the page builds its panel from it, so a new setting is added here alone.
+// The state of the viewer besides the camera's pose, and the table of settings that a page may change. The page
+// builds its panel from this table, so a new setting is added only here.
 
 #include <functional>
 #include <string>
@@ -17,7 +17,8 @@
 
 namespace pertev {
 
-/// What of the picture is shown. Beauty is the picture itself; the layers are false colours of one sample or more.
+/// The layer of the picture that is shown. Beauty is the picture itself; the others are false colours of at least one
+/// sample.
 enum class ShownLayer : uint8_t {
     Beauty,
     Albedo,
@@ -32,27 +33,28 @@ enum class ShownLayer : uint8_t {
     Deviation,
 };
 
-/// Scatterings at most of pictures of the movement, unless somebody has chosen a depth.
+/// Maximum number of scatterings in moving pictures, unless somebody has chosen a depth.
 inline constexpr uint32_t kMovingDepth = 4;
 
 struct ViewState {
-    RenderSettings picture; // at rest: size, light, number of samples, tracers
-    Display display;        // where the exposure is found by itself, its stops are added to that
+    RenderSettings picture; // picture at rest: size, light, number of samples, tracers
+    Display display;        // automatic exposure is added to its stops
     bool finds_exposure = false;
-    float found_stops = 0; // of the last picture
-    Camera lens;           // angle of view, aperture, focus; its place is the pose's
+    float found_stops = 0; // automatic exposure of the last picture
+    Camera lens;           // field of view, aperture, focus; its position is the pose's
     ShownLayer layer = ShownLayer::Beauty;
-    bool is_real_time = false; // also at rest, pictures are those of the movement
-    // Frames of the movement; none of this touches the picture at rest.
-    bool is_reconstructed = true; // by what frames before have seen (denoise/); else they are their samples
+    bool is_real_time = false; // pictures at rest are like moving ones
+    // Moving frames; none of this affects the picture at rest.
+    bool is_reconstructed = true; // with the history of earlier frames (denoise/); else they show raw samples
     ReconstructionSettings reconstruction;
     RestirSettings restir;
-    float moving_scale = 0;               // of the size; 0: whatever keeps the frame rate
-    uint32_t moving_depth = kMovingDepth; // scatterings at most, where that is fewer than the picture's
-    float screen_rate = 0;                // pictures a second of the screen of who steers; 0: not known
+    float moving_scale = 0;               // scale; 0: whatever meets the frame rate
+    uint32_t moving_depth = kMovingDepth; // maximum number of scatterings, if that is below the picture's
+    float screen_rate = 0;                // refresh rate of the screen of the client that steers; 0: unknown
     bool on_cuda = false;
-    uint64_t window_pixels = 0; // at most, of a picture that takes the window's shape; 0: its size was asked for
-    std::vector<std::pair<IntegratorKind, std::string>> dark; // those that would show the scene as black, and why
+    uint64_t window_pixels = 0; // maximum pixels of a picture with the window's shape; 0: its size was requested
+    std::vector<std::pair<IntegratorKind, std::string>> dark; // integrators that would show the scene as black, and
+                                                              // why
 };
 
 /// The value of a setting: text for choices, a number for the others.
@@ -63,12 +65,12 @@ struct ViewSetting {
     const char* name;
     const char* label;
     const char* group;
-    const char* hint; // for who does not know it
+    const char* hint; // for people who do not know it
     Kind kind;
-    std::vector<std::string> choices;   // of a Choice
-    double low = 0, high = 0, step = 1; // of a number
+    std::vector<std::string> choices;   // for a Choice
+    double low = 0, high = 0, step = 1; // for a number
     std::function<SettingValue(const ViewState&)> get;
-    /// Empty where that was done; else why not, in plain words, and nothing was done.
+    /// Returns empty on success, else why nothing was changed, in plain words.
     std::function<std::string(ViewState&, const SettingValue&)> set;
 };
 
@@ -78,18 +80,18 @@ const std::vector<ViewSetting>& view_settings();
 /// Whether the picture at rest of `after` needs other samples than that of `before`.
 bool begins_anew(const ViewState& before, const ViewState& after);
 
-/// Whether the same samples look otherwise in `after`.
+/// Whether the same samples are displayed differently in `after`.
 bool is_shown_otherwise(const ViewState& before, const ViewState& after);
 
-/// Gives the picture the shape of a window of so many pixels, unless its size was asked for. Returns whether that is
-/// another size.
+/// Gives the picture the shape of a window of this size in pixels, unless its size was requested. Returns whether the
+/// size has changed.
 bool take_window_shape(ViewState& state, uint32_t width, uint32_t height);
 
-/// Sets one by its name. Empty where that was done; else why not, and nothing was done.
+/// Changes a setting by name. Returns empty on success, else why nothing was changed.
 std::string set_view_setting(ViewState& state, const std::string& name, const SettingValue& value);
 
 const char* name_of(ShownLayer layer);
-/// Of the reconstruction, so that they are there only with it.
+/// Whether the layer belongs to the reconstruction, without which it does not exist.
 bool is_of_frames(ShownLayer layer);
 
 } // namespace pertev

@@ -16,7 +16,7 @@ namespace {
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// Between the network and the audience.
+/// Connects the network and the audience.
 class Reception final : public WebEvents {
 public:
     Reception(Audience& audience, Inbox& inbox) : audience_(audience), inbox_(inbox) {}
@@ -34,7 +34,7 @@ private:
     Inbox& inbox_;
 };
 
-/// While it lives, the source's work is broken off as soon as the viewer is to end.
+/// While it exists, the source's work is stopped as soon as the viewer must end.
 class EndWatch {
 public:
     EndWatch(const std::function<bool()>& goes_on, FrameSource& source)
@@ -73,7 +73,7 @@ void run_viewer(const ViewerOptions& options, const ViewerStart& start, FrameSou
     WebServer server(options.host, options.port, identity, page_files(), reception, options.limits);
     listening(address_of(options.host, server.port(), identity.token));
     const EndWatch watch(goes_on, source);
-    // In turns: the packer ends before the inbox closes, and that before the server goes.
+    // In order: the packer ends before the inbox closes, and that before the server ends.
     struct Closing {
         Inbox& inbox;
         ~Closing() { inbox.close(); }

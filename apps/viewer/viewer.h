@@ -1,7 +1,7 @@
 #pragma once
 
-// pertev view without its flags: pictures of a scene in browsers, until it is told to end. Three threads besides those
-// that render: the caller's steers and renders, one speaks with the network, one packs pictures.
+// pertev view without its flags: shows pictures of a scene in browsers until it is ended. It has three threads
+// besides those that render: the caller's steers and renders, one handles the network, one encodes pictures.
 
 #include <functional>
 #include <string>
@@ -19,28 +19,28 @@ namespace pertev {
 
 struct ViewerOptions {
     std::string host = "127.0.0.1";
-    uint16_t port = 8080; // 0: any that is free
+    uint16_t port = 8080; // 0: any free port
     WebLimits limits;
-    Queue* jpeg_queue = nullptr; // of a GPU, for nothing but packing pictures; outlives the viewer. Null: the CPU packs
+    Queue* jpeg_queue = nullptr; // GPU queue only for encoding pictures; outlives the viewer. Null: the CPU encodes
 };
 
-/// What is looked at, and how it begins.
+/// The scene of a viewer and its initial state.
 struct ViewerStart {
-    const Scene* scene = nullptr;  // outlives the viewer; at the time that the frame source was put to
+    const Scene* scene = nullptr;  // outlives the viewer; at the time of the frame source
     bool is_animated = false;      // whether time moves it
-    std::string why_still;         // for people: why time does not move a scene with animations; empty: nothing to say
-    std::optional<double> still_s; // the time that it is then at, seconds; none: at rest
+    std::string why_still;         // for people: why time does not move a scene with animations; empty: no message
+    std::optional<double> still_s; // its fixed time then, in seconds; none: at rest
     ViewState view;
     StartCamera camera;
     SceneClock clock;
-    PictureRecord record; // for pictures that are saved
-    float speed = 1;      // metres a second of keys
-    /// The panel says this of the scene beside its name: a label and its value a row, in the group "Scene".
+    PictureRecord record; // for saved pictures
+    float speed = 1;      // metres per second of keys
+    /// Rows about the scene in the panel's group "Scene": labels with values.
     std::vector<std::pair<std::string, std::string>> about;
 };
 
-/// Listens, calls `listening` with the address that lets in whoever has it, and goes on as long as `goes_on` says so;
-/// it is asked often. Throws Error(BadInput) where it cannot listen, Error(DeviceFault).
+/// Listens, calls `listening` with the address that grants access, and continues while `goes_on` returns true; it is
+/// called often. Throws Error(BadInput) if it cannot listen, Error(DeviceFault).
 void run_viewer(const ViewerOptions& options, const ViewerStart& start, FrameSource& source,
                 const std::function<void(const std::string& address)>& listening, const std::function<bool()>& goes_on);
 

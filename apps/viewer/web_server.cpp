@@ -35,7 +35,7 @@ using Request = http::request<http::empty_body>;
 
 std::string_view view_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
-/// What all answers say: nothing of this is anybody else's, and no script but ours runs.
+/// Adds security headers to every answer: no other site may use it, and only our scripts run.
 void add_safety(Response& response) {
     response.set(http::field::server, "pertev");
     response.set(http::field::cache_control, "no-store");
@@ -81,7 +81,7 @@ struct WebServer::Inside {
     const std::vector<PageFile> files;
     WebEvents& events;
     const WebLimits limits;
-    // Before the context, whose end is that of the connections that are still there.
+    // Destroyed after the context, which closes the remaining connections.
     std::atomic<std::size_t> connections = 0;
     uint32_t last_client = 0;
     std::map<uint32_t, std::weak_ptr<Socket>> sockets;
@@ -120,12 +120,12 @@ public:
 
     struct Message {
         std::string text;
-        std::shared_ptr<const std::vector<uint8_t>> picture; // or this
+        std::shared_ptr<const std::vector<uint8_t>> picture; // used if there is no text
     };
 
     void send(Message message) {
         if (!is_open_) return;
-        waiting_.push_back(std::move(message)); // whoever sends waits for acknowledgements, so these are few
+        waiting_.push_back(std::move(message)); // senders wait for acknowledgements, so these are few
         if (waiting_.size() == 1) write();
     }
 
@@ -182,7 +182,7 @@ private:
     bool is_open_ = false, is_counted_ = false;
 };
 
-/// A connection that asks by HTTP, until it becomes a WebSocket.
+/// An HTTP connection, until it becomes a WebSocket.
 class WebServer::Inside::Connection : public std::enable_shared_from_this<Connection> {
 public:
     Connection(Inside& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {
@@ -320,7 +320,7 @@ void WebServer::Inside::listen(const std::string& host, uint16_t port) {
 void WebServer::Inside::accept() {
     acceptor.async_accept([this](error_code fault, tcp::socket socket) {
         if (fault == asio::error::operation_aborted || is_stopping) return;
-        // Where there are too many, it is closed at once; without files left, a moment passes.
+        // If there are too many connections, it is closed at once; if file handles are exhausted, accepting pauses.
         if (!fault && connections < limits.connections) {
             std::make_shared<Connection>(*this, std::move(socket))->read();
         }
@@ -346,11 +346,11 @@ void WebServer::Inside::stop() {
     error_code ignored;
     acceptor.close(ignored);
     timer.cancel();
-    const auto all = sockets; // dropping takes them out
+    const auto all = sockets; // dropping modifies the list
     for (const auto& [client, socket] : all) {
         if (const auto open = socket.lock()) open->drop(websocket::close_code::going_away, "pertev view has ended");
     }
-    timer.expires_after(std::chrono::milliseconds(150)); // for the goodbyes to leave
+    timer.expires_after(std::chrono::milliseconds(150)); // for goodbyes to be sent
     timer.async_wait([this](error_code) { context.stop(); });
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The size of a picture that fills a window: pure arithmetic.
+// The size of a picture that fills a window.
 
 #include <cstdint>
 
@@ -8,9 +8,9 @@
 
 namespace pertev {
 
-/// Returns a size of the window's shape, with even sides (JPEG halves the resolution of colour). It has at most
-/// `most_pixels` pixels, and no more than the window, which shows no more. A window that is more than 4 times as long
-/// as it is wide gets a picture of 4 to 1.
+/// Returns a size with the window's shape and even sides (JPEG halves the resolution of colour). It has at most
+/// `most_pixels` pixels, and at most those of the window. For a window more than 4 times as long as wide the ratio is
+/// 4 to 1.
 PictureSize size_for_window(uint32_t width, uint32_t height, uint64_t most_pixels);
 
 } // namespace pertev

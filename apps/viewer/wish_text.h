@@ -1,6 +1,6 @@
 #pragma once
 
-// This puts what a client that does not steer tried to do into words for the one that steers.
+// Describes the attempt of a client that does not steer to the one that steers.
 
 #include <string>
 
@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-/// Returns the end of a sentence that begins with "viewer 2 would like to". Empty where the message steers nothing.
+/// Returns the end of a sentence that begins with "viewer 2 would like to"; empty if the message steers nothing.
 std::string wish_text(const ClientMessage& message);
 
 } // namespace pertev

@@ -1,7 +1,6 @@
 #include "settings/check_settings.h"
 
 #include <algorithm>
-#include <iterator>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -59,14 +58,6 @@ std::optional<SettingConflict> conflict_of(const PictureOptions& options, const 
     return std::nullopt;
 }
 
-/// Returns whether a scene is opened by the setting, or another file is.
-bool opens_files(const Setting& setting) {
-    constexpr std::string_view kGroups[] = {"File", "Environment", "Lamps", "Faces", "Tracing", "Machine"};
-    constexpr std::string_view kNames[] = {"transparent", "camera_path", "solution"};
-    return std::ranges::find(kGroups, setting.group) != std::end(kGroups) ||
-           std::ranges::find(kNames, setting.name) != std::end(kNames);
-}
-
 } // namespace
 
 std::optional<SettingConflict> find_conflict(const PictureOptions& options, uint32_t verbs) {
@@ -101,10 +92,10 @@ std::string overruled_setting(const SettingConflict& conflict, const PictureOpti
 void take_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& options, Messages& messages) {
     for (const SuggestedSetting& suggested : scene.suggested) {
         if (options.is_given(suggested.name)) continue;
-        if (options.real_time && suggested.name == "spp") continue; // its frames have one sample
+        if (options.real_time && suggested.name == "spp") continue; // real-time frames have one sample
         const Setting* const setting = find_setting(suggested.name);
         try {
-            if (setting == nullptr || !setting->is_kept || opens_files(*setting)) {
+            if (setting == nullptr || !setting->is_kept || setting->opens_scene) {
                 throw Error(ErrorCode::BadInput, "no setting that a scene's file can suggest");
             }
             if ((setting->verbs & verbs) == 0) continue;

@@ -1,4 +1,4 @@
-// Settings of one integrator, or of a few.
+// Settings that apply to one or a few integrators.
 
 #include <initializer_list>
 #include <limits>
@@ -102,7 +102,7 @@ std::vector<Setting> integrator_settings() {
             Excludes{"solution"}),
         row("solution", "Radiosity", "FILE", FIELD(radiosity.solution),
             "The picture shows this file, which pertev solve radiosity wrote.", Otherwise{"the scene is solved first"},
-            Mark::Name),
+            Mark::Name, Mark::OpensScene),
         row("flat_patches", "Radiosity", "", FIELD(radiosity.flat_patches),
             "Each patch is evenly lit, as it was solved."),
     };

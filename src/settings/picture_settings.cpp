@@ -1,4 +1,4 @@
-// Settings of pictures by any integrator: what is rendered, by what, and how it is shown.
+// Settings of pictures by any integrator: what is rendered, how, and how it is shown.
 
 #include "base/limits.h"
 #include "render/film_channels.h"
@@ -10,7 +10,7 @@ namespace {
 
 #define FIELD PERTEV_SETTING_FIELD
 
-/// The integrator's name decides two fields.
+/// The integrator's name sets two fields.
 SettingField integrator_field(PictureOptions& options) {
     return NamedField{
         &options.render, [](const void* f) { return integrator_name(*static_cast<const RenderSettings*>(f)); },
@@ -41,7 +41,7 @@ std::vector<Setting> picture_settings() {
         row("iso", "Picture", "S", FIELD(iso), "The film of a physical exposure has this speed.", Above{0, 1e8},
             Otherwise{"100"}, On{kShown}, Needs{"f_number"}),
         row("transparent", "Picture", "", FIELD(render.transparent),
-            "The background is left out; alpha says how much of a pixel is covered."),
+            "The background is left out; alpha says how much of a pixel is covered.", Mark::OpensScene),
         row("aov", "Picture", "NAME,...", FIELD(aovs), "An EXR has these layers beside the picture.",
             Choices{aov_names()}, Mark::Common),
         row("false_color", "Picture", "NAME", FIELD(false_color),

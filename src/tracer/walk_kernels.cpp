@@ -4,7 +4,7 @@
 
 namespace pertev {
 
-// One a file in kernels/.
+// Each is defined in a file in kernels/.
 void add_if_if_kernels(std::vector<WalkKernel>& rows);
 void add_while_while_kernels(std::vector<WalkKernel>& rows);
 void add_speculative_kernels(std::vector<WalkKernel>& rows);
@@ -55,7 +55,7 @@ std::optional<std::string> why_no_tracer(const Combination& c, bool on_cuda) {
 const WalkKernel* find_kernel(const Combination& c, bool any_hit, bool on_cuda) {
     static const std::vector<WalkKernel> rows = all_kernels();
     const auto at = std::ranges::find_if(rows, [&](const WalkKernel& row) {
-        // An any-hit search has no nearest hit to skip beyond: RTA on or off, it is the same walk.
+        // An any-hit search has no nearest hit that RTA could compare with, so both switches give the same traversal.
         const bool rta =
             any_hit || (row.options.rta == c.options.rta && row.options.rta_at_pops == c.options.rta_at_pops);
         return (on_cuda ? row.on_cuda : row.on_cpu) && row.walk == c.walk && row.distribution == c.distribution &&

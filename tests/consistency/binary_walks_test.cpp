@@ -255,7 +255,7 @@ TEST_CASE("walks with a stack visit the same, walks without one visit more, brut
     };
     for (const Ray& ray : rays_at_shells(2000)) {
         compare.template operator()<kAll>(ray, false);
-        compare.template operator()<for_any_hit({.near_first = false})>(ray, true); // as pictures have it
+        compare.template operator()<for_any_hit({.near_first = false})>(ray, true); // the options of pictures
         near_first += count_visits<WhileWhileWalk<kAll>>(view_of(bvh), ray).nodes;
         far_first += count_visits<WhileWhileWalk<WalkOptions{.near_first = false}>>(view_of(bvh), ray).nodes;
         const Visits all = count_visits<BruteForceWalk<kAll>>(triangle_array_of(bvh), ray);

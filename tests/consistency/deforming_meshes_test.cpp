@@ -171,7 +171,7 @@ TEST_CASE("what deforms takes the bytes that are said beforehand") {
     const MovingScene moving(make_bending_scene(), 0.25, {}, messages);
     const SceneOnDevice scene(queue, moving.prepared());
     CHECK(queue.allocated_bytes() == predicted_bytes(moving.prepared(), queue.is_cuda()));
-    if (queue.is_cuda()) return; // what a GPU sorts with is not told
+    if (queue.is_cuda()) return; // a GPU's sorting memory is not counted
     const std::vector<DeformedMesh> deformed = scene.deformed(moving.prepared());
     REQUIRE(deformed.size() == 2);
     const std::size_t before = queue.allocated_bytes();
@@ -300,7 +300,7 @@ TEST_CASE("frames of bending meshes have the same bytes on every device, by ever
 
 namespace {
 
-/// Of frame `k` of 8 a second, after frame `first` and those between.
+/// Motion vectors of frame `k` at 8 frames per second, after frame `first` and those between.
 Image motion_of_frame(Queue& queue, const RenderSettings& settings, int first, int k) {
     Messages messages;
     MovingScene moving(make_bending_scene(), 0.1, {}, messages);

@@ -93,7 +93,7 @@ void check_batch(const EmulatedWalk& walk, const Expected& expected, uint32_t bl
     }
 }
 
-/// Of the same triangles, in each layout.
+/// Trees over the same triangles in each layout.
 struct TestTrees {
     Bvh bvh;
     CompressedBvh compressed_bvh;

@@ -1,5 +1,6 @@
-// What is looked at of a frame beside its picture: means over blocks, which the exposure follows (denoise/sum_blocks.h,
-// session/adaptive_exposure.h), and what the reconstruction went by (denoise/keep_layers.h). The same on both devices.
+// Data that accompanies a frame's picture: block means for the exposure (denoise/sum_blocks.h,
+// session/adaptive_exposure.h), and layers of the reconstruction (denoise/keep_layers.h). They are equal on both
+// devices.
 
 #include <doctest/doctest.h>
 
@@ -30,7 +31,7 @@ struct SeenLayers {
     bool operator==(const SeenLayers&) const = default;
 };
 
-/// Of the last of ten frames of a camera that moves aside.
+/// Layers of the last of ten frames of a camera that moves sideways.
 SeenLayers look_at_frames(Queue& queue) {
     Messages messages;
     const Scene scene = make_mixed_scene();

@@ -107,7 +107,7 @@ TEST_CASE("layers of a frame are those of its own sample, whatever order samples
     const RenderResult frame = session.frame_result();
     REQUIRE(frame.layers.size() == 2);
     REQUIRE(frame.ids.size() == std::size_t(60) * 40);
-    // What sample 5 adds to the five before it, by the film.
+    // The contribution of sample 5 to the five before it, from the film.
     RenderSettings plain = settings_of_frames(settings);
     const auto albedo_of = [&](uint32_t samples) {
         plain.samples = samples;

@@ -53,7 +53,7 @@ Mesh soup(uint32_t count, uint32_t seed) {
         }
         const uint32_t first = 3 * i;
         mesh.indices.insert(mesh.indices.end(), {first, first + 1, first + 2});
-        if (i % 13 == 0) mesh.indices.insert(mesh.indices.end(), {first + 1, first + 2, first}); // the same again
+        if (i % 13 == 0) mesh.indices.insert(mesh.indices.end(), {first + 1, first + 2, first}); // a duplicate
     }
     return mesh;
 }
@@ -147,7 +147,7 @@ TEST_CASE("hybrid has path's picture through any pixel filter and any angle of v
     check_as_path(scene, flat, hybrid_settings());
 }
 
-// What lies at the very border of a tile: fails where tiles are widened by less than the filter, or not by rounding.
+// Triangles at the very border of a tile: fails if tiles are widened by less than the filter, or not by rounding.
 TEST_CASE("hybrid misses no triangle that a sample reaches beyond its tile") {
     RenderSettings settings = hybrid_settings();
     settings.width = 96, settings.height = 64;

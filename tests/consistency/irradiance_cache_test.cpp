@@ -130,7 +130,7 @@ TEST_CASE("records are made once for a picture, and anew for another") {
         };
         check_made(true);
         check_made(false);
-        session.set_camera(test::camera_with_lens()); // as it is
+        session.set_camera(test::camera_with_lens()); // the camera does not change
         session.set_settings(settings);
         check_made(false);
         check_picture(settings, test::camera_with_lens());

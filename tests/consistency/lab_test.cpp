@@ -22,7 +22,7 @@ using namespace pertev::test;
 
 namespace {
 
-// Of each kind, in all public scenes together; sanitizers take fifty times as long for a ray and a tree.
+// Number of each kind in all public scenes together; sanitizers take fifty times as long per ray and tree.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr uint64_t kRaysAKind = 3'000;
 constexpr const char* kFiles[] = {"sibenik/sibenik.obj"};

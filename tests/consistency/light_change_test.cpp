@@ -31,7 +31,7 @@ Scene lamp_scene() {
 }
 
 constexpr uint32_t kStill = 16, kDimming = 6;
-constexpr float kStep = 0.8f; // of the lamp's light, from frame to frame
+constexpr float kStep = 0.8f; // factor of the lamp's light from frame to frame
 
 /// Frames under a lamp that burns, then dims by kStep each frame. The scene is said to change before all of them.
 Image last_frame(Queue& queue, bool follows, bool dims, Hash128* before_dimming = nullptr) {
@@ -61,7 +61,7 @@ TEST_CASE("frames follow a lamp that dims, from the frame on in which it does") 
     const double still = mean_of(last_frame(queue, true, false));
     const double expected = still * std::pow(static_cast<double>(kStep), kDimming);
     CHECK(mean_of(last_frame(queue, true, true)) == doctest::Approx(expected).epsilon(0.05));
-    CHECK(mean_of(last_frame(queue, false, true)) > 1.2 * expected); // what there is to follow
+    CHECK(mean_of(last_frame(queue, false, true)) > 1.2 * expected); // the change is large enough to follow
 }
 
 namespace {
@@ -92,7 +92,8 @@ Halves halves_of(const Image& picture) {
     return halves;
 }
 
-/// Of the last frame of those in which the left lamp's light goes by `step` a frame while the right one's stays.
+/// Halves of the last frame of a sequence in which the left lamp's light changes by `step` per frame and the right
+/// one's does not.
 Halves halves_of_two(Queue& queue, bool follows, float step) {
     Messages messages;
     Scene scene = scene_of_two(1);
@@ -130,8 +131,8 @@ TEST_CASE("of two lamps frames follow most of what the one that dims takes, and 
         const Halves followed = halves_of_two(queue, true, step), late = halves_of_two(queue, false, step);
         MESSAGE("left ", expected.left, ": ", followed.left, ", late ", late.left, "; right ", expected.right, ": ",
                 followed.right, ", late ", late.right);
-        // Of the way from late to right: the lamps' shares change, and the same numbers draw the other one now and
-        // then.
+        // Fraction of the way from late to right: the lamps' shares change, so the same numbers occasionally select
+        // the other one.
         const double followed_share = (followed.left - late.left) / (expected.left - late.left);
         CHECK(followed_share > (dims ? 0.7 : 0.4));
         CHECK(followed_share < 1.1);
@@ -185,7 +186,7 @@ TEST_CASE("what finds a change of light lies where a reconstruction has room, an
         return dry.allocated_bytes();
     };
     CHECK(bytes(1920, 1080) == std::size_t(248) * 1920 * 1080);
-    // Of one pixel: histories, then the small pictures' 7 and 5; squares, then another 7.
+    // For one pixel: histories, then the small pictures' 7 and 5; squares, then another 7.
     CHECK(bytes(1, 1) == (10 + 7 + 5 + 1 + 7) * sizeof(Float4));
 
     const auto held_by_frames = [&](bool follows) {

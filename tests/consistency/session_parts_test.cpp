@@ -33,7 +33,7 @@ RenderSettings part_settings() {
     return settings;
 }
 
-/// What the parts of a session share.
+/// Common state of the parts of a session.
 struct Parts {
     DeviceScene scene;
     PictureRenderer pictures;

@@ -105,7 +105,7 @@ TEST_CASE("a session that has changed scene, camera, size and settings gives the
             if (what == 1) session.set_camera(world.cameras[camera = random.below(3)]);
             if (what >= 2) change_a_setting(settings, random);
             if (what >= 2) session.set_settings(settings);
-            if (random.below(4) == 0) session.render(1); // of what is changed before it is looked at
+            if (random.below(4) == 0) session.render(1); // sometimes renders between two changes
             if (random.below(4) == 0) session.meter(ToneMap::Agx);
             if (random.below(4) == 0) session.stats();
         }
@@ -273,7 +273,7 @@ void check_early_end(Queue& queue, const PreparedScene& prepared, RenderSettings
     Session four(queue, prepared, test::mixed_scene_camera(), settings);
     four.render(4);
     CHECK(picture_hash(session.picture()) == picture_hash(four.picture()));
-    // What the callback throws leaves whole samples too.
+    // An exception of the callback leaves whole samples too.
     CHECK_THROWS_AS(session.render(4, [](const RenderProgress&) -> bool { throw Error(ErrorCode::Interrupted, ""); }),
                     Error);
     CHECK(session.history().samples == 6);

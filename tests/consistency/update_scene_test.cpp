@@ -25,7 +25,7 @@ void twist(Mesh& mesh) {
     for (Vec3& p : mesh.positions) p = {p.x + 0.3f * p.y * p.y, 1.1f * p.y, p.z - 0.2f * p.x};
 }
 
-/// Of the mixed scene: two spheres share mesh 0, which keeps a tree of its own; mesh 3 is baked.
+/// A step of the mixed scene: two spheres share mesh 0, which has its own tree; mesh 3 is baked.
 struct Step {
     const char* what;
     void (*change)(Scene&);
@@ -135,7 +135,7 @@ TEST_CASE("a change rebuilds no tree but those of what changed") {
         found = same(update_scene(before, scene, update, messages));
         CHECK(std::ranges::count(found, false) == 1);
         CHECK(!found[0]);
-        // What was made of the trees is shared alike.
+        // Data derived from the trees is shared too.
         const auto nodes_of = [&](const PreparedScene& of) {
             const auto built = of.structures->get(options.tracers->bounce);
             return std::get<HostTrees>(built->trees()).meshes[0].nodes;

@@ -26,7 +26,7 @@ SETTINGS = {
     "long": (64, {1: 2e-3, 4: 1.3e-4}),
     "cuda": (4096, {1: 1e-3, 4: 3e-5}),
 }
-MEAN_ERROR = 2e-3  # of a channel
+MEAN_ERROR = 2e-3  # per channel
 
 
 def main():

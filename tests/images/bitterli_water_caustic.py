@@ -27,7 +27,7 @@ SETTINGS = {
     "cuda": (64, 1048576, "final", {8: 9e-3, 64: 7e-4}),
 }
 PATH_BLOCK = 4  # pixels along a side, over whose means path and photons are set side by side
-MEAN_ERROR = 0.04  # of a channel; the blur of the edge of each caustic and corner darkens
+MEAN_ERROR = 0.04  # per channel; the blur of the edge of each caustic and corner darkens
 
 # The reference is not of the file's own depth and lamp. By 7 scatterings all three channels of walls above the water and
 # below are one share of it, 0.934 (medians of blocks); by 8, which is Mitsuba's maxDepth of 9, they are 0.98, 0.97 and

@@ -151,7 +151,7 @@ def add_ply(gltf, folder, shape, material):
 
 
 def ior_of(bsdf):
-    """Of smooth glass in air."""
+    """The index of refraction of a smooth glass in air; raises ValueError for any other material."""
     values = {f.get("name").replace("_ior", "IOR"): float(f.get("value")) for f in bsdf.findall("float")}
     if set(values) != {"intIOR", "extIOR"} or values["extIOR"] != 1:
         raise ValueError(f"material {bsdf.get('id')} is no glass in air")

@@ -111,7 +111,7 @@ class Chromium:
         self.go("about:blank")
 
     def value(self, script):
-        """Of a script in the page, waited for where it is a promise."""
+        """The value of a script that is run in the page; a promise is awaited."""
         result = self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in result:
             raise RuntimeError(f"{script}: {result['exceptionDetails']}")
@@ -159,7 +159,7 @@ class Chromium:
 
 
 def ask(port, path):
-    """What the browser answers to an HTTP request, as JSON."""
+    """The browser's answer to an HTTP request, parsed as JSON."""
     with socket.create_connection(("127.0.0.1", port), PATIENCE_S) as made:
         made.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nConnection: close\r\n\r\n".encode())
         made.settimeout(5)

@@ -109,7 +109,7 @@ class Bench(CliTest):
             with self.subTest(line=line):
                 self.assertEqual(self.refuse(2, *line, says=[says], env=environment).stdout, "")
         write(self.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
-        for verb in [["bench"], rays]:  # what only its content tells
+        for verb in [["bench"], rays]:  # detectable only by its content
             self.assertEqual(self.refuse(2, *verb, "--scene", "flat.obj", says=["no geometry"]).stdout, "")
 
     def test_an_interrupt_ends_each_of_them_with_75_and_keeps_what_is_printed(self):

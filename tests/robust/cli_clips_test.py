@@ -73,7 +73,7 @@ class Clips(CliTest):
             self.assertEqual(self.hash_at("--time", "0.5", "--animation", words), alone[number], words)
         together = self.hash_at("--time", "0.5", "--animation", "all")
         self.assertNotIn(together, alone)
-        write(self.path("last.gltf"), gltf(CLIPS[5:]))  # of animations of one part the later one counts
+        write(self.path("last.gltf"), gltf(CLIPS[5:]))  # among animations of one property the later one counts
         self.assertEqual(self.hash_at("--time", "0.5", "--animation", "all", scene="last.gltf"), together)
         self.assertEqual(self.hash_at("--animation", "all"), self.hash_at())  # at rest nothing plays
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a person sees who opens a file without a flag: the light, the ground and the view that are made up."""
+"""A file opened without flags gets a default light, ground and view where it has none."""
 
 import base64
 import json

@@ -222,7 +222,7 @@ class MovingPictures(CliTest):
         self.assertEqual((end["frames"], end["written"], end["kept"], end["interrupted"]), (3, 0, 0, False))
         self.assertEqual([event["written"] for event in outcome.events("output")], [False])
         self.assertEqual((outcome.events("frame"), self.files()), ([], ["m.gltf"]))
-        # Of two files of a frame one fits: the frame is not whole.
+        # One of two files of a frame fits: the frame is not complete.
         outcome, end = self.run_on_a_full_disk(1024, "-o", "g-#.png", "-o", "g-#.exr", *TINY, *sequence)
         self.assertEqual([event["written"] for event in outcome.events("output")], [True, False])
         self.assertEqual((end["written"], self.files()), (0, ["g-0.png", "m.gltf"]))
@@ -258,7 +258,7 @@ class MovingPictures(CliTest):
         frames = self.frames("--camera-path", "path.json", "--frames", "0-3", "--fps", "1").events("frame")
         self.assertEqual(frames[1]["hash"], at_1)
         self.assertEqual(len({event["hash"] for event in frames}), 4)
-        # What an EXR tells of a frame between keys gives the frame again.
+        # The metadata of an EXR reproduces a frame between keys.
         self.succeed("render", "m.gltf", "-o", "e-#.exr", "--size", "24x16", "--spp", "2", "--device", "cpu",
                      "--camera-path", "path.json", "--frames", "2-2", "--fps", "1")
         told = self.info("e-2.exr")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What holds of every integrator's pictures, and what belongs to one of them alone.
+"""Tests of every integrator's pictures, and of properties that only one integrator has.
 cli_integrators_test.py PERTEV [--device cuda]"""
 
 import base64
@@ -14,7 +14,7 @@ from cli_run import DEVICE, PATIENCE_S, PROGRAM, CliTest, main, write
 
 INTEGRATORS = ["path", "direct", "indirect", "hybrid", "cast", "whitted", "distributed", "raster", "reyes", "light", "bidirectional",
                "photon_map"]
-VIEW = ["--eye", "0.3,0.3,2", "--target", "0.3,0.3,0"]  # of the lit triangle
+VIEW = ["--eye", "0.3,0.3,2", "--target", "0.3,0.3,0"]  # the lit triangle
 
 
 def lit_triangle():

@@ -67,7 +67,7 @@ class Errors(CliTest):
         self.assertIn(f"--eye 0,1,3 --target {told[0]['settings']['target']}", told[0]["text"])
         last = self.fail_in_json(2, *"render cornell-box -o x.png --camera".split(), "it's no camera", "--json")
         self.assertEqual((last["setting"], last["value"]), ("camera", "it's no camera"))
-        self.assertIn("--camera 'it'\\''s no camera': ", last["text"]) # as a shell takes it
+        self.assertIn("--camera 'it'\\''s no camera': ", last["text"]) # quoted for a shell
 
     def test_a_value_or_a_name_is_not_the_flag(self):
         for arguments in [["info", "--", "--json"], ["render", "cornell-box", "-o", "x.png", "--camera=--json"]]:

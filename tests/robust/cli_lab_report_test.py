@@ -259,7 +259,7 @@ class WhatIsWritten(LabTest):
                 self.assertEqual(self.pixels(file), self.pixels("out/" + file))
 
     def pixels(self, name):
-        """What the compressed rows of a PNG file hold."""
+        """A PNG file's header fields and its decompressed rows."""
         with open(self.path(name), "rb") as file:
             data = file.read()
         rows, at = b"", 8

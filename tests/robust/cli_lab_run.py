@@ -1,7 +1,7 @@
-"""What the tests of `pertev lab` share: small scenes, and the command line.
+"""Small scenes and command lines that the tests of `pertev lab` share.
 
-Most scenes are closed boxes with the eye inside: every camera ray and every bounce hits, whatever the walk, and no
-shadow ray does where the box stands alone. No figure of time is compared with anything but 0.
+Most scenes are closed boxes with the camera inside: every camera ray and every bounce hits, whatever the traversal,
+and no shadow ray does where the box stands alone. Times are compared only with 0.
 """
 
 import re
@@ -69,7 +69,7 @@ class LabTest(CliTest):
         self.assertEqual([event for event in outcome.events() if event["event"] in ("progress", "lab")], [], outcome)
 
     def names_of(self, flag):
-        """What a flag may be given, by its own word."""
+        """The values that a flag accepts, read from its own error message."""
         outcome = self.refuse(2, *self.lab("box.obj", flag, "nonsense"), says=[flag, "nonsense is not one of"])
         names = re.search("is not one of (.*)", outcome.stderr).group(1).split(", ")
         self.assertGreater(len(names), 3, outcome)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What an EXR says beside its colours, as docs/formats.md has it: layers at edges and on the background, metadata."""
+"""An EXR file's layers (at edges and on the background) and metadata are those that docs/formats.md names."""
 
 import os
 import re
@@ -11,7 +11,7 @@ DOWN = ["--eye", "0,3,0", "--target", "0,0,0", "--projection", "orthographic", "
         "--environment", "1,1,1", "--aov", "albedo,normal,depth,position,ids"]  # pixels of 4/9 m: edges fall between
 BELOW = "v -9 -1 -9\nv 9 -1 -9\nv 9 -1 9\nv -9 -1 9\nf 8 7 6 5\n"
 
-# What a render tells of itself; all else in the metadata is a flag.
+# Results of a render; everything else in the metadata is a flag.
 RESULTS = {"version", "scene", "world_from_camera", "device", "hash", "invalid_samples", "load_seconds", "build_seconds",
            "render_seconds", "rays", "made_up", "left_out", "position_origin", "scene_hash", "by_scene", "by_settings", "by_flags"}
 

@@ -1,4 +1,4 @@
-"""What cannot be read is left out with a warning, --strict refuses, and lists tell what was left out and made up."""
+"""Unreadable parts are left out with a warning; --strict refuses them; lists name what was left out or made up."""
 
 import json
 

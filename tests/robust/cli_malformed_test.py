@@ -13,7 +13,7 @@ import zlib
 
 from cli_run import SANITIZED, UNMETERED, CliTest, limit_addresses, main
 
-MAX_SECONDS = 60 if SANITIZED else 5  # of processor time: the machine may be loaded
+MAX_SECONDS = 60 if SANITIZED else 5  # processor time, because the machine may be loaded
 IMAGES = (".png", ".jpg", ".exr", ".hdr")
 SCENES = (".obj", ".ply", ".gltf", ".glb", ".pbrt", ".xml")
 
@@ -57,7 +57,7 @@ class MalformedTest(CliTest):
         return status
 
     def use_image(self, path, warns):
-        """As a picture, as the texture of an OBJ and of a glTF file, and as the environment."""
+        """Gives the image to each of its readers: as a picture, as an OBJ's and a glTF's texture, as environment."""
         name = os.path.basename(path)
         here = self.path(name)
         if os.path.abspath(path) != here:
@@ -181,7 +181,7 @@ def picture_of_one_colour(side, bits):
 
 
 class SmallFilesThatUnfold(MalformedTest):
-    gibibytes = 2  # of addresses, of which the program and its libraries take their part
+    gibibytes = 2  # address space, part of which the program and its libraries take
 
     def put(self, name, content):
         with open(self.path(name), "wb") as file:

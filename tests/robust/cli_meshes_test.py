@@ -12,7 +12,8 @@ TEXTURED = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4\n"
 VIEW = ["--projection", "orthographic", "--view-height", "2", "--eye", "0,0,5", "--target", "0,0,0", "--environment", "1,1,1",
         "--max-depth", "1", "--filter", "box"]
 RED = (1, 0, 0)
-# What faces the eye above in the file's own coordinates, in millimetres: a step of 1 m by 3 m, with z, y and x up.
+# Geometry that faces the eye above in the file's own coordinates, in millimetres: a step of 1 m by 3 m, with z, y and
+# x up.
 STEP = "usemtl step\nf 1 2 3 4\n"
 STEPS = {"z": "v 0 0 0\nv 1000 0 0\nv 1000 0 3000\nv 0 0 3000\n", "y": "v 0 0 0\nv 1000 0 0\nv 1000 3000 0\nv 0 3000 0\n",
          "x": "v 0 0 0\nv 0 -1000 0\nv 3000 -1000 0\nv 3000 0 0\n"}

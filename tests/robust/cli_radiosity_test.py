@@ -24,7 +24,7 @@ class Radiosity(CliTest):
         return self.succeed("render", scene, *SMALL, "-o", "x.png", "--json", *arguments).events("done")[0]["hash"]
 
     def hash_of(self, *flags):
-        """Of a picture whose size and samples flags may say."""
+        """The hash of a picture: 16x16 pixels with one sample unless flags say otherwise."""
         given = ["--integrator", "radiosity", "--device", "cpu", *UNMETERED, *flags]
         for flag, value in [("--size", "16x16"), ("--spp", "1")]:
             given += [] if flag in flags else [flag, value]
@@ -42,7 +42,7 @@ class Radiosity(CliTest):
                                 ["--solver", "southwell", "--steps", "20"], ["--form-factors", "hemicube", "--hemicube", "16"],
                                 ["--environment", "1,1,1"], ["--lamp", "light=100lm"]]}
         self.assertEqual(len(hashes), 8)
-        # Of divided patches too, by each solver: the file is taken, and shows what is shown without one.
+        # Divided patches too, with each solver: the file is accepted, and the picture equals that without one.
         divided = [*COARSE[:-1], "1", "--contrast", "0.02"]
         for flags in [["--solver", "southwell"], ["--solver", "southwell", "--steps", "50"], ["--solver", "matrix"], []]:
             solved, _ = self.solve(*divided, *flags)
@@ -197,7 +197,7 @@ class Radiosity(CliTest):
             self.assertLessEqual(done["seconds"], done["total_seconds"])
             self.assertGreater(done["peak_bytes"], 2**20)
             self.assertEqual(solved["link_error"], 0.1 if solver == "hierarchical" else None)
-        # What a picture is solved for first says so too.
+        # A solve that is part of a picture reports it too.
         outcome = self.succeed("render", "cornell-box", *SMALL, "-o", "x.png", "--json", *COARSE)
         self.assertIn("form factors", [event["step"] for event in outcome.events("progress")])
         self.assertEqual(outcome.events("progress")[-1]["step"], "samples")

@@ -84,7 +84,7 @@ class RealTime(CliTest):
         end = said.events("sequence")[0]
         self.assertEqual((end["frames"], end["written"], end["kept"], end["rendered_again"]), (6, 3, 3, 3))
 
-        os.remove(self.path("parts/f-01.png"))  # what comes after it need not be rendered
+        os.remove(self.path("parts/f-01.png"))  # later frames need not be rendered
         end = self.render("parts", "--frames", "0-5", "--continue", *motion).events("sequence")[0]
         self.assertEqual((end["written"], end["kept"], end["rendered_again"]), (1, 5, 1))
         self.assertEqual(self.pictures("parts"), expected)

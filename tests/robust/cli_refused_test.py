@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the command line refuses, or warns of: with which exit status, naming what, and leaving nothing behind."""
+"""Errors and warnings of the command line: their exit status, what they name, and that no file is left behind."""
 
 import json
 import os

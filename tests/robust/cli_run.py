@@ -47,7 +47,7 @@ class Outcome:
         return lines if kind is None else [line for line in lines if line["event"] == kind]
 
     def error(self):
-        """What it says went wrong: the JSON object that ends stdout, or all of stderr."""
+        """The error message: the text of the JSON object that ends stdout, or all of stderr."""
         if "--json" not in self.arguments:
             return self.stderr
         last = (self.events() or [{}])[-1]
@@ -108,7 +108,7 @@ class CliTest(unittest.TestCase):
         return outcome
 
     def stderr_on_a_terminal(self, arguments):
-        """What the program says where stderr is a terminal; it succeeds."""
+        """The text that the program writes to stderr when it is a terminal; the program must succeed."""
         leader, follower = pty.openpty()
         listener, said = listen_to(leader)
         outcome = self.run_pertev(*arguments, stderr=follower)
@@ -156,7 +156,7 @@ def listen_to(leader):
 
 
 def as_flag(value):
-    """What info says in JSON as a flag has it: vectors with commas."""
+    """A value of info's JSON as a flag spells it: a vector's numbers are separated by commas."""
     return ",".join(str(number) for number in value) if isinstance(value, list) else str(value)
 
 
@@ -223,7 +223,7 @@ def read_exr(path):
 
 
 def read_png(path):
-    """As decode_png, of a file."""
+    """Reads a PNG file; decode_png says what is returned."""
     with open(path, "rb") as file:
         return decode_png(file.read())
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the command line promises to a stranger: exit codes, what it says and where, and that nothing is left behind."""
+"""The command line's contract: exit codes, what it says on which stream, and that no file is left behind."""
 
 import json
 import math

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the command line does for who misspells it, forgets a file, or reads a log: hints, and signs of life."""
+"""Help that the command line gives: hints at misspelled words and missing files, and signs of progress in logs."""
 
 import os
 import pty
@@ -184,7 +184,7 @@ class Pipes(CliTest):
                 self.assertNotIn("standard output", outcome.stderr)
         reading, writing = os.pipe()
         os.close(reading)
-        outcome = self.run_pertev("info", "nowhere.obj", "--json", stdout=writing)  # what went wrong is told, and counts
+        outcome = self.run_pertev("info", "nowhere.obj", "--json", stdout=writing)  # the error is reported, and counts
         os.close(writing)
         self.assertEqual(outcome.status, 2, outcome)
         self.assertIn("nowhere.obj", outcome.stderr)
@@ -201,7 +201,7 @@ class SignsOfLife(CliTest):
         return program
 
     def on_a_terminal(self, *flags, **terms):
-        """What a terminal gets whose TERM is this, or is not set."""
+        """The text that a terminal gets when TERM has this value, or is unset."""
         leader, follower = pty.openpty()
         environment = {name: value for name, value in self.environment.items() if name != "TERM"}
         program = self.start(*flags, stderr=follower, env={**environment, **terms})

@@ -21,8 +21,8 @@ namespace {
 enum class Placing {
     Vertices,  // its vertices are where it is
     Node,      // moved there by the node's transform: baked
-    Instances, // the same, and a second one beside it: each keeps its own space
-    FarMesh,   // as vertices, and a second instance of them: far from the origin in their own space too
+    Instances, // a second instance beside it: each has its own space
+    FarMesh,   // far vertices with a second instance: far from the origin in its own space too
 };
 constexpr Placing kPlacings[] = {Placing::Vertices, Placing::Node, Placing::Instances, Placing::FarMesh};
 
@@ -31,7 +31,7 @@ struct Placement {
     Vec3 at;
     Transform turn; // about its middle
     Placing placing = Placing::Vertices;
-    Vec3 other_at = {}; // of a second object of this shape; {0, 0, 0}: there is none
+    Vec3 other_at = {}; // position of a second object of this shape; {0, 0, 0}: none
 };
 
 const Transform kTurns[] = {{}, make_rotation(0.48f, 0.6f, 0, 0.64f)};

@@ -40,7 +40,7 @@ void play(Scene scene) {
     }
 }
 
-/// What the Error says; "" when a scene came out, which is then played. `messages` gets what was said.
+/// Text of the Error; "" if there is a scene, which is then played. `messages` receives the messages.
 std::string read_outcome(const fs::path& path, std::vector<std::byte> bytes, Messages& messages) {
     std::optional<Scene> scene;
     try {

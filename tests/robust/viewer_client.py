@@ -89,7 +89,7 @@ class Viewer:
         return self.cookie
 
     def send_raw(self, data):
-        """What it answers to these bytes, until it closes."""
+        """The viewer's answer to these bytes, up to the closing of the connection."""
         with self.connect() as made:
             try:
                 made.sendall(data)
@@ -120,8 +120,8 @@ def read_all(made):
 
 
 class Tunnel:
-    """What stands between a page and the viewer, as ssh -L does, on a port of its own; it can be cut, and slow on the
-    way to the page: so many bytes a second. A Client may be given it in the viewer's place."""
+    """A relay between a page and the viewer, like ssh -L, on its own port. It can be cut, and its way to the page can
+    be limited to a number of bytes a second. A Client accepts it in the viewer's place."""
 
     def __init__(self, viewer, bytes_per_second=0):
         self.viewer, self.ends, self.is_cut, self.bytes_per_second = viewer, [], False, bytes_per_second

@@ -53,7 +53,7 @@ class Page(unittest.TestCase):
         cls.viewer.__exit__()
 
     def setUp(self):
-        # What the page knows of the view; its module keeps it to itself, so it is looked at from a second client.
+        # The state of the page's view: its module is private, so a second client queries it.
         self.eye = Client(self.viewer, key="eye")
         self.flags = self.eye.text("state", lambda s: s["phase"] == "done")["flags"]
 
@@ -110,7 +110,7 @@ class Page(unittest.TestCase):
         depth = page.value("document.querySelector('#setting-max_depth').value")
         for code in ["KeyS", "KeyD", "KeyT", "KeyH", "Digit7"]:
             page.key(code, "x", 0.05, modifiers=CONTROL)
-        page.key("BracketRight", "]")  # what comes after them is heard, so they were
+        page.key("BracketRight", "]")  # a later key arrives, so the earlier ones did
         self.eye.done(lambda s: s["values"]["exposure"] == 0.25)
         page.key("BracketLeft", "[")
         state = self.eye.done(lambda s: s["values"]["exposure"] == 0)
@@ -208,7 +208,7 @@ class Page(unittest.TestCase):
         self.assertLess(far_from(before, after), far(before))
         before, after = self.moved(slide)
         step = [b - a for a, b in zip(before["eye"], after["eye"])]
-        self.assertGreater(step[1], 0.02)  # what is looked at goes down with the fingers
+        self.assertGreater(step[1], 0.02)  # the target moves down with the fingers
         self.assertGreater(abs(step[1]), 3 * max(abs(step[0]), abs(step[2])))
         self.browser.key("KeyR", "r")  # how far the fingers went depends on how many of their moves came one by one
         self.browser.until(f"document.body.dataset.flags == {json.dumps(self.home)} && document.body.dataset.phase == 'done'")
@@ -349,7 +349,7 @@ class Page(unittest.TestCase):
         page = self.browser
         end, resident, heap, waits = time.monotonic() + STEERING_S, 0, 0, []
 
-        def heap_bytes():  # of the page's scripts
+        def heap_bytes():  # heap of the page's scripts
             page.call("HeapProfiler.collectGarbage")
             return page.call("Runtime.getHeapUsage")["usedSize"]
 

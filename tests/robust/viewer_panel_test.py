@@ -83,7 +83,7 @@ class Panel(unittest.TestCase):
                     self.assertLessEqual(over, 0)
                     page.go(viewer.address)
                     page.until(READY)
-                    self.assertTrue(shown(page, "#panel"))  # as it was left
+                    self.assertTrue(shown(page, "#panel"))  # remembered
             page.call("Emulation.setTouchEmulationEnabled", enabled=False)
             size = page.value("document.body.dataset.flags.match(/--size (\\d+)x(\\d+)/).slice(1).map(Number)")
             self.assertAlmostEqual(size[0] / size[1], 390 / 844, 2)

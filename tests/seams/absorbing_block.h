@@ -65,7 +65,7 @@ private:
     struct Part {
         float begin, length; // metres
     };
-    /// Of a ray of unit direction, at most `distance` metres far.
+    /// Part of a ray of unit direction, at most `distance` metres long.
     HD static Part part_within(Vec3 origin, Vec3 direction, float distance) {
         float begin = 0, end = distance;
         for (int axis = 0; axis < 3; ++axis) {

@@ -33,7 +33,7 @@ Scene sunny_scene(Vec3 sun, bool has_floor) {
     return scene;
 }
 
-/// What a camera sees from above, 8 m of x about x = 1.
+/// View of a camera from above, 8 m wide in x around x = 1.
 template <Features kBlock>
 Image render_block(Queue& queue, const Scene& scene, PathSettings settings, uint32_t samples) {
     Messages messages;
@@ -92,7 +92,7 @@ TEST_CASE("light that a block scatters once is the integral over the camera's ra
     const Image picture = render_block<test::kScattering>(asked, scene, settings, 8192);
     CHECK(picture_hash(render_block<test::kScattering>(asked, scene, settings, 8)) ==
           picture_hash(render_block<test::kScattering>(cpu, scene, settings, 8)));
-    CHECK(picture.at(2, 2)[0] == 0); // beside the block
+    CHECK(picture.at(2, 2)[0] == 0); // outside the block
     std::vector<uint32_t> within;
     for (uint32_t column = 0; column < kBlockColumns; ++column) {
         if (std::abs(column_of_block(column)) < 0.5f) within.push_back(column);

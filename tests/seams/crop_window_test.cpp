@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 #include <doctest/doctest.h>
 
@@ -107,4 +108,29 @@ TEST_CASE("a film of a window has the bytes that a light meter's whole picture h
     const CropResult window = render_crop(queue, prepared, {}, true, meter);
     CHECK(differing_in_window(window.images[0], whole.images[0]) == 0);
     CHECK(*std::ranges::max_element(window.images[0].pixels) > 0);
+}
+
+TEST_CASE("integrators that fill whole pictures alone refuse a film of a window") {
+    Messages messages;
+    const Scene scene = test::make_mixed_scene();
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = test::queue_asked_for();
+    uint32_t refused = 0;
+    for (const IntegratorDescriptor& integrator : integrators()) {
+        if (integrator.value == IntegratorKind::Radiosity) continue; // it needs a solution
+        CAPTURE(integrator.name);
+        IntegratorSettings settings;
+        settings.integrator = integrator.value;
+        const auto throws = [&](bool is_window) {
+            try {
+                render_crop(queue, prepared, settings, is_window);
+                return false;
+            } catch (const std::logic_error&) {
+                return true;
+            }
+        };
+        CHECK_FALSE(throws(false));
+        refused += throws(true) ? 1 : 0;
+    }
+    CHECK(refused == integrators().size() - 3); // but path and hybrid
 }

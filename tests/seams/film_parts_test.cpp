@@ -28,7 +28,7 @@ struct BlindingWorld {
     }
 };
 
-/// What renders films on one device.
+/// Renders films on one device.
 struct FilmParts {
     FilmParts(Queue& queue, const BlindingWorld& world) : scene(queue), pictures(scene), settings(world.settings) {
         scene.set(world.prepared, settings);

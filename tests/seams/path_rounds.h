@@ -32,7 +32,7 @@ struct RoundPath {
     PathState state;
     typename Listener::Kept kept;
     typename Listener::Asked asked;
-    Rgb asked_light; // of the shadow ray
+    Rgb asked_light; // light of the shadow ray
     bool goes_on, wants_shadow;
 };
 

@@ -66,7 +66,8 @@ struct Case {
     bool light_finds_all = true;
     bool light_is_even = true; // else few particles bring much, and Student's t does not hold
     PixelFilter filter = PixelFilter::BlackmanHarris;
-    uint32_t pixels = 12; // across
+    float filter_radius = 0; // the filter's default
+    uint32_t pixels = 12;    // across
 
     /// `samples` of each pixel of a picture of 12x12, of fewer pixels so many more.
     uint32_t samples_for(uint32_t samples) const { return samples * (144 / (pixels * pixels)); }
@@ -115,6 +116,7 @@ std::vector<Case> cases() {
     environment.camera.projection = Projection::Orthographic;
     environment.camera.ortho_height = 2.4f;
     environment.filter = PixelFilter::Box;
+    environment.filter_radius = 0.8f;
     all.push_back(environment);
 
     Case lens = {.name = "depth of field", .scene = make_room(test::white(0.8f))};
@@ -131,6 +133,7 @@ RenderSettings settings_of(const Case& c) {
     RenderSettings settings;
     settings.width = settings.height = c.pixels;
     settings.filter = c.filter;
+    settings.filter_radius = c.filter_radius;
     settings.path.max_depth = 5;
     return settings;
 }
@@ -159,7 +162,7 @@ TEST_CASE("bidirectional and light tracing give path tracing's picture where the
         if (c.light_finds_all) {
             CHECK(same > 0.001);
             CHECK(test::p_value(test::brightened(light, 1.1, 5e-3), path) < 1e-3);
-        } else { // what it connects to the camera: light that a surface scatters there, and lamps themselves
+        } else { // light that connects to the camera: scattered by a surface there, or emitted
             CHECK(same < 1e-6);
             RenderSettings settings = settings_of(c);
             settings.samples = c.samples_for(64);
@@ -196,7 +199,7 @@ TEST_CASE("distributed gives the light paths that it follows as bright as path t
 }
 
 TEST_CASE("light and bidirectional show a floor under a flat lamp as bright as the closed form, to 1 %") {
-    constexpr double kHalf = 0.3; // of the patch of floor that is seen, metres
+    constexpr double kHalf = 0.3; // half size of the visible patch of floor, metres
     Queue queue = test::queue_asked_for();
     const auto mean_of = [&](const Mesh& lamp, IntegratorKind integrator, uint32_t samples) {
         Scene scene;

@@ -26,7 +26,7 @@ struct SamplingReport {
     double mean_deviations = 0; // |mean weight - integral of eval| in standard errors, the worst channel
 };
 
-/// Of a BSDF both at once. One with a flaw has its own eval() and pdf().
+/// Evaluates a BSDF's value and density together. One with a flaw has its own eval() and pdf().
 template <class AnyBsdf>
 BsdfValue value_of(const AnyBsdf& bsdf, Vec3 wo, Vec3 wi) {
     if constexpr (std::is_same_v<AnyBsdf, Bsdf>) {
@@ -61,7 +61,9 @@ SamplingReport test_sampling(const AnyBsdf& bsdf, Vec3 wo, const DirectionChart&
             sum[c] += weight[c];
             squares[c] += weight[c] * weight[c];
         }
-        if (i % 4 != 0) continue; // what holds for each sample is looked at for some: that takes as long as drawing
+        if (i % 4 != 0)
+            continue; // properties of each sample are checked for some, because that takes as long as
+                      // sampling
         const BsdfValue value = value_of(bsdf, wo, s.wi);
         const double pdf = static_cast<double>(value.pdf), drawn = static_cast<double>(s.pdf);
         const Rgb f = value.f;
@@ -84,7 +86,7 @@ SamplingReport test_sampling(const AnyBsdf& bsdf, Vec3 wo, const DirectionChart&
         expected[static_cast<size_t>(k)] = samples * part.value[3];
         for (int c = 0; c < 4; c++) total[c] += part.value[c];
     }
-    // What is not drawn is one more cell.
+    // Failed samples are one more cell.
     expected[kCells] = samples * (1 - total[3]);
     // Rounding may put a sample next to the horizon into a cell that lies behind it: so small a count only joins that
     // cell to the pool of rare cells.

@@ -1,5 +1,5 @@
-// What the environment promises to multiple importance sampling: samples follow the density that is stated, the same
-// density is found again for a direction that came from elsewhere, and value / density averages to the true integral.
+// Environment sampling for multiple importance sampling: samples follow the stated density, the same density is found
+// for a direction that came from elsewhere, and value / density averages to the true integral.
 
 #include <doctest/doctest.h>
 
@@ -129,7 +129,7 @@ TEST_CASE("environment: a sample's density and radiance are found again from its
             const Rgb radiance = environment_radiance(view, sample.wi);
             // Rounding moves a place, and a density beside a dark corner changes fast.
             if (std::abs(pdf - sample.pdf) > 1e-3f * sample.pdf) ++differing;
-            // Beside the sun of 100 a rounding of 2^-12 texels, a float's at row 2048, is worth 0.025.
+            // Near the sun of 100, rounding by 2^-12 texels, that of a float at row 2048, contributes 0.025.
             if (std::abs(radiance.r - sample.radiance.r) > 0.02f * sample.radiance.r + 0.025f) ++far_off;
         }
         CAPTURE(height);

@@ -63,10 +63,10 @@ Image mean_of_frames(Session& session, const ReconstructionSettings& settings, c
 /// How far a mean is from another, as shares of the other's light. Lamps that are seen are left out: a few pixels of
 /// them would be all that is measured.
 struct Bias {
-    double whole = 0;      // of the picture's mean; below 0: darker
+    double whole = 0;      // deviation of the picture's mean; below 0: darker
     double of_block = 0;   // greatest size, of a sixteenth of the picture that has at least a tenth of the mean
     double of_pixels = 0;  // mean of the sizes of the pixels' differences
-    double with_lamps = 0; // as `whole`, lamps included
+    double with_lamps = 0; // like `whole`, with lamps
 };
 
 Bias bias_of(const Image& mean, const Image& expected) {
@@ -274,6 +274,6 @@ TEST_CASE("with a clamp shared bounces send as much as clamped paths do") {
         MESSAGE(s.name, ": all ", all, ", clamped ", clamped, ", di ", direct, ", gi ", shared);
         CHECK(clamped < 0.97 * all);
         CHECK(direct == doctest::Approx(clamped).epsilon(0.02)); // which scatters once, and is not clamped
-        CHECK(shared == doctest::Approx(clamped).epsilon(0.02)); // as what they send was clamped before
+        CHECK(shared == doctest::Approx(clamped).epsilon(0.02)); // equal to the sent light with the earlier clamp
     }
 }

@@ -20,7 +20,7 @@ namespace {
 struct CacheCase {
     std::string name;
     Scene scene;
-    double bound; // of the squared error with the finest records
+    double bound; // bound of the squared error with the finest records
 };
 
 std::vector<CacheCase> cache_cases() {
@@ -112,7 +112,7 @@ Scene room_under_a_point() {
     return scene;
 }
 
-/// Of what is seen through the middle of each pixel.
+/// Picture with one ray through the middle of each pixel.
 Image middles(Queue& queue, const PreparedScene& prepared, IntegratorKind integrator, const CacheBudget& budget,
               uint32_t seed) {
     return cached_picture(queue, prepared, integrator, budget, seed, 0x1p-20f);
@@ -130,7 +130,7 @@ double relative_product(const Image& a, const Image& b, const Image& c, const Im
     return sum / light;
 }
 
-/// Of the line through (log x, log y) with the least squares.
+/// Slope of the least-squares line through (log x, log y).
 double slope(const std::vector<double>& x, const std::vector<double>& y) {
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -204,7 +204,7 @@ Scene room_with_caustic() {
     return scene;
 }
 
-/// Of each block of pixels the median of their red: a few bright pixels do not move it, a blotch does.
+/// Median of red in each block of pixels: a few bright pixels do not change it, a blotch does.
 std::vector<double> block_medians(const Image& picture, uint32_t side) {
     std::vector<double> medians;
     for (uint32_t top = 0; top + side <= picture.height; top += side) {

@@ -48,7 +48,7 @@ struct SeenFloor {
     double mean, error;
 };
 
-/// Of a tiny patch of the scene, between lamp and floor: down at the floor, or up at the lamp from `y`.
+/// Renders a tiny patch of the scene, between lamp and floor: down at the floor, or up at the lamp from `y`.
 SeenFloor look(const Scene& scene, PathSettings path, bool up = false, float y = 0.5f) {
     RenderSettings settings;
     settings.width = settings.height = 32;

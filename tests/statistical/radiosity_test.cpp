@@ -62,7 +62,7 @@ TEST_CASE("all of a closed box that emits E and reflects r has radiosity E / (1 
             const RadiosityView view = solution.view();
             for (uint32_t triangle = 0; triangle < 12; ++triangle) {
                 const Rgb inside = view.irradiance(2 * triangle, 0.3f, 0.2f);
-                const auto received = static_cast<double>(inside.g); // what all others send
+                const auto received = static_cast<double>(inside.g); // light from all others
                 CHECK(received == doctest::Approx(known).epsilon(2e-4));
             }
         }

@@ -106,7 +106,7 @@ struct BlockMeans {
             }
         }
     }
-    /// What the camera's first `samples` rays meet themselves, which is noisy where lamps are small.
+    /// Removes the light that the camera's first `samples` rays hit directly, which is noisy for small lamps.
     void take_out_lamps(Session& session, uint32_t samples) {
         RenderSettings settings = session.settings();
         settings.path.max_depth = 0;
@@ -115,7 +115,7 @@ struct BlockMeans {
     }
 };
 
-/// Of light that surfaces scatter, as the path tracer finds it by `samples`.
+/// Scattered light as the path tracer finds it with `samples`.
 BlockMeans scattered_light(Session& session, uint32_t samples) {
     BlockMeans means;
     session.cut();
@@ -125,7 +125,7 @@ BlockMeans scattered_light(Session& session, uint32_t samples) {
     return means;
 }
 
-/// The same of `frames` frames, of which those before `settled` do not count.
+/// Scattered light of `frames` frames, of which those before `settled` do not count.
 BlockMeans scattered_light_in_frames(Session& session, const RestirSettings& restir, uint32_t frames,
                                      uint32_t settled) {
     BlockMeans means;

@@ -15,7 +15,7 @@ using test::chi_square_of_points;
 
 namespace {
 
-constexpr int kWarpTests = 9; // of this file, for the Sidak correction
+constexpr int kWarpTests = 9; // tests of this file, for the Sidak correction
 
 void check(const test::ChiSquareResult& result) { CHECK_MESSAGE(result.passes(kWarpTests), result.describe()); }
 

@@ -298,7 +298,7 @@ TEST_CASE("on coarse smooth meshes lights are found alike by every strategy") {
     for (const Material& material : {Material{{.base_color = grey(0.8f)}, "chalk"}, metal, plastic}) {
         CAPTURE(material.name);
         Scene scene = sphere_scene(1, material);
-        Mesh quad; // beside the sphere, so that much of its light comes in low
+        Mesh quad; // next to the sphere, so that much of its light arrives at grazing angles
         quad.positions = {{1.5f, -2, -2}, {1.5f, 2, -2}, {1.5f, 2, 2}, {1.5f, -2, 2}};
         quad.indices = {0, 2, 1, 0, 3, 2};
         scene.meshes.push_back(quad);

@@ -21,7 +21,7 @@ inline bool are_same(const CompressedBvh& a, const CompressedBvh& b) {
            a.sah_cost == b.sah_cost && a.bounds == b.bounds;
 }
 
-/// Those that break builders, and sizes around those at which warps and groups end.
+/// Meshes that break builders, and sizes around the limits of warps and groups.
 inline std::vector<NastyMesh> builder_meshes() {
     std::vector<NastyMesh> all = nasty_meshes(700);
     for (const uint32_t count : {2u, 3u, 4u, 15u, 16u, 17u, 31u, 32u, 33u, 34u, 63u, 65u, 129u, 300u}) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the tests of builders ask of a tree.
+// Comparisons of trees for the tests of builders.
 
 #include <algorithm>
 #include <cstring>

@@ -33,7 +33,7 @@ inline CheckedPicture checked_picture(Queue& queue, const Scene& scene, const Re
     return {render_hash(result), result.rays};
 }
 
-/// Of all but the picture: what the layers tell of the first surface.
+/// Hash of everything but the picture: the layers of the first surface.
 inline Hash128 hash_of_layers(Queue& queue, const Scene& scene, const RenderSettings& settings,
                               const Camera& camera = camera_with_lens()) {
     RenderResult result = render(queue, scene, camera, settings);

@@ -19,7 +19,7 @@ struct AcceptSome {
     }
 };
 
-/// What testing every triangle gives.
+/// The result of testing every triangle.
 template <class Accept>
 std::vector<Hit> hits_by_brute_force(const std::vector<BvhTriangle>& triangles, const std::vector<Ray>& rays,
                                      const Accept& accept) {

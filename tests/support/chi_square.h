@@ -21,7 +21,7 @@ struct ChiSquareResult {
     double statistic = 0;
     int degrees_of_freedom = 0;
     double p_value = 1;     // chance of a statistic at least as large where the samples do follow the density
-    double integral = 0;    // of the density over the whole grid
+    double integral = 0;    // integral of the density over the whole grid
     std::string worst_cell; // where observed and expected differ the most, for the failure's message
 
     /// False where the difference is significant at level 0.01 for the worst of `tests` tests (Sidak).

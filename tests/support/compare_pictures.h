@@ -10,7 +10,7 @@
 
 namespace pertev::test {
 
-/// Of every channel of every pixel, and last of the whole picture: its mean and the variance of that, from independent
+/// Mean and variance of the mean for every channel of every pixel, and last for the whole picture, from independent
 /// renders of independent samples.
 struct PictureEstimate {
     std::vector<double> mean, variance_of_mean;
@@ -19,11 +19,11 @@ struct PictureEstimate {
     std::size_t pixel_values() const { return mean.size() - 3; }
 };
 
-/// Of pictures render(0), ..., render(renders - 1), which are independent.
+/// Estimate from pictures render(0), ..., render(renders - 1), which are independent.
 PictureEstimate estimate_of(uint32_t renders, const std::function<Image(uint32_t)>& render);
 
-/// Of the first layer of light paths, where the settings ask for some, in place of the picture.
-/// Renders with seeds first_seed, first_seed + 1, ... and independent numbers.
+/// Estimate of the picture, or of the first light-path layer if the settings request any. Renders with seeds
+/// first_seed, first_seed + 1, ... and independent numbers.
 PictureEstimate estimate_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
                                  RenderSettings settings, uint32_t renders, uint32_t first_seed);
 

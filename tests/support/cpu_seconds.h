@@ -9,7 +9,7 @@ namespace pertev::test {
 /// Seconds that all threads of this process have computed so far.
 inline double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// What a bound of `seconds` becomes in this build: sanitizers slow code down several times over.
+/// A time limit of `seconds` scaled for this build, because sanitizers slow code down several times.
 constexpr double allowed_seconds(double seconds) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     return 10 * seconds;

@@ -84,7 +84,7 @@ struct ShearRays {
         uint32_t hash = 1;
         for (uint32_t k = 0; k < 256; ++k) {
             const Hash4 h = hash_words(i, k, 23, 29);
-            // Of 23 random bits; the largest within [2^-39, 2^40], the others no larger.
+            // Numbers from 23 random bits; the largest is within [2^-39, 2^40], the others are no larger.
             const auto number = [](uint32_t bits, int least, int greatest) {
                 const int exponent = least + static_cast<int>((bits >> 24) % static_cast<uint32_t>(greatest - least));
                 if (exponent < -126) return float_of((bits & 0x80000000u) | (bits & 0x7fffffu) >> (-126 - exponent));

@@ -1,14 +1,15 @@
 #pragma once
 
-// What a header of src/ meets where it is compiled for a device: CUDA's names, over the warps of emulated_warp.h. A
-// file that includes this before any header of src/ gets the device's code of all that it includes after, kernels too,
-// and can run them on the host.
+// Emulates compilation for a device: CUDA's names, over the warps of emulated_warp.h. A file that includes this
+// before any header of src/ gets the device's code of all later includes, kernels too, and can run them on the host.
 //
-// One definition: such code must never be linked with the host's of the same name. So from here on `pertev` is spelled
-// pertev_emulated, and whatever such a file compiles lies in that namespace, which nothing else has; views of the
-// host's are handed over by address (emulated_walks.cpp). In the object no symbol of the host's namespace is weak:
-//   nm -C OBJECT | grep ' [VWu] ' | grep pertev::    shows nothing but templates of std
-// Compiled with frame pointers (tests/CMakeLists.txt): __activemask() tells places apart by the calls that led there.
+// One definition rule: such code must never be linked with the host's of the same name. So from here on `pertev` is
+// spelled pertev_emulated, and everything that such a file compiles is in that namespace, which nothing else uses;
+// views of the host are passed by address (emulated_walks.cpp). In the object no symbol of the host's namespace is
+// weak:
+//   nm -C OBJECT | grep ' [VWu] ' | grep pertev::    lists only templates of std
+// It is compiled with frame pointers (tests/CMakeLists.txt), because __activemask() distinguishes places by their
+// call stacks.
 
 #if defined(HD)
 #error "tests/support/emulated_device.h comes before every header of src/"

@@ -1,4 +1,4 @@
-// What is said of lanes that wait for others in vain.
+// Describes lanes that wait for others in vain.
 
 #include <cstdio>
 #include <string_view>
@@ -49,7 +49,7 @@ std::string describe_calls(const EmulatedLane& lane) {
     return text;
 }
 
-/// What the lanes of a meeting that have not come to it do instead.
+/// Describes what the lanes do that have not reached a meeting.
 std::string describe_missing(const EmulatedWarp& warp, const Meeting& meeting) {
     uint32_t other_mask = 0, elsewhere = 0;
     for_each_lane(meeting.mask & warp.live, [&](unsigned k) {

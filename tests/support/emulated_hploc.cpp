@@ -45,7 +45,7 @@ inline float __uint_as_float(uint32_t x) { return __builtin_bit_cast(float, x); 
 
 } // namespace pertev
 
-#define __shared__ static // of kernels that are not run here: only their bodies are, with memory of their own
+#define __shared__ static // for kernels that are not run here: only their bodies are, with their own memory
 #include "tracer/hploc/warp_kernels.h"
 
 #undef pertev

@@ -16,11 +16,11 @@ enum class MeetingKind : uint8_t { ActiveMask, Ballot, All, MatchAny, Shuffle, S
 /// Where a lane waits, and with what.
 struct Meeting {
     MeetingKind kind;
-    uint32_t mask;  // as the lane gave it
-    uint64_t value; // what it brings; of __activemask, a hash of the calls that led there
-    int source;     // of __shfl_sync
+    uint32_t mask;  // mask that the lane passed
+    uint64_t value; // argument; for __activemask a hash of the call stack
+    int source;     // for __shfl_sync
     std::source_location at;
-    void* const* frame; // of the function that was called
+    void* const* frame; // frame of the called function
 };
 
 struct Fiber {
@@ -33,7 +33,7 @@ struct Fiber {
 struct EmulatedLane {
     Fiber fiber;
     Meeting meeting;
-    uint64_t result; // of the meeting
+    uint64_t result; // result of the meeting
 };
 
 struct EmulatedWarp {

@@ -145,7 +145,7 @@ const auto* pick(const auto& trees) {
 
 enum class Way { OneAThread, Persistent, Dynamic };
 constexpr const char* kWays[] = {"one a thread", "persistent", "dynamic fetch"};
-constexpr const char* kTests[] = {"exact", "fast", "woop"}; // of TestKind
+constexpr const char* kTests[] = {"exact", "fast", "woop"}; // names of TestKind
 
 template <class Walk, bool kAny, Way kWay, class Accept, class Counter, class Scene>
 std::string run_in(const Scene& scene, const EmulatedBatch& batch) {

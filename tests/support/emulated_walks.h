@@ -20,19 +20,19 @@ struct SceneTrees;
 
 namespace pertev::test {
 
-/// Of an any-hit search a hit's instance is 0 or kNoHit and the rest is as of a new Hit.
+/// A batch of rays. In an any-hit search a hit's instance is 0 or kNoHit and the rest is that of a new Hit.
 struct EmulatedBatch {
     const Ray* rays;
     Hit* hits;
     uint32_t* stores; // [count + 1]: how often each hit was stored, and how often one of no ray was
     uint32_t count;
     uint32_t* pool;  // 0 at first
-    uint32_t blocks; // of 128 threads; one ray a thread takes as many as it needs
+    uint32_t blocks; // blocks of 128 threads; with one ray per thread as many as needed
     uint32_t seed;
     LaneCounts* lanes = nullptr; // for those that count
 };
 
-/// Of the same triangles.
+/// Trees over the same triangles.
 struct EmulatedTrees {
     const BvhView* binary;
     const CompressedBvhView* compressed;

@@ -87,7 +87,8 @@ private:
     EmulatedLaunch launch_;
     const std::function<void()>* kernel_ = nullptr;
     Random random_{0};
-    uint32_t roam_ = 0, hurry_ = 0, partly_ = 0; // of 256: change the warp, answer __activemask at once, to a part
+    uint32_t roam_ = 0, hurry_ = 0, partly_ = 0; // probabilities of 256: switch the warp, answer __activemask at
+                                                 // once, answer with a part
     uint64_t steps_ = 0;
     EmulatedWarp* warp_ = nullptr; // who runs
     EmulatedLane* lane_ = nullptr;
@@ -290,7 +291,7 @@ void Machine::hold_meeting(EmulatedWarp& warp, uint32_t mask) {
 uint32_t Machine::wait_for_active_mask(const Meeting& meeting) {
     EmulatedLane& lane = *lane_;
     lane.meeting = meeting;
-    // The same line of a source may be called from two places, so it is the calls that tell.
+    // One source line may be called from two places, so the call stack distinguishes them.
     for_each_call(lane, [&](const void* address) {
         lane.meeting.value = (lane.meeting.value ^ reinterpret_cast<uint64_t>(address)) * 0x9e3779b97f4a7c15u;
     });

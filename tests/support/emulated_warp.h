@@ -27,7 +27,8 @@ struct EmulatedLaunch {
 /// objects have no destructors, as on a device.
 std::string run_warps(const EmulatedLaunch& launch, const std::function<void()>& kernel);
 
-/// What a kernel calls. Those with a mask wait until each lane of it has come to the same with the same mask.
+/// Functions that a kernel calls. Those with a mask wait until each of its lanes has made the same call with the same
+/// mask.
 namespace lane {
 
 using CodePlace = std::source_location;
@@ -35,7 +36,7 @@ using CodePlace = std::source_location;
 struct Index {
     uint32_t x;
 };
-extern Index thread_index, block_index, block_size; // of the lane that runs
+extern Index thread_index, block_index, block_size; // indices of the running lane
 
 uint32_t active_mask(CodePlace at = CodePlace::current());
 uint32_t ballot(uint32_t mask, bool mine, CodePlace at = CodePlace::current());

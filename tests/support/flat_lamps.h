@@ -17,7 +17,7 @@ inline double corner_factor(double x, double y) {
     return (x / sx * std::atan(y / sx) + y / sy * std::atan(x / sy)) / (2 * kPiInDouble);
 }
 
-/// The same of a rectangle from -x to x and from -z to z, `height` above, seen from (at_x, at_z).
+/// Form factor of a rectangle from -x to x and from -z to z, `height` above, seen from (at_x, at_z).
 inline double rectangle_factor(double x, double z, double height, double at_x, double at_z) {
     double sum = 0;
     for (const double right : {x - at_x, x + at_x}) {
@@ -26,7 +26,7 @@ inline double rectangle_factor(double x, double z, double height, double at_x, d
     return sum;
 }
 
-/// The same of a disc about the axis, seen `off` the axis.
+/// Form factor of a disc around the axis, seen from a point `off` the axis.
 inline double disc_factor(double radius, double height, double off) {
     const double a = off * off, h = height * height, r = radius * radius;
     return 0.5 * (1 - (a + h - r) / std::sqrt((a + h + r) * (a + h + r) - 4 * a * r));

@@ -46,7 +46,7 @@ public:
 
     /// The document: `members` are its further top-level members, without the outer braces.
     std::string json(const std::string& members) const;
-    /// The same as a GLB file.
+    /// The document as a GLB file.
     std::vector<std::byte> glb(const std::string& members) const;
 
 private:
@@ -70,9 +70,8 @@ private:
 /// Writes "model.gltf" into a new folder and reads it.
 Scene read_gltf_text(const std::string& json, Messages& messages, bool geometry_only = false);
 Scene read_gltf_text(const std::string& json);
-/// What is wrong with a document, from "model.gltf" on: the message of the Error that reading throws, or the first
-/// warning of something left out, without its words that say what is. "" when there is neither. Any other exception
-/// passes.
+/// The fault of a document, from "model.gltf" on: the message of the Error that reading throws, or the first warning
+/// of something left out, without the words that say what. "" if there is neither. Other exceptions are passed on.
 std::string gltf_fault(const std::string& json);
 /// Whether a warning holds all of `parts`.
 bool has_warning(const Messages& messages, const std::vector<std::string>& parts);

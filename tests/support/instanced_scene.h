@@ -13,7 +13,7 @@ namespace pertev::test {
 
 struct InstancedScene {
     std::vector<std::vector<BvhTriangle>> meshes; // [InstanceRecord::mesh_bvh]
-    std::vector<Bvh> trees;                       // of the meshes
+    std::vector<Bvh> trees;                       // trees of the meshes
     std::vector<BvhTriangle> baked;
     Bvh baked_tree;
     std::vector<PlacedBvh> placed;

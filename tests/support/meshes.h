@@ -29,7 +29,7 @@ TriangleMesh make_torus(int segments, int sides);
 /// The vertices and faces of an OBJ file, nothing else of it; polygons become fans.
 TriangleMesh read_obj_geometry(const std::filesystem::path& path);
 
-/// What a builder takes; primitive ids in the mesh's order.
+/// Triangles for builders; primitive ids in the mesh's order.
 std::vector<BvhTriangle> triangles_of(const TriangleMesh& mesh, uint32_t instance = 0);
 
 /// Tests every triangle: the result rule of docs/conventions.md, word by word. Takes over a better hit into `best`.

@@ -34,7 +34,7 @@ std::vector<BvhTriangle> grid_with_doubles() {
     return triangles;
 }
 
-/// The same three triangles over and over: no plane separates them.
+/// Three triangles repeated: no plane separates the copies.
 std::vector<BvhTriangle> coincident(uint32_t count) {
     const Vec3 corners[3][3] = {{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}},
                                 {{-1, 0, -1}, {1, 0, -1}, {0, 0, 1}},

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the test binary was asked for on its command line or by the environment.
+// Options of the test binary from its command line or the environment.
 
 #include <cstdint>
 #include <filesystem>

@@ -1,5 +1,5 @@
-"""What the tests against published pictures and figures share: their command line, the scenes they need, and the
-renderer's JSON lines. A script is run as `SCRIPT PERTEV [--device cuda] [--long]`."""
+"""Shared parts of the tests against published pictures and figures: their command line, the scenes they need, and
+the renderer's JSON lines. A script is run as `SCRIPT PERTEV [--device cuda] [--long]`."""
 
 import argparse
 import json

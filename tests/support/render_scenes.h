@@ -31,10 +31,10 @@ Queue queue_asked_for();
 RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, const RenderSettings& settings,
                     const PrepareOptions& prepare = {});
 
-/// Of all its numbers.
+/// Mean of all its numbers.
 double mean_of(const Image& picture);
 
-/// Of a small picture with layers, by which scenes before and after a change are compared.
+/// Settings of a small picture with layers, for comparing scenes before and after a change.
 RenderSettings layered_settings();
 
 /// All that a render shows: its picture, its layers and its ids.

@@ -12,7 +12,7 @@ namespace pertev::test {
 inline constexpr WalkOptions kNoRta = {.rta = false};
 inline constexpr WalkOptions kFastTests = {.tests = TestKind::Fast};
 
-/// Of structure 0, with its own name.
+/// Figures of structure 0, with its own name.
 CombinationFigures figures(const Combination& c, std::vector<RunFigures> runs);
 /// Every run took so long.
 RunFigures timed(uint32_t set, double seconds);

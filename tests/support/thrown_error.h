@@ -32,7 +32,7 @@ inline bool says(const std::optional<Error>& error, const std::string& text) {
     return error && std::string(error->what()).find(text) != std::string::npos;
 }
 
-/// What is said where `body` throws BadInput; "no error" where it throws nothing. Another code fails the test.
+/// Text of the BadInput that `body` throws; "no error" if it throws nothing. Another code fails the test.
 template <class Body>
 std::string bad_input_message(const Body& body) {
     const std::optional<Error> error = thrown_error(body);

@@ -22,7 +22,7 @@ struct WalkBatch {
     uint32_t* pool; // one number, 0
 };
 
-/// Of the same triangles.
+/// Trees over the same triangles.
 struct WalkTrees {
     BvhView binary;
     CompressedBvhView compressed;

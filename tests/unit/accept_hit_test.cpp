@@ -95,7 +95,7 @@ TEST_CASE("the coin of a blended surface is a function of path, instance and pri
         const AcceptHit accept{test.device.view(), {}, {}, key};
         const bool first = accept(kBlended, 0, 0.3f, 0.3f);
         other_primitive += first != accept(kBlended, 1, 0.3f, 0.3f);
-        other_place += first != accept(kBlended, 0, 0.1f, 0.6f); // the same alpha there: the same coin
+        other_place += first != accept(kBlended, 0, 0.1f, 0.6f); // equal alpha there, thus the same coin
     }
     CHECK(other_primitive > 300);
     CHECK(other_place == 0);

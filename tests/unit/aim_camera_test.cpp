@@ -58,7 +58,7 @@ TEST_CASE("backs that the camera looks through do not stand in the middle of the
     CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(5));
     scene.instances[1].world_from_local = compose(make_translation({0, 0, -3}), make_scale({-1, 1, 1})); // still a back
     CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(5));
-    scene.materials.emplace_back(); // of its own, that shows its back
+    scene.materials.emplace_back(); // its own material, whose back is visible
     scene.instances[1].material = 1;
     CHECK(distance_in_the_middle(scene, camera).value() == doctest::Approx(2));
 }

@@ -1,4 +1,4 @@
-// What Bsdf::specular says delta lobes send along their two directions is the mean of what sample() draws of them.
+// Bsdf::specular returns the mean of what sample() draws of the delta lobes along their two directions.
 
 #include <doctest/doctest.h>
 
@@ -11,7 +11,7 @@ using namespace pertev;
 namespace {
 
 struct Drawn {
-    double mirror = 0, refraction = 0; // of red
+    double mirror = 0, refraction = 0; // red channel
 };
 
 Drawn mean_of_draws(const Bsdf& bsdf, Vec3 wo) {

@@ -113,7 +113,7 @@ TEST_CASE("every tree is sound, whatever the triangles and the settings") {
             CHECK(bvh.nodes.size() < std::max<std::size_t>(input.triangles.size(), 1));
             CHECK(is_finite(bvh.sah_cost));
 
-            // The same triangles, in another order.
+            // Equal triangles in another order.
             const auto key = [](const BvhTriangle& t) { return std::tuple(t.primitive, t.a.x, t.b.y, t.c.z); };
             REQUIRE(bvh.triangles.size() == input.triangles.size());
             std::vector<BvhTriangle> sorted = bvh.triangles;

@@ -233,7 +233,7 @@ TEST_CASE("the cache forgets what was used longest ago when it grows too large")
         store_cached_bvh(key, folder, tree, triangles.size(), messages,
                          k < 3 ? 1 << 30 : fs::file_size(files[0]) * 5 / 2);
         fs::last_write_time(files.back(), fs::file_time_type::clock::now() - std::chrono::hours(k == 1 ? 1 : 9 - k));
-        if (k == 2) { // what processes that were killed an hour and a moment ago have left
+        if (k == 2) { // leftovers of processes that were killed an hour and a moment ago
             for (const char* name : {".00.bvh.aB3dE6", ".00.bvh.xYz123"}) std::ofstream(folder / name) << "half a tree";
             fs::last_write_time(folder / ".00.bvh.aB3dE6", fs::file_time_type::clock::now() - std::chrono::hours(2));
         }

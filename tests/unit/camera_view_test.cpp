@@ -53,7 +53,7 @@ TEST_CASE("the middle of the picture looks along the camera's axis, up is up and
 
 TEST_CASE("the angle of view is that of the height, whatever the picture's shape; pixels are square") {
     Camera camera = placed_camera();
-    camera.aspect = 2.5f; // what the file asks for decides the size of a picture, not the view of a given one
+    camera.aspect = 2.5f; // the file's aspect determines the size of a picture, not the view of a given one
     const double tangent = std::tan(0.55);
     struct Size {
         uint32_t width, height;

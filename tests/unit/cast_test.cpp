@@ -86,7 +86,7 @@ TEST_CASE("cast shows the cone of a spot light, dark from its outer angle on") {
     });
     CHECK(dark > 40);
     CHECK(full > 20);
-    CHECK(result.rays.shadow == kSide * kSide - dark); // what gets no light asks for none
+    CHECK(result.rays.shadow == kSide * kSide - dark); // unlit points trace no shadow rays
 }
 
 TEST_CASE("cast gives a hard shadow its edge where geometry has it") {

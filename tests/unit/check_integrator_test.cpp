@@ -1,4 +1,4 @@
-// What cast and whitted say of scenes whose lights they do not know.
+// Messages of cast and whitted about scenes with unsupported lights.
 
 #include <doctest/doctest.h>
 
@@ -11,7 +11,7 @@ using namespace pertev;
 
 namespace {
 
-/// What is said of the scene: the error, the note, or an empty reason.
+/// Message about the scene: the error, the note, or an empty reason.
 Remark said(IntegratorKind integrator, const Scene& scene, std::optional<Rgb> ambient = {}, uint32_t depth = 4) {
     RenderSettings settings;
     settings.integrator = integrator;

@@ -22,7 +22,7 @@ uint32_t me() { return lane::thread_index.x & 31u; }
 uint32_t my_bit() { return 1u << me(); }
 uint32_t seeds() { return static_cast<uint32_t>(effort(100, 5000)); }
 
-/// What run_warps says of a kernel of one warp, which is to be the same in each order of things.
+/// Result of run_warps for a kernel of one warp, which must be equal for each schedule.
 template <class Kernel>
 std::set<std::string> headlines(const Kernel& kernel) {
     std::set<std::string> said;

@@ -28,7 +28,7 @@ TEST_CASE("warps make the bytes that single threads make") {
             const CompressedBvh wanted = builder.download();
             const std::vector<hploc::ClusterNode> clusters = builder.download_clusters();
 
-            // The same builder's memory, with the leaves where they are.
+            // The second climb uses the builder's memory again, with the leaves in place.
             const hploc::Climb climb = builder.prepare_climb();
             std::fill_n(climb.ends, n, hploc::kNone);
             std::fill(climb.tree.nodes + n, climb.tree.nodes + 2 * n, hploc::ClusterNode{});

@@ -165,7 +165,7 @@ TEST_CASE("a file outside is replaced by one of that name below, with a warning,
     CHECK(test::says(error, "a.obj:7: refers to"));
     CHECK(test::says(error, "`allow_path=" + f.other.string() + "`"));
 
-    fs::create_symlink(f.other / "u.png", f.scene / "u.png"); // what lies beside may lead outside, too
+    fs::create_symlink(f.other / "u.png", f.scene / "u.png"); // a sibling may lead outside too
     CHECK_THROWS_AS((void)access.find(at(f.file), "../scene2/u.png", messages), Error);
     CHECK(!access.find(at(f.file), "/no such home/artist/u.png", messages));
 }

@@ -1,4 +1,4 @@
-// What a file has several of: how one is chosen by a name or a number, and by which words it is told.
+// Choice among a file's animations and scenes by a name or a number, and the texts of choices.
 
 #include <algorithm>
 

@@ -134,7 +134,7 @@ TEST_CASE("targets that a film is given are added and cleared with its own, and 
     other_window.set_window({.picture_width = 100, .x = 3, .y = 2, .width = kWidth});
     CHECK_THROWS_AS(a.add(other_window), std::logic_error);
     CHECK_THROWS_AS(a.set_window({.picture_width = kWidth, .x = 1, .width = kWidth}), std::logic_error);
-    CHECK(counts_of(a).elements().download() == std::vector<uint64_t>(5, 7)); // as it was
+    CHECK(counts_of(a).elements().download() == std::vector<uint64_t>(5, 7)); // unchanged
     a.clear();
     CHECK(counts_of(a).elements().download() == std::vector<uint64_t>(5, 0));
 }
@@ -193,7 +193,7 @@ TEST_CASE("a film says which samples of which rows it holds, and refuses those t
     CHECK(sum_of({5, 9, {0, 4}}, {0, 5, {0, 4}}) == FilmPart{0, 9, {0, 4}});
     CHECK_THROWS_AS(sum_of({0, 9, {4, 6}}, {0, 9, {5, 7}}), std::logic_error); // one of them twice
     CHECK_THROWS_AS(sum_of({0, 9, {4, 6}}, {0, 9, {7, 8}}), std::logic_error); // a gap
-    CHECK_THROWS_AS(sum_of({0, 5, {0, 4}}, {5, 9, {0, 5}}), std::logic_error); // of some rows more
+    CHECK_THROWS_AS(sum_of({0, 5, {0, 4}}, {5, 9, {0, 5}}), std::logic_error); // more samples of some rows
     CHECK_THROWS_AS(sum_of({0, 5, {0, 4}}, {4, 9, {0, 4}}), std::logic_error);
     Film film = film_of({0, 9, {0, 4}});
     film.clear();

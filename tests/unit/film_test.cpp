@@ -83,7 +83,8 @@ TEST_CASE("a small sample is not lost beside a million large ones") {
     CHECK(picture.pixels[1] == 0.0f);
     CHECK(picture.pixels[2] == 0x1p-40f * 1e6f);
     for (int i = 0; i < 1'000'000; ++i) add_radiance(film.view(), 0, {-1000.0f, 0, 0});
-    CHECK(picture_of(film, 1, false).pixels[0] == doctest::Approx(1e-6).epsilon(1e-7)); // what was cut lies below 2^-64
+    CHECK(picture_of(film, 1, false).pixels[0] ==
+          doctest::Approx(1e-6).epsilon(1e-7)); // the truncated part is below 2^-64
 }
 
 TEST_CASE("a transparent picture's alpha is the share of samples that hit something") {

@@ -1,5 +1,5 @@
-// What the auxiliary layers say of a plane seen by an orthographic camera, where each has a closed form: also the one
-// test of where on the picture a pixel is.
+// Auxiliary layers of a plane seen by an orthographic camera, where each has a closed form. This is also the only
+// test of a pixel's position in the picture.
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// What a ray in flight has still to enter: each child that it enters, once, in the order that is asked for.
+// Pending children of a ray in flight: each entered child once, in the requested order.
 
 #include "trace/wide/flight_stack.h"
 

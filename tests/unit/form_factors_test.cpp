@@ -94,7 +94,7 @@ TEST_CASE("a hemicube's pixels are the hemisphere, by the cosine") {
             }
         }
         CHECK(sum == doctest::Approx(1).epsilon(1e-5));
-        CHECK(upwards == doctest::Approx(2.0 / 3).epsilon(0.02)); // of the cosine, by the cosine
+        CHECK(upwards == doctest::Approx(2.0 / 3).epsilon(0.02)); // cosine-weighted mean of the cosine
     }
 }
 

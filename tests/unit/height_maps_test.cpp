@@ -1,4 +1,4 @@
-// What --displacement says, and the heights that are read for it.
+// Parsing of --displacement, and reading of its heights.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// What device_scene/surface.h says of the rounding of a hit's position, against the same sums in double.
+// The rounding bound of a hit's position in device_scene/surface.h, compared with the same sums in double.
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ struct OneTriangle {
     InstanceView instance{};
     MeshView mesh{};
 
-    /// Of any size and shape, any distance from the origin of either space, turned and squeezed.
+    /// Any size and shape, any distance from the origin of either space, rotated and scaled.
     OneTriangle(test::Random& random, bool is_baked) {
         const auto power = [&](int least, uint32_t count) {
             return std::ldexp(1.0f, least + static_cast<int>(random.below(count)));
@@ -102,7 +102,7 @@ TEST_CASE("a position is within its error of where the walk has the surface, bak
             most = std::max(most, part_of(off, placed.error));
         }
         CAPTURE(most);
-        CHECK(most <= (is_baked ? 0.6 : 1.0)); // of a baked one's, what follows takes the other part
+        CHECK(most <= (is_baked ? 0.6 : 1.0)); // for a baked one, the rest belongs to later steps
         CHECK(most > 0.2);                     // so the bound says something
         CHECK(tried > 50'000);
     }

@@ -114,7 +114,7 @@ TEST_CASE("a written HDR reads back within half a unit of its shared exponent") 
             const float largest = std::max({image.pixels[p], image.pixels[p + 1], image.pixels[p + 2]});
             CHECK(std::abs(back.pixels[i] - image.pixels[i]) <= largest / 255);
         }
-        CHECK(encode_hdr(back) == encode_hdr(image)); // what can be held is held exactly
+        CHECK(encode_hdr(back) == encode_hdr(image)); // representable values are stored exactly
     }
 }
 

@@ -76,7 +76,7 @@ TEST_CASE("the variance of pictures is the unbiased one of each channel over its
     const VarianceOfPictures same = variance_of({filled(4, 3, 0.3f), filled(4, 3, 0.3f), filled(4, 3, 0.3f)});
     CHECK(same.over(same.best_pixels(1)).rel_mse == 0);
 
-    // Of 0.25, 0.5, 0.75 the mean is 0.5 and the variance 1/16.
+    // The mean of 0.25, 0.5, 0.75 is 0.5 and the variance 1/16.
     const VarianceOfPictures spread = variance_of({filled(4, 3, 0.25f), filled(4, 3, 0.75f), filled(4, 3, 0.5f)});
     const TrimmedVariance all = spread.over(spread.best_pixels(1));
     CHECK(spread.best_pixels(1).size() == 12);
@@ -134,7 +134,7 @@ TEST_CASE("the variance of pictures of different sizes is an error that tells bo
     VarianceOfPictures variance;
     variance.add(filled(4, 3, 0));
     try {
-        variance.add(filled(3, 4, 0)); // as many pixels
+        variance.add(filled(3, 4, 0)); // an equal number of pixels
         FAIL("no error");
     } catch (const Error& error) {
         CHECK(error.code() == ErrorCode::BadInput);

@@ -56,7 +56,7 @@ TEST_CASE("a ray through the middle gives the distance and the weights") {
     CHECK(hit.u == 0.25f);
     CHECK(hit.v == 0.5f);
     CHECK_FALSE(intersect({1, 2, 9}, {0, 0, 1}, a, b, c, hit)); // behind the origin
-    CHECK_FALSE(intersect({3, 3, 1}, {0, 0, 1}, a, b, c, hit)); // beside the triangle
+    CHECK_FALSE(intersect({3, 3, 1}, {0, 0, 1}, a, b, c, hit)); // outside the triangle
 }
 
 TEST_CASE("both ends of the ray's range are outside it") {
@@ -171,7 +171,7 @@ TEST_CASE("an edge along the ray, and any edge that is zero, leaves the others t
         for (int k = 0; k < 3; ++k) x[k] = whole(), y[k] = whole();
         if (i % 2 == 0) x[1] = x[0], y[1] = y[0]; // the edge from a to b is along the ray
         const int ox = whole(), oy = whole();
-        // Of whole numbers everything is exact: edges opposite a, b and c as the ray sees them.
+        // Exact for whole numbers: edges opposite a, b and c as seen by the ray.
         const auto edge = [&](int p, int q) { return (x[p] - ox) * (y[q] - oy) - (y[p] - oy) * (x[q] - ox); };
         const int ea = edge(2, 1), eb = edge(0, 2), ec = edge(1, 0);
         const bool is_outside = (ea < 0 || eb < 0 || ec < 0) && (ea > 0 || eb > 0 || ec > 0);

@@ -61,7 +61,7 @@ TEST_CASE("a place in a picture of irradiance is what the light meter says of it
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = test::queue_asked_for();
-    const Vec3 place = {-3.5f, 0, 2.5f}; // of the floor
+    const Vec3 place = {-3.5f, 0, 2.5f}; // a point of the floor
     RenderSettings settings = irradiance_settings(1, static_cast<uint32_t>(test::effort(16384, 262144)));
     const RenderResult result =
         render_picture(queue, prepared, test::camera_down(place + Vec3{0, 0.5f, 0}, 0.001f), settings);

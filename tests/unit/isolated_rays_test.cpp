@@ -1,4 +1,4 @@
-// What a mix of kinds of rays would be traced at by the rates of each.
+// Ray rates of a mix of ray kinds from the rates of each kind.
 
 #include <doctest/doctest.h>
 

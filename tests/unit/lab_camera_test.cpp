@@ -1,4 +1,4 @@
-// What a report says of its camera, and what is listed to be measured.
+// A report's description of its camera, and its list of measurements.
 
 #include <doctest/doctest.h>
 

@@ -128,7 +128,7 @@ TEST_CASE("heat maps that the report kept are pictures on one scale") {
     CHECK(m.pictures[0].title == name_of(Combination{}));
     CHECK(m.pictures[0].group != m.pictures[1].group);
     CHECK(m.pictures[2].group == m.pictures[0].group);
-    CHECK(m.pictures[2].caption == m.pictures[0].caption); // the same end of the scale
+    CHECK(m.pictures[2].caption == m.pictures[0].caption); // equal ends of the scale
     CHECK(has(m.notes.back(), "the 2 combinations that were fastest at camera rays, of 3"));
 }
 

@@ -1,4 +1,4 @@
-// What is said of lamps in files that cannot tell which of their faces shine.
+// Messages about lamps in files that cannot say which of their faces emit.
 
 #include <doctest/doctest.h>
 

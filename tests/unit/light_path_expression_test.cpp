@@ -217,7 +217,7 @@ TEST_CASE("expressions that grow without end are refused") {
     CHECK(is_over({"L.{15}D.*E"}, "16384 states")); // from the eye it needs a state for each of 2^15 pasts
     CHECK(lpe_refusal("x=L" + std::string(300, '(') + "D" + std::string(300, ')') + "E").find("within each other") !=
           std::string::npos);
-    parse_light_path("x=LD" + std::string(4000, '*') + "E"); // as deep as it is long
+    parse_light_path("x=LD" + std::string(4000, '*') + "E"); // nested as deeply as possible
 }
 
 TEST_CASE("expressions that are too much together are refused, where each by itself is none too many") {

@@ -1,4 +1,4 @@
-// What a light sends from a place that was kept, to whoever asks.
+// Light from a stored sample point to any receiver.
 
 #include <doctest/doctest.h>
 

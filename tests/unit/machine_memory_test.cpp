@@ -12,7 +12,7 @@ using namespace pertev;
 
 namespace {
 
-/// What /proc/self/cgroup and the mounted groups say.
+/// Contents of /proc/self/cgroup and of the mounted groups.
 struct Groups {
     std::filesystem::path folder = test::scratch_folder();
 

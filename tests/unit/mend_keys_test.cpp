@@ -15,7 +15,7 @@ using namespace pertev;
 
 namespace mend_keys_test { // tests are compiled several files at once
 
-/// Of three numbers a key, of which the first is `x`.
+/// A channel with three numbers per key, of which the first is `x`.
 AnimationChannel channel_of(std::vector<float> times, const std::vector<float>& x,
                             Interpolation interpolation = Interpolation::Linear) {
     AnimationChannel channel;

@@ -142,7 +142,7 @@ TEST_CASE("the swept box holds every place that a body takes") {
                                                                corner & 4 ? box.box.hi.z : box.box.lo.z}));
         }
         const Bounds3 swept = swept_bounds(keys, 0, rest);
-        MotionKeys with_another = keys; // what stands behind the last key is not its own
+        MotionKeys with_another = keys; // data after the last key does not belong to it
         with_another.keys.push_back({{kInfinity, 0, 0, 0}, {kInfinity, 0, 0}});
         CHECK(swept_bounds(with_another, 0, rest) == swept);
         bool holds_all = true;

@@ -118,7 +118,7 @@ TEST_CASE("a picture without a frame before it has no motion, nor has what was b
     CHECK(largest(session.motion()) == 0);
     session.cut();
     session.keep_as_before();
-    CHECK(largest(session.motion()) < 1e-4f); // the same place, but for rounding
+    CHECK(largest(session.motion()) < 1e-4f); // equal up to rounding
 
     scene.instances.push_back(scene.instances[0]);
     scene.instances[1].world_from_local = make_translation({0, 0, -40});

@@ -78,7 +78,7 @@ struct CutOuts {
     }
 };
 
-/// What is told of a scene's places, with micromaps and by textures alone, on the CPU.
+/// Opacity at points of a scene, with micromaps and with textures only, on the CPU.
 struct Told {
     explicit Told(const Scene& of) : scene(of), prepared(prepare_scene(scene, {}, messages)), device(queue, prepared) {
         maps.update(queue, scene, device.view(), true);
@@ -342,7 +342,7 @@ TEST_CASE("micromaps are made again when textures, materials or meshes change, a
         return count;
     };
     CHECK(opaque_places() > 400);
-    Scene clear = made.scene; // of the same sizes
+    Scene clear = made.scene; // equal in size, but all its texels are transparent
     for (TextureImage& image : clear.images) std::ranges::fill(image.rgba8.pixels, uint8_t(0));
     {
         const PreparedScene prepared_clear = prepare_scene(clear, {}, messages);

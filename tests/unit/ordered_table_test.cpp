@@ -24,7 +24,7 @@ std::vector<double> random_weights(std::size_t count, uint32_t seed) {
     return weights;
 }
 
-/// The same by looking at every index.
+/// The owner found by testing every index.
 uint32_t owner_of(const OrderedTable& table, uint32_t number) {
     uint32_t owner = 0;
     for (std::size_t i = 0; i + 1 < table.starts.size(); ++i) {
@@ -49,7 +49,8 @@ TEST_CASE("ordered table: every index owns as many numbers as its weight asks fo
             const double owned = table.starts[i + 1] - table.starts[i]; // unsigned: a step back would be huge
             if ((weights[i] > 0) != (owned > 0)) ++wrong;
             worst = std::max(worst, std::abs(owned - weights[i] / total * kNumbers) -
-                                        positive * (weights[i] / total)); // what the ones for each take from all
+                                        positive * (weights[i] / total)); // the share that the single numbers for
+                                                                          // each weight take from all
             if (ordered_pmf(view_of(table), static_cast<uint32_t>(i)) != static_cast<float>(owned / kNumbers)) ++wrong;
         }
         CAPTURE(count);

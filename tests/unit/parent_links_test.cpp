@@ -17,7 +17,7 @@ TEST_CASE("parent links lead from every node to the root") {
     for (const NastyMesh& c : nasty_meshes()) {
         CAPTURE(std::string(c.name));
         Bvh bvh = build_bvh(c.triangles);
-        for (const BvhNode& node : bvh.nodes) CHECK((node.parent == 0 && node.split == 0)); // as the cache stores them
+        for (const BvhNode& node : bvh.nodes) CHECK((node.parent == 0 && node.split == 0)); // the form in the cache
         add_parent_links(bvh);
         CHECK(find_parent_link_fault(bvh) == std::nullopt);
         uint64_t wrong = 0;

@@ -20,7 +20,7 @@ struct GridOfPoints {
     std::vector<uint32_t> starts;
     PhotonGridView view;
 
-    std::vector<Float4> powers; // those that stay have that of all
+    std::vector<Float4> powers; // kept photons have the power of all
 
     GridOfPoints(const std::vector<Vec3>& from, float radius, float largest, uint32_t most_kept = 0xffffffffu,
                  uint32_t pass = 0) {

@@ -55,7 +55,7 @@ TEST_CASE("photons are aimed with the density that is said, wherever the spheres
             const float x = random.unit();
             return Vec2{x, random.unit()};
         };
-        // Of f over the cones, once by draws there, once by draws from everywhere.
+        // Integral of f over the cones, from samples inside and from samples everywhere.
         const auto f = [](Vec3 w) { return static_cast<double>(1 + w.x + 0.5f * w.y); };
         double aimed = 0, everywhere = 0;
         for (int i = 0; i < kDraws; ++i) {
@@ -333,7 +333,7 @@ TEST_CASE("rays of photon mapping are those that a hand counts, the gathering's 
                 CAPTURE(depth);
                 // A photon's ray from the light and one from each surface but the last. Nothing mirrors: one map.
                 const uint64_t of_photons = depth < 2 ? 0 : kPasses * kPhotons * depth;
-                // Of a sample one ray on, and where that arrives one to the light.
+                // A sample traces one ray, and from its hit one to the light.
                 const bool gathers = gather == PhotonGather::Final && depth > 0;
                 CHECK(rays.camera == kSamples);
                 CHECK(rays.bounce == of_photons + (gathers ? kSamples : 0));
@@ -427,7 +427,7 @@ TEST_CASE("a scene without a light for photons, and more photons than there is r
     scene.lights.push_back(test::point_light({0, 2, 0}, {1, 1, 1}));
     CHECK(said() == "no error");
     scene.lights.clear();
-    settings.path.max_depth = 0; // what emits
+    settings.path.max_depth = 0; // only emission
     CHECK(said() == "no error");
 
     settings.path.max_depth = 64;

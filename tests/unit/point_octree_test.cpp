@@ -38,7 +38,7 @@ TEST_CASE("an octree over spheres finds all that cover a place, and no other, ea
         std::vector<Sphere> spheres;
         for (const Vec3 p : set.points) {
             const float u = random.unit();
-            // Of all sizes, many of them touching lattice points exactly.
+            // Radii of all sizes, many of which touch lattice points exactly.
             const float radius = random.below(3) == 0 ? 0.25f * static_cast<float>(random.below(4)) : u * u * u * u;
             spheres.push_back({p, set.extent * (random.below(10) == 0 ? 0 : radius)});
         }
@@ -68,7 +68,7 @@ TEST_CASE("a few large spheres do not make the search for small ones slow") {
     for (uint32_t i = 0; i < 50'000; ++i) spheres.push_back({random.point(-1, 1), i % 1000 == 0 ? 1.0f : 0.01f});
     const PointOctree tree = build_point_octree(spheres);
     uint64_t nodes = 0;
-    for (int i = 0; i < 100; ++i) { // as visit_covering goes about it
+    for (int i = 0; i < 100; ++i) { // the order of visit_covering
         const Vec3 at = random.point(-1, 1);
         for (uint32_t k = 0; k < tree.nodes.size(); ++nodes) {
             const PointOctreeNode& n = tree.nodes[k];

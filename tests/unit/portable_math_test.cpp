@@ -28,7 +28,7 @@ namespace {
 
 double reference(int function, float x_float, float y_float, uint32_t input) {
     const double x = static_cast<double>(x_float), y = static_cast<double>(y_float);
-    const double turn = static_cast<double>(static_cast<float>(input) * 0x1p-32f); // what sin_cos_2pi is given
+    const double turn = static_cast<double>(static_cast<float>(input) * 0x1p-32f); // the argument of sin_cos_2pi
     switch (function) {
     case 0:
     case 10:
@@ -138,7 +138,7 @@ TEST_CASE("elementary functions keep their stated error bounds") {
 }
 
 TEST_CASE("elementary functions are right at structured inputs") {
-    std::vector<uint32_t> inputs = {bits_of(0x1.f37f4ap95f)}; // of all floats the nearest to a multiple of pi/2
+    std::vector<uint32_t> inputs = {bits_of(0x1.f37f4ap95f)}; // the float nearest to a multiple of pi/2
     for (uint32_t exponent = 0; exponent < 256; exponent++) {
         for (const uint32_t mantissa :
              {0u, 1u, 2u, 0x3504f2u, 0x3504f3u, 0x3504f4u, 0x3fffffu, 0x400000u, 0x7ffffeu, 0x7fffffu}) {

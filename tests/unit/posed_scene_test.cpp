@@ -130,7 +130,7 @@ TEST_CASE("a scale of 0 hides an instance at that time, and nothing becomes NaN"
     CHECK(posed.scene().instances[1].world_from_local.row1 == Vec3{0, -1, 0});
     CHECK(bounds_of(posed.scene()).lo.y == -1);
     posed.set_time(1);
-    CHECK(bounds_of(posed.scene()).lo.y == 0); // what is hidden has no place
+    CHECK(bounds_of(posed.scene()).lo.y == 0); // hidden objects have no bounds
 }
 
 TEST_CASE("what a scale of 0 hides at rest is there when it moves, and left out when it never does") {
@@ -228,7 +228,7 @@ TEST_CASE("a skin's vertices go where its joints take them, normals and tangents
     hang_on_first_node(scene);
     scene.skins[0].joint_from_mesh = {make_translation({-1, 0, 0})};
     MeshShape& shape = scene.shapes[0];
-    shape.weights = {1, 0.5f, 0}; // of any sum; the third vertex stays
+    shape.weights = {1, 0.5f, 0}; // arbitrary sum; the third vertex stays
     const float root = 0.70710678f;
     scene.animations[0].channels = {channel(0, AnimatedPart::Rotation, {0, 1}, {0, 0, 0, 1, 0, root, 0, root})};
     shape_mesh(shape, {},
@@ -339,7 +339,7 @@ TEST_CASE("Khronos: the cubes of InterpolationTest stand where each interpolatio
     validate(rest, "InterpolationTest", messages);
     PosedScene posed(std::move(rest));
     const Scene& scene = posed.scene();
-    // Of every channel the value at each key's time is the key's own, whatever the interpolation; steps stay there.
+    // At each key's time every channel has the key's value, whatever the interpolation; steps hold it.
     int keys = 0;
     for (const Animation& animation : scene.animations) {
         for (const AnimationChannel& c : animation.channels) {

@@ -1,4 +1,4 @@
-// What is said beforehand of the memory that a scene takes on the device.
+// Predicted memory of a scene on the device.
 
 #include <doctest/doctest.h>
 
@@ -24,8 +24,8 @@ Mesh make_triangle() {
     return mesh;
 }
 
-/// What is said of the scene, which is checked to be what it takes; and so with its trees, which take none where the
-/// device is the host.
+/// Predicted bytes of the scene, which must equal the actual ones; and with its trees, which take none if the device
+/// is the host.
 std::size_t bytes_of(const Scene& scene) {
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

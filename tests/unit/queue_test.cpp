@@ -51,7 +51,7 @@ TEST_CASE("streams go on after what was given before the fork, and work behind t
     constexpr int kStreams = Queue::kMaxStreams;
     constexpr std::size_t kMany = 1 << 22; // a fill that takes longer than it takes to give the next
     Buffer<unsigned char> sum(queue, kMany * kStreams, "bytes");
-    sum.fill(7); // what a stream writes is there in the end, so it came later
+    sum.fill(7); // the stream's writes win, so they came later
     {
         const Queue::Fork fork(queue, kStreams);
         CHECK(queue.streams() == kStreams);

@@ -216,7 +216,7 @@ TEST_CASE("a solution is shown under the light alone that it was solved for") {
     check_refused(lights, [](Scene& s) { s.environment->image.pixels[4] = 3; });
     check_refused(lights, [](Scene& s) { s.environment.reset(); });
 
-    Scene seen = scene; // what a solution knows nothing of
+    Scene seen = scene; // changes that do not affect a solution
     seen.cameras.emplace_back();
     seen.materials[0].name = seen.lights[0].name = seen.instances[0].name = "of another name";
     seen.materials[0].double_sided = false;
@@ -224,7 +224,7 @@ TEST_CASE("a solution is shown under the light alone that it was solved for") {
     seen.materials[7].roughness = 0.7f; // the mirror
     seen.materials[7].eta = {1, 1, 1};
     seen.materials.push_back(test::white(0.9f)); // nobody's
-    seen.lights[0].direction = {1, 0, 0};        // of a point
+    seen.lights[0].direction = {1, 0, 0};        // direction of a point light
     CHECK(why_refused(path, seen) == "no error");
 }
 
@@ -328,12 +328,13 @@ TEST_CASE("where links are ended while patches are divided, the parts keep the l
     CHECK(solved.stats.was_interrupted);
     CHECK(solved.solution.extent.part == SolvedPart::SomeBounces);
     CHECK(solved.solution.patches.size() > 24);                    // some were divided
-    const auto dim_share = [](const RadiositySolution& solution) { // what other surfaces send is a hundredth
+    const auto dim_share = [](const RadiositySolution& solution) { // fraction of points where light from other
+                                                                   // surfaces is below a hundredth
         const auto dim = std::ranges::count_if(solution.patches,
                                                [](const PatchLight& patch) { return luminance(patch.mean) < 0.02f; });
         return static_cast<double>(dim) / static_cast<double>(solution.patches.size());
     };
-    CHECK(dim_share(solved.solution) < 0.5); // of parts that are black 0.82
+    CHECK(dim_share(solved.solution) < 0.5); // 0.82 for black parts
 }
 
 TEST_CASE("a solution's bytes do not depend on threads, and follow its settings") {

@@ -26,7 +26,7 @@ RadiositySystem room_of(std::size_t count, float reflectance, float exitance) {
         all += static_cast<double>(area);
     }
     for (std::size_t i = 0; i < count; ++i) {
-        std::vector<FormFactor> row; // as inside a sphere: the share of its area
+        std::vector<FormFactor> row; // like inside a sphere: the fraction of its area
         for (uint32_t j = 0; j < count; ++j) {
             row.push_back({j, static_cast<float>(static_cast<double>(system.patches[j].area) / all)});
         }
@@ -104,7 +104,7 @@ TEST_CASE("Southwell sends from the patch with most unsent light, the first of s
     CHECK(received(2) == std::vector<float>{0, 0, 3, 3});
     CHECK(received(3) == std::vector<float>{0, 0, 3, 3}); // 3, whom nobody sees
     CHECK(received(4) == std::vector<float>{0, 1, 3, 3});
-    system.patches[0].area = 4; // as a whole it has more
+    system.patches[0].area = 4; // more than the whole
     CHECK(received(1) == std::vector<float>{0, 1, 0, 0});
 }
 
@@ -158,7 +158,7 @@ TEST_CASE("what next to nothing absorbs ends after a stated number of steps, and
     CHECK(southwell.steps == kMostSweeps * 12);
     CHECK(southwell.reached_limit);
     CHECK(southwell.left > 1e-6);
-    CHECK_FALSE(few.reached_limit); // as it was asked to
+    CHECK_FALSE(few.reached_limit); // stopped by its number of steps
     const SolvedSystem gauss_seidel = solve_by_gauss_seidel(system, 1e-6);
     CHECK(gauss_seidel.steps == kMostSweeps);
     CHECK(gauss_seidel.reached_limit);

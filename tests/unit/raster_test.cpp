@@ -96,7 +96,7 @@ Vec3 pixel_of(const Image& image, uint32_t x, uint32_t y) {
 } // namespace
 
 TEST_CASE("triangles that share edges draw each sample once") {
-    for (const uint32_t n : {3u, 40u, 300u}) { // of cells of many pixels, and of less than one
+    for (const uint32_t n : {3u, 40u, 300u}) { // cells of many pixels, and of less than one
         const Mesh grid = crooked_grid(n, 2, n);
         // Straight on; askew; through the picture's edges, the eye's plane and behind it.
         for (const Camera& camera : {camera_at({0, 0, 3}, {0, 0, 0}), camera_at({0.3f, 0.2f, 0.4f}, {0.5f, 0.7f, 0}),

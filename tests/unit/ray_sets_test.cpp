@@ -90,13 +90,13 @@ struct ThreadCount {
     int before;
 };
 
-/// What sqrt(u1) about the normal gives, without the sets' own code.
+/// The distribution of sqrt(u1) about the normal, without the sets' own code.
 double cosine_to(Vec3 direction, Vec3 normal) { return static_cast<double>(dot(direction, normal)); }
 
 } // namespace
 
 TEST_CASE("draws hit the two zeros that were found on the record, and no third") {
-    // Of 8,294,400 rays of seed 22, number 4,807,597 alone draws 0 first: the ray whose direction is its normal.
+    // Among 8,294,400 rays of seed 22 only number 4,807,597 draws 0 first: the ray whose direction is its normal.
     uint32_t zeros = 0, at = 0;
     for (uint32_t o = 0; o < kRecordRays; ++o) {
         uint32_t state = secondary_state(o, 22);

@@ -1,4 +1,4 @@
-// What is wrong with a glTF file is said with the file, the place and what would be right.
+// Errors in a glTF file are reported with the file, the location and what would be right.
 
 #include <doctest/doctest.h>
 
@@ -27,7 +27,7 @@ std::string with_accessor(const std::string& members, const std::string& attribu
         attributes + R"(}}]}],"nodes":[{"mesh":0}])");
 }
 
-/// What is said of a GLB file: the Error, or the first warning.
+/// Message about a GLB file: the Error, or the first warning.
 std::string glb_fault(std::vector<std::byte> bytes) {
     const auto path = test::scratch_folder() / "model.glb";
     write_file_atomically(path, bytes);

@@ -1,5 +1,5 @@
-// What other viewers show is shown: members that are null, numbers without bound, containers that are padded in other
-// ways, names of another machine. What cannot be shown is left out with a warning.
+// Files that other viewers show are shown: null members, unbounded numbers, containers with other padding, names from
+// another machine. Unsupported parts are left out with a warning.
 
 #include <cstring>
 #include <filesystem>
@@ -38,7 +38,7 @@ Light lamp(const std::string& members) {
     return scene.lights.at(0);
 }
 
-/// What reading and validating says; the Error's text comes last.
+/// Messages of reading and validating; the Error's text comes last.
 std::vector<std::string> told_of(const std::string& json) {
     Messages messages;
     std::vector<std::string> texts;
@@ -265,7 +265,7 @@ TEST_CASE("a GLB's JSON may be padded with zero bytes, and its header may give a
         CHECK(read_glb(wrong, messages).instances.size() == 1);
         CHECK(messages.left_out().empty());
     }
-    for (const int off : {-4, -1, 1, 4, 8, 1 << 24}) { // of the JSON: what it holds tells where it ends
+    for (const int off : {-4, -1, 1, 4, 8, 1 << 24}) { // error of the JSON's length; its contents determine the end
         CAPTURE(off);
         std::vector<std::byte> wrong = good;
         set_u32(wrong, 12, u32_at(good, 12) + static_cast<uint32_t>(off));
@@ -300,7 +300,7 @@ TEST_CASE("a part that is compressed alone is left out with the command that con
     CHECK(told[1].starts_with("error: "));
     CHECK(told[1].find(command) != std::string::npos);
 
-    // Beside data that is not compressed it is not needed.
+    // It is not needed next to uncompressed data.
     CHECK(told_of(triangle().json(R"("extensionsUsed":["KHR_draco_mesh_compression"],"meshes":[{"primitives":[)" +
                                   compressed + R"(]}],"nodes":[{"mesh":0}])"))
               .empty());

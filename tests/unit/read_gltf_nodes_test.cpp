@@ -195,7 +195,7 @@ TEST_CASE(
         const Light& light = scene.lights.at(0);
         CHECK(test::has_warning(messages, {"model.gltf: /extensions/KHR_lights_punctual/lights/0/spot: "}));
         CHECK(light.cos_inner == doctest::Approx(std::cos(std::stod(angle))).epsilon(1e-6));
-        CHECK(light.cos_outer < light.cos_inner); // as validate() demands
+        CHECK(light.cos_outer < light.cos_inner); // required by validate()
         CHECK(light.cos_outer >= light.cos_inner - 2e-7f);
     }
     // So narrow that both cosines are 1.

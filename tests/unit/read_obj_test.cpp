@@ -479,7 +479,7 @@ TEST_CASE("Sponza comes in by material, its leaves and chains cut out") {
     const auto path = test::test_scene("crytek-sponza/sponza.obj");
     if (!path) return;
     const Loaded l = load(*path);
-    CHECK(l.scene.meshes.size() == 24); // of its 25 materials one is not used
+    CHECK(l.scene.meshes.size() == 24); // one of its 25 materials is not used
     std::size_t triangles = 0;
     for (const Mesh& mesh : l.scene.meshes) triangles += mesh.triangle_count();
     CHECK(triangles == 262'205);

@@ -55,7 +55,7 @@ std::optional<Scene> read_sample(const std::string& file, Messages& messages) {
     return read_gltf(*path, FileAccess(*path, {}), {}, messages);
 }
 
-/// As the table counts: each mesh with each of its materials once, however many instances show it.
+/// Counts like the table: each mesh with each of its materials once, however many instances show it.
 uint64_t count_triangles(const Scene& scene) {
     std::set<std::pair<uint32_t, uint32_t>> parts;
     uint64_t triangles = 0;

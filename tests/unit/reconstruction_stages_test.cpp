@@ -18,7 +18,7 @@ namespace {
 
 constexpr uint32_t kStageSide = 16, kStageHalf = kStageSide / 2, kStagePixels = kStageSide * kStageSide;
 constexpr uint32_t kLeftOfBorder =
-    kStageHalf * kStageSide + kStageHalf - 1; // of the middle row, the last pixel of the left half
+    kStageHalf * kStageSide + kStageHalf - 1; // the last pixel of the left half in the middle row
 
 CameraView stage_camera(uint32_t side) {
     Camera camera;
@@ -103,7 +103,7 @@ TEST_CASE("a pass of the filter mixes gloss of like widths alone, and sharp glos
     const Filtered apart = filter_once(wall, halves(1, 3, kNoisy), halves(1, 3, kNoisy), 1);
     CHECK(apart.gloss[kLeftOfBorder].x == doctest::Approx(1));
     CHECK(apart.diffuse[kLeftOfBorder].x > 1.3f);
-    // Of light that strays by a tenth of itself.
+    // Light that varies by a tenth of itself.
     const auto mixed_from = [&](float alpha, int step, float variance = 0.01f) {
         for (Float4& g : wall.guide) g = pack({{0, 0, 1}, alpha, 5, 7});
         return filter_once(wall, halves(1, 1.2f, variance), halves(1, 1.2f, variance), step).gloss[kLeftOfBorder].x;
@@ -111,7 +111,7 @@ TEST_CASE("a pass of the filter mixes gloss of like widths alone, and sharp glos
     CHECK(mixed_from(0.5f, 4) > 1.02f);
     CHECK(mixed_from(0.001f, 4) == doctest::Approx(1).epsilon(1e-3));
     CHECK(mixed_from(0.001f, 1) > 1.005f);
-    CHECK(mixed_from(0.001f, 4, kNoisy) > 1.04f); // what is noise is not kept apart
+    CHECK(mixed_from(0.001f, 4, kNoisy) > 1.04f); // noise is averaged
 }
 
 TEST_CASE("bumps keep light apart that is known, but not noise") {
@@ -176,7 +176,7 @@ TEST_CASE("a sample far brighter than all around it counts for 64 times the brig
 namespace {
 
 struct Held {
-    Float4 diffuse, gloss, diffuse_out, gloss_out; // of the pixel that is asked about
+    Float4 diffuse, gloss, diffuse_out, gloss_out; // values of the tested pixel
 };
 
 /// Long means of 3 at one pixel over `frames`, where recent means are `left` and `right`; single frames stray by
@@ -224,7 +224,7 @@ TEST_CASE("variance is that over time, or over neighbours where few frames know 
     Wall wall;
     CHECK(hold(wall, 3, 3, 2, 32, false).diffuse_out.w == doctest::Approx(4 * 4.0 / 32));
     CHECK(hold(wall, 3, 3, 2, 32, false).gloss_out.w == doctest::Approx(4 * 4.0 / 32));
-    // Of thirteen neighbours in a chessboard five stand to the right of the border: 4 (1 + 1) of 0, 5 of 2.
+    // Five of thirteen neighbours in a chessboard are to the right of the border: 4 (1 + 1) of 0, 5 of 2.
     const float spread = hold(wall, 0, 2, 0, 1, false).diffuse_out.w;
     CHECK(spread > 4 * 0.8f);
     CHECK(spread < 4 * 1.01f);

@@ -89,7 +89,7 @@ TEST_CASE("an update shares trees that stay, refits those that are deformed, and
     SceneTriangles before;
     before.baked = torus;
     before.meshes = {torus, torus, torus};
-    const auto soup = [&] { // the same triangles, each somewhere else
+    const auto soup = [&] { // the triangles in random positions
         std::vector<BvhTriangle> moved = torus;
         for (BvhTriangle& t : moved) {
             const Vec3 by = {static_cast<float>(t.primitive * 7919u % 101u), static_cast<float>(t.primitive % 97u), 0};

@@ -1,4 +1,4 @@
-// What reinsertion leaves behind it; how good its trees are is in bvh_builders_test.cpp.
+// The form of trees after reinsertion; bvh_builders_test.cpp tests their quality.
 
 #include "accel/builders/reinsert_subtrees.h"
 

@@ -66,7 +66,7 @@ TEST_CASE("what has moved is looked for where it was") {
     const Float4 place = {float_of(0), float_of(0), 0.25f, 0.5f}; // the middle of the triangle's middle
     const Vec2 centre = see_point(view, point_at(&now, &mesh, place)).pixel;
     const Reprojection moved = reproject_surface(cameras, scene, {&before, &mesh}, centre, place);
-    const float pixels = 0.5f / (5 * view.half_width) * 0.5f * 640; // of half a metre at 5 m
+    const float pixels = 0.5f / (5 * view.half_width) * 0.5f * 640; // half a metre at 5 m
     CHECK(moved.pixel.x == doctest::Approx(centre.x - pixels).epsilon(1e-4));
     CHECK(moved.pixel.y == doctest::Approx(centre.y));
     CHECK(moved.depth == doctest::Approx(5));
@@ -117,7 +117,7 @@ TEST_CASE("taps take what shows the same object at this depth with this normal, 
     CHECK(taps_at({2, 1.5f}, 2.2f).sum == 0);            // elsewhere
     CHECK(taps_at({2, 1.5f}, 2, {1, 0, 0}).sum == 0);    // turned away
     CHECK(taps_at({2, 1.5f}, 2, {0, 0, 1}, 8).sum == 0); // something else
-    const Vec3 bent = normalize(Vec3{0.03f, 0, 1});      // of a mirror that is not flat
+    const Vec3 bent = normalize(Vec3{0.03f, 0, 1});      // a curved mirror
     CHECK(taps_at({2, 1.5f}, 0, bent).sum == doctest::Approx(1));
     CHECK(find_taps(before, cameras, {2, 1.5f}, 0, bent, 0.9999f, 7).sum == 0);
     CHECK(taps_at({-3, 1.5f}).sum == 0); // out of the picture

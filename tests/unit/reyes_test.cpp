@@ -109,7 +109,7 @@ using ScreenPoint = std::array<double, 3>;
 using Edge = std::pair<ScreenPoint, ScreenPoint>;
 
 struct Diced {
-    std::map<Edge, int> edges; // of micropolygons, how many have them
+    std::map<Edge, int> edges; // number of micropolygons at each edge
     std::set<std::pair<uint32_t, uint64_t>> ways;
     std::size_t count = 0;
     double longest = 0; // pixels
@@ -227,7 +227,7 @@ TEST_CASE("micropolygons cover what rays through the same places hit, at the sam
 
 TEST_CASE("a plane displaced by a ramp is the tilted plane, in depth and normal") {
     Mesh mesh = test::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}); // faces +z
-    mesh.normals.assign(4, {0, 0, 2});                        // of any length
+    mesh.normals.assign(4, {0, 0, 2});                        // any length
     mesh.uv[0] = {{0.25f, 0}, {0.75f, 0}, {0.75f, 1}, {0.25f, 1}};
     const Scene scene = scene_of(mesh);
     // Between the middles of two texels: height 0 at x = -1, 1 at x = 1.

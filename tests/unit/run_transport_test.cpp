@@ -43,7 +43,7 @@ struct SmallRun {
     }
 };
 
-/// What a call for one sample told of that which is made before it.
+/// Progress that a call for one sample reported of the precomputation.
 struct Making {
     int times_asked = 0;
     double last_asked_s = 0, made_s = 0, end_s = 0;
@@ -97,7 +97,7 @@ TEST_CASE("path's error falls as one over its samples, and the reference's noise
     const double ratio = points.back().rel_mse.mean / *scene.reference.rel_mse;
     CHECK(ratio > 8);
     CHECK(ratio < 80);
-    // The same samples found in another way, and one that lamps alone do not light.
+    // Equal samples found in another way, and one that lamps alone do not light.
     CHECK(row_named(scene, "hybrid").repetitions.back().back().rel_mse ==
           row_named(scene, "path").repetitions.back().back().rel_mse);
     CHECK(row_named(scene, "path").bytes > 16 * 16 * 3 * 16); // a film at least
@@ -179,8 +179,8 @@ TEST_CASE("irradiance caching makes its records once, in the time that is told, 
     int told = 0;
     warm_up(session, [&] { ++told; });
     CHECK(session.history().samples == 0);
-    CHECK(told == 2); // as it begins, and a moment later
-    // All records are still to be made. How often that asks follows the clock, but it is twice a round at least.
+    CHECK(told == 2); // at its start, and a moment later
+    // No record has been made yet. The number of calls depends on the clock, but is at least two per round.
     const Making first = render_one(session);
     CHECK(first.times_asked >= 2 * static_cast<int>(kOvertureRounds));
     CHECK(first.made_s >= first.last_asked_s);
@@ -219,7 +219,7 @@ TEST_CASE("the time of a solution's picture is that of solving and rendering, an
     CHECK(solved.device_bytes > solved.figures.patches * sizeof(PatchLight)); // the solution is on the device
     const RadiositySettings coarse = solution_settings(prepared, 0, 3), fine = solution_settings(prepared, 2, 3);
     CHECK(coarse.patch_size == 4 * fine.patch_size);
-    CHECK(fine.patch_size == doctest::Approx(patch_size_of(prepared, {}))); // what pertev render takes
+    CHECK(fine.patch_size == doctest::Approx(patch_size_of(prepared, {}))); // the default of pertev render
     CHECK(fine.seed == 3);
 }
 

@@ -94,7 +94,7 @@ TEST_CASE("rotations go the shorter way at a constant speed") {
     CHECK(close(slerp(about_z(0), about_z(kQuarter), 1.0f / 3), about_z(kQuarter / 3)));
     CHECK(close(slerp(about_z(0), about_z(kQuarter), 0), about_z(0)));
     CHECK(close(slerp(about_z(0), about_z(kQuarter), 1), about_z(kQuarter)));
-    const Vec4 other_sign = -1.0f * about_z(kQuarter); // the same rotation
+    const Vec4 other_sign = -1.0f * about_z(kQuarter); // an equal rotation
     CHECK(close(slerp(about_z(0), other_sign, 0.5f), about_z(kQuarter / 2)));
     // Small angles keep their digits, none is no rotation, half a turn has some way to go.
     CHECK(close(slerp(about_z(0), about_z(1e-3), 0.25f), about_z(0.25e-3)));

@@ -19,7 +19,7 @@ struct Inner {
     const float* values;
 };
 
-/// Of a picture, traced in the trees of `prepared`.
+/// Hash of a picture, traced in the trees of `prepared`.
 Hash128 hash_of(Queue& queue, const SceneOnDevice& scene, const PreparedScene& prepared) {
     Film film(queue, 40, 30, kAovAlbedo | kAovPosition);
     SceneTracer tracer(queue, *prepared.structures, default_tracers(queue.is_cuda()));

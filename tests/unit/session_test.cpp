@@ -1,5 +1,5 @@
-// What a session keeps, what it does anew, and what it says of itself. tests/consistency/session_test.cpp holds its
-// pictures to fresh ones.
+// A session keeps what a change does not touch, remakes the rest, and reports it. tests/consistency/session_test.cpp
+// compares its pictures with those of new sessions.
 
 #include <unistd.h>
 
@@ -47,7 +47,7 @@ RenderSettings queued_settings() {
     return settings;
 }
 
-/// Of this process in the machine's memory.
+/// Memory of this process.
 std::size_t resident_bytes() {
     std::ifstream file("/proc/self/statm");
     std::size_t pages = 0, resident = 0;
@@ -117,7 +117,7 @@ TEST_CASE("memory does not grow over 1000 changes of camera, size, settings and 
     Session session(queue, a.prepared, camera_at(0), settings);
     std::size_t bytes = 0;
     [[maybe_unused]] std::size_t resident = 0;
-    constexpr int kCycles = 100, kWarm = 20; // of 10 changes each
+    constexpr int kCycles = 100, kWarm = 20; // cycles of 10 changes each
     for (int cycle = 0; cycle < kCycles; ++cycle) {
         for (const float x : {0.5f, -0.5f}) {
             session.set_camera(camera_at(x));
@@ -268,7 +268,7 @@ TEST_CASE("what does not change the picture lets the film be; what does begins i
         change(settings);
         session.set_settings(settings);
         CHECK(session.history().samples == 0);
-        for (const float value : session.picture().pixels) CHECK(value == 0); // of no samples
+        for (const float value : session.picture().pixels) CHECK(value == 0); // without samples
     };
     begins_anew([](RenderSettings& s) { s.width = 25; });
     begins_anew([](RenderSettings& s) { s.height = 5; });

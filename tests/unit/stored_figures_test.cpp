@@ -106,7 +106,7 @@ TEST_CASE("what is measured must look as it did to others") {
     CHECK(with_share("sponza", 0.0009));
     CHECK(!with_share("sponza", 0.002));
     CHECK(!with_share("sponza", -0.002));
-    CHECK(with_share("forest", -0.039)); // as docs/ray_sets.md has it
+    CHECK(with_share("forest", -0.039)); // the value in docs/ray_sets.md
     CHECK(!with_share("forest", -0.06));
     const auto with_mean = [](double times) {
         return has_any(ratios_of(changed(job_run("S5", 1e8), [&](JobRun& run) { run.mean *= times; })));

@@ -51,7 +51,7 @@ struct Change {
     const char* what;
     void (*change)(Scene&);
     SceneUpdate update;
-    double most_of_all; // of the bytes of the whole structure that are copied
+    double most_of_all; // largest fraction of the structure's bytes that is copied
     bool takes_memory;
 };
 

@@ -28,7 +28,7 @@ TEST_CASE("a filter's density is that by which the camera's rays are drawn") {
             const float x = 1.25f * (2.0f * (static_cast<float>(i) + 0.5f) / kSteps - 1.0f);
             sum += static_cast<double>(filter_density(filter, x)) * 2.5 / kSteps;
             while (next < 50 && sample_filter_axis(filter, static_cast<float>(next) / 50) < x) {
-                CHECK(sum == doctest::Approx(next / 50.0).epsilon(1e-3)); // what lies below it
+                CHECK(sum == doctest::Approx(next / 50.0).epsilon(1e-3)); // the part below it
                 ++next;
             }
         }

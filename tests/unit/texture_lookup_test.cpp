@@ -33,7 +33,7 @@ TextureImage random_rgba8(uint32_t width, uint32_t height, uint32_t seed) {
     return image;
 }
 
-/// The same numbers as a float image.
+/// The image converted to floats.
 TextureImage as_float(const TextureImage& source) {
     TextureImage image;
     image.rgba_float = {source.rgba8.width, source.rgba8.height, 4, {}};

@@ -83,7 +83,7 @@ const std::vector<ThesisPicture>& pictures_in_loop() {
     return made;
 }
 
-/// Of the green of the pixels in [x0, x1) x [y0, y1), shares of the picture's width and height.
+/// Mean of green over the pixels in [x0, x1) x [y0, y1), fractions of the picture's width and height.
 double mean_green(const Rgba8Image& image, double x0 = 0, double y0 = 0, double x1 = 1, double y1 = 1) {
     const auto at = [](double share, uint32_t size) { return static_cast<uint32_t>(share * size); };
     double sum = 0, count = 0;
@@ -147,7 +147,7 @@ TEST_CASE("patches are as many pixels high in small pictures as in full ones, wh
         const ThesisDetail detail = thesis_detail(panel_height);
         return detail.patch_size == patch_size && detail.early_steps == steps && detail.photons == photons;
     };
-    CHECK(is(384, 0.08f, 200, 65536)); // of 1024x768
+    CHECK(is(384, 0.08f, 200, 65536)); // for 1024x768
     CHECK(is(1080, 0.08f, 200, 65536));
     CHECK(is(192, 0.16f, 50, 16384));
     for (const uint32_t height : {96u, 6u, 1u}) CHECK(is(height, 0.32f, 12, 4096));
@@ -189,13 +189,13 @@ TEST_CASE("figure 3.9's photons lie on surfaces, and the map blurs what final ga
     ThesisPictures pictures(queue, small_picture(256, 192, 8));
     const ThesisPicture dots = pictures.make("figure-3.9a", {}), map = pictures.make("figure-3.9b", {}),
                         gathered = pictures.make("figure-3.9c", {});
-    // Beside the box nothing stands: it is square.
+    // Nothing is next to the square box.
     CHECK(mean_green(dots.image, 0, 0, 0.1, 1) == 0);
     std::size_t lit = 0;
     for (std::size_t i = 1; i < dots.image.pixels.size(); i += 4) lit += dots.image.pixels[i] > 20 ? 1 : 0;
     CHECK(lit > dots.image.pixels.size() / 4 / 20);
     CHECK(lit < dots.image.pixels.size() / 4 / 2); // dots, and not a picture: the box is three quarters
-    // The same light on the whole.
+    // Equal light in total.
     CHECK(mean_green(map.image) == doctest::Approx(mean_green(gathered.image)).epsilon(0.05));
     CHECK(map.image.pixels != gathered.image.pixels);
 }

@@ -33,7 +33,7 @@ ThesisReport full_thesis(const std::string& device) {
     return thesis;
 }
 
-/// Of each table of the thesis's numbers: its title, and its columns by what each is of, every one once.
+/// Titles of each table of the thesis's numbers, and its columns with their subjects, each once.
 using Heads = std::vector<std::pair<std::string, std::string>>;
 
 Heads heads_of(const Measurement& m) {

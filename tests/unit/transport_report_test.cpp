@@ -1,4 +1,5 @@
-// What follows from measured errors: means and bands, equal time, equal samples, efficiency; and the report's texts.
+// Results derived from measured errors: means and bands, equal time, equal samples, efficiency; and the report's
+// texts.
 
 #include <array>
 #include <cmath>
@@ -249,7 +250,7 @@ TEST_CASE("the report on light transport has what was measured, and what was not
     const ResultTable& points = m.table("points");
     REQUIRE(points.rows.size() == 8);
     CHECK(points.at(3, "samples") == 8.0);
-    CHECK(points.at(3, "efficiency").text("{:.3g}") == "5"); // of path
+    CHECK(points.at(3, "efficiency").text("{:.3g}") == "5"); // for path
     CHECK(points.at(3, "rel_mse").text("{:.3g}") == "0.25");
     CHECK(points.at(3, "rel_mse_high").text("{:.4f}") == "1.8383"); // 0.25 + 12.7062 * 0.125
     CHECK(m.table("repetitions").at(16, "refused") == "lamps alone, and \"more\"");

@@ -24,7 +24,7 @@ std::string tree_of(uint64_t count) {
     return tree_sum(count, [](uint64_t i) { return Text{std::to_string(i)}; }).text;
 }
 
-/// The same sum, and that of one term after the other, in double for comparison.
+/// The tree sum and the sequential sum, in double for comparison.
 struct Sums {
     float tree = 0, in_turn = 0;
     double exact = 0;

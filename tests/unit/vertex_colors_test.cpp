@@ -97,7 +97,7 @@ TEST_CASE("vertex colours beside a texture are left out with a warning, and coun
     CHECK(scene.meshes[0].colors.empty());
     CHECK(scene.meshes[1].colors.size() == 3);
     CHECK(scene.meshes[2].colors.size() == 3);
-    CHECK(messages.all().size() == 2); // of the colours, and of the file that is no picture
+    CHECK(messages.all().size() == 2); // about the colours, and about the file that is no picture
 }
 
 } // namespace vertex_colors_test

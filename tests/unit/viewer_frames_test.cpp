@@ -64,7 +64,7 @@ TEST_CASE("frames of the movement share light and find it as coarsely as is set;
             alone.frame().display(request.view.display.tone_map, 0);
             REQUIRE(shown.has_value());
             CHECK(shown->image.pixels == alone.frame().displayed().pixels);
-            CHECK(shown->samples == k + 1); // of one camera
+            CHECK(shown->samples == k + 1); // seen by one camera
         }
         request.is_moving = false;
         request.budget_s = 100;
@@ -85,7 +85,7 @@ TEST_CASE("a picture at rest is metered, and places are picked in it, and what i
     plain.render(picture.samples);
     request.view.finds_exposure = true;
     request.budget_s = 1e-9;    // a pass at a time
-    std::vector<double> shares; // of the records
+    std::vector<double> shares; // progress of the records
     request.tell_made = [&](double share) { shares.push_back(share); };
     Session session = watched.session();
     SessionFrames frames(session, watched.scene, 0.1);

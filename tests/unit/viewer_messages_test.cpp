@@ -1,4 +1,4 @@
-// What pages may say to the viewer (apps/viewer/client_message.h): strict, bounded, and without a crash for any bytes.
+// Messages of pages to the viewer (apps/viewer/client_message.h): strict, bounded, and without a crash for any bytes.
 
 #include <cmath>
 #include <iterator>

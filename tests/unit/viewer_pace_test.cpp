@@ -1,5 +1,5 @@
-// What keeps pictures coming in time: sizes while moving (frame_pace.h), links (link_pace.h), who steers (wheel.h), who
-// is sent what (audience.h).
+// Timely pictures: sizes while moving (frame_pace.h), links (link_pace.h), who steers (wheel.h), and what each client
+// gets (audience.h).
 
 #include <algorithm>
 #include <deque>
@@ -196,10 +196,10 @@ Shown pictures_shown(double decode_s, std::size_t at_once) {
 TEST_CASE("pictures do not wait at a client that is slower than the renderer, and none is kept from a faster one") {
     const Shown slow = pictures_shown(0.02, 1);
     CHECK(slow.wait_s < 0.029); // 22 ms are its own; at once sent, the second would wait for up to 20
-    CHECK(slow.rate > 40);      // of 50
+    CHECK(slow.rate > 40);      // out of 50
     const Shown parallel = pictures_shown(0.012, 2);
     CHECK(parallel.wait_s < 0.016);
-    CHECK(parallel.rate > 105); // of 125
+    CHECK(parallel.rate > 105); // out of 125
     const Shown fast = pictures_shown(0.004, 1);
     CHECK(fast.wait_s < 0.008);
     CHECK(fast.rate > 115);

@@ -179,7 +179,7 @@ TEST_CASE("layers have the colours that they are described by") {
     const Rgba8Image deviation = show_deviation({3, 1, 1, {0.1f, 2, 1e4f}}, full);
     CHECK(full == 2);
     CHECK(deviation.pixels[0] < deviation.pixels[4]);
-    CHECK(deviation.pixels[4] == deviation.pixels[8]); // what is not known is bright
+    CHECK(deviation.pixels[4] == deviation.pixels[8]); // unknown values are bright
     const PixelIds ids[] = {{0, 0, 0}, {1, 0, 0}, {0, 5, 0}, {kNoHit, 0, 0}};
     const Rgba8Image instances = show_ids(ids, 4, 1, IdKind::Instance);
     const auto color = [&](std::size_t i) {

@@ -90,7 +90,7 @@ TEST_CASE("time moves a camera of the scene until somebody steps; then it is the
 TEST_CASE("flags say a camera's place to the bit, or the name of the scene's where words cannot") {
     Scene scene = scene_with_camera();
     Transform turned = look_at({0, 1, 5}, {0.3f, 1.1f, 0}, {0, 1, 0});
-    turned.row0.x = std::nextafter(turned.row0.x, 0.0f); // as no look_at has it
+    turned.row0.x = std::nextafter(turned.row0.x, 0.0f); // no look_at gives this value
     scene.cameras[0].world_from_camera = turned;
     const StartCamera start = start_at(scene);
     ViewCamera view(start, scene);

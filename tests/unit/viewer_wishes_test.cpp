@@ -1,4 +1,5 @@
-// What commands do before they are taken (inbox.h), and what clients that do not steer wish (wheel.h, audience.h).
+// The effect of commands before they are handled (inbox.h), and wishes of clients that do not steer (wheel.h,
+// audience.h).
 
 #include <atomic>
 
@@ -91,7 +92,7 @@ TEST_CASE("a setting that is refused, or that is so already, costs no sample") {
     CHECK(flagged.put(shape) == "");
     shape.message.height = 200;
     CHECK(flagged.put(shape) == "hurry abandon");
-    // What the renderer has made of it counts, and what waits since.
+    // The renderer's state counts, with the commands that wait since then.
     flagged.inbox.expect(view);
     CHECK(flagged.put(shape) == "");
     CHECK(flagged.inbox.take(std::chrono::milliseconds(0)).size() == 14);
@@ -129,7 +130,7 @@ TEST_CASE("whoever does not steer is told why nothing happens, and who steers se
     CHECK(audience.said(2, R"({"type":"shape","width":64,"height":48})", 41) == "");
     CHECK(texts_for(audience, 2) == "");
     CHECK(inbox.take(std::chrono::milliseconds(0)).size() == 1);
-    // What was on its way when the wheel was handed over is no wish.
+    // Messages in transit when the wheel was handed over are no wishes.
     CHECK(audience.said(1, R"({"type":"hand","to":2})", 50) == "");
     texts_for(audience, 1);
     CHECK(audience.said(1, kOrbit, 50.3) == "");

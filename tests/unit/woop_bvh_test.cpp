@@ -62,7 +62,7 @@ TEST_CASE("rays inside a triangle hit it where the exact test says, rays outside
         const bool hits = intersect_triangle(ray.origin, shear, ray.t_min, ray.t_max, a, b, c, exact);
         const bool hits_woop = WoopTests::intersect(ray, make_woop_triangle(a, b, c, true), woop);
         if (hits && (exact.u < 1e-3f || exact.v < 1e-3f || exact.u + exact.v > 0.999f)) continue; // at an edge
-        if (!hits && hits_woop) {                                                                 // the same
+        if (!hits && hits_woop) {                                                                 // equal
             CHECK((woop.u < 1e-3f || woop.v < 1e-3f || woop.u + woop.v > 0.999f));
             continue;
         }

@@ -15,7 +15,7 @@ export function remembered(key, otherwise) {
 export function remember(key, value) {
   try {
     localStorage.setItem(`pertev-${key}`, String(value));
-  } catch { // likewise
+  } catch { // without storage nothing is remembered
   }
 }
 

@@ -4,7 +4,7 @@
 /** @typedef {import("./link.js").Link} Link */
 /** @typedef {{x: number, y: number, width: number, height: number}} Place of the picture in the window */
 
-/** What keys do, for the help and for the keyboard: one table. */
+/** The actions of keys: one table for the help and the keyboard. */
 export const kKeys = [
   { keys: ["W", "A", "S", "D"], text: "forward, left, back, right" },
   { keys: ["Q", "E"], text: "down, up" },
@@ -52,7 +52,7 @@ export class Controls {
     this.button = -1;
     this.travelled = 0;
     this.drag = { kind: "", dx: 0, dy: 0 };
-    this.nextUse = "show"; // of the next click
+    this.nextUse = "show"; // use of the next click
     addEventListener("keydown", (event) => this.keyDown(event));
     addEventListener("keyup", (event) => this.held.delete(event.code));
     addEventListener("blur", () => this.held.clear());
@@ -71,7 +71,7 @@ export class Controls {
     if (event.ctrlKey || event.metaKey) return;
     const target = event.target;
     const types = target instanceof HTMLInputElement && target.type === "number";
-    if (types && kLeaving.includes(event.code)) return target.blur(); // what was typed is taken, and keys steer again
+    if (types && kLeaving.includes(event.code)) return target.blur(); // the text is accepted, and keys steer again
     if (types && event.code !== "Tab" && event.code !== "F12") return;
     if (event.code === "Escape" && target instanceof HTMLElement) target.blur();
     if (event.code in kAxes || event.code.startsWith("Shift") || event.code === "KeyZ") {

@@ -25,7 +25,7 @@ export function readHeader(message) {
   };
 }
 
-/** What a page is known by over reconnects. */
+/** The key by which the viewer recognises a page after a reconnect. */
 function pageKey() {
   let key = sessionStorage.getItem("pertev-key");
   if (!key) {
@@ -66,7 +66,7 @@ export class Link {
     socket.onclose = (event) => this.lost(event.code, event.reason);
   }
 
-  /** What drops on the way is tried again, without a word at first. What the viewer said is not: it will not take it back.
+  /** Reconnects after a lost connection, silently at first, but not after the viewer has refused the page.
    * @param {number} code @param {string} reason */
   lost(code, reason) {
     this.socket = null;

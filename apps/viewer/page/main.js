@@ -108,7 +108,7 @@ function receive(message) {
     case "state":
       state = message;
       if (message.phase === "moving" && mark) {
-        mark = null; // what was picked lies elsewhere now
+        mark = null; // the picked point lies elsewhere now
         draw();
       }
       settings.tell(message, people.you);
@@ -128,7 +128,7 @@ function receive(message) {
   }
 }
 
-/** Of its group; rows of one group stay as they are.
+/** The position of a row's group; rows of one group keep their order.
  * @param {string[]} row */
 function order(row) {
   return ["Now", "Scene", "Frames", "Rays", "Stages"].indexOf(row[0]);

@@ -75,7 +75,7 @@ export class TimeLine {
     this.asked.ask(this.link.sendInput({ type: "time", at }));
   }
 
-  /** What the viewer says.
+  /** Takes the state that the viewer sends.
    * @param {any} state @param {number} you */
   tell(state, you) {
     if (this.asked.isKnownTo(state, you)) this.keep(state.clock);
@@ -147,7 +147,7 @@ export class Recorder {
   }
 
   addKey() {
-    const at = Math.fround(Number(this.time.value)); // as the file's reader takes it
+    const at = Math.fround(Number(this.time.value)); // rounded like the file reader's floats
     if (!(at >= 0 && at <= 1e9)) return;
     this.link.sendInput({ type: "key", at });
   }

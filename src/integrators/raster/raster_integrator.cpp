@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-/// Rows that may wait for the second pass; where more would, their triangles are scanned in the first one.
+/// Maximum number of rows deferred to the second pass; triangles beyond it are scanned in the first one.
 uint64_t rows_for(uint64_t pixels) { return std::clamp<uint64_t>(pixels, 1u << 12, 1u << 22); }
 
 } // namespace
@@ -35,6 +35,7 @@ void RasterIntegrator::begin(const PictureView& picture, SceneTracer& tracer, ui
 }
 
 void RasterIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
+    PERTEV_CHECK(film.is_whole_picture());
     const auto triangles = static_cast<uint32_t>(picture_.scene.triangle_count);
     for (uint32_t sample = first; sample < first + count; ++sample) {
         if (is_abandoned()) return;

@@ -3,7 +3,7 @@
 
 namespace pertev {
 
-/// Rays of bounces and of shadows go by these.
+/// Rendering uses these for bounce and shadow rays.
 template <>
 inline constexpr bool kOfPictures<CompressedWalk<WalkOptions{.rta_at_pops = false}>> = true;
 template <>

@@ -3,7 +3,7 @@
 
 namespace pertev {
 
-/// Rays of the camera go by it.
+/// Rendering uses it for camera rays.
 template <>
 inline constexpr bool kOfPictures<OctantWalk<WalkOptions{}>> = true;
 
