@@ -84,7 +84,7 @@ def source_faults(name, text, tracked):
 
 
 def command_faults(name, text, presets):
-    """What a command that is not the program's own names must be there; the program's are run by the test."""
+    """Faults of scripts and presets that commands name. The test runs the commands of the program itself."""
     for command in commands(text):
         for word in re.sub(r"^[A-Z_]+=\S+ ", "", command).split():
             if word.startswith(("tools/", "tests/", "./")) and not (ROOT / word).exists():
