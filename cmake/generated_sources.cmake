@@ -25,6 +25,16 @@ add_custom_command(OUTPUT ${PERTEV_GENERATED_DIR}/builtin_scenes.cpp
   COMMENT "Embedding the built-in scenes" VERBATIM)
 target_sources(pertev_formats PRIVATE ${PERTEV_GENERATED_DIR}/builtin_scenes.cpp)
 
+# The laboratory's page, and figures of other programs.
+file(GLOB embedded_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/lab/page/* ${PROJECT_SOURCE_DIR}/bench/figures.json)
+list(JOIN embedded_files "|" embedded_list)
+add_custom_command(OUTPUT ${PERTEV_GENERATED_DIR}/embedded_files.cpp
+  DEPENDS ${embedded_files} ${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake
+  COMMAND ${CMAKE_COMMAND} "-DFILES=${embedded_list}" -DOUTPUT=${PERTEV_GENERATED_DIR}/embedded_files.cpp
+          -P ${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake
+  COMMENT "Embedding the laboratory's page" VERBATIM)
+target_sources(pertev_lab PRIVATE ${PERTEV_GENERATED_DIR}/embedded_files.cpp)
+
 # Tables of lobes: 10 s of one core, once. Sums stand side by side for the vectoriser, which divides where masks say no.
 add_executable(pertev_make_lobe_tables ${PROJECT_SOURCE_DIR}/tools/make_lobe_tables.cpp)
 target_link_libraries(pertev_make_lobe_tables PRIVATE fmt::fmt TBB::tbb)

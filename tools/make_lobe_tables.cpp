@@ -3,7 +3,8 @@
 //
 // The build runs it. Axes and meaning are stated in src/shading/lobes/energy_tables.h and sheen_lobe.h, which must
 // agree with this file. Doubles leave eight digits to spare, so the values do not depend on the compiler or on libm;
-// other text than that of kHash is refused. tests/unit/lobe_tables_test.cpp holds the floats that a program reads of it.
+// other text than that of kHash is refused. tests/unit/lobe_tables_test.cpp holds the floats that a program reads of
+// it.
 //
 // Each value is an integral by a product rule: Gauss-Legendre along one axis, and midpoints about the other, along
 // which the integrand is even and periodic. Energy is integrated over the distribution of visible normals (Heitz 2018;

@@ -20,11 +20,11 @@
 #include "base/error.h"
 #include "formats/files/parse_number.h"
 #include "lab/describe_camera.h"
+#include "lab/lab_tables.h"
 #include "lab/list_combinations.h"
 #include "lab/ray_sets.h"
 #include "lab/record_scenes.h"
 #include "lab/run_lab.h"
-#include "lab/write_tables.h"
 #include "session/machine.h"
 #include "session/opening/strictness.h"
 #include "settings/parse_values.h"
@@ -167,16 +167,17 @@ int run(LabFlags& flags) {
     settings.scene = lab_scene_title(flags.scene.scene);
     settings.camera = phrase(describe_camera(camera, scene.origin_in_file));
     listen_for_interrupt();
-    const LabReport report = run_lab(*queue, scene, camera, settings, show_lab_progress(reporter, flags.output));
+    const Measurement head = start_measurement(*queue, settings.scene);
+    const LabReport report = run_lab(*queue, scene, camera, settings, show_lab_progress(reporter, flags.output, head));
     reporter.end_progress();
-    reporter.result(json_of(report));
+    reporter.result(json_of(measurement_of(report, head), "lab"));
     if (!has_findings(report) && report.interrupted) {
         reporter.say("interrupted before anything was measured; nothing is written");
         return exit_status(ErrorCode::Interrupted);
     }
     say_refusals(flags, report, reporter);
     reporter.answer(text_of(report));
-    if (!flags.output.empty()) write_lab_files(flags.output, report, reporter);
+    if (!flags.output.empty()) write_lab_files(flags.output, report, head, reporter);
     fail_if_wrong(report);
     return report.interrupted ? exit_status(ErrorCode::Interrupted) : 0;
 }
@@ -248,10 +249,10 @@ void add_lab_command(CLI::App& app, int& status) {
     for (const char* flag : {"--thesis", "--depths", "--runs"}) transport->excludes(verb.get_option(flag));
     add_transport_flags(verb, transport, flags->of_transport);
     CLI::Option* output =
-        verb.add_option(
-                "-o,--output", flags->output,
-                "write report.html, .csv, .json and heat maps here; with --thesis\nthesis.html, its figures and "
-                "pictures, thesis-1 and -2.csv and .json;\nwith --transport transport.html, .csv and .json")
+        verb.add_option("-o,--output", flags->output,
+                        "write report.html, .csv, .json and heat maps here; with --thesis\nthesis.html and .json, its "
+                        "pictures, "
+                        "thesis-1 and -2.csv and\n.json; with --transport transport.html, .csv, .json and EXR files")
             ->type_name("DIR");
     flags->settings.add(verb, kLab, *flags);
     for (CLI::Option* many : {thesis, transport}) many->excludes(verb.get_option("--strict")); // their scenes are known

@@ -11,8 +11,8 @@
 #include "base/write_file_atomically.h"
 #include "image/write_png.h"
 #include "lab/heat_map.h"
-#include "lab/write_html.h"
-#include "lab/write_tables.h"
+#include "lab/lab_tables.h"
+#include "lab/report_page.h"
 
 namespace pertev {
 namespace {
@@ -85,10 +85,16 @@ void remove_files(const std::filesystem::path& folder, const std::set<std::strin
     for (const std::filesystem::path& file : found) std::filesystem::remove(file, error);
 }
 
-void write_lab_files(const std::filesystem::path& folder, const LabReport& report, Reporter& reporter) {
+void write_measurement(const std::filesystem::path& folder, const std::string& name, const Measurement& measurement) {
+    write_text(folder / (name + ".json"), json_of(measurement) + '\n');
+    const std::string json = json_of(measurement, "", true);
+    write_text(folder / (name + ".html"), report_page({&json, 1}));
+}
+
+void write_lab_files(const std::filesystem::path& folder, const LabReport& report, const Measurement& head,
+                     Reporter& reporter) {
     write_text(folder / "report.csv", csv_of(report));
-    write_text(folder / "report.json", json_of(report) + '\n');
-    write_text(folder / "report.html", html_of(report));
+    write_measurement(folder, "report", measurement_of(report, head));
     std::set<std::string> stale = all_heat_map_files();
     for (const std::string& name : report.heat_map_names) {
         for (const std::string& file : heat_map_files(name)) stale.erase(file);
@@ -97,8 +103,9 @@ void write_lab_files(const std::filesystem::path& folder, const LabReport& repor
     reporter.say(fmt::format("written: {}", (folder / "report.html").string()));
 }
 
-std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter, const std::filesystem::path& folder) {
-    return [&reporter, folder, last_doing = std::string(), last_s = 0.0](const LabProgress& now) mutable {
+std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter, const std::filesystem::path& folder,
+                                                          const Measurement& head) {
+    return [&reporter, folder, head, last_doing = std::string(), last_s = 0.0](const LabProgress& now) mutable {
         constexpr double often_s = 0.1; // enough for eyes
         if (now.doing != last_doing || now.seconds - last_s >= often_s) {
             last_doing = now.doing, last_s = now.seconds;
@@ -107,7 +114,7 @@ std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter, co
         if (now.heat_map != nullptr && !folder.empty()) write_heat_map(folder, *now.heat_map);
         if (now.so_far != nullptr && !folder.empty() && has_findings(*now.so_far)) {
             write_text(folder / "report.csv", csv_of(*now.so_far));
-            write_text(folder / "report.json", json_of(*now.so_far) + '\n');
+            write_text(folder / "report.json", json_of(measurement_of(*now.so_far, head)) + '\n');
         }
         return !interrupted();
     };

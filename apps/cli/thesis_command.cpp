@@ -6,7 +6,6 @@
 #include <new>
 #include <optional>
 #include <set>
-#include <span>
 
 #include <fmt/format.h>
 
@@ -15,15 +14,13 @@
 #include "apps/cli/lab_files.h"
 #include "apps/cli/lab_scene.h"
 #include "base/error.h"
-#include "base/json_text.h"
 #include "base/stopwatch.h"
 #include "image/auto_exposure.h"
 #include "image/tone_map_image.h"
 #include "image/write_png.h"
 #include "lab/describe_camera.h"
+#include "lab/lab_tables.h"
 #include "lab/thesis.h"
-#include "lab/write_tables.h"
-#include "lab/write_thesis_pictures.h"
 #include "session/session.h"
 #include "session/survey/default_light.h"
 
@@ -71,8 +68,8 @@ RenderResult render(Session& session, PathLight light) {
 }
 
 /// Local and global illumination, at one exposure: they are compared.
-void add_pictures(Queue& queue, const MeasuredScene& scene, const LabSettings& settings, Messages& messages,
-                  Picture& shows_local, Picture& shows_global) {
+void add_pictures(Queue& queue, const MeasuredScene& scene, const LabSettings& settings, Messages& messages, int figure,
+                  ThesisReport& thesis) {
     const PreparedScene prepared = prepare_scene(scene.scene, {}, messages);
     RenderSettings picture;
     picture.width = settings.width, picture.height = settings.height;
@@ -82,12 +79,15 @@ void add_pictures(Queue& queue, const MeasuredScene& scene, const LabSettings& s
     const RenderResult local = render(session, PathLight::Direct);
     const RenderResult global = render(session, PathLight::Path);
     const float stops = scene.default_light ? auto_exposure_stops(global.picture, ToneMap::Srgb) : 0;
-    const auto caption = [&](const char* light, const RenderResult& result) {
-        return fmt::format("{}, {}, {} samples a pixel{}", scene.name, light, result.samples,
-                           interrupted() ? " (interrupted)" : "");
-    };
-    shows_local = {caption("local", local), tone_map_image(local.picture, ToneMap::Srgb, stops)};
-    shows_global = {caption("global", global), tone_map_image(global.picture, ToneMap::Srgb, stops)};
+    for (const auto& [light, result] : {std::pair("local", &local), std::pair("global", &global)}) {
+        thesis.local_and_global.push_back(
+            {.group = fmt::format("Figure 6.{}: local and global illumination", figure),
+             .title = light,
+             .caption = fmt::format("{}, {}, {} samples a pixel{}", scene.name, light, result->samples,
+                                    interrupted() ? " (interrupted)" : ""),
+             .image = tone_map_image(result->picture, ToneMap::Srgb, stops),
+             .file = fmt::format("figure-6.{}-{}.png", figure, light)});
+    }
 }
 
 /// Makes parts of the report. What keeps one from being made is told in the report and thrown in the end: the others
@@ -141,7 +141,7 @@ void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, const st
     picture.samples = queue.is_cuda() ? kPictureSamplesCuda : kPictureSamples;
     ThesisPictures pictures(queue, picture);
     const std::vector<std::string> names = thesis_picture_names();
-    const std::function<bool(const LabProgress&)> show = show_lab_progress(reporter, {});
+    const std::function<bool(const LabProgress&)> show = show_lab_progress(reporter);
     const Stopwatch watch;
     for (std::size_t i = 0; i < names.size() && attempts.may_go_on(); ++i) {
         attempts.attempt(names[i], [&] {
@@ -158,38 +158,31 @@ void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, const st
 }
 
 /// All but the pictures by chapter, which are written. Files of an earlier run that this one does not have are removed.
-void write_files(const std::filesystem::path& folder, const ThesisReport& thesis) {
+void write_files(const std::filesystem::path& folder, const ThesisReport& thesis, const Measurement& head) {
     std::set<std::string> stale;
-    const auto text_file = [&](const std::string& name, const std::string& text) {
-        if (text.empty()) {
-            stale.insert(name);
-        } else {
-            write_text(folder / name, text);
-        }
-    };
-    const auto picture_file = [&](const std::string& name, const std::vector<Picture>& pictures, std::size_t i) {
-        if (i < pictures.size() && !pictures[i].image.pixels.empty()) {
-            write_png(folder / name, pictures[i].image);
-        } else {
-            stale.insert(name);
-        }
-    };
-    text_file("thesis.html", html_of(thesis));
-    for (const ThesisFigure& figure : figures_of(thesis)) {
-        text_file(fmt::format("figure-{}.svg", figure.number), figure.svg);
-    }
     for (const std::string& file : thesis_picture_files()) stale.insert(file);
     for (const ThesisPicture& picture : thesis.pictures) stale.erase(picture.file());
-    text_file("thesis-pictures.csv", thesis.pictures.empty() ? "" : csv_of(std::span(thesis.pictures)));
-    text_file("thesis-pictures.json", thesis.pictures.empty() ? "" : json_of(std::span(thesis.pictures)) + '\n');
     for (std::size_t i = 0; i < kThesisScenes; ++i) {
-        picture_file(fmt::format("figure-6.{}-local.png", 7 + i), thesis.local, i);
-        picture_file(fmt::format("figure-6.{}-global.png", 7 + i), thesis.global, i);
+        for (const char* light : {"local", "global"}) stale.insert(fmt::format("figure-6.{}-{}.png", 7 + i, light));
         // Numbered: names of scenes may be equal, or too long for a file's.
-        const bool is_there = i < thesis.scenes.size();
-        text_file(fmt::format("thesis-{}.csv", i + 1), is_there ? csv_of(thesis.scenes[i]) : "");
-        text_file(fmt::format("thesis-{}.json", i + 1), is_there ? json_of(thesis.scenes[i]) + '\n' : "");
+        const std::string name = fmt::format("thesis-{}", i + 1);
+        if (i < thesis.scenes.size()) {
+            write_text(folder / (name + ".csv"), csv_of(thesis.scenes[i]));
+            write_text(folder / (name + ".json"), json_of(measurement_of(thesis.scenes[i], head)) + '\n');
+        } else {
+            stale.insert({name + ".csv", name + ".json"});
+        }
     }
+    for (const ResultPicture& picture : thesis.local_and_global) {
+        write_png(folder / picture.file, picture.image);
+        stale.erase(picture.file);
+    }
+    if (thesis.pictures.empty()) {
+        stale.insert("thesis-pictures.csv");
+    } else {
+        write_text(folder / "thesis-pictures.csv", csv_of(table_of(thesis.pictures)));
+    }
+    write_measurement(folder, "thesis", measurement_of(thesis, head));
     remove_files(folder, stale);
 }
 
@@ -201,13 +194,14 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
     settings.primary = settings.diffuse = true;
     settings.shadow = settings.heat_maps = false;
     const bool has_pictures = !output.empty();
+    const Measurement head = start_measurement(queue, "");
     ThesisReport thesis;
     Attempts attempts(thesis);
     bool is_written = false; // the report, as it is by now
     const auto write_report = [&](const std::string& what) {
         is_written = false;
         attempts.attempt(what, [&] {
-            write_files(output, thesis);
+            write_files(output, thesis, head);
             is_written = true;
         });
     };
@@ -229,9 +223,9 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
         reporter.say(fmt::format("{}: {}x{}, depths {} to {}", scene.name, settings.width, settings.height,
                                  settings.first_depth, settings.depth));
         attempts.attempt(scene.name, [&] {
-            LabReport report = run_lab(queue, scene.scene, scene.camera, settings, show_lab_progress(reporter, {}));
+            LabReport report = run_lab(queue, scene.scene, scene.camera, settings, show_lab_progress(reporter));
             reporter.end_progress();
-            reporter.event(json_of(report));
+            reporter.event(json_of(measurement_of(report, head), "lab"));
             if (has_findings(report)) thesis.scenes.push_back(std::move(report));
         });
         reporter.end_progress();
@@ -239,9 +233,9 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
         if (thesis.scenes.empty() || !has_pictures) continue;
         reporter.set_work(fmt::format("{}: rendering pictures", scene.name));
         if (attempts.may_go_on()) {
-            Picture &local = thesis.local.emplace_back(), &global = thesis.global.emplace_back();
+            const int figure = &scene == scenes.data() ? 7 : 8;
             attempts.attempt("pictures of " + scene.name,
-                             [&] { add_pictures(queue, scene, settings, reporter.messages(), local, global); });
+                             [&] { add_pictures(queue, scene, settings, reporter.messages(), figure, thesis); });
         }
         write_report("files of " + scene.name);
     }
@@ -250,11 +244,9 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
         write_report("files of the report");
     }
     const bool cut_short = interrupted();
-    std::vector<std::string> lacking;
-    for (const std::string& line : thesis.lacking) lacking.push_back(json_string(line));
-    reporter.event(fmt::format(R"({{"event":"thesis","scenes":{},"pictures":{},"lacking":[{}],"interrupted":{}}})",
-                               thesis.scenes.size(), json_of(std::span(thesis.pictures)), fmt::join(lacking, ","),
-                               cut_short));
+    Measurement made = measurement_of(thesis, head);
+    made.interrupted = cut_short;
+    reporter.event(json_of(made, "thesis"));
     if (thesis.scenes.empty()) { // only an interrupt comes so early
         reporter.say("interrupted before anything was measured; nothing is written");
         return exit_status(ErrorCode::Interrupted);

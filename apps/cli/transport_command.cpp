@@ -17,11 +17,12 @@
 #include "base/version.h"
 #include "image/image_format.h"
 #include "image/read_image.h"
+#include "image/write_exr.h"
 #include "lab/describe_camera.h"
 #include "lab/run_transport.h"
 #include "lab/transport_light.h"
 #include "lab/transport_presets.h"
-#include "lab/write_transport.h"
+#include "lab/transport_tables.h"
 #include "session/survey/default_light.h"
 #include "settings/parse_values.h"
 #include "settings/value_names.h"
@@ -111,10 +112,19 @@ TransportSettings settings_of(const TransportFlags& flags, const std::string& si
     return settings;
 }
 
-void write_files(const std::filesystem::path& folder, const TransportReport& report) {
+/// The EXR files of a scene's pictures, and their names in it. A name of a scene may be any text.
+void write_pictures(const std::filesystem::path& folder, std::size_t number, TransportScene& scene) {
+    for (ResultPicture& picture : scene.pictures) {
+        picture.group = scene.name;
+        if (folder.empty()) continue;
+        picture.exr = fmt::format("transport-{}-{}.exr", number + 1, picture.title);
+        write_exr(folder / picture.exr, picture.linear);
+    }
+}
+
+void write_files(const std::filesystem::path& folder, const TransportReport& report, const Measurement& head) {
     write_text(folder / "transport.csv", csv_of(report));
-    write_text(folder / "transport.json", json_of(report) + '\n');
-    write_text(folder / "transport.html", html_of(report));
+    write_measurement(folder, "transport", measurement_of(report, head));
 }
 
 } // namespace
@@ -141,7 +151,8 @@ int run_transport_command(Queue& queue, const SceneOptions& scene, const Transpo
                               .repetitions = settings.repetitions,
                               .seed = settings.picture.path.seed,
                               .seconds = settings.seconds};
-    const std::function<bool(const LabProgress&)> show = show_lab_progress(reporter, {});
+    const Measurement head = start_measurement(queue, "");
+    const std::function<bool(const LabProgress&)> show = show_lab_progress(reporter);
     const double count = static_cast<double>(subjects.size());
     double before_s = 0;
     for (std::size_t i = 0; i < subjects.size() && !report.interrupted; ++i) {
@@ -163,11 +174,12 @@ int run_transport_command(Queue& queue, const SceneOptions& scene, const Transpo
         measured.name = subject.name, measured.shows = subject.shows;
         phrase_all(measured);
         report.interrupted = measured.interrupted;
+        if (has_findings(measured)) write_pictures(output, i, measured);
         if (has_findings(measured) || !measured.interrupted) report.scenes.push_back(std::move(measured));
-        if (!output.empty() && has_findings(report)) write_files(output, report);
+        if (!output.empty() && has_findings(report)) write_files(output, report, head);
     }
     reporter.end_progress();
-    reporter.event(json_of(report));
+    reporter.event(json_of(measurement_of(report, head), "transport"));
     if (!has_findings(report) && report.interrupted) {
         reporter.say("interrupted before anything was measured; nothing is written");
         return exit_status(ErrorCode::Interrupted);

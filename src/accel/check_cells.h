@@ -1,7 +1,7 @@
 #pragma once
 
-// What the checkers of the kd-tree and the octree share: a leaf's list, and whether each triangle is listed wherever it
-// lies.
+// Parts that the checkers of the kd-tree and the octree share: checks of a leaf's list, and whether each triangle is
+// listed wherever it lies.
 
 #include <atomic>
 #include <cstdint>
@@ -21,8 +21,8 @@ inline bool holds(const Bounds3& outer, const Bounds3& inner) {
     return min(outer.lo, inner.lo) == outer.lo && max(outer.hi, inner.hi) == outer.hi;
 }
 
-/// What is wrong with the list of a leaf, which is node `node` and has the cell `cell`: ids in range, ascending, and of
-/// triangles whose boxes reach into the cell.
+/// Checks the list of leaf `node` with cell `cell`: ids in range, ascending, and of triangles whose boxes reach into
+/// the cell. Returns what is wrong, or nothing.
 inline std::optional<std::string> find_list_fault(std::span<const uint32_t> list,
                                                   std::span<const BvhTriangle> triangles, const Bounds3& cell,
                                                   uint32_t node) {
@@ -37,8 +37,8 @@ inline std::optional<std::string> find_list_fault(std::span<const uint32_t> list
     return std::nullopt;
 }
 
-/// The first triangle of which a point lies outside the bounds, or where is_listed(id, TrianglePoint) says that no leaf
-/// there lists it.
+/// Returns the first triangle with a point outside the bounds or where is_listed(id, TrianglePoint) finds no leaf
+/// that lists it.
 template <class IsListed>
 std::optional<std::string> find_uncovered(std::span<const BvhTriangle> triangles, const Bounds3& bounds,
                                           const IsListed& is_listed) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The bounds of what a cell sees of a triangle: what makes the splits of a kd-tree perfect.
+// Bounds of the part of a triangle inside a cell; perfect splits of a kd-tree need them.
 //
 // Source: Sutherland, Hodgman, "Reentrant Polygon Clipping", 1974; its use for kd-trees: Havran, Bittner, "On Improving
 // KD-Trees for Ray Shooting", 2002.
@@ -13,13 +13,13 @@
 
 namespace pertev {
 
-/// What clip_triangle grows a cell by, for a tree whose largest |coordinate| is `max_abs`.
+/// Amount, in metres, by which clip_triangle grows a cell, for a tree whose largest |coordinate| is `max_abs`.
 inline double clip_slack(float max_abs) { return 0x1p-44 * static_cast<double>(max_abs); }
 
 inline Bounds3 bounds_of(const BvhTriangle& t) { return {min(t.a, min(t.b, t.c)), max(t.a, max(t.b, t.c))}; }
 
-/// A box within `cell` and the triangle's bounds that holds all of the triangle that lies in the closed cell; empty
-/// where nothing does.
+/// Returns a box within `cell` and the triangle's bounds that holds the whole part of the triangle in the closed
+/// cell; an empty box if there is none.
 Bounds3 clip_triangle(const BvhTriangle& triangle, const Bounds3& cell, double slack);
 
 } // namespace pertev

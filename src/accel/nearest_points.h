@@ -1,8 +1,8 @@
 #pragma once
 
-// The k nearest of the points that a search comes across, in an array of the caller's: a heap with the farthest on top
-// while the search runs, nearest first at its end. Equal distances are told apart by index, so the result is a function
-// of the points and not of the order in which they are met.
+// Collects the k nearest points that a search visits, in an array of the caller's: a heap with the farthest point on
+// top during the search, sorted by distance at its end. Ties are broken by index, so the result depends on the points
+// and not on the order of visits.
 
 #include <cstdint>
 
@@ -21,23 +21,23 @@ HD inline bool is_nearer(const NearPoint& a, const NearPoint& b) {
     return a.distance_squared < b.distance_squared || (a.distance_squared == b.distance_squared && a.index < b.index);
 }
 
-/// The one formula for all searches. It grows with each of |a - b|'s components, rounding included: so the distance to
-/// a plane or a box, by the same formula, is never more than that to a point behind or in it.
+/// Squared distance, by the only formula that searches use. It is monotonic in each component of |a - b|, rounding
+/// included. Thus the distance to a plane or a box is never more than the distance to a point behind or in it.
 HD inline float squared_distance(Vec3 a, Vec3 b) {
     const Vec3 d = a - b;
     return d.x * d.x + d.y * d.y + d.z * d.z;
 }
 
-/// The radius's square; below any squared distance where it is negative or NaN.
+/// Square of a radius; below any squared distance if the radius is negative or NaN.
 HD inline float square_of_radius(float radius) { return radius >= 0 ? radius * radius : -1.0f; }
 
 class NearestPoints {
 public:
-    /// `points` has room for `capacity`. Points with a squared distance greater than that of the radius do not count.
+    /// `points` has room for `capacity` elements. Points farther than the radius are ignored.
     HD NearestPoints(NearPoint* points, uint32_t capacity, float radius_squared)
         : points_(points), capacity_(capacity), limit_(capacity > 0 ? radius_squared : -1.0f) {}
 
-    /// What is farther than this, squared, is of no interest.
+    /// Square of the distance beyond which points are ignored.
     HD float limit() const { return limit_; }
 
     HD void offer(const NearPoint& p) {
@@ -50,7 +50,7 @@ public:
         if (size_ == capacity_) limit_ = points_[0].distance_squared;
     }
 
-    /// Nearest first from here on; returns how many there are.
+    /// Sorts the points by distance and returns their number.
     HD uint32_t sort() {
         const uint32_t count = size_;
         while (size_ > 1) {
@@ -84,7 +84,7 @@ private:
     float limit_;
 };
 
-/// Shows `visit` each point within a radius, in whatever order a search offers them.
+/// Calls `visit` for each point within a radius, in the order of the search.
 template <class Visit>
 struct PointsWithin {
     float radius_squared;
@@ -95,11 +95,11 @@ struct PointsWithin {
     }
 };
 
-// These are for each structure that has a search_points(tree, at, found). It offers `found` all points that may be
-// within its limit, in an order that only the points and `at` decide.
+// These functions work for each structure with a function search_points(tree, at, found), which offers `found` every
+// point that may be within its limit, in an order that depends only on the points and `at`.
 
-/// The k points nearest to `at`, at most `radius` away (inclusive; may be infinite), nearest first, of equally far ones
-/// those of lower index. `found` has room for k. Returns how many there are.
+/// Finds the k points nearest to `at` within `radius` (inclusive; may be infinite), sorted by distance and then by
+/// index. `found` has room for k. Returns their number.
 template <class Tree>
 HD inline uint32_t find_nearest(const Tree& tree, Vec3 at, float radius, uint32_t k, NearPoint* found) {
     NearestPoints nearest(found, k, square_of_radius(radius));
@@ -107,7 +107,8 @@ HD inline uint32_t find_nearest(const Tree& tree, Vec3 at, float radius, uint32_
     return nearest.sort();
 }
 
-/// Calls visit(NearPoint) for each point at most `radius` away. A `share` is of a structure whose searches have shares.
+/// Calls visit(NearPoint) for each point within `radius` of `at`. `share` is for structures whose searches can be
+/// split into shares.
 template <class Tree, class Visit, class... Share>
 HD inline void visit_within(const Tree& tree, Vec3 at, float radius, Visit&& visit, Share... share) {
     PointsWithin<Visit> within = {square_of_radius(radius), visit};

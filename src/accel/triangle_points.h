@@ -1,7 +1,7 @@
 #pragma once
 
-// Fixed points of a triangle, for checkers of structures that cut triangles: a lattice of 28, corners and edges among
-// them, made without the code that does the cutting.
+// Fixed points of a triangle, for checkers of structures that clip triangles: a lattice of 28 points that includes
+// corners and edges. Its code is independent of the clipping.
 
 #include "accel/bvh/bvh.h"
 
@@ -13,7 +13,7 @@ struct TrianglePoint {
     double at[3];
 };
 
-/// Point k of the lattice with 7 points a side; its error is a few roundings of a double.
+/// Point k of the lattice with 7 points per side, exact up to a few roundings of a double.
 inline TrianglePoint triangle_point(const BvhTriangle& t, int k) {
     int row = 0;
     while (k > row) k -= ++row; // row r has r + 1 points

@@ -1,6 +1,6 @@
 #pragma once
 
-// Bytes as people read them.
+// Formats byte counts for people.
 
 #include <cstdint>
 

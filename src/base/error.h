@@ -1,8 +1,8 @@
 #pragma once
 
-// The three kinds of error. A programmer's mistake: CHECK. Bad input or a bad world: throw Error, whose parts are the
-// place, the setting and its value, and the reason, which says what would be right. Expected absence: std::optional.
-// Libraries never exit or print; the command line turns codes into exit statuses.
+// Error handling. A programmer's mistake: CHECK. Bad input or environment: throw Error, whose parts are the place,
+// the setting with its value, and the reason, which says what would be right. Expected absence: std::optional.
+// Libraries never exit or print; the command line converts codes to exit statuses.
 
 #include <memory>
 #include <optional>
@@ -20,7 +20,7 @@ enum class ErrorCode {
     OutOfMemory = 4,  // host or device; the message lists the largest buffers and what would fit
     DeviceFault = 5,  // the GPU failed; the context is dead, the last checkpoint is good
     FileWrite = 6,    // nothing was replaced
-    Interrupted = 75, // what has been rendered is written
+    Interrupted = 75, // samples rendered so far are written
 };
 
 /// The exit status of a code is its value.
@@ -36,7 +36,7 @@ public:
 
     ErrorCode code() const noexcept { return code_; }
     const Remark& remark() const noexcept { return *remark_; }
-    // The parts of the remark; what() is all of them as a text.
+    // The parts of the remark; what() is all of them as text.
     const std::optional<Place>& place() const noexcept { return remark_->place; }
     const std::string& setting() const noexcept { return remark_->setting; }
     const std::string& value() const noexcept { return remark_->value; }
@@ -47,7 +47,7 @@ private:
     std::shared_ptr<const Remark> remark_; // shared, so that copies of an exception throw nothing
 };
 
-/// Throws std::logic_error that names the place: a programmer's mistake, never bad input.
+/// Throws std::logic_error that names the place, for a programmer's mistake, never for bad input.
 [[noreturn]] void check_failed(const char* condition, const char* file, int line);
 
 } // namespace pertev

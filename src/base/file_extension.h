@@ -1,14 +1,14 @@
 #pragma once
 
-// What a file is by its name: of formats that are told apart so.
+// File extensions, for formats that are identified by them.
 
 #include <filesystem>
 #include <string>
 
 namespace pertev {
 
-/// Of a file's name: ".png" of "Leaf.PNG". The letters A to Z alone become small, in every locale; empty where the name
-/// has no extension.
+/// Lower-case extension of a file's name: ".png" for "Leaf.PNG". Only the letters A to Z are converted, in every
+/// locale; empty if the name has no extension.
 std::string lower_case_extension(const std::filesystem::path& file);
 
 } // namespace pertev

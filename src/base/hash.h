@@ -1,6 +1,6 @@
 #pragma once
 
-// Content hashes (XXH3, 128 bits): of pictures, for the one-picture law, and of geometry, for the structure cache.
+// Content hashes (XXH3, 128 bits) of pictures, for the one-picture law, and of geometry, for the structure cache.
 
 #include <array>
 #include <cstddef>
@@ -15,11 +15,11 @@ namespace pertev {
 struct Hash128 {
     uint64_t high = 0, low = 0;
     bool operator==(const Hash128&) const = default;
-    /// 32 lower-case hexadecimal digits.
+    /// Text of 32 lower-case hexadecimal digits.
     std::string hex() const;
 };
 
-/// Hash of bytes given in pieces: the same for any division into pieces.
+/// Hashes bytes in pieces; the result does not depend on the partition.
 class Hasher {
 public:
     Hasher();

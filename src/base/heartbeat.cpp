@@ -9,7 +9,7 @@ Heartbeat::Heartbeat(std::chrono::milliseconds interval, std::function<void(doub
     : interval_(interval), say_(std::move(say)) {
     try {
         thread_ = std::thread([this] { beat(); });
-    } catch (const std::system_error&) { // no thread left: the work matters more
+    } catch (const std::system_error&) { // no thread left; the work matters more
     }
 }
 
@@ -33,7 +33,7 @@ void Heartbeat::beat() {
     for (auto next = start + interval_; !over_.wait_until(lock, next, [this] { return is_over_; }); next += interval_) {
         if (work_.empty()) continue;
         const std::string work = work_;
-        lock.unlock(); // a reader of the log that is slow holds up nothing else
+        lock.unlock(); // a slow reader of the log must not delay anything else
         say_(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), work);
         lock.lock();
     }

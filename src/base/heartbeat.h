@@ -1,7 +1,7 @@
 #pragma once
 
-// Says at an even interval that work goes on, and which: for logs, where no progress bar can be drawn. A thread of its
-// own does, so a step that takes minutes is told of too.
+// Reports at a regular interval that work continues, and which, for logs that cannot show a progress bar. It has its
+// own thread, so that steps of several minutes are reported too.
 
 #include <chrono>
 #include <condition_variable>
@@ -14,14 +14,15 @@ namespace pertev {
 
 class Heartbeat {
 public:
-    /// `say` gets the seconds since this object was made and the work that was last named. It is called from another
-    /// thread, never twice at a time, and not once the destructor has returned. Where no thread can be had, never.
+    /// `say` gets the seconds since this object was made and the name of the current work. It is called from another
+    /// thread, never concurrently, and not after the destructor has returned. If no thread can be created, it is
+    /// never called.
     Heartbeat(std::chrono::milliseconds interval, std::function<void(double seconds, const std::string& work)> say);
     ~Heartbeat();
     Heartbeat(const Heartbeat&) = delete;
     Heartbeat& operator=(const Heartbeat&) = delete;
 
-    /// Names the work from now on. Nothing is said before the first.
+    /// Names the current work. Nothing is reported before the first call.
     void set_work(std::string work);
 
 private:
@@ -29,7 +30,7 @@ private:
 
     std::chrono::milliseconds interval_;
     std::function<void(double, const std::string&)> say_;
-    std::mutex mutex_; // of the two below
+    std::mutex mutex_; // for the two below
     std::string work_;
     bool is_over_ = false;
     std::condition_variable over_;

@@ -1,10 +1,10 @@
 #pragma once
 
-// HD marks a function that runs on the host and in CUDA device code alike: no allocation, exceptions, globals,
-// virtual calls or recursion in it. HD_CALL marks one that is rarely needed: kept out of line in device code, so that
-// its registers do not count where it is not called. INLINE_ON_DEVICE, after HD, marks one that is inlined there
-// whatever its size: what it is given by reference need not lie in memory then. PERTEV_HAS_KERNELS is 1 where kernels
-// are compiled, PERTEV_ON_DEVICE in the device pass. Both are where a test emulates the device (PERTEV_EMULATED_WARPS,
+// HD marks a function for the host and CUDA device code: it has no allocation, exceptions, globals, virtual calls or
+// recursion. HD_CALL marks one that is rarely needed: it is not inlined in device code, so that its registers do not
+// count where it is not called. INLINE_ON_DEVICE, after HD, marks one that is always inlined there, so that its
+// reference arguments need not be in memory. PERTEV_HAS_KERNELS is 1 where kernels are compiled, PERTEV_ON_DEVICE in
+// the device pass. Both are 1 where a test emulates the device (PERTEV_EMULATED_WARPS,
 // tests/support/emulated_device.h).
 
 #if defined(__CUDACC__)

@@ -11,7 +11,7 @@ namespace pertev {
 void use_huge_pages(std::span<const std::byte> bytes) {
 #ifdef __linux__
     constexpr std::uintptr_t kPage = std::uintptr_t(1) << 21;
-    constexpr int kCollapse = 25; // MADV_COLLAPSE, of Linux 6.1; refused by those before it
+    constexpr int kCollapse = 25; // MADV_COLLAPSE, from Linux 6.1 on; earlier kernels refuse it
     const auto at = reinterpret_cast<std::uintptr_t>(bytes.data());
     const std::uintptr_t begin = (at + kPage - 1) / kPage * kPage, end = (at + bytes.size()) / kPage * kPage;
     if (bytes.empty() || begin >= end) return;

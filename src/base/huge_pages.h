@@ -1,16 +1,16 @@
 #pragma once
 
-// Large pages for memory that is read at random: an array of some megabytes lies in thousands of pages of 4 KB, more
-// than a CPU keeps the places of, so that most cache misses cost a look at the page tables as well. Linux alone:
-// elsewhere, and where the system has none to give, nothing happens.
+// Huge pages for randomly accessed memory: an array of some megabytes occupies thousands of 4 KB pages, more than a
+// CPU's TLB holds, so that most cache misses also need a page-table walk. Linux only: elsewhere, and if the system
+// has none available, nothing happens.
 
 #include <cstddef>
 #include <span>
 
 namespace pertev {
 
-/// Moves what fills whole pages of 2 MB into such pages, if it can. The bytes stay where they are, unchanged; any
-/// thread may read them meanwhile.
+/// Moves the part that fills whole pages of 2 MB into such pages, if possible. The bytes keep their addresses and
+/// values; any thread may read them meanwhile.
 void use_huge_pages(std::span<const std::byte> bytes);
 
 } // namespace pertev

@@ -9,7 +9,7 @@
 namespace pertev {
 namespace {
 
-/// Bytes of the UTF-8 character that `text` begins with; 0 when it is none. (RFC 3629, section 4.)
+/// Number of bytes of the UTF-8 character at the start of `text`; 0 if it is invalid. (RFC 3629, section 4.)
 std::size_t utf8_length(std::string_view text) {
     const auto at = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
     const unsigned first = at(0);
@@ -27,7 +27,7 @@ std::size_t utf8_length(std::string_view text) {
     return bad_second ? 0 : length;
 }
 
-/// Parts of `text` between separators, each by `json_of`, as an array; nothing where that gives nothing for one.
+/// Converts the parts of `text` between separators by `json_of` to an array; nothing if that returns nothing for one.
 template <class JsonOf>
 std::optional<std::string> json_array(std::string_view text, char separator, const JsonOf& json_of) {
     std::string list;
@@ -41,7 +41,7 @@ std::optional<std::string> json_array(std::string_view text, char separator, con
     }
 }
 
-/// A number other than 0 that no double holds: whether it is too small, and not too large.
+/// For a nonzero number outside the range of doubles: whether it is too small, not too large.
 bool is_too_small(std::string_view text) {
     const std::size_t e = text.find_first_of("eE");
     return e == std::string_view::npos ? text.find('.') < 3 : text.substr(e + 1).starts_with('-');
@@ -50,7 +50,7 @@ bool is_too_small(std::string_view text) {
 std::optional<std::string> exact_number(std::string_view text) {
     double value = 0;
     const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool is_zero = fault == std::errc::result_out_of_range && is_too_small(text); // to a double
+    const bool is_zero = fault == std::errc::result_out_of_range && is_too_small(text); // when rounded to a double
     if ((fault != std::errc() && !is_zero) || !std::isfinite(value)) return std::nullopt;
     if (end != text.data() + text.size()) return std::nullopt;
     return value == 0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value); // "-0" would be read as 0
@@ -69,7 +69,7 @@ std::string json_string(std::string_view text) {
         const std::size_t length = utf8_length(text);
         const auto byte = static_cast<unsigned char>(text.front());
         if (length == 0) {
-            out += "\\ufffd"; // file names may be any bytes
+            out += "\\ufffd"; // file names may contain any bytes
         } else if (byte < 0x20) {
             out += fmt::format("\\u{:04x}", byte);
         } else {

@@ -12,7 +12,7 @@
 
 namespace pertev {
 
-/// `Key` is an array or a struct of words of 32 bits; equal keys have equal words.
+/// `Key` is an array or a struct of 32-bit words; equal keys have equal words.
 template <class Key>
 class KeyNumbers {
     static_assert(std::has_unique_object_representations_v<Key> && sizeof(Key) % sizeof(uint32_t) == 0);

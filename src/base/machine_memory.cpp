@@ -10,14 +10,14 @@
 namespace pertev {
 namespace {
 
-/// The number that a file begins with; SIZE_MAX where it does not.
+/// The number at the start of a file; SIZE_MAX if there is none.
 std::size_t number_in(const std::filesystem::path& file) {
     std::ifstream in(file);
     std::size_t bytes = 0;
     return in >> bytes ? bytes : SIZE_MAX;
 }
 
-/// Of a group and of all that it lies in, down to the root.
+/// Minimum over a group and all of its ancestors.
 std::size_t least_of(const std::filesystem::path& root, std::filesystem::path group, const char* file) {
     std::size_t least = SIZE_MAX;
     for (; !group.empty(); group = group.parent_path()) least = std::min(least, number_in(root / group / file));

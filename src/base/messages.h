@@ -1,11 +1,11 @@
 #pragma once
 
-// A library says with these, without printing, warnings and notices. The command line prints them; tests read them.
-// Repeats are counted, not stored.
+// Warnings and notices of the library, which prints nothing itself. The command line prints them; tests read them.
+// Repeated messages are counted, not stored.
 //
-// One rule holds for all that is read: what is not known or cannot be read is left out with a warning (leave_out) that
-// names the file and the place in it, and only what leaves no picture is an error. A strict render ends where anything
-// was left out. What the scene lacks and is made for it (a camera, a light) is told by a notice (make_up).
+// One rule applies to everything that is read: unknown or unreadable parts are skipped with a warning (leave_out)
+// that names the file and the location, and only an input that leaves no picture is an error. A strict render stops
+// if anything was left out. A notice (make_up) reports what the scene lacks and gets by default (a camera, a light).
 
 #include <cstddef>
 #include <string>
@@ -20,24 +20,24 @@ namespace pertev {
 struct Message {
     bool is_warning = false;
     Remark remark;
-    std::string text; // of the remark: all of its parts
+    std::string text; // all parts of the remark
     std::size_t times = 1;
-    bool is_left_out = false; // a warning: the picture lacks something that the input has
-    bool is_made_up = false;  // a notice: the picture has something that the input lacks
+    bool is_left_out = false; // for a warning: the picture lacks something that the input has
+    bool is_made_up = false;  // for a notice: the picture has something that the input lacks
 };
 
 class Messages {
 public:
-    /// Something was repaired, or what was asked for has no effect.
+    /// Something was repaired, or a request has no effect.
     void warn(Remark remark) { add(true, std::move(remark)); }
-    /// The picture lacks something that the input has. A file of many faults names the first of them only.
+    /// The picture lacks something that the input has. For a file with many faults only the first is named.
     void leave_out(Remark remark) {
         const bool is_one_too_many = left_out_ >= kMostLeftOut && !places_[1].contains(remark.text());
         Message& message = all_[add(true, is_one_too_many ? Remark(kMoreLeftOut) : std::move(remark))];
         if (!message.is_left_out) ++left_out_;
         message.is_left_out = true;
     }
-    /// A default was taken, or there is something else to know.
+    /// A default was used, or there is other information.
     void note(Remark remark) { add(false, std::move(remark)); }
     /// The picture has something that the input lacks.
     void make_up(Remark remark) { all_[add(false, std::move(remark))].is_made_up = true; }
@@ -54,7 +54,7 @@ public:
     }
     const std::vector<Message>& all() const { return all_; }
 
-    // The texts of what was made up and of what was left out, in the order in which that was told.
+    // Texts of what was made up and of what was left out, in order.
     std::vector<std::string> made_up() const { return texts_of(&Message::is_made_up); }
     std::vector<std::string> left_out() const { return texts_of(&Message::is_left_out); }
 
@@ -62,7 +62,7 @@ private:
     static constexpr std::size_t kMostLeftOut = 100;
     static constexpr const char* kMoreLeftOut = "more is left out than these warnings name";
 
-    /// Returns its place in all_.
+    /// Returns its index in all_.
     std::size_t add(bool is_warning, Remark remark) {
         std::string text = remark.text();
         const auto [place, is_new] = places_[is_warning ? 1 : 0].try_emplace(text, all_.size());
@@ -83,8 +83,8 @@ private:
     }
 
     std::vector<Message> all_;
-    std::unordered_map<std::string, std::size_t> places_[2]; // of notices and warnings in all_
-    std::size_t left_out_ = 0;                               // messages of all_ that are
+    std::unordered_map<std::string, std::size_t> places_[2]; // indices of notices and warnings in all_
+    std::size_t left_out_ = 0;                               // number of such messages in all_
 };
 
 } // namespace pertev

@@ -38,14 +38,16 @@ int hardware_threads() { return std::max(1, static_cast<int>(std::thread::hardwa
 
 #if defined(PERTEV_STD_THREADS)
 
-/// The threads that work for the calling thread, which share it.
+/// The threads that work for the calling thread.
 struct Team {
-    int count = 0;               // 0: one a hardware thread
-    std::atomic<int> helpers{0}; // of parallel_invoke: nested calls of a recursive builder would start a thread each
+    int count = 0;               // 0: one per hardware thread
+    std::atomic<int> helpers{0}; // helpers of parallel_invoke, because nested calls of a recursive builder would
+                                 // start a thread each
+                                 // thread each
 };
 
 thread_local Team t_own_team;
-thread_local Team* t_team = nullptr; // that of the thread which this one helps; null: its own
+thread_local Team* t_team = nullptr; // the team of the thread that this one helps; null: its own
 
 Team& team() { return t_team != nullptr ? *t_team : t_own_team; }
 
@@ -123,18 +125,18 @@ void parallel_invoke(const std::function<void()>& a, const std::function<void()>
 
 constexpr std::size_t kMostThreads = 4096;
 
-/// The threads that work for one thread, apart from those of others.
+/// The threads that work for one thread, separate from those of others.
 struct Team {
     explicit Team(int count) : arena(count) {
-        // TBB has one worker less than there are hardware threads, unless it is allowed more. Several such permits
-        // count as the least of them, so there is one.
+        // TBB has one worker less than hardware threads unless it is allowed more. Of several such permissions the
+        // least counts, so there is one.
         if (count <= hardware_threads()) return;
         static const tbb::global_control permit(tbb::global_control::max_allowed_parallelism, kMostThreads);
     }
     tbb::task_arena arena;
 };
 
-thread_local std::unique_ptr<Team> t_team; // null: one a hardware thread, or those that the thread works among
+thread_local std::unique_ptr<Team> t_team; // null: one per hardware thread, or the team in which the thread works
 
 template <class Work>
 void run_in_team(const Work& work) {

@@ -1,9 +1,9 @@
 #pragma once
 
-// Runs body(i) for each i in [0, count), in no stated order, on the threads set by set_thread_count. The body sees
-// the processor's default floating-point control register (round to nearest, no flush to zero), whatever the caller
-// has set; the caller's is restored. An exception thrown by the body is rethrown by the call. Backends: oneTBB, or
-// std::thread (PERTEV_THREADS=STD) for ThreadSanitizer, which Debian's TBB is not instrumented for.
+// Runs body(i) for each i in [0, count), in no fixed order, on the threads set by set_thread_count. The body runs
+// with the processor's default floating-point control register (round to nearest, no flush to zero), whatever the
+// caller's; that is restored. An exception thrown by the body is rethrown by the call. Backends: oneTBB, or
+// std::thread (PERTEV_THREADS=STD) for ThreadSanitizer, for which Debian's TBB is not instrumented.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace pertev {
 
-/// Sets how many threads work for the calling thread from now on; 0 means one a hardware thread.
+/// Sets how many threads work for the calling thread from now on; 0 means one per hardware thread.
 void set_thread_count(int count);
 int thread_count();
 
-/// Runs body(begin, end) over ranges of at least `grain` indices that together cover [0, count) once.
+/// Runs body(begin, end) over disjoint ranges of at least `grain` indices that cover [0, count).
 void parallel_for_ranges(uint64_t count, uint64_t grain, const std::function<void(uint64_t, uint64_t)>& body);
 
-/// Runs both, perhaps at once, and returns when both are done.
+/// Runs both, possibly concurrently, and returns when both are done.
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b);
 
 template <class Body>

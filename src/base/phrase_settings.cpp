@@ -17,7 +17,7 @@ std::string phrase_settings(std::string_view text, const PhraseSetting& phrase) 
         const std::size_t name_end = std::min(marked.find('='), marked.size());
         const std::string_view name = marked.substr(0, name_end);
         if (name.empty() || name.find_first_not_of(letters) != std::string_view::npos) {
-            phrased += text.substr(0, close); // the second backquote may begin a setting
+            phrased += text.substr(0, close); // the second backquote may start another setting
             text.remove_prefix(close);
             continue;
         }

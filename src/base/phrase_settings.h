@@ -1,6 +1,6 @@
 #pragma once
 
-// Names of settings in a text (base/remark.h) become what a front end calls them.
+// Replaces names of settings in a text (base/remark.h) by a front end's terms.
 
 #include <functional>
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace pertev {
 
-/// What stands for a setting of this name. The value is empty where the text gives none.
+/// Returns a front end's text for a setting. The value is empty if the text has none.
 using PhraseSetting = std::function<std::string(std::string_view name, std::string_view value)>;
 
-/// `text` with `phrase` in place of each `name` and `name=value` between backquotes. All else stays as it is.
+/// Returns `text` with `phrase` applied to each `name` and `name=value` between backquotes. The rest is unchanged.
 std::string phrase_settings(std::string_view text, const PhraseSetting& phrase);
 
 } // namespace pertev

@@ -1,6 +1,6 @@
 #pragma once
 
-// Seconds of wall time since it was made or last restarted.
+// Seconds of wall time since construction or the last restart.
 
 #include <chrono>
 

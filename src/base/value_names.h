@@ -1,7 +1,7 @@
 #pragma once
 
-// The names of an enumeration's values, each said once: a table beside the enumeration, which names_of_all() returns.
-// The functions below look through it. They are found for every enumeration that has such a function in its namespace.
+// Names of enumerators: a table beside each enumeration, which names_of_all() returns. The functions below search it;
+// they work for every enumeration with such a function in its namespace.
 
 #include <array>
 #include <cstddef>
@@ -22,7 +22,7 @@ struct ValueName {
 template <class Value>
 concept NamedValue = requires(Value value) { names_of_all(value)[0].name; };
 
-/// Returns the name, or "" for a value that the table lacks.
+/// Returns the name, or "" for a value that is not in the table.
 template <NamedValue Value>
 constexpr std::string_view name_of(Value value) {
     for (const auto& entry : names_of_all(value)) {
@@ -39,7 +39,7 @@ constexpr std::optional<Value> value_named(std::string_view name) {
     return std::nullopt;
 }
 
-/// The values in the order in which they are offered.
+/// The values in the order of the table.
 template <NamedValue Value>
 inline constexpr auto kValuesOf = [] {
     std::array<Value, std::size(names_of_all(Value{}))> values{};
@@ -47,7 +47,7 @@ inline constexpr auto kValuesOf = [] {
     return values;
 }();
 
-/// Returns the names in the order in which they are offered.
+/// Returns the names in the order of the table.
 template <NamedValue Value>
 std::vector<std::string> names_of() {
     std::vector<std::string> names;

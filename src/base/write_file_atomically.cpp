@@ -43,31 +43,31 @@ void write_all(int fd, std::span<const std::byte> bytes) {
     }
 }
 
-/// umask() tells the mask by changing it, so it is asked for once, before there are threads.
+/// umask() reads the mask by changing it, so it is called once, before there are threads.
 const mode_t kUmask = [] {
     const mode_t mask = ::umask(0);
     ::umask(mask);
     return mask;
 }();
 
-/// Permissions of the file that is replaced, or those that the user wants of new files.
+/// Permissions of the replaced file, or the user's defaults for new files.
 mode_t mode_for(const fs::path& target) {
     struct stat there {};
     return ::stat(target.c_str(), &there) == 0 ? there.st_mode & 0777 : 0666 & ~kUmask;
 }
 
-/// The end of a chain of symbolic links, whether it exists or not (std::filesystem::weakly_canonical gives the link
-/// itself where it does not).
+/// The end of a chain of symbolic links, whether it exists or not (std::filesystem::weakly_canonical returns the link
+/// itself if it does not).
 fs::path follow_links(fs::path path) {
-    constexpr int most = 40; // as Linux does
+    constexpr int most = 40; // limit of Linux
     for (int i = 0; fs::is_symlink(fs::symlink_status(path)); ++i) {
         if (i == most) throw std::system_error(std::make_error_code(std::errc::too_many_symbolic_link_levels));
-        path = path.parent_path() / fs::read_symlink(path); // an absolute one replaces what stands before it
+        path = path.parent_path() / fs::read_symlink(path); // an absolute target replaces the path
     }
     return path;
 }
 
-/// Where the bytes go. Throws for anything but a regular file or nothing.
+/// The path to write. Throws for anything but a regular file or a new one.
 fs::path resolve_target(const fs::path& path) {
     const fs::path target = follow_links(path);
     const fs::file_status status = fs::status(target);
@@ -80,7 +80,7 @@ fs::path resolve_target(const fs::path& path) {
 
 fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
 
-/// A new file beside the target, under a name of its own: rename() is atomic only within one file system.
+/// Name of a new file beside the target, because rename() is atomic only within one file system.
 std::string temporary_name(const fs::path& target) {
     return (folder_of(target) / ("." + target.filename().string() + ".XXXXXX")).string();
 }
@@ -98,7 +98,7 @@ void replace(const fs::path& target, std::span<const std::byte> bytes) {
         throw;
     }
     const OpenFile directory(::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY));
-    check(directory.fd() >= 0 && ::fsync(directory.fd()) == 0); // so that the rename itself lasts
+    check(directory.fd() >= 0 && ::fsync(directory.fd()) == 0); // makes the rename itself durable
 }
 
 [[noreturn]] void rethrow(const fs::path& path, const std::system_error& error) {
@@ -118,7 +118,7 @@ void write_file_atomically(const fs::path& path, std::span<const std::byte> byte
 void check_writable(const fs::path& path) {
     try {
         const fs::path target = resolve_target(path);
-        // Without a name where the file system can: nothing is left if the process is killed here.
+        // Without a name if the file system supports it, so that nothing is left if the process is killed here.
         const OpenFile unnamed(::open(folder_of(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600));
         if (unnamed.fd() >= 0) return;
         std::string temporary = temporary_name(target);

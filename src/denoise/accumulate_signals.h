@@ -1,9 +1,9 @@
 #pragma once
 
-// Second stage: each signal's mean over the frames that saw the same place, and that of its square.
+// Second stage: temporal mean of each signal and of its square, over the frames that saw the same surface point.
 //
 // Sources: Schied et al. 2017 (above), section 4.1; NVIDIA, "Fast Denoising with Self-Stabilizing Recurrent Blurs",
-// GDC 2020 (a second mean over few frames, against which the long one is held).
+// GDC 2020 (a second mean over few frames, to which the long one is clamped).
 
 #include "denoise/light_change_view.h"
 #include "denoise/reproject.h"
@@ -11,18 +11,19 @@
 
 namespace pertev {
 
-/// `kFollows`: light may have changed by itself since the frame before. Code for that would cost others time.
+/// `kFollows` means that light may have changed since the previous frame. Code for that would slow down the other
+/// case.
 template <bool kFollows>
 struct AccumulateSignals {
     NoisyFrameView frame;
-    SignalsView signals; // of this frame's samples
+    SignalsView signals; // signals of this frame's samples
     SceneView scene;
     PreviousScene scene_before;
     FrameCameras cameras;
     HistoryView now, before;
-    LightChangeView change; // since the frame before
-    Vec2* was_at;           // pixel of the frame before that showed the same; not written at a cut
-    uint32_t longest;       // frames of a mean
+    LightChangeView change; // change of light since the previous frame
+    Vec2* was_at;           // pixel of the previous frame that showed the same; not written at a cut
+    uint32_t longest;       // maximum number of frames of a mean
     bool limit_fireflies;
     bool has_gloss;                     // false: that signal is black everywhere and neither read nor written
     bool has_history;                   // false at a cut
@@ -110,8 +111,8 @@ struct AccumulateSignals {
 
 private:
     static constexpr float kFirefly = 64;
-    static constexpr float kMirrors = 0.09f; // GGX width under which reflections move by themselves
-    /// Least cosine of normals of a flat mirror. Behind others things are not where their distance says.
+    static constexpr float kMirrors = 0.09f; // GGX width below which reflections are reprojected separately
+    /// Minimum cosine of normals of a flat mirror. Curved mirrors do not show objects at their distance.
     static constexpr float kFlat = 0.9999f;
 
     HD void forget(uint32_t pixel) const {
@@ -120,8 +121,8 @@ private:
         now.squares[pixel] = {0, 0};
     }
 
-    /// In how many frames a camera that goes on as it went passes half a lobe of this width: what a surface reflects to
-    /// it changes meanwhile.
+    /// Number of frames in which a camera with constant motion passes half a lobe of this width; meanwhile the
+    /// reflection that it sees changes.
     HD float frames_of_lobe(float alpha, Float4 place) const {
         if (has_parallel_rays(cameras.now.projection)) return kInfinity;
         const Vec3 point = point_at(scene.instances, scene.meshes, place),
@@ -132,21 +133,21 @@ private:
 
     HD static float ratio_of(float was, float is) { return was > 1e-12f ? is / was : 1.0f; }
 
-    /// `mean`, the one that the taps hold, with this frame's sample; its w: frames.
+    /// Updates `mean`, which the taps hold, by this frame's sample; its w is the number of frames.
     HD Float4 gone_on(const Taps& taps, Float4 mean, Float4 sample, float most_frames) const {
         if (!(taps.sum > kEnoughWeight)) return with_w(rgb_of(sample), 1);
         const float frames = min(mean.w + 1.0f, most_frames);
         return with_w(lerp(rgb_of(mean), rgb_of(sample), 1.0f / frames), frames);
     }
 
-    /// The sample, no brighter than kFirefly times the brightest of its eight neighbours. Of one sample a pixel most
-    /// see no light at all, so that less than this would take much of what is real.
+    /// Clamps the sample to kFirefly times the brightest of its eight neighbours. With one sample per pixel most see
+    /// no light at all, so a lower limit would remove much real light.
     HD Float4 limited(const Float4* signal, PixelPlace at) const {
         const int width = static_cast<int>(cameras.width), height = static_cast<int>(cameras.height);
         const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
         const Float4 own = signal[y * width + x];
         if (!limit_fireflies) return own;
-        // At an edge of the picture the neighbour of the other side stands for the one that is not there.
+        // At an edge of the picture the neighbour on the other side replaces the missing one.
         const int columns[3] = {held(x, x > 0 ? -1 : 1, width), x, held(x, x + 1 < width ? 1 : -1, width)};
         const int rows[3] = {held(y, y > 0 ? -1 : 1, height), y, held(y, y + 1 < height ? 1 : -1, height)};
         float brightest = 0;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Last stage: the mean of pictures over time, each of which has seen other places within the pixels. What has come from
-// the frame before is held within the colours about the pixel.
+// Last stage: temporal mean of pictures, each sampled at other positions within the pixels. History is clamped to the
+// colours around the pixel.
 //
 // Sources: Karis, "High Quality Temporal Supersampling", SIGGRAPH 2014 (weights by 1 / (1 + luminance), colours in
 // YCoCg); Salvi, "An Excursion in Temporal Supersampling", GDC 2016 (limits by mean and deviation).
@@ -13,15 +13,15 @@
 namespace pertev {
 
 struct AntiAlias {
-    const Float4* picture; // ComposePicture's
-    const Vec2* was_at;    // AccumulateSignals'
-    const Float4* before;  // HistoryView's shown, of the frame before
+    const Float4* picture; // output of ComposePicture
+    const Vec2* was_at;    // output of AccumulateSignals
+    const Float4* before;  // `shown` of the previous frame's HistoryView
     Float4* shown;
     uint32_t width, height;
     bool has_history;
-    // Share of the present frame, and how many deviations of the colours around old ones may lie from their mean:
-    // where things stand, what each pixel adds that they have moved by, and at most or at least. Each frame that moves
-    // samples the one before between its pixels, which blurs, and highlights do not move as surfaces do.
+    // Weight of the current frame, and the number of standard deviations of the surrounding colours by which history
+    // may differ from their mean: without motion, the increment per pixel of motion, and the limit. Each frame with
+    // motion samples the previous one between its pixels, which blurs, and highlights do not move as surfaces do.
     static constexpr float kNew = 0.1f, kNewPerPixel = 0.1f, kNewAtMost = 0.4f;
     static constexpr float kDeviations = 1, kDeviationsPerPixel = -0.25f, kDeviationsAtLeast = 0.5f;
 
@@ -35,7 +35,7 @@ struct AntiAlias {
 private:
     struct Colors {
         Rgb mean, deviation;
-        PixelPlace nearest; // pixel of least depth: edges move with what is before
+        PixelPlace nearest; // pixel of least depth, because edges move with the foreground
     };
 
     HD Rgb with_history(PixelPlace at, Rgb own) const {
@@ -79,7 +79,8 @@ private:
         return colors;
     }
 
-    /// Of the picture shown before. By Catmull-Rom splines (Jimenez, "Filmic SMAA", SIGGRAPH 2016), which blurs less
+    /// Samples the previously shown picture with Catmull-Rom splines (Jimenez, "Filmic SMAA", SIGGRAPH 2016), which
+    /// blur less than linear interpolation.
     /// than straight lines.
     HD Rgb sample(Vec2 place) const {
         const float x = place.x - 0.5f, y = place.y - 0.5f, left = floor(x), top = floor(y);
@@ -111,11 +112,11 @@ private:
     }
 };
 
-/// What a display shows of a reconstructed picture.
+/// One call per pixel: computes the bytes that a display shows of a reconstructed picture.
 struct ShowPicture {
     const Float4* picture; // ShownColor
     ToneMap kind;
-    float scale;     // of light, before it is tone-mapped
+    float scale;     // factor for the light before tone mapping
     uint8_t* pixels; // [pixels * 4]
 
     HD void operator()(uint32_t i) const {

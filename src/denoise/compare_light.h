@@ -1,7 +1,7 @@
 #pragma once
 
-// Stages that find how light has changed (light_change_view.h): they compare the two small pictures, and then, some
-// times over, take means over neighbours at doubling distances, as a pixel's one sample says little.
+// Stages that compute temporal gradients of light (light_change_view.h): they compare the two small pictures and then
+// repeatedly average neighbours at doubling distances, because a single sample per pixel is too noisy.
 
 #include "denoise/light_change_view.h"
 #include "denoise/split_light.h"
@@ -9,9 +9,9 @@
 
 namespace pertev {
 
-/// The light of both pictures where they show the same; elsewhere nothing is known.
+/// Compares the light of both pictures where they show the same surface; elsewhere the gradient is unknown.
 struct CompareLight {
-    NoisyFrameView before, after; // of the scene as it was, and as it is
+    NoisyFrameView before, after; // scene as it was, and as it is
     Float4 *guide, *was, *is;
 
     HD void operator()(uint32_t i) const {

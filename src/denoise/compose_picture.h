@@ -1,6 +1,6 @@
 #pragma once
 
-// Fifth stage: the signals, given back the surfaces' own colours, with what the camera met itself.
+// Fifth stage: multiplies the signals by the surfaces' colours again and adds emission.
 
 #include "denoise/shown_color.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Last stage of a single picture: the colours that samples met, times the light on them: that of the pixel's own guide,
-// or of a pixel beside it.
+// Last stage of a single picture: multiplies the colours that samples hit by the light on them, from the pixel's own
+// guide or from a neighbouring pixel.
 
 #include "denoise/picture_sums.h"
 
@@ -12,7 +12,7 @@ struct ComposeSamples {
     SignalsView signals; // filtered
     float features;      // camera rays of each pixel
     bool has_gloss;      // false: that signal is black everywhere
-    Float4* picture;     // rgb, W/(sr m2); unused
+    Float4* picture;     // rgb, W/(sr m2); w is unused
 
     HD void operator()(uint32_t pixel) const {
         const Float4 met = sums.met[pixel], loose = sums.loose[pixel];
@@ -29,12 +29,13 @@ struct ComposeSamples {
             if (has_gloss) of_beside += rgb_of(gloss) * rgb_of(signals.gloss[beside]);
             beside_features += gloss.w;
         }
-        // The more samples the pixel itself has of such surfaces, the more it goes by them.
+        // The more samples of such surfaces the pixel has, the more they count.
         if (const Float4 own = sums.beside[pixel]; own.w > 0) {
             of_beside = lerp(of_beside, (beside_features / own.w) * rgb_of(own), own.w / (own.w + kTrusted));
         }
         light += of_beside;
-        // What fits no guide is taken as it is. Where only rays without light have met such, the rest stands for it.
+        // Samples that fit no guide are used unfiltered. If only rays without light have hit such surfaces, the rest
+        // represents them.
         const float loose_features = met.w;
         if (loose.w > 0) {
             light += (loose_features / loose.w) * rgb_of(loose);
@@ -45,7 +46,7 @@ struct ComposeSamples {
     }
 
 private:
-    static constexpr float kTrusted = 8; // samples that tell as much as the pixel beside
+    static constexpr float kTrusted = 8; // number of samples that count as much as the neighbouring pixel
 };
 
 } // namespace pertev

@@ -1,7 +1,7 @@
 #pragma once
 
-// The seam of a post step that makes a picture of noisy samples. It takes samples one of each pixel at a time, each
-// with its colour, albedo and normal (render/noisy_frame.h), and gives a picture of all that it has taken.
+// Interface of a post step that makes a picture from noisy samples. It gets one sample per pixel at a time, with
+// colour, albedo and normal (render/noisy_frame.h), and returns a picture of all of them.
 
 #include "device_scene/scene_view.h"
 #include "image/image.h"
@@ -14,12 +14,13 @@ class Denoiser {
 public:
     virtual ~Denoiser() = default;
 
-    /// Begins a picture. `centres` has its size, and shows what rays through the pixels' centres meet; `camera` sees
-    /// it.
+    /// Begins a picture. `centres` has its size, and contains the hits of rays through the pixels' centres; `camera`
+    /// is their camera.
     virtual void begin(const NoisyFrame& centres, const CameraView& camera) = 0;
-    /// Samples of each pixel whose surfaces add_features() is to be given between begin() and the first add().
+    /// Number of samples per pixel whose surfaces must be passed to add_features() between begin() and the first
+    /// add().
     virtual uint32_t feature_samples() const = 0;
-    /// Adds what the camera rays of a sample meet. `frame` may be without light.
+    /// Adds the hits of a sample's camera rays. `frame` may have no light.
     virtual void add_features(const NoisyFrame& frame, const SceneView& scene) = 0;
     /// Adds the next sample of each pixel.
     virtual void add(const NoisyFrame& frame, const SceneView& scene) = 0;

@@ -1,36 +1,36 @@
 #pragma once
 
-// A picture from light that was reconstructed at a lower resolution (joint upsampling): each pixel takes the light of
-// those of the coarse pixels about it that show its surface, and gives it its own colours. So edges and textures are
-// those of the fine picture; only light between them is coarse.
+// Joint upsampling: a picture from light that was reconstructed at a lower resolution. Each pixel takes the light of
+// surrounding coarse pixels that show its surface, and multiplies it by its own colours. Thus edges and textures have
+// full resolution, and only light between edges is coarse.
 //
-// Source: Kopf, Cohen, Lischinski, Uyttendaele, "Joint Bilateral Upsampling", SIGGRAPH 2007; here the weights are of
-// place in the picture, object, normal and plane.
+// Source: Kopf, Cohen, Lischinski, Uyttendaele, "Joint Bilateral Upsampling", SIGGRAPH 2007; here the weights depend
+// on position in the picture, object, normal and plane.
 
 #include "denoise/reproject.h"
 #include "denoise/shown_color.h"
 
 namespace pertev {
 
-/// Light at the lower resolution, and the surfaces that it lies on.
+/// Light at the lower resolution, and its surfaces.
 struct CoarseLight {
     SignalsView signals;
-    const Float4* guide; // HistoryView's
+    const Float4* guide; // guide of HistoryView
     CameraView camera;
     uint32_t width, height; // pixels
     bool has_gloss;         // false: that signal is black everywhere
 };
 
 struct EnlargePicture {
-    NoisyFrameView features; // of the picture's pixels; its light is emission alone
+    NoisyFrameView features; // G-buffer at the picture's resolution; its only light is emission
     CoarseLight coarse;
     CameraView camera;
-    uint32_t width, height; // of the picture
+    uint32_t width, height; // size of the picture
     SceneView scene;
     PreviousScene scene_before;
     CameraView camera_before;
-    Vec2* was_at;     // AccumulateSignals', of the picture's pixels
-    Float4* picture;  // ComposePicture's
+    Vec2* was_at;     // see AccumulateSignals, for the picture's pixels
+    Float4* picture;  // see ComposePicture
     bool has_history; // false at a cut
 
     HD void operator()(uint32_t pixel) const {
@@ -50,7 +50,7 @@ private:
     struct Light {
         Rgb diffuse, gloss;
     };
-    static constexpr int kTaps = 4; // a side
+    static constexpr int kTaps = 4; // per side
 
     HD Vec2 place_before(uint32_t pixel, uint32_t own) const {
         const FrameCameras cameras = {camera, camera_before, width, height};
@@ -86,7 +86,7 @@ private:
             const float alike = square(square(bend)) * square(square(bend)) / (1.0f + square(square(off)));
             add(sum, weights, tap, near * alike);
         }
-        if (!(weights > 1e-4f)) { // no pixel about shows the surface: their light is the best guess
+        if (!(weights > 1e-4f)) { // no surrounding pixel shows the surface, so their light is the best estimate
             sum = any;
             weights = of_any;
         }
@@ -101,7 +101,7 @@ private:
         weights += weight;
     }
 
-    /// Of a tap so many coarse pixels away: nearly a tent over one pixel, with a faint foot over two.
+    /// Weight of a tap at this distance in coarse pixels: nearly a tent over one pixel, with a small tail over two.
     HD static float fade(float distance) { return max(1.0f - distance, 0.0f) + 0.01f * max(2.0f - distance, 0.0f); }
 };
 

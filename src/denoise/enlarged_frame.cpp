@@ -8,7 +8,7 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kWideArrays = 3; // two shown pictures, and the one before it is anti-aliased
+constexpr std::size_t kWideArrays = 3; // two shown pictures, and one before anti-aliasing
 
 } // namespace
 

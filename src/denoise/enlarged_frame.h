@@ -1,7 +1,7 @@
 #pragma once
 
-// A frame whose light was reconstructed at a lower resolution than its surfaces: makes the picture (enlarge_picture.h),
-// and its mean over time (anti_alias.h).
+// A frame whose light was reconstructed at a lower resolution than its surfaces: upsamples the picture
+// (enlarge_picture.h), and computes its temporal mean (anti_alias.h).
 
 #include "denoise/enlarge_picture.h"
 #include "denoise/reconstruction_settings.h"
@@ -12,20 +12,20 @@ namespace pertev {
 
 class EnlargedFrame {
 public:
-    /// Size of the picture.
+    /// Takes the size of the picture.
     EnlargedFrame(Queue& queue, uint32_t width, uint32_t height);
 
-    /// `features`: a frame of this size, seen by `camera`, whose paths end at the first surface.
+    /// `features` is a frame of this size, seen by `camera`, whose paths end at the first surface.
     void add(const NoisyFrame& features, const CameraView& camera, const CoarseLight& light, const SceneView& scene,
              const PreviousScene& before, const ReconstructionSettings& settings, bool has_history);
 
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
-    /// ShownColor of the last picture; unused.
+    /// The last picture as ShownColor; w is unused.
     const Float4* shown() const { return shown(frames_); }
-    /// [pixels * 4]: room for what a display shows.
+    /// [pixels * 4]: memory for the bytes of a display.
     uint8_t* room_for_bytes() const { return reinterpret_cast<uint8_t*>(picture_); }
-    /// For Reconstruction::tones().
+    /// Memory for Reconstruction::tones().
     Float4* room_for_tones() const { return tones_.data(); }
 
 private:

@@ -1,8 +1,8 @@
 #pragma once
 
-// Second stage of a single picture: each signal's mean, and the variance of that mean. A pixel's few samples say little
-// of how much they stray, so that variance is pooled over the pixels about it that show the same surface: about each
-// pixel's own mean, where there are samples enough, so that shadows' edges count for nothing; else about that of all.
+// Second stage of a single picture: mean of each signal, and the variance of that mean. A pixel's few samples do not
+// determine the variance well, so it is pooled over surrounding pixels that show the same surface: around each
+// pixel's own mean if there are enough samples, so that shadow edges do not count, else around the common mean.
 //
 // Source: Rousselle, Manzi, Zwicker, "Robust Denoising using Feature and Color Information", CGF 32(7), 2013, section 3
 // (variance of samples, smoothed over pixels).
@@ -12,7 +12,7 @@
 namespace pertev {
 
 struct EstimateVariance {
-    PictureGuide guide; // smooth
+    PictureGuide guide; // after smoothing
     PictureSums sums;
     SignalsView out;
     uint32_t width, height;
@@ -47,25 +47,26 @@ struct EstimateVariance {
 
 private:
     static constexpr int kReach = 2;       // pixels
-    static constexpr float kFreedoms = 12; // that a variance of samples within pixels is known by
-    // Factors of the variance: few bright samples bring much of the light, and many pixels have not met them.
+    static constexpr float kFreedoms = 12; // degrees of freedom with which the variance of samples within pixels is
+                                           // known
+    // Factors of the variance: few bright samples contribute much of the light, and many pixels have none of them.
     // Highlights are narrower than a filter.
     static constexpr float kOfDiffuse = 1.5f, kOfGloss = 0.4f;
-    static constexpr float kUnknown = 1e6f; // a variance that lets the filter take all that guides allow
+    static constexpr float kUnknown = 1e6f; // lets the filter average as much as guides allow
 
-    /// Of the spread of a pixel's samples, about what is noise: where its normals spread, its light does so as well.
+    /// Fraction of the spread of a pixel's samples that is noise: if its normals vary, its light does so too.
     HD static float noise_share(Float4 normals) {
         if (!(normals.w > 0)) return 1;
         const float spread = 1.0f - length(vec3_of(normals)) / normals.w; // 0.02: about ten degrees
         return square(max(1.0f - 10.0f * spread, 0.0f));
     }
 
-    /// Sums of one pixel and one signal.
+    /// Sums for one pixel and one signal.
     struct Sums {
         Rgb light, divisors;
         float signal, squares, samples; // luminances, their squares
 
-        /// About their own mean.
+        /// Spread around their own mean.
         HD float spread() const { return max(squares - square(signal) / samples, 0.0f); }
     };
     HD Sums diffuse_of(uint32_t at) const {
@@ -77,7 +78,7 @@ private:
         return {rgb_of(sums.gloss[at]), rgb_of(share), share.w, sums.squares[at].y, sums.diffuse[at].w};
     }
 
-    /// Of one signal, over pixels.
+    /// Sums of one signal over pixels.
     struct Pool {
         Sums all = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0};
         float within = 0, freedoms = 0; // spread within pixels
@@ -98,8 +99,8 @@ private:
             if (freedoms >= kFreedoms) return within / freedoms;
             return pixels >= 6 && all.samples > 1 ? all.spread() / (all.samples - 1) : kUnknown;
         }
-        /// A pixel none of whose samples met its guide takes the mean of those about it. Where its own samples stray
-        /// more than those about it, it goes by them: else a lone bright one would stay.
+        /// A pixel without samples on its guide's surface takes the mean of its neighbours. If its own samples spread
+        /// more than those of its neighbours, it uses its own spread, or a single bright one would remain.
         HD Float4 mean(const Sums& own, float scale) const {
             const Sums& known = own.samples > 0 ? own : all;
             const Rgb light = known.samples > 0 ? known.light / known.divisors : Rgb{0, 0, 0};

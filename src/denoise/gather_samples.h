@@ -9,7 +9,7 @@
 
 namespace pertev {
 
-/// Takes the guides from a frame of rays through pixels' centres, and begins the sums.
+/// Copies the guides from a frame of rays through pixels' centres, and clears the sums.
 struct BeginSums {
     NoisyFrameView centres;
     PictureGuide guide;
@@ -31,13 +31,13 @@ struct BeginSums {
     }
 };
 
-/// The guides' normals as the filter sees them: means over the pixel, as its light is. The guides stay, for
+/// Makes the guides' normals for the filter: means over the pixel, like its light. The unsmoothed guides are kept for
 /// more samples.
 struct SmoothGuide {
     PictureGuide guide;
     PictureSums sums;
-    Float4* smooth; // PictureGuide's normal
-    Float4* packed; // Guide, for the filter
+    Float4* smooth; // normal of PictureGuide
+    Float4* packed; // packed Guide for the filter
 
     HD void operator()(uint32_t pixel) const {
         const Float4 own = guide.normal[pixel];
@@ -47,7 +47,7 @@ struct SmoothGuide {
     }
 };
 
-/// A frame's samples, and where the surfaces that they met are looked for.
+/// A frame's samples, with the search for the surfaces that they hit.
 struct SampledSurfaces {
     NoisyFrameView frame;
     PictureGuide guide;
@@ -58,7 +58,7 @@ struct SampledSurfaces {
     uint32_t width, height;
 
     struct Found {
-        uint32_t object; // kNoHit: nothing
+        uint32_t object; // kNoHit: no hit
         Vec3 point;      // camera space
         Vec3 normal;
     };
@@ -70,15 +70,15 @@ struct SampledSurfaces {
         f.point = transform_transposed(camera.world_from_camera, point - camera.world_from_camera.translation);
         return f;
     }
-    /// Of the sample's own pixel: bumps belong to it.
+    /// Whether the sample's own pixel shows its surface; bumps belong to it.
     HD bool shows_own(uint32_t pixel, const Found& f) const {
         return shows_surface(guide, camera, width, pixel, f.object, f.point, f.normal, 0.5f);
     }
     HD bool shows(uint32_t pixel, const Found& f) const {
         return shows_surface(guide, camera, width, pixel, f.object, f.point, f.normal, 0.8f);
     }
-    /// Slot of that surface beside the pixel's own. When there is none and all are taken: kSurfacesBeside. `is_free`:
-    /// the slot is one that no surface has.
+    /// Slot of that surface among the additional ones of the pixel; kSurfacesBeside if it has none and all are taken.
+    /// `is_free` means that the slot has no surface yet.
     HD int slot_of(uint32_t pixel, const Found& f, bool& is_free) const {
         is_free = false;
         for (int slot = 0; slot < kSurfacesBeside; ++slot) {
@@ -89,12 +89,12 @@ struct SampledSurfaces {
         return kSurfacesBeside;
     }
     HD static void add(Float4& sum, Rgb value, float w = 0) {
-        const bool keeps = w == 0; // bits of a pixel are no number
+        const bool keeps = w == 0; // bits of a pixel index must not be added to
         sum = {sum.x + value.r, sum.y + value.g, sum.z + value.b, keeps ? sum.w : sum.w + w};
     }
 };
 
-/// What the pixel's camera rays meet.
+/// Sums the hits of the pixel's camera rays.
 struct GatherFeatures {
     SampledSurfaces samples;
 
@@ -127,7 +127,7 @@ struct GatherFeatures {
     }
 
 private:
-    /// The pixel about this one, the nearest first, whose guide shows the surface.
+    /// The nearest surrounding pixel whose guide shows the surface.
     HD uint32_t pixel_beside(uint32_t pixel, const SampledSurfaces::Found& found) const {
         const int w = static_cast<int>(samples.width), h = static_cast<int>(samples.height);
         const int x = static_cast<int>(pixel % samples.width), y = static_cast<int>(pixel / samples.width);
@@ -144,7 +144,7 @@ private:
     }
 };
 
-/// The light of the pixel's samples, whose features have been gathered.
+/// Sums the light of the pixel's samples, whose features have been gathered.
 struct GatherLight {
     SampledSurfaces samples;
 

@@ -1,19 +1,19 @@
 #pragma once
 
-// What a frame's reconstruction went by, kept to be looked at: how far each pixel's surface has moved since the frame
-// before, and how much the signals stray. The frame itself stays the same.
+// Keeps intermediate results of a frame's reconstruction for inspection: the motion of each pixel's surface since the
+// previous frame, and the deviation of the signals. It does not affect the frame.
 
 #include "denoise/reconstruction_view.h"
 
 namespace pertev {
 
 struct KeepLayers {
-    const Vec2* was_at;  // AccumulateSignals'
-    SignalsView signals; // with the variances that lead the filter
+    const Vec2* was_at;  // output of AccumulateSignals
+    SignalsView signals; // with the variances that control the filter
     uint32_t width;      // pixels
-    bool has_history;    // false at a cut: nothing has moved
-    bool has_gloss;      // AccumulateSignals'
-    Float4* layers;      // x, y: pixels to the right and down; z, w: variance of diffuse and of gloss
+    bool has_history;    // false at a cut: no motion
+    bool has_gloss;      // see AccumulateSignals
+    Float4* layers;      // x, y: pixels to the right and down; z, w: variance of the diffuse signal and of gloss
 
     HD void operator()(uint32_t i) const {
         const Vec2 centre = {static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f};

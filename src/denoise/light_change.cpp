@@ -6,7 +6,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kPasses = 2; // of SpreadLight: its means reach over 12 pixels of the frame to each side
+constexpr uint32_t kPasses = 2; // passes of SpreadLight, whose means reach 12 pixels of the frame in each direction
 
 } // namespace
 

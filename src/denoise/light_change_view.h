@@ -1,34 +1,34 @@
 #pragma once
 
-// How light on surfaces has changed since the frame before, and what that makes of a mean over frames. It is known by
-// two small pictures that one camera takes by the same random numbers, of the scene as it was and as it is: what
-// differs between them is the light, and little of the noise (some where a lamp's share of all light changes, as the
-// same numbers then draw another lamp now and then).
+// Temporal gradients: the change of light on surfaces since the previous frame, and its effect on temporal means. Two
+// small pictures, of the scene as it was and as it is, are rendered with the same camera and random numbers, so that
+// their difference shows the change of light with little noise (some if an emitter's share of all light changes,
+// because the same numbers then occasionally select another emitter).
 //
 // Source: Schied, Peters, Dachsbacher, "Gradient Estimation for Real-Time Adaptive Temporal Filtering", HPG 2018
-// (A-SVGF), of which the gradients by the same random numbers are. There they shorten histories; here histories follow
+// (A-SVGF), for gradients from the same random numbers. There they shorten histories; here histories are scaled by
 // them first.
 
 #include "denoise/reconstruction_view.h"
 
 namespace pertev {
 
-/// Arrays of one element a pixel of the small pictures, row by row.
+/// Arrays with one element per pixel of the small pictures, row by row.
 struct LightChangeView {
     const Float4* guide = nullptr; // packed Guide. Null: light is not known to have changed
     const Float4* was = nullptr;   // rgb of the diffuse signal, luminance of the other one, of the scene as it was
-    const Float4* is = nullptr;    // the same, as it is
+    const Float4* is = nullptr;    // in the same form, of the scene as it is
     uint32_t width = 0, height = 0;
-    float columns = 0, rows = 0; // of the small picture, for one of the frame
+    float columns = 0, rows = 0; // columns and rows of the small picture per one of the frame
 };
 
-/// Of light about a place: equal where nothing is known.
+/// Change of light around a point; `was` and `is` are equal if it is unknown.
 struct LightStep {
-    Rgb was = {0, 0, 0}, is = {0, 0, 0}; // of the diffuse signal
+    Rgb was = {0, 0, 0}, is = {0, 0, 0}; // diffuse signal
     float gloss_was = 0, gloss_is = 0;
 };
 
-/// Of what the frame before showed at `pixel`.
+/// Change of the light that the previous frame showed at `pixel`.
 HD inline LightStep light_step(const LightChangeView& change, Vec2 pixel, Vec3 normal, uint32_t object) {
     const float x = pixel.x * change.columns - 0.5f, y = pixel.y * change.rows - 0.5f;
     const int w = static_cast<int>(change.width), h = static_cast<int>(change.height);
@@ -54,10 +54,10 @@ HD inline LightStep light_step(const LightChangeView& change, Vec2 pixel, Vec3 n
     return {inv * step.was, inv * step.is, inv * step.gloss_was, inv * step.gloss_is};
 }
 
-/// `light`, a mean over frames, after light about it has gone from `was` to `is`: by their ratio, but never up by more
-/// than their difference.
+/// Updates `light`, a temporal mean, after the light around it has changed from `was` to `is`: by their ratio, but
+/// never by more than their difference upwards.
 HD inline float followed(float light, float was, float is) {
-    if (!(was > 1e-12f)) return light + is; // no ratio of such numbers is one of light
+    if (!(was > 1e-12f)) return light + is; // the ratio of such small numbers is meaningless
     const float by_ratio = light * (is / was);
     return is > was ? min(by_ratio, light + (is - was)) : by_ratio;
 }
@@ -65,9 +65,10 @@ HD inline Rgb followed(Rgb light, Rgb was, Rgb is) {
     return {followed(light.r, was.r, is.r), followed(light.g, was.g, is.g), followed(light.b, was.b, is.b)};
 }
 
-/// Frames of a mean where light changes by so much a frame: of what it follows a part is left, which adds up.
+/// Maximum number of frames of a mean if light changes this much per frame: each update leaves an error, and errors
+/// add up.
 HD inline float frames_in_change(float longest, float was, float is) {
-    constexpr float kLeft = 3; // frames that a mean may have where all of the light is new: one over this
+    constexpr float kLeft = 3; // frames of a mean if all of the light is new: one over this
     const float change = abs(is - was) / max(max(is, was), 1e-6f);
     return max(longest / fma(kLeft * change, longest, 1.0f), 1.0f);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Third stage: long means are held within what recent frames say about a place, and the variance of what is left is
-// estimated: over time, or over neighbours where few frames have seen the place.
+// Third stage: history clamping. Long means are clamped to what recent frames show, and the variance of the result is
+// estimated: over time, or over neighbours if few frames have seen the surface point.
 //
 // Sources: Schied et al. 2017, section 4.2; NVIDIA GDC 2020 as in accumulate_signals.h.
 
@@ -11,15 +11,15 @@
 namespace pertev {
 
 struct LimitHistory {
-    HistoryView now; // the limited means go back to it
+    HistoryView now; // the clamped means are stored here again
     SignalsView out; // means with their variance
     uint32_t width, height;
     bool limits;
-    bool has_gloss; // AccumulateSignals'
+    bool has_gloss; // see AccumulateSignals
     static constexpr float kFewFrames = 4;
-    /// Where few samples bring all the light, most pixels have not met enough of them to know how much they stray.
+    /// If few samples contribute most of the light, most pixels do not have enough of them to know their variance.
     static constexpr float kTails = 4;
-    static constexpr float kUnknown = 1e6f; // a variance that lets the filter take all that guides allow
+    static constexpr float kUnknown = 1e6f; // lets the filter average as much as guides allow
 
     HD void operator()(uint32_t i) const {
         const PixelPlace at = tiled_place(i, width, height);
@@ -50,14 +50,15 @@ struct LimitHistory {
     }
 
 private:
-    /// Recent means of the pixels about one that show the same object.
+    /// Recent means of the surrounding pixels that show the same object.
     struct Neighbours {
         Rgb mean, deviation;
         float gloss_mean, gloss_deviation;
-        float variance; // of the luminance; kUnknown where too few pixels are alike
+        float variance; // variance of the luminance; kUnknown if too few pixels are similar
     };
 
-    /// Thirteen of the 25 about the pixel, as on a chessboard: neighbours two apart say as much, for half of the price.
+    /// Thirteen of the surrounding 25 pixels in a chessboard pattern, which give as much information at half of the
+    /// cost.
     HD Neighbours look_around(PixelPlace at, Float4 guide) const {
         const int w = static_cast<int>(width), h = static_cast<int>(height);
         int columns[5], rows[5];
@@ -95,12 +96,13 @@ private:
         return n;
     }
 
-    /// Of the luminance of single frames about their mean.
+    /// Standard deviation of single frames' luminance around their mean.
     HD static float deviation_of_frames(float square_mean, Float4 mean) {
         return safe_sqrt(square_mean - square(fused_luminance(rgb_of(mean))));
     }
-    /// Recent frames stray too: their mean over some twenty pixels by a tenth of the deviation of single ones. Five
-    /// times that is allowed, or what few bright samples brought would be lost wherever the last frames had none.
+    /// The mean of recent frames is noisy too: over some twenty pixels by a tenth of a single frame's deviation. Five
+    /// times that is allowed, because otherwise light from few bright samples would be lost wherever the last frames
+    /// had none.
     HD static float within(float x, float mean, float deviation, float of_frames) {
         const float most = 2.0f * deviation + 0.5f * of_frames;
         return clamp(x, mean - most, mean + most);
@@ -118,7 +120,7 @@ private:
         if (held == light) return mean;
         return light > 0 ? with_w((held / light) * rgb_of(mean), mean.w) : with_w(grey(max(held, 0.0f)), mean.w);
     }
-    /// Of a mean over mean.w frames. Few say little of their own spread.
+    /// Variance of a mean over mean.w frames. Few frames say little about their own spread.
     HD float variance(float square_mean, Float4 mean, float over_neighbours) const {
         if (mean.w < kFewFrames) return over_neighbours * (kFewFrames / max(mean.w, 1.0f));
         return kTails * max(square_mean - square(fused_luminance(rgb_of(mean))), 0.0f) / mean.w;

@@ -1,8 +1,9 @@
 #pragma once
 
-// How far what each pixel shows has moved in the picture since the frame before, by the camera, its instance and its
-// vertices: for motion blur and for filters over time in other programs. One ray through the pixel's centre and the
-// middle of the lens finds what it shows; a mean over samples would mix what lies before with what lies behind.
+// Motion vectors: how far the content of each pixel has moved in the picture since the previous frame, by the camera,
+// its instance and its vertices; for motion blur and temporal filters in other programs. One ray through the pixel's
+// centre and the middle of the lens determines the content, because a mean over samples would mix foreground and
+// background.
 
 #include "denoise/reproject.h"
 #include "image/image.h"
@@ -11,10 +12,10 @@
 
 namespace pertev {
 
-/// One pixel each: its ray and the key of its coin, for blended surfaces.
+/// One call per pixel: its ray, and the key of its coin for blended surfaces.
 struct CentreRays {
     CameraView camera;
-    uint32_t width, first; // pixels; number of the first one
+    uint32_t width, first; // width in pixels; index of the first pixel
     Ray* rays;
     uint32_t* keys;
 
@@ -26,15 +27,15 @@ struct CentreRays {
     }
 };
 
-/// One pixel each. Nothing has moved that the frame before had behind its camera; what it did not have at all is taken
-/// to have stood where it is.
+/// One call per pixel. A point that was behind the previous camera has no motion; one that did not exist is assumed
+/// to have been at its present position.
 struct MotionOfHits {
     FrameCameras cameras;
     SceneView scene;
     PreviousScene before;
     HitQueueView hits;
     uint32_t first;
-    Vec2* motion; // pixels to the right and up, of this frame's place from that of the frame before
+    Vec2* motion; // pixels to the right and up, from the previous position to the present one
 
     HD void operator()(uint32_t i) const {
         const uint32_t pixel = first + i;
@@ -62,19 +63,20 @@ private:
     }
 };
 
-/// The memory that motion_vectors holds while it runs.
+/// Memory of motion_vectors while it runs.
 struct MotionVectorMemory {
     MotionVectorMemory(Queue& queue, uint32_t width, uint32_t height);
 
-    uint32_t most; // pixels of a batch
+    uint32_t most; // pixels per batch
     Buffer<Ray> rays;
     Buffer<uint32_t> keys, instances;
     Buffer<Float4> places;
     Buffer<Vec2> motion;
 };
 
-/// Of the picture: two channels, pixels to the right and up. `camera_before` saw the frame before, of the same size, in
-/// which things stood as `before` says. Throws Error(OutOfMemory, DeviceFault).
+/// Motion vectors of the picture: two channels, pixels to the right and up. `camera_before` is the camera of the
+/// previous frame, of the same size, in which objects were where `before` says. Throws Error(OutOfMemory,
+/// DeviceFault).
 Image motion_vectors(Queue& queue, SceneTracer& tracer, const PictureView& picture, const CameraView& camera_before,
                      const PreviousScene& before);
 

@@ -10,9 +10,10 @@ namespace pertev {
 namespace {
 
 constexpr int kPasses = 5;
-// WaveletPass's. Bumps are as trusted as all else: of more samples their noise is less than what they show.
+// Parameters of WaveletPass. Bumps are trusted like everything else, because with more samples their noise is less
+// than their effect.
 constexpr float kTolerance = 4, kLeastTrust = 1;
-constexpr std::size_t kOfGuide = 4, kOfSums = 10 + 2 * kSurfacesBeside, kOfSignals = 4; // arrays of Float4
+constexpr std::size_t kOfGuide = 4, kOfSums = 10 + 2 * kSurfacesBeside, kOfSignals = 4; // numbers of arrays of Float4
 constexpr std::size_t kWideArrays = kOfGuide + kOfSums + kOfSignals;
 
 } // namespace

@@ -1,11 +1,13 @@
 #pragma once
 
-// A single picture from few samples a pixel, without any frame before: the variance-guided wavelet passes of frames
-// (denoise/reconstruction.h), led by what the rays through pixels' centres meet. Samples are added one of each pixel at
-// a time, in the order of their numbers, so that the picture of a samples with b added has the bytes of a + b. Every
-// stage is one function for both devices. The picture is biased: it blurs light where no guide shows an edge.
+// Denoises a single picture with few samples per pixel, without previous frames: the variance-guided wavelet passes
+// of frames (denoise/reconstruction.h), guided by the hits of rays through pixels' centres. Samples are added one per
+// pixel at a time in the order of their numbers, so that the picture of a samples with b added has the bytes of a +
+// b. Every stage is one function for both devices. The picture is biased: it blurs light where no guide shows an
+// edge.
 //
-// Sums are floats: past a hundred thousand samples a pixel they round visibly, long after there is noise to take out.
+// Sums are floats: beyond a hundred thousand samples per pixel their rounding becomes visible, long after noise has
+// vanished.
 
 #include "denoise/denoiser.h"
 #include "denoise/gather_samples.h"
@@ -20,8 +22,8 @@ public:
     PictureDenoiser(Queue& queue, uint32_t width, uint32_t height);
 
     void begin(const NoisyFrame& centres, const CameraView& camera) override;
-    /// Takes samples 0 to kFeatures - 1 before any light, so that edges and textures are smooth however few samples
-    /// there will be.
+    /// Requires samples 0 to kFeatures - 1 before any light, so that edges and textures are smooth even with few
+    /// samples.
     uint32_t feature_samples() const override { return kFeatures; }
     void add_features(const NoisyFrame& frame, const SceneView& scene) override;
     void add(const NoisyFrame& frame, const SceneView& scene) override;

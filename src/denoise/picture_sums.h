@@ -1,48 +1,49 @@
 #pragma once
 
-// What a single picture is reconstructed from (denoise/picture_denoiser.h): for each pixel the surface that the ray
-// through its centre meets, its *guide*; sums over what the pixel's camera rays meet, its *features*, and over the
-// light of its samples. A sample that met the guide's surface tells of the light there. One that met another, as at
-// edges, counts for the picture with its own colours, but the light on these is taken from a pixel beside it whose
-// guide shows that surface. So guides and light are sharp at every edge while the picture is not jagged.
+// Input of the reconstruction of a single picture (denoise/picture_denoiser.h): for each pixel the surface that the
+// ray through its centre hits, its *guide*; sums over the hits of the pixel's camera rays, its *features*, and over
+// the light of its samples. A sample on the guide's surface contributes to the light there. One on another surface,
+// as at edges, contributes its own colours to the picture, but the light on these comes from a neighbouring pixel
+// whose guide shows that surface. Thus guides and light are sharp at every edge while the picture is antialiased.
 
 #include "denoise/reconstruction_view.h"
 
 namespace pertev {
 
-/// Of the rays through pixels' centres, from the middle of the lens.
+/// Hits of the rays through pixels' centres, from the middle of the lens.
 struct PictureGuide {
-    Float4* normal;   // NoisyFrameView's
-    Float4* albedo;   // NoisyFrameView's
-    uint32_t* object; // instance; kNoHit: nothing
+    Float4* normal;   // see NoisyFrameView
+    Float4* albedo;   // see NoisyFrameView
+    uint32_t* object; // instance; kNoHit: no hit
 };
 
-/// Other surfaces that samples of one pixel may meet and be told apart.
+/// Number of other surfaces that samples of one pixel may hit and that are distinguished.
 inline constexpr int kSurfacesBeside = 2;
 
-/// A pixel's light is that of its samples over the sum of their divisors, not the mean of their signals: what a normal
-/// map makes bright where its texture is bright stays so.
+/// The light of a pixel is that of its samples over the sum of their divisors, not the mean of their signals, so that
+/// light which a normal map concentrates on the bright parts of a texture is preserved.
 struct PictureSums {
-    // Of light.
-    Float4* diffuse;       // rgb of samples that met the guide's surface, scattered by diffuse lobes; their number
-    Float4* gloss;         // rgb, scattered by others
+    // Sums of light.
+    Float4* diffuse;       // rgb of samples on the guide's surface, scattered by diffuse lobes; their number
+    Float4* gloss;         // rgb, scattered by other lobes
     Float4* diffuse_share; // rgb of divisors of these samples; luminances of the signal
-    Float4* gloss_share;   // the same of the other signal
-    Vec2* squares;         // of these luminances
-    Float4* beside;        // rgb of samples that met a surface beside, scattered; their number
-    Float4* loose;         // rgb of samples whose surface no guide about shows; their number
+    Float4* gloss_share;   // for the other signal, like diffuse_share
+    Vec2* squares;         // squares of these luminances
+    Float4* beside;        // rgb of samples on another known surface, scattered; their number
+    Float4* loose;         // rgb of samples whose surface no nearby guide shows; their number
 
-    // Of features.
-    Float4* normal;                          // of the guide's surface; their number
-    Float4* met;                             // rgb of emission; number of loose samples, whose emission is left out
+    // Sums of features.
+    Float4* normal;                          // normal of the guide's surface; their number
+    Float4* met;                             // rgb of emission; number of loose samples, whose emission is excluded
     Float4* diffuse_color;                   // rgb of divisors of the guide's surface
-    Float4* gloss_color;                     // the same of the other signal
-    Float4* beside_diffuse[kSurfacesBeside]; // of another surface; bits of a pixel whose guide shows it, kNoHit: none
-    Float4* beside_gloss[kSurfacesBeside];   // the same of the other signal; their number
+    Float4* gloss_color;                     // for the other signal, like diffuse_color
+    Float4* beside_diffuse[kSurfacesBeside]; // divisors of another surface; bits of a pixel whose guide shows it,
+                                             // kNoHit: none
+    Float4* beside_gloss[kSurfacesBeside];   // for the other signal; their number
 };
 
 /// Whether `point`, camera space, with the normal `normal`, lies on the surface that `guide` shows at `pixel`, whose
-/// normal makes an angle with it whose cosine is greater than `cosine`.
+/// normal must make an angle with it whose cosine exceeds `cosine`.
 HD inline bool shows_surface(const PictureGuide& guide, const CameraView& camera, uint32_t width, uint32_t pixel,
                              uint32_t object, Vec3 point, Vec3 normal, float cosine) {
     if (guide.object[pixel] != object) return false;

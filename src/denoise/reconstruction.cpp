@@ -16,10 +16,11 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kOfHistory = 5, kOfSignals = 2; // arrays of Float4
+constexpr std::size_t kOfHistory = 5, kOfSignals = 2; // numbers of arrays of Float4
 
-/// Float4 of a reconstruction: both histories, then signals, twice. What finds a change of light lies there before the
-/// signals do, its numbers at the end, where the first ones leave room; only in tiny pictures does it take more.
+/// Number of Float4 of a reconstruction: both histories, then signals, twice. Data of temporal gradients uses the
+/// memory of the signals before these are written, its numbers at the end, after the first ones; only in tiny
+/// pictures does it need more.
 std::size_t wide_count(uint32_t width, uint32_t height) {
     const std::size_t pixels = std::size_t(width) * height, small = LightChangeRoom::pixels(width, height);
     return 2 * kOfHistory * pixels +
@@ -27,14 +28,14 @@ std::size_t wide_count(uint32_t width, uint32_t height) {
                      (LightChangeRoom::kPicture + LightChangeRoom::kNumbers) * small});
 }
 
-/// Vec2: squares of both histories, then places in the frame before, or between frames the small picture of the scene
-/// as it was.
+/// Number of Vec2: squares of both histories, then positions in the previous frame, or between frames the small
+/// picture of the scene as it was.
 std::size_t narrow_count(uint32_t width, uint32_t height) {
     const std::size_t pixels = std::size_t(width) * height;
     return 2 * pixels + std::max(pixels, 2 * LightChangeRoom::kPicture * LightChangeRoom::pixels(width, height));
 }
 
-constexpr float kTolerance = 8, kLeastTrust = 0.125f; // WaveletPass's
+constexpr float kTolerance = 8, kLeastTrust = 0.125f; // parameters of WaveletPass
 
 } // namespace
 
@@ -56,7 +57,7 @@ HistoryView Reconstruction::history(uint32_t frame) const {
         wide, wide + pixels, wide + 2 * pixels, narrow_.data() + which * pixels, wide + 3 * pixels, wide + 4 * pixels};
 }
 
-/// Light of the frame, filtered; `room`: a picture's array that is free.
+/// Computes the filtered light of the frame; `room` is a free array of the picture's size.
 SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
                                    const PreviousScene& scene_before, const LightChangeView& change,
                                    const ReconstructionSettings& settings, Float4*& room) {
@@ -122,7 +123,7 @@ void Reconstruction::add_enlarged(const NoisyFrame& frame, const CameraView& lig
                                   const LightChangeView& change, const ReconstructionSettings& settings) {
     if (!enlarged_ || enlarged_->width() != features.width() || enlarged_->height() != features.height()) {
         cut();
-        enlarged_.reset(); // before the new one, so that both need not fit
+        enlarged_.reset(); // freed before the new one, so that both need not fit
         enlarged_.emplace(*queue_, features.width(), features.height());
     }
     const HistoryView now = history(frames_ + 1);
@@ -160,7 +161,7 @@ FrameTones Reconstruction::tones(const NoisyFrame& frame) const {
     const uint32_t side = block_side(width, height);
     const uint32_t columns = block_columns(width, side), rows = (height + side - 1) / side;
     const std::size_t row_sums = std::size_t(columns) * height, blocks = std::size_t(columns) * rows;
-    Float4* const signals = wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_; // 4 a pixel
+    Float4* const signals = wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_; // 4 per pixel
     Float4* const room = enlarged_ ? enlarged_->room_for_tones() : signals;
     const BlockSums sums = {room, room + row_sums}, means = {room + 2 * row_sums, room + 2 * row_sums + blocks};
     launch(*queue_, "sum_block_rows", static_cast<uint32_t>(row_sums),

@@ -1,9 +1,9 @@
 #pragma once
 
-// A picture from one sample a pixel and what was seen in the frames before: spatiotemporal variance-guided filtering
-// with what came after it. Its stages, in their order, are the files of this folder that the .cpp launches; each is one
-// function for both devices, so a frame has the same bytes on each. A frame is a function of its noisy frame, cameras,
-// settings and the frames since the last cut.
+// Reconstructs a picture from one sample per pixel and previous frames: spatiotemporal variance-guided filtering with
+// later extensions. Its stages, in order, are the files of this folder that the .cpp launches. Each is one function
+// for both devices, so a frame has the same bytes on each. A frame depends only on its noisy frame, cameras, settings
+// and the frames since the last cut.
 //
 // Source: Schied et al., "Spatiotemporal Variance-Guided Filtering: Real-Time Reconstruction for Path-Traced Global
 // Illumination", HPG 2017.
@@ -24,8 +24,9 @@ namespace pertev {
 
 /// Means of a frame over square blocks of pixels, some 40 along its longer side.
 struct FrameTones {
-    Image scattered; // RGBA: what surfaces scatter to the camera, without lamps and sky that are seen directly; the
-                     // share of the block that this is true of, with which the others are multiplied already
+    Image scattered; // RGBA: light that surfaces scatter to the camera, without directly visible emitters and sky;
+                     // alpha is the fraction of the block to which this applies, by which the colours are
+                     // premultiplied
     Image all;       // RGB
 };
 
@@ -33,48 +34,48 @@ class Reconstruction {
 public:
     Reconstruction(Queue& queue, uint32_t width, uint32_t height);
 
-    /// What follows has nothing to do with what was seen before.
+    /// Discards the history, because the next frame is unrelated to it.
     void cut() { frames_ = 0; }
-    /// Makes the picture of `frame`, which has this size, seen by `camera` in `scene`. `before`: where things stood in
-    /// the frame before; looked at only where there is one. `change`: of light since then.
+    /// Makes the picture of `frame`, which has this size, seen by `camera` in `scene`. `before` has the positions in
+    /// the previous frame, and is used only if there is one. `change` is the change of light since then.
     void add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene, const PreviousScene& before,
              const LightChangeView& change, const ReconstructionSettings& settings);
 
-    /// The same of a picture of another size, that of `features`: a frame whose paths end at the first surface, seen by
-    /// `camera`. `frame`, the light, is seen by `light_camera`. A picture of another size than the one before is a cut.
+    /// Makes a picture at another resolution, that of `features`: a frame whose paths end at the first surface, seen
+    /// by `camera`. `frame`, the light, is seen by `light_camera`. A change of the picture's size is a cut.
     void add_enlarged(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
                       const CameraView& camera, const SceneView& scene, const PreviousScene& before,
                       const LightChangeView& change, const ReconstructionSettings& settings);
 
-    /// For `change` of the next add(): free from one add() to the next.
+    /// Memory for `change` of the next add(), free from one add() to the next.
     LightChangeRoom room_for_change() const;
-    /// Frames since the last cut.
+    /// Number of frames since the last cut.
     uint32_t frames() const { return frames_; }
-    /// Of the light; the picture's where it is not enlarged.
+    /// Size of the light, which is that of the picture unless it is upsampled.
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
-    /// Of the picture: more than those of the light where it was enlarged.
+    /// Size of the picture, larger than that of the light if it is upsampled.
     uint32_t shown_width() const { return enlarged_ ? enlarged_->width() : width_; }
     uint32_t shown_height() const { return enlarged_ ? enlarged_->height() : height_; }
-    /// On the device, of the last add(). Waits for it.
+    /// Device time of the last add(), in seconds. Waits for it.
     double seconds() const { return timer_.seconds(); }
     /// RGB, linear, of the last frame.
     Image picture() const;
-    /// Brings the same to the host as a display shows it, times 2^exposure_stops.
+    /// Computes the last frame's picture for a display, times 2^exposure_stops, and starts its copy to the host.
     void display(ToneMap tone_map, float exposure_stops);
-    /// What the last display() brought.
+    /// The picture of the last display().
     Rgba8Image displayed() const;
-    /// That bringing it to the host took, after all that made it. Waits for it.
+    /// Time of its copy to the host, in seconds, after everything before. Waits for it.
     double copy_seconds() const { return copy_timer_.seconds(); }
-    /// Of the last picture, which was made of `frame`; of an enlarged one, `frame` is its features.
+    /// Tones of the last picture, which was made from `frame`; for an upsampled one `frame` is its features.
     FrameTones tones(const NoisyFrame& frame) const;
 
-    // Of the last frame, where ReconstructionSettings::keep_layers was set.
+    // Layers of the last frame, if ReconstructionSettings::keep_layers was set.
 
-    /// Two channels: pixels that what is seen has moved since the frame before, to the right and down.
+    /// Two channels: motion since the previous frame, in pixels to the right and down.
     Image motion() const;
-    /// One channel: deviation of the luminance of both signals together, as it leads the filter; 1000 and more: not
-    /// known yet.
+    /// One channel: standard deviation of the luminance of both signals together, as used by the filter; 1000 and
+    /// more means unknown.
     Image deviation() const;
 
 private:
@@ -90,12 +91,12 @@ private:
     uint32_t width_, height_, frames_ = 0;
     CameraView last_camera_ = {};
     DeviceTimer timer_, copy_timer_;
-    Buffer<Float4> wide_; // arrays of Float4, of both histories and of signals
+    Buffer<Float4> wide_; // arrays of both histories and of signals
     Buffer<Vec2> narrow_;
-    std::unique_ptr<HostCopy> display_; // none before it is asked for
+    std::unique_ptr<HostCopy> display_; // null before the first display()
     std::size_t display_bytes_ = 0;
-    Buffer<Float4> layers_;                 // empty until somebody asks for them
-    std::optional<EnlargedFrame> enlarged_; // where the picture has another size than its light
+    Buffer<Float4> layers_;                 // empty until they are requested
+    std::optional<EnlargedFrame> enlarged_; // if the picture has another size than its light
 };
 
 } // namespace pertev

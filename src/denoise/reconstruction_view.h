@@ -1,10 +1,10 @@
 #pragma once
 
-// The numbers that stages of the reconstruction hand on, as plain arrays of one element a pixel, row by row. What
-// lives from frame to frame is there twice: the frame before is read while the present one is written.
+// Data that stages of the reconstruction exchange, as arrays with one element per pixel, row by row. Data that lives
+// from frame to frame is double-buffered: the previous frame is read while the current one is written.
 //
-// A *signal* is light that the first surface scatters, divided by how much of it the surface's own colour lets through
-// (demodulated): what is left is smooth where a texture is not. There are two, by diffuse lobes and by others.
+// A *signal* is light that the first surface scatters, divided by its reflectance (demodulated), so that it is smooth
+// where a texture is not. There are two, for diffuse lobes and for others.
 
 #include <cstdint>
 
@@ -17,25 +17,25 @@
 
 namespace pertev {
 
-/// Of a frame, all that the next one asks of it.
+/// Data of a frame that the next one needs.
 struct HistoryView {
     Float4* guide;   // packed Guide
-    Float4* diffuse; // mean of the signal over the frames that saw this place; their number
-    Float4* gloss;   // the same of the other signal
+    Float4* diffuse; // mean of the signal over the frames that saw this surface point; their number
+    Float4* gloss;   // for the other signal, like diffuse
     Vec2* squares;   // mean square of the luminances of both
-    Float4* recent;  // the same means over few frames: rgb diffuse, luminance of the other
-    Float4* shown;   // the reconstructed picture as ShownColor; unused
+    Float4* recent;  // means over few frames: rgb diffuse, luminance of the other
+    Float4* shown;   // the reconstructed picture as ShownColor; w is unused
 };
 
-/// What a pixel shows, as far as the filters ask.
+/// The surface of a pixel, for filters.
 struct Guide {
-    Vec3 normal;     // unit but for 2^-15, on the camera's side; 0 where nothing was met
-    float alpha;     // GGX width of the sharpest lobe that is not diffuse, 1 without one
+    Vec3 normal;     // unit up to 2^-15, on the camera's side; 0 without a hit
+    float alpha;     // GGX width of the sharpest non-diffuse lobe, 1 without one
     float depth;     // along the camera's axis, metres
-    uint32_t object; // instance; kNoHit: nothing
+    uint32_t object; // instance; kNoHit: no hit
 };
 
-/// Sixteen bytes: a guide is read for each tap of each filter.
+/// Packs a guide into sixteen bytes, because it is read for each tap of each filter.
 HD inline Float4 pack(const Guide& g) {
     const auto bits = [](float x, float scale, float zero) {
         return static_cast<uint32_t>(clamp(fma(x, scale, zero + 0.5f), 0.0f, 65535.0f));
@@ -46,7 +46,7 @@ HD inline Float4 pack(const Guide& g) {
 }
 HD inline uint32_t object_of(Float4 packed) { return bits_of(packed.w); }
 HD inline float depth_of(Float4 packed) { return packed.z; }
-/// 2^23 + n is the float whose lowest bits are n: cheaper than a conversion.
+/// 2^23 + n is the float whose lowest bits are n, which is cheaper than a conversion.
 HD inline Vec3 normal_of(Float4 packed) {
     constexpr uint32_t k2To23 = 0x4b000000;
     constexpr float kZero = 8388608.0f + 32767.0f, kScale = 1.0f / 32767.0f;
@@ -64,24 +64,24 @@ struct SignalsView {
     Float4* gloss;
 };
 
-// Sums of products in one rounding each, which is also one instruction each.
+// Sums of products with one rounding, thus one instruction, each.
 HD inline float fused_dot(Vec3 a, Vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 HD inline float fused_luminance(Rgb c) { return fma(0.2126f, c.r, fma(0.7152f, c.g, 0.0722f * c.b)); }
 HD inline Rgb add_scaled(Rgb sum, float scale, Rgb c) {
     return {fma(scale, c.r, sum.r), fma(scale, c.g, sum.g), fma(scale, c.b, sum.b)};
 }
 
-/// `x + offset` held within [0, count).
+/// `x + offset` clamped to [0, count).
 HD inline int held(int x, int offset, int count) { return clamp(x + offset, 0, count - 1); }
 
-/// Least share of light that a signal is divided by.
+/// Minimum divisor of a signal.
 inline constexpr float kLeastAlbedo = 0.01f;
 HD inline Rgb divisor_of(Rgb albedo) {
     return {max(albedo.r, kLeastAlbedo), max(albedo.g, kLeastAlbedo), max(albedo.b, kLeastAlbedo)};
 }
 
-/// What the diffuse signal is divided by at a pixel: what its diffuse lobes make of light as the camera sees them, so
-/// that the signal of a place is the same from wherever it is seen.
+/// Divisor of the diffuse signal at a pixel: the reflectance of its diffuse lobes as the camera sees them, so that
+/// the signal of a point does not depend on the view.
 HD inline Rgb diffuse_divisor(const NoisyFrameView& frame, uint32_t pixel) {
     return divisor_of(frame.emission[pixel].w * rgb_of(frame.albedo[pixel]));
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Where what a pixel shows was in the frame before, and what that frame knows of it.
+// Reprojection to the previous frame, and lookup of its data.
 //
 // Sources: Schied et al., "Spatiotemporal Variance-Guided Filtering", HPG 2017, section 4.1 (bilinear taps, each tested
 // by depth, normal and object); Stachowiak and Uludag, "Stochastic Screen-Space Reflections", SIGGRAPH 2015 (a
@@ -10,34 +10,36 @@
 
 namespace pertev {
 
-/// Of taps that fit, below which they tell nothing.
+/// Minimum weight of matching taps; below it they are not used.
 inline constexpr float kEnoughWeight = 0.01f;
 
-/// Of a reflection seen at the pixel's centre: of the virtual point `distance` metres behind the surface.
+/// Reprojects a reflection seen at the pixel's centre: the virtual point `distance` metres behind the surface.
 HD inline Reprojection reproject_virtual(const FrameCameras& cameras, Vec2 centre, float depth, float distance) {
     const Ray ray = make_camera_ray(cameras.now, centre, {0, 0});
     const Transform& m = cameras.now.world_from_camera;
-    const float along = depth / -dot(transform_transposed(m, ray.direction), Vec3{0, 0, 1}); // metres on the ray
+    const float along = depth / -dot(transform_transposed(m, ray.direction), Vec3{0, 0, 1}); // metres along the ray
     const SeenPoint then = see_point(cameras.before, ray.origin + (along + distance) * ray.direction);
     return {then.pixel, then.depth};
 }
 
-/// Of the sky, which is endlessly far.
+/// Reprojects the sky, which is infinitely far.
 HD inline Vec2 reproject_sky(const FrameCameras& cameras, Vec2 centre) {
     if (has_parallel_rays(cameras.now.projection)) return centre;
     const Vec3 direction = make_camera_ray(cameras.now, centre, {0, 0}).direction;
     return see_point(cameras.before, cameras.before.world_from_camera.translation + direction).pixel;
 }
 
-/// Up to four pixels of the frame before about a place, with their weights; their sum is 0 where none fits.
+/// Up to four pixels of the previous frame around a position, with their weights; the sum is 0 if none matches.
 struct Taps {
-    uint32_t first;   // upper left pixel, which need not fit
-    float weights[4]; // of it, its right neighbour, the two below; of enough weight: their sum is 1
-    float sum;        // of weights, before they were divided by it
+    uint32_t first;   // upper left pixel, which need not match
+    float weights[4]; // weights of `first`, its right neighbour, the two below; they add up to 1 if there is enough
+                      // weight
+    float sum;        // sum of weights before the division
 };
 
-/// Which of the four have seen `object` at about this depth and with about this normal; where none has, the nearest of
-/// the pixels around, as along an edge a pixel sees now one side and now the other. `depth` <= 0: at any.
+/// Finds which of the four have seen `object` at about this depth with about this normal; if none has, it uses the
+/// nearest matching pixel around, because along an edge a pixel sees one side or the other. `depth` <= 0 accepts any
+/// depth.
 HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras, Vec2 pixel, float depth, Vec3 normal,
                          float least_cosine, uint32_t object) {
     Taps taps = {0, {0, 0, 0, 0}, 0};
@@ -66,7 +68,7 @@ HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras,
         return taps;
     }
     const int near_x = column + (in_x < 0.5f ? 0 : 1), near_y = row + (in_y < 0.5f ? 0 : 1);
-    for (int k = 0; k < 8; ++k) { // the four beside it, then the corners
+    for (int k = 0; k < 8; ++k) { // the four neighbours, then the corners
         const int dx = k < 4 ? (k == 0) - (k == 1) : 2 * (k & 1) - 1, dy = k < 4 ? (k == 2) - (k == 3) : (k & 2) - 1;
         if (!fits(near_x + dx, near_y + dy)) continue;
         return {static_cast<uint32_t>((near_y + dy) * w + near_x + dx), {1, 0, 0, 0}, 1};
@@ -79,7 +81,7 @@ HD inline uint32_t tap_pixel(const Taps& taps, const FrameCameras& cameras, int 
     return taps.first + static_cast<uint32_t>(k & 1) + static_cast<uint32_t>(k >> 1) * cameras.width;
 }
 
-/// Mean over the taps of what lies in `values`; some fit.
+/// Mean of `values` over the taps, at least one of which matches.
 HD inline Float4 mean_of_taps(const Taps& taps, const FrameCameras& cameras, const Float4* values) {
     Float4 mean = {0, 0, 0, 0};
     for (int k = 0; k < 4; ++k) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// A picture as it goes from frame to frame: light c as c / (1 + luminance), so that one bright colour does not stand
-// for a pixel's edge, in YCoCg, whose axes lie along what colours of a neighbourhood differ by.
+// The representation of a picture from frame to frame: light c as c / (1 + luminance), so that one bright colour does
+// not dominate a pixel at an edge, in YCoCg, whose axes follow the differences of neighbouring colours.
 //
 // Source: Karis, "High Quality Temporal Supersampling", SIGGRAPH 2014.
 
@@ -9,13 +9,13 @@
 
 namespace pertev {
 
-/// Of light, W/(sr m2): Y in [0, 1), Co and Cg in (-1, 1).
+/// Encodes light, W/(sr m2): Y in [0, 1), Co and Cg in (-1, 1).
 HD inline Rgb shown_color(Rgb light) {
     const Rgb c = (1.0f / (1.0f + fused_luminance(light))) * light;
     return {0.25f * c.r + 0.5f * c.g + 0.25f * c.b, 0.5f * (c.r - c.b), 0.5f * c.g - 0.25f * (c.r + c.b)};
 }
 
-/// Back from it; luminances above 2^20 are not told apart.
+/// Decodes it; luminances above 2^20 are indistinguishable.
 HD inline Rgb light_of_shown(Rgb shown) {
     const float low = shown.r - shown.b;
     const Rgb c = {max(low + shown.g, 0.0f), max(shown.r + shown.b, 0.0f), max(low - shown.g, 0.0f)};

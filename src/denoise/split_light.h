@@ -1,6 +1,6 @@
 #pragma once
 
-// Light of one sample, told apart and divided by the colours of the surface that scattered it (demodulation).
+// Splits the light of one sample into signals and divides them by the reflectance of the surface (demodulation).
 //
 // Source: Schied et al. 2017 (denoise/reconstruction.h), section 3.
 
@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-/// What the first surface scattered, and divisor_of of its colours. The signals are light over divisor.
+/// Scattered light of the first surface, and divisor_of its reflectance. The signals are light over divisor.
 struct SplitLight {
     Rgb diffuse, gloss;
     Rgb diffuse_divisor, gloss_divisor;

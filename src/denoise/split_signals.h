@@ -1,6 +1,6 @@
 #pragma once
 
-// First stage: from a frame's light to its two signals, and what of the frame the next one asks for.
+// First stage: splits a frame's light into its two signals, and stores the data that the next frame needs.
 
 #include "denoise/split_light.h"
 
@@ -8,7 +8,8 @@ namespace pertev {
 
 struct SplitSignals {
     NoisyFrameView frame;
-    SignalsView signals; // their w: 0. Without the other one where the frame does not split its light: it is black
+    SignalsView signals; // w is 0. The second one is absent if the frame does not split its light, because it is
+                         // black
     HistoryView now;
 
     HD void operator()(uint32_t i) const {

@@ -1,20 +1,20 @@
 #pragma once
 
-// Means of a frame over square blocks of pixels, for the exposure: what surfaces scatter towards the camera, and all
-// light. Two stages: rows of blocks, then blocks, each summed in its order, so that the sums are the same everywhere.
+// Means of a frame over square blocks of pixels, for the exposure: light that surfaces scatter towards the camera,
+// and all light. Two stages: rows of blocks, then blocks, each summed in a fixed order, so that the sums are the same
+// everywhere.
 
 #include "denoise/shown_color.h"
 
 namespace pertev {
 
-/// Sums over pixels. Where lamps or the sky make up the better part of a pixel, or nothing is there, it does not count
-/// in `scattered`.
+/// Sums over pixels. A pixel that shows mostly emitters or sky, or nothing, does not count in `scattered`.
 struct BlockSums {
     Float4* scattered; // rgb, number of pixels that count
     Float4* all;       // rgb, number of pixels
 };
 
-/// Pixels along each side of a block: some 40 blocks along the longer side.
+/// Side of a block in pixels: some 40 blocks along the longer side.
 inline uint32_t block_side(uint32_t width, uint32_t height) {
     const uint32_t longer = width > height ? width : height;
     return longer < 80 ? 1 : longer / 40;
@@ -22,14 +22,14 @@ inline uint32_t block_side(uint32_t width, uint32_t height) {
 
 inline uint32_t block_columns(uint32_t width, uint32_t side) { return (width + side - 1) / side; }
 
-/// Elements that sums and means of a frame take together: sums of rows, both; then means, both.
+/// Number of elements for sums and means of a frame: sums of rows, both; then means, both.
 inline std::size_t float4s_of_tones(uint32_t width, uint32_t height) {
     const uint32_t side = block_side(width, height);
     const std::size_t columns = block_columns(width, side), rows = (height + side - 1) / side;
     return 2 * columns * (height + rows);
 }
 
-/// One row of pixels in one column of blocks each.
+/// One call per row of pixels and column of blocks.
 struct SumBlockRows {
     const Float4* shown; // ShownColor
     NoisyFrameView frame;
@@ -55,7 +55,7 @@ struct SumBlockRows {
     }
 };
 
-/// One block each: its mean, and in w of `scattered` the share of it that counts.
+/// One call per block: its mean, and in w of `scattered` the fraction that counts.
 struct MeanOfBlockRows {
     BlockSums rows;
     uint32_t height, side, columns;

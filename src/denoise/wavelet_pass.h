@@ -1,7 +1,7 @@
 #pragma once
 
-// Fourth stage, some times over: a mean over neighbours at doubling distances, which follows what the guides show
-// (plane, normal, object) and stops where light differs by more than its own deviation explains.
+// Fourth stage, repeated: a mean over neighbours at doubling distances, which follows the guides (plane, normal,
+// object) and stops where light differs by more than its own deviation explains.
 //
 // Sources: Dammertz et al., "Edge-Avoiding A-Trous Wavelet Transform for fast Global Illumination Filtering", HPG 2010;
 // Schied et al. 2017, section 4.4 (variance in the weight of light, and filtered along).
@@ -12,14 +12,14 @@
 namespace pertev {
 
 struct WaveletPass {
-    const Float4* guide; // HistoryView's, of the present frame
+    const Float4* guide; // guide of the current frame's HistoryView
     SignalsView from, to;
     CameraView camera;
     uint32_t width, height;
     int step;          // pixels between taps
-    float tolerance;   // deviations of diffuse light; taps that differ by four times as much count for nothing
-    float least_trust; // of guides where light strays, (0, 1]; 1: as anywhere else
-    bool has_gloss;    // AccumulateSignals'
+    float tolerance;   // deviations of diffuse light; taps that differ by four times as much do not count
+    float least_trust; // trust in guides where light is noisy, (0, 1]; 1: as anywhere else
+    bool has_gloss;    // see AccumulateSignals
 
     HD void operator()(uint32_t i) const {
         const PixelPlace at = tiled_place(i, width, height);
@@ -31,7 +31,7 @@ struct WaveletPass {
             if (has_gloss) to.gloss[pixel] = gloss;
             return;
         }
-        // Of rows and columns of the three by three taps; at the picture's edges some are the same.
+        // Rows and columns of the three by three taps; at the picture's edges some coincide.
         const Vec3 normal = normal_of(own);
         const Plane plane(camera, normal, depth_of(own), static_cast<int>(at.x), static_cast<int>(at.y), step);
         int columns[3], rows[3];
@@ -50,7 +50,7 @@ struct WaveletPass {
         Sum of_diffuse(diffuse, tolerance * safe_sqrt(variance));
         Sum of_gloss(gloss, kOfGloss * safe_sqrt(gloss_variance));
         const float bend_of_diffuse = 64.0f * trust(of_diffuse.centre, variance);
-        // What bends reflections away, and what tells them from their neighbours by themselves.
+        // Curvature makes reflections diverge, and roughness limits how much reflections of neighbours differ.
         const float bend_of_gloss = 64.0f + 8.0f / max(alpha, 0.002f),
                     trust_of_gloss = has_gloss ? trust(of_gloss.centre, gloss_variance) : 1.0f,
                     narrow = trust_of_gloss * static_cast<float>(step) / (1.0f + square(64.0f * alpha));
@@ -61,7 +61,7 @@ struct WaveletPass {
             if (object_of(there) != object_of(own)) continue;
             const float bend = max(1.0f - fused_dot(normal_of(there), normal), 0.0f),
                         off = plane.distance(on_columns[column] + on_rows[row], depth_of(there));
-            const float kernel = row == 1 || column == 1 ? 0.5f : 0.25f; // of a tent, over that of the centre
+            const float kernel = row == 1 || column == 1 ? 0.5f : 0.25f; // tent weight relative to that of the centre
             of_diffuse.add(from.diffuse[tap], kernel, fma(bend_of_diffuse, bend, off));
             if (has_gloss && abs(alpha_of(there) - alpha) < 0.1f + 0.2f * alpha) {
                 of_gloss.add(from.gloss[tap], kernel, fma(bend_of_gloss, bend, off) + narrow);
@@ -74,28 +74,28 @@ struct WaveletPass {
 private:
     static constexpr float kOfGloss = 8; // tolerance
 
-    /// How much is made of what tells light apart but by its own value, from least_trust to 1: the less, the more light
-    /// strays. Where a sample says little, light of neighbours that face elsewhere is nearer to the truth than its own:
-    /// else each bump of a normal map would keep its noise to itself.
+    /// Trust in guides other than the light itself, from least_trust to 1: the noisier the light, the less. If a
+    /// sample says little, light of neighbours with other normals is nearer to the truth than its own; otherwise each
+    /// bump of a normal map would keep its noise.
     HD float trust(float light, float variance) const {
         const float square_light = fma(light, light, 1e-12f);
         return max(least_trust,
-                   square_light / fma(2.0f, variance, square_light)); // in this order: least_trust of a NaN
+                   square_light / fma(2.0f, variance, square_light)); // in this order, NaN gives least_trust
     }
 
-    /// exp(-x) for a fifth of its price: (1 - x / 4)^4, and 0 from 4 on.
+    /// Approximates exp(-x) at a fifth of its cost: (1 - x / 4)^4, and 0 from 4 on.
     HD static float falloff(float x) { return square(square(max(fma(-0.25f, x, 1.0f), 0.0f))); }
 
-    /// The plane of the surface at a pixel. Seen by the camera a point is linear in its pixel, times its depth where
-    /// rays part.
+    /// The plane of the surface at a pixel. In camera space a point is linear in its pixel, times its depth for a
+    /// perspective camera.
     struct Plane {
         float at_zero, per_column, per_row, per_depth, here;
-        bool is_parallel; // the camera's rays
+        bool is_parallel; // the camera's rays are parallel
 
         HD Plane(const CameraView& camera, Vec3 normal, float depth, int x, int y, int step)
             : is_parallel(has_parallel_rays(camera.projection)) {
             const Vec3 n = transform_transposed(camera.world_from_camera, normal);
-            // Distances are counted in widths of a tap's step at this depth.
+            // Distances are measured in units of a tap's step at this depth.
             const float size = pixel_size(camera, depth);
             const float scale = 1.0f / (size * static_cast<float>(step));
             per_column = scale * (n.x * (2.0f * camera.inv_width * camera.half_width));
@@ -105,7 +105,7 @@ private:
             here = 0;
             here = signed_distance(on_column(x) + on_row(y), depth);
         }
-        /// What a pixel's column and row add to its place.
+        /// Contributions of a pixel's column and row to the position.
         HD float on_column(int x) const { return fma(per_column, static_cast<float>(x), at_zero); }
         HD float on_row(int y) const { return per_row * static_cast<float>(y); }
         HD float signed_distance(float in_view, float depth) const {
@@ -114,12 +114,12 @@ private:
         HD float distance(float in_view, float depth) const { return abs(signed_distance(in_view, depth)); }
     };
 
-    /// Of one signal: values by their weights, variances by the squares of these.
+    /// Weighted sum of one signal: values by their weights, variances by the squares of these.
     struct Sum {
         Rgb light;
         float variance, weight = 1, centre, inv_deviation;
 
-        /// `deviation`: that of light by which a tap may differ and still count.
+        /// `deviation` is the difference of light up to which a tap counts.
         HD Sum(Float4 own, float deviation)
             : light(rgb_of(own)), variance(own.w), centre(fused_luminance(rgb_of(own))),
               inv_deviation(1.0f / (deviation + 1e-4f)) {}
@@ -136,7 +136,7 @@ private:
         }
     };
 
-    /// Of light at a pixel: variances are noisy themselves, so that over its neighbours.
+    /// Variance of the light at a pixel, averaged over its neighbours because variances are noisy themselves.
     HD float variance_of(const Float4* signal, float own, const int* rows, const int* columns) const {
         float sum = 4.0f * own;
         for (int k = 0; k < 9; ++k) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Atomic additions on both devices; relaxed order. Integers only: their sum does not depend on the order.
+// Atomic additions on both devices, in relaxed order, for integers only, whose sum does not depend on the order.
 
 #include <cstdint>
 

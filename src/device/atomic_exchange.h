@@ -1,6 +1,6 @@
 #pragma once
 
-// One value for another, on both devices; relaxed order.
+// Atomic exchange on both devices, in relaxed order.
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The least of what many threads write, on both devices; relaxed order. It does not depend on the order.
+// Atomic minimum on both devices, in relaxed order, on which the result does not depend.
 
 #include <cstdint>
 

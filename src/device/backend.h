@@ -1,8 +1,7 @@
 #pragma once
 
-// A kind of device must offer this: the few calls that move memory, wait and tell the time. There are the CPU
-// (queue.cpp), CUDA (cuda/cuda_backend.cpp), and a dry run of either, which counts memory (queue.cpp); a queue calls
-// through this table.
+// The interface of a kind of device: a few calls that manage memory, wait and measure time. There are the CPU
+// (queue.cpp), CUDA (cuda/cuda_backend.cpp), and a dry run of either, which counts memory (queue.cpp).
 
 #include <cstddef>
 #include <cstdint>
@@ -11,27 +10,28 @@
 
 namespace pertev {
 
-/// A moment in a queue's work.
+/// A time stamp in a queue's work.
 class TimeMark {
 public:
     virtual ~TimeMark() = default;
-    /// The moment when all work given so far is done.
+    /// Records the time when all work queued so far is done.
     virtual void record() = 0;
-    /// Waits for both moments, which belong to one queue and have been recorded. Throws Error(DeviceFault).
+    /// Waits for both time stamps, which belong to one queue and have been recorded. Throws Error(DeviceFault).
     virtual double seconds_since(const TimeMark& earlier) const = 0;
 };
 
-/// A few bytes on their way from the device to the host, which goes on meanwhile.
+/// An asynchronous copy of a few bytes from the device to the host.
 class HostCopy {
 public:
     virtual ~HostCopy() = default;
-    /// Copies from `device` after the work given to the current stream so far. The bytes before have been waited for.
+    /// Copies from `device` after the work queued on the current stream so far. The previous copy must have been
+    /// waited for.
     virtual void take(const void* device) = 0;
-    /// In place of take(): where a stage writes the bytes itself, then said once it has been given to the current
-    /// stream.
+    /// Alternative to take(): the address to which a stage writes the bytes itself. mark() must follow its launch on
+    /// the current stream.
     virtual void* place() = 0;
     virtual void mark() = 0;
-    /// Waits for the last take() or mark() and for nothing behind it. The bytes stay until the next. Throws
+    /// Waits for the last take() or mark(), and not for later work. The bytes stay until the next one. Throws
     /// Error(DeviceFault) that names `stage`, the last one launched.
     virtual const void* wait(const char* stage) = 0;
 };
@@ -40,8 +40,8 @@ class DeviceBackend {
 public:
     virtual ~DeviceBackend() = default;
 
-    /// From now on, what the calling thread asks of CUDA goes to this device. Each call below makes it so first; a
-    /// launch goes through no call here, so Queue::Scope does. On the CPU it does nothing. Throws Error(DeviceFault).
+    /// Makes this device CUDA's current one for the calling thread. Each call below does so first; a launch makes no
+    /// call here, so Queue::Scope does. Does nothing on the CPU. Throws Error(DeviceFault).
     virtual void make_current() const = 0;
 
     virtual std::string name() const = 0;
@@ -49,37 +49,37 @@ public:
     /// Returns whether the device only counts bytes (Queue::make_dry_run).
     virtual bool is_dry_run() const { return false; }
     virtual void* stream() const = 0; // the current one, a cudaStream_t; null on the CPU
-    /// Later work goes to stream `index`. On the CPU there is but one.
+    /// Directs later work to stream `index`. The CPU has only one.
     virtual void use_stream(int index) = 0;
-    /// Stream `waiting` goes on after what stream `other` has been given so far.
+    /// Makes stream `waiting` wait for the work queued on stream `other` so far.
     virtual void let_wait(int waiting, int other) = 0;
     virtual std::size_t free_bytes() const = 0;
 
-    /// Null when there is not enough memory; throws Error(DeviceFault) for anything else.
+    /// Returns null if there is not enough memory; throws Error(DeviceFault) for anything else.
     virtual void* allocate(std::size_t bytes) = 0;
     virtual void free(void* memory) noexcept = 0;
     virtual void copy_to_device(void* device, const void* host, std::size_t bytes) = 0;
     virtual void copy_to_host(void* host, const void* device, std::size_t bytes) = 0;
-    /// In the stream's order.
+    /// Copies in the stream's order.
     virtual void copy_on_device(void* to, const void* from, std::size_t bytes) = 0;
     virtual void fill(void* device, unsigned char value, std::size_t bytes) = 0;
-    /// Waits for all work given to the current stream so far. Throws Error(DeviceFault) that names `stage`, the last
+    /// Waits for all work queued on the current stream so far. Throws Error(DeviceFault) that names `stage`, the last
     /// one launched.
     virtual void wait(const char* stage) = 0;
-    /// Throws Error(DeviceFault) when the launch just made was refused.
+    /// Throws Error(DeviceFault) if the last launch was refused.
     virtual void check_launch(const char* stage) = 0;
     virtual std::unique_ptr<TimeMark> make_time_mark() = 0;
     virtual std::unique_ptr<HostCopy> make_host_copy(std::size_t bytes) = 0;
 };
 
-/// Why no CUDA device can be used, or empty when device `index` can: no support compiled in, no driver, no such
-/// device, or an architecture that the binary holds no code for. The calling thread's device stays as it was.
+/// Why CUDA device `index` cannot be used, or empty if it can: no support compiled in, no driver, no such device, or
+/// an architecture for which the binary has no code. The calling thread's device does not change.
 std::string why_no_cuda(int index);
-/// Whether there may be one: whether a driver's library is there. That is known at once; CUDA's first answer takes a
-/// tenth of a second, and a started driver a quarter.
+/// Whether there may be a CUDA device, that is, a driver library. The answer is immediate, while the first CUDA call
+/// takes a tenth of a second, and starting a driver a quarter.
 bool may_have_cuda();
 int cuda_device_count();
-/// Throws Error(BadInput) with why_no_cuda's reason.
+/// Throws Error(BadInput) with the reason of why_no_cuda.
 std::unique_ptr<DeviceBackend> make_cuda_backend(int index);
 
 } // namespace pertev

@@ -1,6 +1,6 @@
 #pragma once
 
-// An array in device memory. Owned here, passed on as a plain pointer in views.
+// An array in device memory, owned here and passed on as a plain pointer in views.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,10 +20,10 @@ class Buffer {
 
 public:
     Buffer() = default;
-    /// `count` elements, not initialised. `name` stands in the message of Error(OutOfMemory).
+    /// Allocates `count` elements without initialising them. `name` appears in the message of Error(OutOfMemory).
     Buffer(Queue& queue, std::size_t count, const std::string& name)
         : queue_(&queue), data_(static_cast<T*>(queue.allocate(count * sizeof(T), name))), count_(count) {}
-    /// A copy of `values`.
+    /// Copies `values`.
     Buffer(Queue& queue, std::span<const T> values, const std::string& name) : Buffer(queue, values.size(), name) {
         upload(values);
     }
@@ -40,7 +40,7 @@ public:
         return *this;
     }
 
-    /// Makes room for `count` elements. A smaller buffer is freed first, so that both need not fit into memory.
+    /// Ensures room for `count` elements. A smaller buffer is freed first, so that both need not fit into memory.
     void grow(Queue& queue, std::size_t count, const std::string& name) {
         if (count_ >= count) return;
         *this = Buffer();
@@ -50,11 +50,11 @@ public:
     T* data() const { return data_; }
     std::size_t size() const { return count_; }
 
-    /// Copies values to the start of the buffer; at most size() of them.
+    /// Copies at most size() values to the start of the buffer.
     void upload(std::span<const T> values) {
         if (!values.empty()) queue_->copy_to_device(data_, values.data(), values.size_bytes());
     }
-    /// Copies values to elements [first, ...) of the buffer, which has room for them.
+    /// Copies values to elements [first, ...) of the buffer, which must have room for them.
     void upload_at(std::size_t first, std::span<const T> values) {
         if (!values.empty()) queue_->copy_to_device(data_ + first, values.data(), values.size_bytes());
     }
@@ -63,14 +63,14 @@ public:
         if (count_ > 0) queue_->copy_to_host(values.data(), data_, count_ * sizeof(T));
         return values;
     }
-    /// The elements for reading: where they lie, or in `copy` where the device has memory of its own.
+    /// Host access for reading: in place, or through `copy` if the device has its own memory.
     std::span<const T> read(std::vector<T>& copy) const {
         if (queue_ == nullptr || !queue_->is_cuda()) return {data_, count_};
         copy = download();
         return copy;
     }
     void zero() { fill(0); }
-    /// Every byte.
+    /// Sets every byte.
     void fill(unsigned char value) {
         if (count_ > 0) queue_->fill(data_, value, count_ * sizeof(T));
     }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Seconds that a stretch of a queue's work takes on the device: CUDA's events, so that neither the launch's way there
-// nor the wait for its end counts; the clock on the wall on the CPU.
+// Device time of a section of a queue's work: CUDA's events, so that neither the latency of launches nor the wait
+// counts; wall-clock time on the CPU.
 
 #include <algorithm>
 #include <memory>
@@ -18,20 +18,20 @@ public:
 
     void start() { start_->record(); }
     void stop() { stop_->record(); }
-    /// Between start() and stop(), both called before. Waits for the work. Throws Error(DeviceFault).
+    /// Seconds between start() and stop(), both called before. Waits for the work. Throws Error(DeviceFault).
     double seconds() const { return stop_->seconds_since(*start_); }
 
 private:
     std::unique_ptr<TimeMark> start_, stop_;
 };
 
-/// Of several runs, seconds.
+/// Times of several runs, in seconds.
 struct RunTimes {
     double median = 0, least = 0, greatest = 0;
     int runs = 0;
 };
 
-/// Of at least one run; the median of an even number is the mean of the two in the middle.
+/// Summarizes at least one run; the median of an even number is the mean of the middle two.
 inline RunTimes summarize_runs(std::vector<double> seconds) {
     PERTEV_CHECK(!seconds.empty());
     std::ranges::sort(seconds);
@@ -39,15 +39,15 @@ inline RunTimes summarize_runs(std::vector<double> seconds) {
     return {median, seconds.front(), seconds.back(), static_cast<int>(seconds.size())};
 }
 
-// Runs that are given to the queue before the first is waited for, so that the device is never idle when one begins:
-// else what the host does on the way to a launch would count.
+// Number of runs that are queued before the first is waited for, so that the device is never idle when one begins;
+// otherwise the latency of a launch on the host would count.
 inline constexpr int kRunsAtOnce = 5;
 
-/// Gives run() to the queue `warm_ups` times, then `runs` times, each timed on its own. `between()` is asked after
-/// every few runs, on a CPU after each, warm-ups included: it may throw to end them.
+/// Queues run() `warm_ups` times, then `runs` times, each timed separately. Calls `between()` after every few runs,
+/// on a CPU after each, warm-ups included; it may throw to stop.
 template <class Run, class Between>
 RunTimes time_runs(Queue& queue, int warm_ups, int runs, const Run& run, const Between& between) {
-    const int at_once = queue.is_cuda() ? kRunsAtOnce : 1; // a CPU's run is over when it returns
+    const int at_once = queue.is_cuda() ? kRunsAtOnce : 1; // on a CPU a run is over when it returns
     for (int i = 0; i < warm_ups; ++i) {
         run();
         if (!queue.is_cuda()) between();

@@ -1,7 +1,7 @@
 #pragma once
 
-// The body of launch(): included by the .cu files that instantiate stages, and by nothing else. A .cpp that saw it
-// would make a second, CPU-only copy of the same weak symbol, and the linker may pick that one.
+// The body of launch(), included only by the .cu files that instantiate stages. A .cpp that included it would make a
+// second, CPU-only copy of the same weak symbol, and the linker may choose that one.
 
 #include "base/host_device.h"
 #include "base/parallel_for.h"
@@ -27,7 +27,7 @@ __global__ void __launch_bounds__(Stage::kShape.threads, Stage::kShape.wanted)
 #endif
 
 #if defined(__CUDACC__)
-/// As launch(), with a queue of a GPU alone: the CPU's loop is not compiled.
+/// Launches on a GPU's queue only, so that the CPU's loop is not compiled.
 template <class Stage>
 void launch_on_gpu(Queue& queue, const char* name, WorkCount count, const Stage& stage) {
     if (count.most == 0 || queue.is_dry_run()) return;

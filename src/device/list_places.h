@@ -1,8 +1,8 @@
 #pragma once
 
-// Places in lists to which every thread of a launch may have something to add. A block takes those of all its threads
-// by one atomic addition a list: where each warp did so by itself, additions to one address were what shading of simple
-// scenes took its time for.
+// Appends to lists from every thread of a launch. A block reserves the slots of all its threads by one atomic
+// addition per list. With one addition per warp, the contention on one address dominated the shading of simple
+// scenes.
 
 #include <cstdint>
 
@@ -11,14 +11,14 @@
 
 namespace pertev {
 
-/// In the order of their lists; of a list that a thread adds nothing to, without meaning.
+/// Slots by list; undefined for a list to which the thread appends nothing.
 template <int kLists>
 struct ListPlaces {
     uint32_t at[kLists];
 };
 
-/// What threads of a block share of kLists lists, for a stage that runs with whole blocks (device/launch.h): made
-/// first, and asked once.
+/// Shared memory of a block for kLists lists, for a stage that runs in whole blocks (device/launch.h). take() may be
+/// called once.
 template <int kLists>
 class BlockLists {
 public:
@@ -29,8 +29,8 @@ public:
 #endif
     }
 
-    /// Places for this thread's elements of the lists that it `adds` to; *sizes[l], in the queue's memory, grows by
-    /// theirs. On the device all threads of the block come here.
+    /// Reserves slots for this thread's elements of the lists that it `adds` to, and increases *sizes[l], in the
+    /// queue's memory. On the device all threads of the block must call it.
     HD ListPlaces<kLists> take(uint32_t* const (&sizes)[kLists], const bool (&adds)[kLists]) const {
         ListPlaces<kLists> places = {};
 #if PERTEV_ON_DEVICE
@@ -39,7 +39,7 @@ public:
             if (adds[l]) places.at[l] = atomicAdd(counts + l, 1u);
         }
         __syncthreads();
-        if (threadIdx.x < kLists) { // side by side, which a loop would not be
+        if (threadIdx.x < kLists) { // in parallel, which a loop would not be
             uint32_t* size = sizes[0];
             for (int l = 1; l < kLists; ++l) {
                 if (threadIdx.x == static_cast<uint32_t>(l)) size = sizes[l];
@@ -59,7 +59,7 @@ public:
 
 private:
 #if PERTEV_ON_DEVICE
-    __device__ static uint32_t* shared() { // how many the block adds, then where they begin
+    __device__ static uint32_t* shared() { // counts of the block, then the first slots
         __shared__ uint32_t numbers[2 * kLists];
         return numbers;
     }

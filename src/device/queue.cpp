@@ -14,9 +14,9 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kAlignment = 256; // as cudaMalloc gives: parts of a buffer may count on it
+constexpr std::size_t kAlignment = 256; // alignment of cudaMalloc, on which parts of a buffer rely
 
-/// The CPU's work is done when its call returns, so the clock on the wall tells.
+/// The CPU's work is done when its call returns, so the wall clock measures it.
 class CpuTimeMark final : public TimeMark {
 public:
     void record() override { time_ = std::chrono::steady_clock::now(); }
@@ -73,7 +73,7 @@ public:
 class DryRunBackend final : public DeviceBackend {
 public:
     explicit DryRunBackend(bool is_cuda) : is_cuda_(is_cuda) {}
-    void make_current() const override { PERTEV_CHECK(false); } // there is nothing that work could run on
+    void make_current() const override { PERTEV_CHECK(false); } // a dry run can run no work
     std::string name() const override { return "dry run"; }
     bool is_cuda() const override { return is_cuda_; }
     bool is_dry_run() const override { return true; }
@@ -82,7 +82,7 @@ public:
     void let_wait(int, int) override {}
     std::size_t free_bytes() const override { return SIZE_MAX; }
     void* allocate(std::size_t bytes) override {
-        const std::uintptr_t at = next_; // aligned, and no other's, as of memory
+        const std::uintptr_t at = next_; // aligned and unique, like a memory address
         next_ += (bytes + kAlignment - 1) / kAlignment * kAlignment;
         return reinterpret_cast<void*>(at);
     }

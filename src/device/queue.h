@@ -1,11 +1,11 @@
 #pragma once
 
-// A queue of work on one device, and the owner of that device's memory. Work runs in the order given. On the CPU each
-// call returns when it is done; in CUDA it runs behind, and wait() meets it. Several queues, on one device or on many,
-// may be used in turns from one thread or from several at once; one queue is for one thread at a time.
+// A queue of work on one device, and the owner of that device's memory. Work runs in order. On the CPU each call
+// returns when it is done; in CUDA it runs asynchronously, and wait() synchronizes. Several queues, on one device or
+// on many, may be used alternately from one thread or concurrently from several; a queue is for one thread at a time.
 //
-// While a Queue::Fork lives a queue has several streams of work: each runs in the order given, and on a GPU they run
-// side by side, so that one fills what another leaves idle.
+// While a Queue::Fork exists, a queue has several streams of work: each runs in order, and on a GPU they run
+// concurrently, so that one uses what another leaves idle.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,12 +21,12 @@ namespace pertev {
 class Queue {
 public:
     static Queue make_cpu();
-    /// Throws Error(BadInput) that says why when the device cannot be used.
+    /// Throws Error(BadInput) with the reason if the device cannot be used.
     static Queue make_cuda(int index);
-    /// Returns a queue that counts the bytes that buffers ask for and gives no memory. Nothing may read a buffer's
-    /// address, and nothing is copied, filled or launched. The count predicts what the same code takes on a device.
+    /// Returns a queue that counts the bytes of buffers and allocates no memory. Nothing may read a buffer's address,
+    /// and nothing is copied, filled or launched. The count predicts the memory of the same code on a device.
     static Queue make_dry_run(bool is_cuda);
-    /// Buffers point to their queue: it may move only while it has given no memory.
+    /// Buffers point to their queue, so it may move only before it has allocated memory.
     Queue(Queue&& other);
 
     bool is_cuda() const { return backend_->is_cuda(); }
@@ -35,15 +35,15 @@ public:
 
     static constexpr int kMaxStreams = 4;
     int stream_index() const { return stream_index_; }
-    /// From now on streams [0, count), count <= kMaxStreams, go on side by side after all work given so far. When it
-    /// ends, by an exception too, stream 0 goes on alone, after all that the others have been given. One at a time.
+    /// Runs streams [0, count), count <= kMaxStreams, concurrently after all work queued so far. When the Fork ends,
+    /// by an exception too, stream 0 continues alone, after all work of the others. There may be one at a time.
     class Fork {
     public:
         Fork(Queue& queue, int count) : queue_(queue) { queue.fork_streams(count); }
         ~Fork() {
             try {
                 queue_.join_streams();
-            } catch (const std::exception&) { // the device is lost: the next wait() says so
+            } catch (const std::exception&) { // the device is lost, which the next wait() reports
                 queue_.streams_ = 1;
             }
         }
@@ -53,12 +53,12 @@ public:
     private:
         Queue& queue_;
     };
-    /// Stream `waiting` goes on after what stream `other` has been given so far.
+    /// Makes stream `waiting` wait for the work queued on stream `other` so far.
     void let_wait(int waiting, int other) { backend_->let_wait(waiting, other); }
-    /// How many go side by side.
+    /// Number of concurrent streams.
     int streams() const { return streams_; }
-    /// While it lives, launches, fills, and waits are those of stream `index`. Of copies a Readback alone: uploads and
-    /// downloads belong before the fork or after the join.
+    /// While it exists, launches, fills and waits use stream `index`. Of copies only a Readback may be used; uploads
+    /// and downloads belong before the fork or after the join.
     class OnStream {
     public:
         OnStream(Queue& queue, int index) : queue_(queue) { queue.use_stream(index); }
@@ -71,7 +71,7 @@ public:
     };
     std::string device_name() const { return backend_->name(); }
 
-    /// Waits for all work given to the stream. Throws Error(DeviceFault) that names the last stage launched when one
+    /// Waits for all work queued on the stream. Throws Error(DeviceFault) that names the last stage launched if one
     /// failed.
     void wait() { backend_->wait(stage_); }
     void check_launch() { backend_->check_launch(stage_); }
@@ -81,7 +81,7 @@ public:
     std::unique_ptr<TimeMark> make_time_mark() { return backend_->make_time_mark(); }
     std::unique_ptr<HostCopy> make_host_copy(std::size_t bytes) { return backend_->make_host_copy(bytes); }
 
-    /// Device memory, never null for bytes > 0. Throws Error(OutOfMemory) that lists the largest buffers.
+    /// Allocates device memory, never null for bytes > 0. Throws Error(OutOfMemory) that lists the largest buffers.
     void* allocate(std::size_t bytes, const std::string& name);
     void free(void* memory) noexcept;
     void copy_to_device(void* device, const void* host, std::size_t bytes) {
@@ -91,20 +91,20 @@ public:
     void copy_to_host(void* host, const void* device, std::size_t bytes) {
         backend_->copy_to_host(host, device, bytes);
     }
-    /// After all work given to the stream before, and before all that is given later.
+    /// Copies in the stream's order.
     void copy_on_device(void* to, const void* from, std::size_t bytes) { backend_->copy_on_device(to, from, bytes); }
     void zero(void* device, std::size_t bytes) { backend_->fill(device, 0, bytes); }
-    /// Every byte.
+    /// Sets every byte.
     void fill(void* device, unsigned char value, std::size_t bytes) { backend_->fill(device, value, bytes); }
 
     std::size_t allocated_bytes() const { return allocated_; }
     std::size_t peak_bytes() const { return peak_; }
-    /// How often memory was taken, and what was copied to the device, since the queue was made.
+    /// Number of allocations, and bytes uploaded, since the queue was made.
     uint64_t allocation_count() const { return allocation_count_; }
     uint64_t uploaded_bytes() const { return uploaded_; }
     std::size_t free_bytes() const { return backend_->free_bytes(); }
 
-    /// Made before each launch: names its stage, for errors, and makes the queue's device the thread's current one.
+    /// Made before each launch: names its stage for errors, and makes the queue's device the thread's current one.
     class Scope {
     public:
         Scope(Queue& queue, const char* stage) {

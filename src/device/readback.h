@@ -1,7 +1,7 @@
 #pragma once
 
-// A value that the host reads behind the work that makes it, while later work goes on: the host may look at what was
-// some time ago and need not stop the device to see it.
+// An asynchronous readback of a value: the host reads it after the work that makes it, while later work continues,
+// without stopping the device.
 
 #include <memory>
 #include <type_traits>
@@ -18,13 +18,13 @@ public:
     /// `queue` outlives it.
     explicit Readback(Queue& queue) : queue_(&queue), copy_(queue.make_host_copy(sizeof(T))) {}
 
-    /// Takes what lies at `device` once the work given to the current stream so far is done.
+    /// Copies the value at `device` once the work queued on the current stream so far is done.
     void take(const T* device) { copy_->take(device); }
-    /// In place of take(), without a copy between two kernels: a stage of the current stream writes the value there, at
-    /// most once, when the one before has been waited for; mark() follows its launch.
+    /// Alternative to take() without a copy between two kernels: a stage of the current stream writes the value
+    /// there, at most once, after the previous one has been waited for; mark() follows its launch.
     T* place() { return static_cast<T*>(copy_->place()); }
     void mark() { copy_->mark(); }
-    /// What the last take() took, or the stage before the last mark() wrote, when it has. Throws Error(DeviceFault).
+    /// Waits for the value of the last take(), or of the stage before the last mark(). Throws Error(DeviceFault).
     T wait() { return *static_cast<const T*>(queue_->wait(*copy_)); }
 
 private:

@@ -1,9 +1,9 @@
 #pragma once
 
-// Which candidates of a walk count: not the triangle that the ray starts on, not the one that it is aimed at, of
-// surfaces with alpha those that the texture (cut-out) or a coin (blend) lets through, and for rays from the camera not
-// the backs of surfaces that are not double sided. A function of the ray, the instance, the primitive and the place on
-// it; never of the walk.
+// Acceptance rules for candidate hits: not the triangle where the ray starts, not the one at which it is aimed; on
+// surfaces with alpha only what the texture (cut-out) or a coin (blend) lets count; and for camera rays not the backs
+// of single-sided surfaces. The result depends on the ray, the instance, the primitive and the position on it, never
+// on the traversal.
 
 #include <cstdint>
 
@@ -30,18 +30,18 @@ HD inline float alpha_at(const SceneView& scene, const MaterialParameters& mater
     float alpha = textured_factor(scene, mesh, material.alpha, color, i, u, v);
     alpha = textured_factor(scene, mesh, alpha, material.alpha_texture, i, u, v);
     if (mesh.colors != nullptr) {
-        // So written that equal values stay what they are.
+        // In this form equal values are interpolated exactly.
         const float a = mesh.colors[i.a].w;
         alpha *= a + (u * (mesh.colors[i.b].w - a) + v * (mesh.colors[i.c].w - a));
     }
     return alpha;
 }
 
-/// What the coin of a blended surface belongs to: the triangle, but at its border the edge or the corner that the hit
-/// lies on, known by the positions of its ends. A ray exactly through an edge meets the triangles on both sides of it
+/// Key of a blended surface's coin: the triangle, but on its border the edge or the corner at the hit, identified by
+/// the positions of its ends. A ray exactly through an edge hits the triangles on both sides of it
 /// (trace/intersect/intersect_triangle.h), and with one coin they count as one surface.
 HD inline uint32_t coin_owner(const MeshView& mesh, uint32_t primitive, float u, float v) {
-    constexpr float kLeastWeight = 0x1p-20f; // weights round by a quarter of this at most
+    constexpr float kLeastWeight = 0x1p-20f; // rounding of weights is at most a quarter of this
     const float w = 1.0f - u - v;
     if (min(u, min(v, w)) >= kLeastWeight) return primitive;
     const auto hash_of = [&](uint32_t vertex) {
@@ -49,23 +49,23 @@ HD inline uint32_t coin_owner(const MeshView& mesh, uint32_t primitive, float u,
         return hash_words(bits_of(p.x + 0.0f), bits_of(p.y + 0.0f), bits_of(p.z + 0.0f)).x; // -0 as 0
     };
     const TriangleIndices i = triangle_indices(mesh, primitive);
-    uint32_t sum = 0; // in whichever order the neighbour has the ends
+    uint32_t sum = 0; // symmetric, because the neighbour may have the ends in reverse order
     if (w >= kLeastWeight) sum += hash_of(i.a);
     if (u >= kLeastWeight) sum += hash_of(i.b);
     if (v >= kLeastWeight) sum += hash_of(i.c);
     return sum;
 }
 
-/// The coin of blended surfaces that the ray of a sample's path tosses after `depth` scatterings.
+/// Key of the coin of blended surfaces for a ray of a sample's path after `depth` scatterings.
 HD inline uint32_t coin_key(SampleKey sample, uint32_t depth, bool is_shadow) {
     return hash_words(sample.pixel, sample.sample, sample.seed, depth * 2 + (is_shadow ? 1u : 0u)).x;
 }
 
 struct AcceptHit {
     const SceneView& scene;
-    TriangleId start, target; // not hit by this ray
-    uint32_t key;             // of the path and depth: the coin of blended surfaces
-    float time = kAtRest;     // of the ray, while the shutter is open, [0, 1]
+    TriangleId start, target; // never hit by this ray
+    uint32_t key;             // key of the path and depth, for the coin of blended surfaces
+    float time = kAtRest;     // time of the ray while the shutter is open, [0, 1]
 
     HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
         if (instance == start.instance && primitive == start.primitive) return false;
@@ -92,8 +92,8 @@ struct AcceptHit {
     }
 };
 
-/// Whether the instance, where it has been put, hides from a camera's ray of that direction (world space) the side that
-/// the ray comes to. In the mesh's own space: the winding there tells the front, mirrored or not.
+/// Whether the instance, at its position at rest, culls the side that a camera ray of this direction (world space)
+/// reaches. It is tested in the mesh's own space, where the winding defines the front, mirrored or not.
 HD inline bool hides_side(const SceneView& scene, Vec3 direction, uint32_t instance, uint32_t primitive) {
     const InstanceView& placed = scene.instances[instance];
     if (placed.hides_back == 0) return false;
@@ -101,15 +101,16 @@ HD inline bool hides_side(const SceneView& scene, Vec3 direction, uint32_t insta
     const TriangleIndices i = triangle_indices(mesh, primitive);
     const Vec3 a = mesh.positions[i.a], ab = mesh.positions[i.b] - a, ac = mesh.positions[i.c] - a;
     const float size = max(max_component(abs(ab)), max_component(abs(ac)));
-    const Vec3 normal = cross((1.0f / size) * ab, ac); // scaled: the product of two tiny edges would underflow
+    const Vec3 normal = cross((1.0f / size) * ab, ac); // scaled, because the product of two tiny edges would
+                                                       // underflow
     return dot(normal, transform_vector(placed.local_from_world, direction)) > 0;
 }
 
-/// The same of a ray of the camera in a scene where backs are hidden from those. A type of its own: the other rays'
-/// walk has no registers to spare for it.
+/// Acceptance of camera rays in a scene with culled backs. It is a separate type, because the traversal of other rays
+/// has no registers to spare.
 struct AcceptCameraHit {
     AcceptHit accept;
-    Vec3 direction; // of the ray, world space
+    Vec3 direction; // direction of the ray, world space
 
     HD Ray move_back(uint32_t motion, const Ray& ray) const { return accept.move_back(motion, ray); }
     HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Which candidates of a queued ray count (device_scene/accept_hit.h), for kernels: nothing of it is held in registers
-// while a ray walks. What the rule needs of the ray is looked up when there is a candidate, which is seldom.
+// Acceptance rules for queued rays in kernels (device_scene/accept_hit.h): nothing is held in registers during
+// traversal. Data of the ray is loaded when there is a candidate, which is seldom.
 
 #include <cstdint>
 
@@ -10,28 +10,31 @@
 
 namespace pertev {
 
-/// Rays, and what decides which of their candidates count.
+/// Rays, and the data for accepting their candidates.
 struct TraceQuery {
     RayQueueView rays;
-    // In the device's memory; null where every surface is opaque, and shown from both sides to these rays.
+    // In device memory; null if every surface is opaque and has no culled back for these rays.
     const SceneView* scene = nullptr;
-    const uint32_t* passing = nullptr;              // the scene's
-    const OpacityMicromapView* micromaps = nullptr; // likewise; null for rays that pass backs, which is asked first
-    const SceneView* moving = nullptr;              // likewise; null where nothing moves while the shutter is open
-    bool hides_backs = false;                       // rays of the camera, which pass backs that are hidden
+    const uint32_t* passing = nullptr;              // mask of SceneView
+    const OpacityMicromapView* micromaps = nullptr; // in device memory; null for rays that pass through backs, for
+                                                    // which that is tested first
+    const SceneView* moving = nullptr;              // in device memory; null if nothing moves while the shutter is
+                                                    // open
+    bool hides_backs = false;                       // for camera rays, which pass through culled backs
 
     bool is_opaque() const { return scene == nullptr; }
 };
 
-/// Of an instance at rest that may let something pass. Out of line: what it does with textures must not cost the walk
-/// registers.
+/// Whether the candidate counts on an instance at rest that may let rays pass. It is not inlined, so that its texture
+/// lookups cost the traversal no registers.
 HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
                                    uint32_t instance, uint32_t primitive, float u, float v) {
     if (hides_backs && hides_side(*scene, ray->direction, instance, primitive)) return true;
     return scene->any_alpha != 0 && !AcceptHit{*scene, {}, {}, key}.passes_alpha(instance, primitive, u, v);
 }
 
-/// The same of one that may have moved. `time`: null where nothing moves while the shutter is open.
+/// Whether the candidate counts on an instance that may have moved. `time` is null if nothing moves while the shutter
+/// is open.
 HD_CALL inline bool passes_moved_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
                                          const float* time, uint32_t instance, uint32_t primitive, float u, float v) {
     const AcceptHit accept{*scene, {}, {}, key, time != nullptr ? *time : kAtRest};
@@ -39,8 +42,8 @@ HD_CALL inline bool passes_moved_surface(const SceneView* scene, const Ray* ray,
     return scene->any_alpha != 0 && !accept.passes_alpha(instance, primitive, u, v);
 }
 
-/// Where a ray begins and where it goes, as an instance meets it that has moved. Out of line: no still instance pays
-/// for it.
+/// Origin and direction of a ray relative to an instance that has moved. The computation is not inlined, so that
+/// static instances do not pay for it.
 struct MovedLine {
     Vec3 origin, direction;
 };
@@ -49,10 +52,11 @@ HD_CALL inline MovedLine moved_back(const SceneView* scene, uint32_t motion, con
     return {now.move_back(ray->origin), now.turn_back(ray->direction)};
 }
 
-/// Where all surfaces are opaque and shown from both sides: a walk has no registers to spare for the others.
+/// For scenes whose surfaces are all opaque and without culled backs: the traversal has no registers to spare for
+/// others.
 struct AcceptOpaque {
     const TraceQuery& query;
-    uint32_t i; // the ray's number
+    uint32_t i; // index of the ray
 
     HD bool operator()(uint32_t instance, uint32_t primitive, float, float) const {
         const RayQueueView& rays = query.rays;
@@ -67,8 +71,8 @@ private:
     }
 };
 
-/// `kMayMove`: not where everything stands still, as baked triangles always do. One more argument would cost every
-/// candidate of a surface with alpha.
+/// `kMayMove` is false if everything is static, as baked triangles always are. Another argument would slow down every
+/// candidate on a surface with alpha.
 template <bool kMayMove>
 struct AcceptQueued {
     const TraceQuery& query;
@@ -77,9 +81,9 @@ struct AcceptQueued {
     HD bool operator()(uint32_t instance, uint32_t primitive, float u, float v) const {
         if (!AcceptOpaque{query, i}(instance, primitive, u, v)) return false;
         if (query.scene == nullptr) return true;
-        // A word of 32 instances is in the cache where their views are not.
+        // A word of 32 instances is cached when their views are not.
         if ((query.passing[instance / 32] >> instance % 32 & 1u) == 0) return true;
-        // Asked here, it takes no call where it knows.
+        // Tested here, it needs no call if it is known.
         const Opacity known = known_opacity(query.micromaps, instance, primitive, u, v);
         if (known != Opacity::Unknown) return known == Opacity::Opaque;
         const Ray* const ray = query.rays.rays + query.rays.place(i);

@@ -1,8 +1,8 @@
 #pragma once
 
-// Finds what a micro-triangle is (device_scene/micro_triangle.h): what its alpha can be, from what lookups within the
-// box of its texture coordinates, and a margin for rounding, give at least and at most, and whether alpha's rule
-// (device_scene/accept_hit.h) has one answer for all of that.
+// Classifies a micro-triangle (device_scene/micro_triangle.h): bounds its alpha by lookups in the box of its texture
+// coordinates, with a margin for rounding, and tests whether alpha's rule (device_scene/accept_hit.h) gives one
+// result for all of it.
 
 #include <cstdint>
 
@@ -13,13 +13,13 @@
 
 namespace pertev {
 
-/// Texels that lookups read along one axis: some [first, last], and, where the image repeats past its edge, some more.
+/// Texels that lookups read along one axis: [first, last] and, if the image repeats past its edge, a second span.
 struct TexelSpans {
     TexelSpan spans[2];
     uint32_t count; // 1 or 2
 };
 
-/// Of unwrapped texels [first, last] along an axis of `size` texels.
+/// Wraps texels [first, last] along an axis of `size` texels.
 HD inline TexelSpans wrap_texels(int first, int last, Wrap wrap, int size) {
     const auto one = [](int a, int b) {
         return TexelSpans{{{static_cast<uint32_t>(a), static_cast<uint32_t>(b)}, {}}, 1};
@@ -39,17 +39,17 @@ HD inline TexelSpans wrap_texels(int first, int last, Wrap wrap, int size) {
     return one(0, max(mirrored_a, mirrored_b));
 }
 
-/// Positions along one axis, in texels and unwrapped: whole numbers are centres of texels.
+/// Positions along one axis, in texels and unwrapped: integers are centres of texels.
 struct TexelInterval {
     float least, most;
     int first, last; // texels that lookups there read
-    bool is_known;   // not where numbers are too large to tell texels apart
+    bool is_known;   // false if numbers are too large to distinguish texels
 };
 
-/// Of lookups at coordinates within [least, most], which rounding may have put off by `error`; 1 is one image.
+/// Interval of lookups at coordinates within [least, most], which rounding may have moved by `error`; 1 is one image.
 HD inline TexelInterval texels_between(float least, float most, float error, TextureFilter filter, uint32_t size) {
-    constexpr float kMostTexels = 0x1p22f; // their numbers are exact
-    constexpr float kMargin = 0x1p-6f;     // of texels: brought into the image, a coordinate rounds by 2^-24
+    constexpr float kMostTexels = 0x1p22f; // integers up to here are exact
+    constexpr float kMargin = 0x1p-6f;     // in texels; wrapping a coordinate into the image rounds by 2^-24
     const auto texels = static_cast<float>(size);
     const bool is_linear = filter == TextureFilter::Linear;
     const float to_centre = is_linear ? 0.5f : 0.0f;
@@ -70,9 +70,9 @@ struct UnwrappedTexture {
     HD float texel(int x, int y) const {
         const TexelSpans column = wrap_texels(x, x, wrap_s, static_cast<int>(texels.image->width));
         const TexelSpans row = wrap_texels(y, y, wrap_t, static_cast<int>(texels.image->height));
-        return cell_of(texels, 0, column.spans[0].first, row.spans[0].first).most; // infinite where it is no number
+        return cell_of(texels, 0, column.spans[0].first, row.spans[0].first).most; // infinite if it is not a number
     }
-    /// The bilinear mean at (x, y).
+    /// Bilinear interpolation at (x, y).
     HD float mean(float x, float y) const {
         const float x0 = floor(x), y0 = floor(y);
         const int i = static_cast<int>(x0), j = static_cast<int>(y0);
@@ -81,8 +81,8 @@ struct UnwrappedTexture {
     }
 };
 
-/// Of bilinear means over a box of few texels. On each rectangle between four centres of texels the least and the
-/// greatest mean are at corners, so they are at those of the box and of the rectangles that it cuts out.
+/// Range of bilinear interpolation over a box of a few texels. In each rectangle between four centres of texels the
+/// extremes are at corners, so they are at the corners of the box and of the rectangles that it cuts out.
 HD inline ValueRange range_of_means(const UnwrappedTexture& texture, const TexelInterval& x, const TexelInterval& y) {
     ValueRange range = {kInfinity, -kInfinity};
     bool are_numbers = true;
@@ -97,7 +97,7 @@ HD inline ValueRange range_of_means(const UnwrappedTexture& texture, const Texel
     return are_numbers ? range : any_value();
 }
 
-/// Of all texels that are read, which bound their means.
+/// Range of all texels that are read, which bounds their interpolation.
 HD inline ValueRange range_of_texels(const TexelBoundsView& bounds, const TexelSpans& x, const TexelSpans& y) {
     ValueRange range = range_of(bounds, x.spans[0], y.spans[0]);
     if (x.count > 1) range = join(range, range_of(bounds, x.spans[1], y.spans[0]));
@@ -106,12 +106,12 @@ HD inline ValueRange range_of_texels(const TexelBoundsView& bounds, const TexelS
     return range;
 }
 
-/// Values of the one channel that `ref` reads, at places on the micro-triangle.
+/// Range of the channel of `ref` on the micro-triangle.
 HD inline ValueRange texture_range(const MeshView& mesh, const TextureRef& ref, const TexelBoundsView& bounds,
                                    TriangleIndices i, const MicroCorners& corners) {
-    constexpr float kMostCoordinate = 0x1p100f; // sums of these are numbers
-    // What is added up at a vertex, without its signs: a place and a corner round by less than 2^-20 of that together,
-    // and kMostBeside is 2^-20 of it at most.
+    constexpr float kMostCoordinate = 0x1p100f; // sums of these are finite
+    // Sum at a vertex without signs: a position and a corner round by less than 2^-20 of it together, and kMostBeside
+    // is at most 2^-20 of it.
     constexpr float kRounding = 0x1p-18f;
     Vec2 size = {0, 0};
     const float ends[3][2] = {{0, 0}, {1, 0}, {0, 1}};
@@ -134,14 +134,14 @@ HD inline ValueRange texture_range(const MeshView& mesh, const TextureRef& ref, 
     if (!x.is_known || !y.is_known) return any_value();
     ValueRange range = range_of_texels(bounds, wrap_texels(x.first, x.last, ref.wrap_s, static_cast<int>(width)),
                                        wrap_texels(y.first, y.last, ref.wrap_t, static_cast<int>(height)));
-    if (range.least == range.most) return range; // equal texels are mixed exactly
+    if (range.least == range.most) return range; // equal texels are interpolated exactly
     const bool is_small = max(x.last - x.first, y.last - y.first) < static_cast<int>(kMostCells);
     if (is_small && ref.filter == TextureFilter::Linear) range = range_of_means({bounds, ref.wrap_s, ref.wrap_t}, x, y);
     const float rounding = 0x1p-20f * max(abs(range.least), abs(range.most));
     return {range.least - rounding, range.most + rounding};
 }
 
-/// Of the vertex colours' alpha.
+/// Range of the vertex colours' alpha.
 HD inline ValueRange color_range(const MeshView& mesh, TriangleIndices i) {
     const float a = mesh.colors[i.a].w, b = mesh.colors[i.b].w, c = mesh.colors[i.c].w;
     if (!(is_finite(a) && is_finite(b) && is_finite(c))) return any_value();
@@ -151,12 +151,12 @@ HD inline ValueRange color_range(const MeshView& mesh, TriangleIndices i) {
     return {range.least - rounding, range.most + rounding};
 }
 
-/// Stage: word i of the micromaps of one mesh under one material. 16 micro-triangles each, of the triangles in their
-/// order.
+/// Stage that computes word i of the micromaps of one mesh with one material; a word has 16 micro-triangles, ordered
+/// by triangle.
 struct ClassifyOpacity {
     SceneView scene;
     uint32_t mesh, material, level;
-    TexelBoundsView color, alpha; // of the material's textures of those names, where it has them
+    TexelBoundsView color, alpha; // for the material's textures with these names, if present
     uint32_t* words;
 
     HD void operator()(uint32_t i) const {
@@ -174,7 +174,7 @@ struct ClassifyOpacity {
         const MaterialParameters& surface = scene.materials[material];
         const MeshView& shape = scene.meshes[mesh];
         const TriangleIndices i = triangle_indices(shape, primitive);
-        ValueRange range = {surface.alpha, surface.alpha}; // times the others in the order of alpha_at
+        ValueRange range = {surface.alpha, surface.alpha}; // multiplied by the others in the order of alpha_at
         if (surface.base_color_texture.has_image())
             range = multiply(range, texture_range(shape, surface.base_color_texture, color, i, corners));
         if (surface.alpha_texture.has_image())

@@ -1,6 +1,6 @@
 #pragma once
 
-// A mesh whose vertices were moved on the device: what its tree there is fitted to.
+// A mesh whose vertices have moved on the device, with the data to refit its tree.
 
 #include <cstdint>
 
@@ -8,12 +8,12 @@
 
 namespace pertev {
 
-/// Plain pointers, the device's.
+/// Plain device pointers.
 struct DeformedMesh {
     uint32_t mesh = 0;       // index into Scene::meshes
-    uint32_t tree = 0;       // number of its own tree (MeshPlacement::tree_of_mesh)
-    uint64_t version = 0;    // another one each time the vertices have moved; never 0
-    uint32_t triangles = 0;  // the same ones always
+    uint32_t tree = 0;       // index of its own tree (MeshPlacement::tree_of_mesh)
+    uint64_t version = 0;    // changes each time the vertices have moved; never 0
+    uint32_t triangles = 0;  // number of triangles, which is constant
     const Vec3* positions;   // [vertices], local space, metres
     const uint32_t* indices; // [3 * triangles]
 };

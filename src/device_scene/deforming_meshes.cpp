@@ -10,7 +10,7 @@
 namespace pertev {
 namespace {
 
-/// How many numbers of each kind all shapes have together.
+/// Total sizes of the arrays of all shapes.
 struct Counts {
     std::size_t positions = 0, normals = 0, tangents = 0, joints = 0, weights = 0;
 };
@@ -29,7 +29,7 @@ Counts count(const PlacedScene& prepared) {
     return all;
 }
 
-/// Returns what stages read. `targets` outlives the list.
+/// Returns the arrays that stages read. `targets` outlives the list.
 PartArrays list_rest(const PlacedScene& prepared, std::vector<DeformVertices>& stages,
                      std::vector<std::vector<MorphTargetView>>& targets) {
     PartArrays arrays;
@@ -119,7 +119,7 @@ void DeformingMeshes::set_meshes(const std::vector<MeshView>& meshes) {
 }
 
 void DeformingMeshes::set_poses(const PlacedScene& prepared) {
-    bool any = false; // whose vertices are made here
+    bool any = false; // whether any vertices are computed here
     std::vector<bool> moves(meshes_.size());
     for (std::size_t i = 0; i < meshes_.size(); ++i) {
         Deforming& mesh = meshes_[i];

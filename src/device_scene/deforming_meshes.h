@@ -1,8 +1,8 @@
 #pragma once
 
-// Meshes whose vertices move, in a device's memory. What they are made of (rest vertices, morph targets, joints and
-// weights of each vertex) is uploaded once. For a time only the joints' matrices and the targets' weights travel, and a
-// stage (scene/deform_vertices.h) makes positions, normals and tangents of them: the bytes that the host would make.
+// Meshes with moving vertices in device memory. Their inputs (rest vertices, morph targets, joints and weights of
+// each vertex) are uploaded once. For a time only the joints' matrices and the targets' weights are uploaded, and a
+// stage (scene/deform_vertices.h) computes positions, normals and tangents with the same bytes as the host.
 
 #include <cstdint>
 #include <vector>
@@ -18,43 +18,43 @@ namespace pertev {
 class DeformingMeshes {
 public:
     DeformingMeshes() = default;
-    /// Those that `prepared` has poses of; they have no vertices until set_poses. `version`: that of whoever was there
-    /// before, so that none comes again. Throws Error(OutOfMemory).
+    /// Makes the meshes for which `prepared` has poses; they have no vertices until set_poses. `version` is that of
+    /// the predecessor, so that no version is used twice. Throws Error(OutOfMemory).
     DeformingMeshes(Queue& queue, const PlacedScene& prepared, uint64_t version);
 
-    uint64_t version() const { return version_; } // the last of DeformedMesh's
+    uint64_t version() const { return version_; } // the latest DeformedMesh::version
     bool is_empty() const { return meshes_.empty(); }
-    /// Points the scene's meshes, by their numbers, to the vertices here.
+    /// Sets the scene's meshes, by their indices, to the vertices here.
     void point(std::vector<MeshView>& meshes) const;
-    /// `meshes`: the scene's, on the device, after point(). Uploads those of before().
+    /// `meshes` are the scene's, on the device, after point(). Uploads those of before().
     void set_meshes(const std::vector<MeshView>& meshes);
 
-    /// Moves the vertices to where prepared.poses has them, of meshes whose pose is another; takes no memory.
+    /// Moves the vertices of meshes with a changed pose to prepared.poses; allocates nothing.
     void set_poses(const PlacedScene& prepared);
 
-    /// Positions as they are now are those of before(), until the next call.
+    /// Keeps the present positions for before() until the next call.
     void keep_positions();
     const MeshView* before() const { return before_.data(); }
 
-    /// Those whose vertices the host has not, and which have a tree of their own.
+    /// Meshes whose vertices are not on the host and that have their own tree.
     std::vector<DeformedMesh> deformed(const PlacedScene& prepared, const std::vector<MeshView>& meshes) const;
 
 private:
     struct Deforming {
         uint32_t mesh, vertices;
-        std::size_t first_joint, first_weight; // in joints_ and weights_
-        DeformVertices stage;                  // of the device's arrays
-        MeshPose pose;                         // of the vertices there
+        std::size_t first_joint, first_weight; // offsets in joints_ and weights_
+        DeformVertices stage;                  // with device arrays
+        MeshPose pose;                         // pose of the present vertices
         uint64_t version = 0;                  // 0: no vertices yet
     };
 
     Queue* queue_ = nullptr;
     uint64_t version_ = 0;
     std::vector<Deforming> meshes_; // [Scene::shapes]
-    std::vector<Transform> joints_; // of all shapes, one after the other, as they are uploaded
+    std::vector<Transform> joints_; // joints of all shapes, one after the other, as they are uploaded
     std::vector<float> weights_;
     Buffer<std::byte> rest_;
-    Buffer<Vec3> positions_, normals_; // of positions_ the second half is of the frame before
+    Buffer<Vec3> positions_, normals_; // the second half of positions_ belongs to the previous frame
     Buffer<Vec4> tangents_;
     Buffer<Transform> joints_there_;
     Buffer<float> weights_there_;

@@ -1,7 +1,7 @@
 #pragma once
 
-// What rays meet, for loops over rays on the host: by the walk of several rays in turns, with the same rules of what
-// counts as the tracers of queues have (device_scene/accept_queued.h).
+// Ray queries for loops over rays on the host: interleaved traversal of several rays, with the acceptance rules of
+// the queue tracers (device_scene/accept_queued.h).
 
 #include <cstdint>
 
@@ -10,15 +10,15 @@
 
 namespace pertev {
 
-/// hits[i] is what ray_of(i) meets first of what accept_of(i) lets count, for `count` rays.
+/// Finds the closest hits of `count` rays: hits[i] is that of ray_of(i), among the candidates that accept_of(i)
+/// accepts.
 template <class RayOf, class AcceptOf>
 inline void find_hits(const HostTrees& trees, uint32_t count, RayOrder order, const RayOf& ray_of,
                       const AcceptOf& accept_of, Hit* hits) {
     trace_closest_many<WalkOptions{}>(trees, count, order, ray_of, accept_of, hits);
 }
 
-/// Finds the same for rays that come from the camera, or have bounced. Backs that are hidden from the camera do not
-/// count to its own rays (AcceptCameraHit).
+/// Finds closest hits of camera or bounce rays. Culled backs do not count for camera rays (AcceptCameraHit).
 template <class RayOf, class AcceptOf>
 inline void find_hits(const HostTrees& trees, const SceneView& scene, bool from_camera, uint32_t count,
                       const RayOf& ray_of, const AcceptOf& accept_of, Hit* hits) {
@@ -28,12 +28,12 @@ inline void find_hits(const HostTrees& trees, const SceneView& scene, bool from_
     find_hits(trees, count, order, ray_of, accept_camera, hits);
 }
 
-/// Whether each of `count` rays meets anything.
+/// Whether each of `count` rays hits anything.
 template <class RayOf, class AcceptOf>
 inline void find_occlusions(const HostTrees& trees, uint32_t count, RayOrder order, const RayOf& ray_of,
                             const AcceptOf& accept_of, bool* met) {
-    // Of several children, the builder put first where such searches end sooner. Of rays without an end the farthest is
-    // a better start (trace/trace_any.h).
+    // The builder's first child is the one where such searches usually end sooner. For rays without an end the
+    // farthest is a better start (trace/trace_any.h).
     trace_any_many<WalkOptions{.near_first = false}>(trees, count, order, ray_of, accept_of, met);
 }
 

@@ -1,13 +1,13 @@
 #pragma once
 
-// From a material and a place on a mesh to the BSDF there: textures and vertex colours applied.
+// Makes the BSDF at a point of a mesh from a material, with textures and vertex colours.
 
 #include "device_scene/textured_factor.h"
 #include "shading/bsdf.h"
 
 namespace pertev {
 
-/// The material's base colour there, [0, 1] per channel.
+/// Base colour of the material there, [0, 1] per channel.
 template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
 HD inline Rgb base_color_at(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
                             TriangleIndices i, float u, float v) {
@@ -36,7 +36,7 @@ HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialParameters& mater
     switch (material.kind) {
     case MaterialKind::Diffuse:
     case MaterialKind::Unlit:
-        break; // above
+        break; // handled above
     case MaterialKind::Conductor:
         return make_conductor(material.eta, material.k, roughness);
     case MaterialKind::Dielectric:

@@ -1,14 +1,14 @@
 #pragma once
 
-// Surfaces and lamps at the time of a ray, while a shutter is open: everything is found where it has been put, and then
-// moved (math/rigid_motion.h). So what does not move is what it is without a shutter, to the bit.
+// Surfaces and emitters at the time of a ray while a shutter is open: everything is computed at its position at rest
+// and then moved (math/rigid_motion.h). Thus whatever does not move is the same as without a shutter, to the bit.
 
 #include "device_scene/surface.h"
 
 namespace pertev {
 
-/// What code knows of its scene when it is compiled: whether something moves while the shutter is open. Code for both
-/// would cost each of them registers, and on a GPU keep surfaces in memory.
+/// Compile-time knowledge about motion while the shutter is open. Code for both cases would cost registers, and on a
+/// GPU keep surfaces in memory.
 enum class MotionKnown : uint8_t { None, Perhaps, Some };
 
 template <MotionKnown kMotion>
@@ -25,8 +25,8 @@ HD inline void move_surface(const RigidMotion& motion, Surface& surface) {
     frame = {motion.turn(frame.tangent), motion.turn(frame.bitangent), motion.turn(frame.normal)};
 }
 
-/// Where the instance of a hit is at the time of the ray. What it has met is made where it was put, of the ray that
-/// leads there, and then moved:
+/// The position of a hit's instance at the ray's time. The surface is made at the position at rest, for the ray moved
+/// back there, and then moved:
 ///     const MovedHit moved(scene, hit, time);
 ///     Surface surface = make_surface(scene, hit, moved.back(direction));
 ///     moved.move(surface);
@@ -45,7 +45,7 @@ struct MovedHit {
     }
 };
 
-/// For sample_light and pdf_light_hit: where the lamps are at a time.
+/// Positions of emitters at a time, for sample_light and pdf_light_hit.
 struct LampsAt {
     const MotionsView& motions;
     float time;
@@ -53,7 +53,7 @@ struct LampsAt {
     HD RigidMotion operator()(uint32_t instance) const { return motions.of_instance_at(instance, time); }
 };
 
-/// sample_light of a scene; `moves`: something in it does.
+/// sample_light for a scene; `moves` means that something in it moves.
 template <bool kTextures = true, class Choice = ChosenByPower>
 HD INLINE_ON_DEVICE bool draw_direct(const SceneView& scene, bool moves, const LightContext& context, SampleBits u,
                                      LightSample& sample) {
@@ -62,7 +62,7 @@ HD INLINE_ON_DEVICE bool draw_direct(const SceneView& scene, bool moves, const L
                : sample_light<kTextures, Choice>(scene.lights, context, u, sample);
 }
 
-/// Density with which draw_direct, for `context`, draws the place of `surface`, 1/sr; 0 where that is no light.
+/// Density with which draw_direct, for `context`, samples the point of `surface`, 1/sr; 0 if that is no light.
 template <class Choice = ChosenByPower>
 HD inline float pdf_direct(const SceneView& scene, bool moves, const LightContext& context, const Surface& surface) {
     const uint32_t light = light_of(scene.lights, surface.triangle.instance, surface.triangle.primitive);
@@ -72,7 +72,7 @@ HD inline float pdf_direct(const SceneView& scene, bool moves, const LightContex
                  : pdf_light_hit<Choice>(scene.lights, light, context, surface.position);
 }
 
-/// What ray_to_light adds for a lamp that moves.
+/// Error that ray_to_light adds for a moving emitter.
 HD inline float lamp_error_at(const SceneView& scene, const LightSample& light, float time) {
     if (light.instance == kNoLight || scene.motions.of(light.instance) == kNoMotion) return 0;
     return scene.motions.of_instance_at(light.instance, time).error(light.light_point);

@@ -12,10 +12,11 @@
 namespace pertev {
 namespace {
 
-constexpr double kTexelsEach = 1;             // that a micro-triangle should have at most
-constexpr std::size_t kMostWords = 64u << 20; // of all, a quarter of a gigabyte, where finer levels would take more
+constexpr double kTexelsEach = 1;             // maximum texels per micro-triangle
+constexpr std::size_t kMostWords = 64u << 20; // maximum for all, a quarter of a gigabyte; levels are coarser if
+                                              // needed
 
-/// A mesh under a material, which comes first: maps of a material lie side by side.
+/// A mesh with a material; the material comes first, so that maps of a material are adjacent.
 using MaterialAndMesh = std::pair<uint32_t, uint32_t>;
 
 struct Micromap {
@@ -30,7 +31,7 @@ bool has_micromap(const Scene& scene, const Instance& instance) {
            (material.base_color_texture.has_image() || material.alpha_texture.has_image());
 }
 
-/// Texels of a triangle, the mean of some thousand.
+/// Mean number of texels per triangle, from some thousand of them.
 double texels_of_a_triangle(const Scene& scene, const Mesh& mesh, const TextureRef& ref) {
     const std::vector<Vec2>& uv = mesh.uv[ref.uv_set];
     if (!ref.has_image() || uv.empty()) return 0;
@@ -55,7 +56,7 @@ uint32_t level_for(const Scene& scene, const Mesh& mesh, const Material& materia
     return level;
 }
 
-/// In an order of their own, and how many words they all have.
+/// Lists micromaps in a fixed order, with the total number of words.
 std::map<MaterialAndMesh, Micromap> list_micromaps(const Scene& scene, std::size_t& words) {
     std::map<MaterialAndMesh, Micromap> maps;
     for (const Instance& instance : scene.instances) {
@@ -76,7 +77,7 @@ std::map<MaterialAndMesh, Micromap> list_micromaps(const Scene& scene, std::size
     }
 }
 
-/// The pyramid of a texture's channel; gone with the buffers.
+/// The pyramid of a texture's channel; valid as long as the buffers.
 TexelBoundsView make_bounds(Queue& queue, const Scene& scene, const SceneView& view, const TextureRef& ref,
                             uint32_t channel, std::vector<Buffer<ValueRange>>& buffers) {
     TexelBoundsView bounds = {};
@@ -106,7 +107,7 @@ void OpacityMicromaps::update(Queue& queue, const Scene& scene, const SceneView&
                                                        : ~uint64_t(0));
     if (!have_changed && wanted == made_for_) return;
 
-    *this = OpacityMicromaps(); // before the new ones, so that both need not fit
+    *this = OpacityMicromaps(); // freed before the new ones, so that both need not fit
     std::size_t words = 0;
     const std::map<MaterialAndMesh, Micromap> maps = list_micromaps(scene, words);
     if (maps.empty()) return;

@@ -1,7 +1,7 @@
 #pragma once
 
-// The opacity micromaps (device_scene/micro_triangle.h) of a scene in a device's memory: one for each mesh under each
-// material whose alpha is a texture's. They lie on triangles, not in the world, so nothing that moves changes them.
+// Opacity micromaps (device_scene/micro_triangle.h) of a scene in device memory: one for each mesh with each material
+// whose alpha has a texture. They are relative to triangles, so motion does not change them.
 
 #include <cstdint>
 #include <vector>
@@ -15,17 +15,17 @@ namespace pertev {
 
 class OpacityMicromaps {
 public:
-    /// Makes them of `scene`, whose meshes, materials and textures lie on the device, as `view` says: all of them.
-    /// `have_changed`: whether one of those is another than at the last call; else only what is new is done, which is
-    /// nothing where each instance has the mesh and the material that it had. Throws Error(OutOfMemory), after which
+    /// Makes the micromaps of `scene`, whose meshes, materials and textures are on the device in `view`.
+    /// `have_changed` means that one of those has changed since the last call; otherwise only missing maps are made,
+    /// thus none if each instance has the same mesh and material as before. Throws Error(OutOfMemory), after which
     /// there are none.
     void update(Queue& queue, const Scene& scene, const SceneView& view, bool have_changed);
 
-    /// Of each instance; null where no instance has one.
+    /// [instance] micromap; null if no instance has one.
     const OpacityMicromapView* of_instances() const { return of_instances_.data(); }
 
 private:
-    std::vector<uint64_t> made_for_; // of each instance; empty: none made
+    std::vector<uint64_t> made_for_; // mesh and material of each instance; empty if none are made
     Buffer<uint32_t> states_;
     Buffer<OpacityMicromapView> of_instances_;
 };

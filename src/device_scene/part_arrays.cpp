@@ -5,7 +5,7 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kAlignment = 256; // as cudaMalloc's
+constexpr std::size_t kAlignment = 256; // alignment of cudaMalloc
 
 std::size_t aligned(std::size_t bytes) { return (bytes + kAlignment - 1) / kAlignment * kAlignment; }
 
@@ -21,7 +21,7 @@ void PartArrays::set_pointers(const std::byte* base) const {
     std::size_t offset = 0;
     for (const Array& array : arrays_) {
         const void* const pointer = base == nullptr || array.values.empty() ? nullptr : base + offset;
-        std::memcpy(array.target, &pointer, sizeof pointer); // pointers to data are all alike
+        std::memcpy(array.target, &pointer, sizeof pointer); // all data pointers have the same form
         offset += aligned(array.values.size());
     }
 }
@@ -29,7 +29,7 @@ void PartArrays::set_pointers(const std::byte* base) const {
 void PartArrays::upload(Queue& queue, Buffer<std::byte>& buffer, const std::string& name) const {
     if (buffer.size() < bytes()) {
         set_pointers(nullptr);
-        buffer = Buffer<std::byte>(); // before the new one, so that both need not fit
+        buffer = Buffer<std::byte>(); // freed before the new one, so that both need not fit
         buffer = Buffer<std::byte>(queue, bytes(), name);
     }
     set_pointers(buffer.data());

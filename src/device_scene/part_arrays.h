@@ -1,7 +1,7 @@
 #pragma once
 
-// The arrays that one part of a scene (its geometry, its lights, ...) has in a device's memory: one list that tells how
-// many bytes they take and copies them into one buffer, each at a multiple of 256 bytes.
+// Arrays of one part of a scene (its geometry, its lights, ...) in device memory: a list that computes their total
+// size and copies them into one buffer, each at a multiple of 256 bytes.
 
 #include <cstddef>
 #include <span>
@@ -15,8 +15,8 @@ namespace pertev {
 
 class PartArrays {
 public:
-    /// upload() will let `target` point to the copy of `values`, null where there are none. Both stay where they are
-    /// until then. `values` may hold targets of arrays added before: they are copied after all pointers are known.
+    /// upload() will set `target` to the copy of `values`, or null if empty. Both must stay in place until then.
+    /// `values` may contain targets of arrays added before, because they are copied after all pointers are set.
     template <class T>
     void add(std::span<const T> values, const T*& target) {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -27,10 +27,10 @@ public:
         add(std::span<const T>(values), target);
     }
 
-    /// Of the buffer.
+    /// Size of the buffer.
     std::size_t bytes() const;
-    /// `buffer` is kept when it is large enough, else there is a new one, once the old one is gone: `name` stands in
-    /// the message of Error(OutOfMemory), after which the part is empty.
+    /// Reuses `buffer` if it is large enough; otherwise frees it and allocates another. `name` appears in the message
+    /// of Error(OutOfMemory), after which the part is empty.
     void upload(Queue& queue, Buffer<std::byte>& buffer, const std::string& name) const;
 
 private:

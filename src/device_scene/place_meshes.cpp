@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-/// Triangles of a mesh, moved by `world_from_local`.
+/// Writes the triangles of a mesh, transformed by `world_from_local`.
 void add_triangles(const Mesh& mesh, const Transform& world_from_local, uint32_t instance,
                    std::span<BvhTriangle> triangles) {
     parallel_for(triangles.size(), 4096, [&](uint64_t i) {

@@ -1,8 +1,8 @@
 #pragma once
 
-// Which meshes are baked into world space and which keep a tree of their own: decided here, once, for every structure
-// alike; and the triangles of both kinds, as builders take them. Also where the origin of that world is: a picture's is
-// moved to the scene, since floats are fine only near 0.
+// Decides, once for every structure, which meshes are baked into world space and which keep their own tree, and makes
+// the triangles of both kinds for builders. It also sets the origin of that world near the scene, because floats are
+// precise only near 0.
 
 #include <cstdint>
 #include <span>
@@ -17,43 +17,45 @@ namespace pertev {
 inline constexpr uint32_t kBakedMesh = 0xffffffffu;
 
 struct MeshPlacement {
-    std::vector<bool> is_baked;         // of each instance
-    std::vector<uint32_t> tree_of_mesh; // number of the mesh's own tree, or kBakedMesh where no instance needs one
+    std::vector<bool> is_baked;         // [instance]
+    std::vector<uint32_t> tree_of_mesh; // index of the mesh's own tree, or kBakedMesh if no instance needs one
     uint32_t mesh_tree_count = 0;
     uint64_t copies = 0, copied_triangles = 0; // baked although their mesh is used more than once
-    Vec3 centre;                               // of the world that they are placed in, in the scene's coordinates
+    Vec3 centre;                               // origin of the world in which they are placed, in the scene's
+                                               // coordinates
 };
 
-/// Where the origin of a picture's world lies, in the scene's coordinates (metres), at rest: the centre_of() the box
-/// round all instances (scene/scene_origin.h). A reader has moved a file's scene there already, so it is 0 then.
+/// Origin of a picture's world at rest, in the scene's coordinates (metres): the centre_of() the box around all
+/// instances (scene/scene_origin.h). It is 0 if a reader has already moved the scene of a file.
 Vec3 world_centre(const Scene& scene);
 
-/// An instance is baked when its mesh is used once and it may not move (scene/animation.h), or, moving or not, when its
-/// transform's condition number is over 2^12: a local space so skewed would cost the boxes of a top level more than the
-/// triangles cost memory. What is hidden is not. Throws Error(OverLimit) that names the instance with which such copies
-/// are out of all proportion to the scene's own triangles. `centre`: the origin of the world they are placed in.
+/// Places the meshes. An instance is baked if its mesh is used once and it may not move (scene/animation.h), or,
+/// moving or not, if its transform's condition number is over 2^12, because such a skewed local space would enlarge
+/// the boxes of a top level more than the triangles cost memory. Hidden instances are not baked. Throws
+/// Error(OverLimit) that names the instance with which such copies exceed a multiple of the scene's own triangles.
+/// `centre` is the origin of the world in which they are placed.
 MeshPlacement place_meshes(const Scene& scene, Vec3 centre = {0, 0, 0});
 
-/// The triangles of all baked instances, in the moved world. Throws Error(OverLimit) for more than one tree can hold.
+/// Triangles of all baked instances, in the translated world. Throws Error(OverLimit) if one tree cannot hold them.
 std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement& placement);
 /// The triangles of a mesh, in its own space.
 std::vector<BvhTriangle> mesh_triangles(const Mesh& mesh);
 
-/// A scene's triangles as builders take them.
+/// A scene's triangles for builders.
 struct SceneTriangles {
     std::vector<BvhTriangle> baked;
-    std::vector<std::vector<BvhTriangle>> meshes; // of each mesh that keeps a tree of its own
+    std::vector<std::vector<BvhTriangle>> meshes; // [mesh with its own tree]
 
     SceneTriangles() = default;
     SceneTriangles(const Scene& scene, const MeshPlacement& placement);
     uint64_t count() const;
-    /// 0 the baked ones, then those of the meshes.
+    /// Part 0 has the baked ones; the meshes follow.
     const std::vector<BvhTriangle>& part(std::size_t number) const { return number == 0 ? baked : meshes[number - 1]; }
     std::size_t parts() const { return 1 + meshes.size(); }
 };
 
-/// What the top level is built from; `bounds` are of the mesh trees. `motions`: of the instances while a shutter is
-/// open; null: none.
+/// Contents of the top level. `bounds` are those of the mesh trees; `motions` are those of instances while a shutter
+/// is open, or null.
 std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& placement, std::span<const Bounds3> bounds,
                                     const std::shared_ptr<const MotionKeys>& motions = nullptr);
 

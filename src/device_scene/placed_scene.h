@@ -1,7 +1,7 @@
 #pragma once
 
-// A scene as it comes to a device, but for the trees over it: where the origin of its world is, what is baked into that
-// world, what gives light there and what moves.
+// A scene for upload to a device, without trees: the origin of its world, the baked instances, the lights and the
+// motions.
 
 #include <cstdint>
 #include <memory>
@@ -15,14 +15,15 @@ namespace pertev {
 
 struct PlacedScene {
     const Scene* scene = nullptr; // outlives this
-    Vec3 centre;                  // origin of the moved world, in the scene's coordinates, metres
-    std::vector<bool> is_baked;   // of each instance
-    LightSetData lights;          // moved world
-    /// Of meshes whose vertices move, by Scene::shapes; those that are not on the host are at rest in all of the above.
-    /// For whoever has such meshes (session/moving_scene.h); empty: no vertex moves.
+    Vec3 centre;                  // origin of the translated world, in the scene's coordinates, metres
+    std::vector<bool> is_baked;   // [instance]
+    LightSetData lights;          // in the translated world
+    /// [Scene::shapes] poses of meshes with moving vertices; vertices that are not on the host are at rest in
+    /// everything above. For owners of such meshes (session/moving_scene.h); empty if no vertex moves.
     std::vector<MeshPose> poses;
-    std::vector<uint32_t> tree_of_mesh;        // MeshPlacement's
-    std::shared_ptr<const MotionKeys> motions; // of instances while a shutter is open, moved world; null: none moves
+    std::vector<uint32_t> tree_of_mesh;        // see MeshPlacement
+    std::shared_ptr<const MotionKeys> motions; // motions of instances while a shutter is open, in the translated
+                                               // world; null if none moves
 };
 
 } // namespace pertev

@@ -1,8 +1,8 @@
 #pragma once
 
-// Where a ray that leaves a surface starts: far enough off the computed hit point that rounding cannot put it on the
-// other side, and no farther. Off its own triangle along the normal; off the triangles that stand on its edges by
-// keeping away from these, which no move along the normal does.
+// Origin of a ray that leaves a surface: far enough from the computed hit point that rounding cannot place it on the
+// other side, and no farther. It is offset from its own triangle along the normal, and kept away from the triangle's
+// edges, because an offset along the normal does not separate it from the adjacent triangles.
 //
 // Source: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 6.8.6 (robust spawned ray origins).
 
@@ -24,8 +24,8 @@ struct PlaceOnTriangle {
     float u, v;
 };
 
-/// The place (u, v), moved in where one of its three weights is under `least` (in [0, 1/4]). Each weight is then at
-/// least 2/3 of that, and as it was where none is under it.
+/// Moves the position (u, v) inwards if one of its three weights is below `least` (in [0, 1/4]). Each weight is then
+/// at least 2/3 of that; nothing changes if none is below it.
 HD inline PlaceOnTriangle keep_off_edges(float u, float v, float least) {
     const float w = 1.0f - u - v;
     if (min(w, min(u, v)) >= least) return {u, v};
@@ -34,8 +34,8 @@ HD inline PlaceOnTriangle keep_off_edges(float u, float v, float least) {
     return {at_u * scale, at_v * scale};
 }
 
-/// `point`, known to within `error` (metres, per component, >= 0) of a plane with unit normal `normal`, moved to the
-/// side of the plane that `direction` points to.
+/// Offsets `point`, whose distance to a plane with unit normal `normal` has an error of at most `error` (metres, per
+/// component, >= 0), to the side of the plane that `direction` points to.
 HD inline Vec3 offset_ray_origin(Vec3 point, Vec3 error, Vec3 normal, Vec3 direction) {
     const float distance = dot(abs(normal), error);
     const Vec3 offset = dot(direction, normal) < 0 ? -distance * normal : distance * normal;

@@ -1,7 +1,6 @@
 #pragma once
 
-// Rays that wait to be traced and what they meet, in a device's memory: the form in which integrators hand rays to a
-// tracer (tracer/scene_tracer.h) and get hits back.
+// Queues of rays and of their hits in device memory, which integrators and tracers exchange (tracer/scene_tracer.h).
 
 #include <cstdint>
 
@@ -14,7 +13,7 @@ namespace pertev {
 
 static_assert(sizeof(Ray) == 32);
 
-/// *at, by two loads of 16 bytes on the device; `at` is a multiple of 16 there, as in every buffer.
+/// Loads *at by two loads of 16 bytes on the device; `at` is a multiple of 16 there, as in every buffer.
 HD inline Ray load_ray(const Ray* at) {
 #if PERTEV_ON_DEVICE
     const float4* from = reinterpret_cast<const float4*>(at);
@@ -35,17 +34,18 @@ HD inline void store_ray(Ray* at, const Ray& ray) {
 #endif
 }
 
-/// Rays one after the other, from the first element on or from the last one backwards.
+/// Consecutive rays, from the first element on or from the last one backwards.
 struct RayQueueView {
     const Ray* rays = nullptr;
-    // Instance and primitive of the triangle that a ray leaves, and of the one that it is aimed at: neither is hit.
+    // Instance and primitive of the triangle that a ray leaves, and of the one at which it is aimed; neither is hit.
+    // kNoHit: none. Null: none for any ray.
     // kNoHit: none. Null: none of any ray.
     const Uint2* starts = nullptr;
     const Uint2* targets = nullptr;
-    const uint32_t* keys = nullptr; // of the coin that blended surfaces toss; null where no surface is blended
+    const uint32_t* keys = nullptr; // keys of the coins of blended surfaces; null if no surface is blended
     const float* times = nullptr;   // while the shutter is open, [0, 1]; null: all is at rest
-    int32_t step = 1;               // -1: these are the last elements, and ray i lies i before them
-    bool is_endless = false;        // all go from t = 0 to infinity; numbers of the owner's stand in these places
+    int32_t step = 1;               // -1: the pointers are to the last elements, and ray i is i elements before them
+    bool is_endless = false;        // all go from t = 0 to infinity; t_min and t_max hold numbers of the owner
 
     HD int64_t place(uint32_t i) const { return step * static_cast<int64_t>(i); }
     HD Ray load(uint32_t i) const {
@@ -58,11 +58,11 @@ struct RayQueueView {
     }
 };
 
-/// What rays 0, 1, ... meet.
+/// Hits of rays 0, 1, ....
 struct HitQueueView {
-    Float4* places = nullptr;      // t, u, v, bits of the primitive. Not there for an any-hit search
-    uint32_t* instances = nullptr; // kNoHit: nothing; of an any-hit search else 0
-    int32_t step = 1;              // as RayQueueView's
+    Float4* places = nullptr;      // t, u, v, bits of the primitive; absent in an any-hit search
+    uint32_t* instances = nullptr; // kNoHit: no hit; in an any-hit search otherwise 0
+    int32_t step = 1;              // see RayQueueView
 
     HD Hit load(uint32_t i) const {
         const Float4 p = places[place(i)];

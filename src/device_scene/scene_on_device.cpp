@@ -7,10 +7,10 @@
 namespace pertev {
 namespace {
 
-// Each list below says what a part is made of. Arrays that are made for the device alone stand in the arguments, so
-// that they outlive the list.
+// Each list below defines the contents of a part. Arrays that are made only for the device are parameters, so that
+// they outlive the list.
 
-/// Vertices of meshes with a pose are DeformingMeshes'.
+/// Vertices of meshes with a pose belong to DeformingMeshes.
 PartArrays list_geometry(const PlacedScene& prepared, std::vector<MeshView>& meshes, SceneView& view) {
     const Scene& scene = *prepared.scene;
     PartArrays arrays;
@@ -34,8 +34,8 @@ PartArrays list_geometry(const PlacedScene& prepared, std::vector<MeshView>& mes
 
 struct Instances {
     std::vector<InstanceView> views;
-    std::vector<uint32_t> passing;        // SceneView's
-    std::vector<uint32_t> first_triangle; // likewise
+    std::vector<uint32_t> passing;        // see SceneView
+    std::vector<uint32_t> first_triangle; // see SceneView
 };
 
 PartArrays list_instances(const PlacedScene& prepared, Instances& instances, SceneView& view) {
@@ -43,7 +43,8 @@ PartArrays list_instances(const PlacedScene& prepared, Instances& instances, Sce
     view.any_alpha = 0;
     view.any_hidden_back = 0;
     view.centre = prepared.centre;
-    // In the file's coordinates; a far scene's positions are in its own, since floats could not tell them apart there.
+    // Relative to the file's origin; in a far scene positions stay relative to the scene's own, because floats could
+    // not distinguish them there.
     view.position_shift = scene.is_far ? prepared.centre : to_float(scene.origin_in_file + to_double(prepared.centre));
     instances.views.reserve(scene.instances.size());
     instances.passing.resize((scene.instances.size() + 31) / 32);
@@ -148,12 +149,12 @@ void SceneOnDevice::update(Queue& queue, const PlacedScene& prepared, uint32_t p
     if ((parts & kPartInstances) != 0) update_instances(queue, prepared);
     if ((parts & kPartMaterials) != 0) update_materials(queue, *prepared.scene);
     if ((parts & kPartTextures) != 0) update_textures(queue, *prepared.scene);
-    if ((parts & kPartLights) != 0) update_lights(queue, prepared); // after the textures, which it looks at
+    if ((parts & kPartLights) != 0) update_lights(queue, prepared); // after the textures, which it reads
     if ((parts & kPartEnvironment) != 0) update_environment(queue, prepared);
     update_micromaps(queue, *prepared.scene, parts);
 }
 
-/// On a CPU there are none: asking textures costs less there than making micromaps.
+/// Not used on a CPU, where texture lookups cost less than making micromaps.
 void SceneOnDevice::update_micromaps(Queue& queue, const Scene& scene, uint32_t parts) {
     if (!queue.is_cuda()) return;
     constexpr uint32_t kMadeOf = kPartShapes | kPartGeometry | kPartMaterials | kPartTextures;
@@ -168,7 +169,7 @@ void SceneOnDevice::update_micromaps(Queue& queue, const Scene& scene, uint32_t 
 
 void SceneOnDevice::update_shapes(Queue& queue, const PlacedScene& prepared) {
     const uint64_t version = deforming_.version();
-    deforming_ = DeformingMeshes(); // before the new ones, so that both need not fit
+    deforming_ = DeformingMeshes(); // freed before the new ones, so that both need not fit
     deforming_ = DeformingMeshes(queue, prepared, version);
 }
 
@@ -195,7 +196,7 @@ void SceneOnDevice::update_materials(Queue& queue, const Scene& scene) {
 void SceneOnDevice::update_textures(Queue& queue, const Scene& scene) {
     std::vector<TextureImageView> images;
     list_textures(scene, images, view_).upload(queue, textures_, "textures");
-    view_.lights.images = view_.images; // lights look at textures too
+    view_.lights.images = view_.images; // lights read textures too
     view_.lights.linear_from_srgb = view_.linear_from_srgb;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// A prepared scene in a device's memory, but for its trees, which are a tracer's (tracer/scene_tracer.h): owns
-// the buffers, hands out the view. It lies there in parts, one buffer each, that are updated each on its own; an update
-// that needs no more room than the part has takes no memory.
+// A prepared scene in device memory, without its trees, which belong to a tracer (tracer/scene_tracer.h): owns the
+// buffers and provides the view. It consists of parts with one buffer each, which are updated separately; an update
+// that needs no more room than the part has allocates nothing.
 
 #include "device/buffer.h"
 #include "device_scene/deforming_meshes.h"
@@ -12,24 +12,24 @@
 
 namespace pertev {
 
-/// What may change of a scene by itself. A set of them is an uint32_t.
+/// Parts of a scene that may change separately. A set of them is a uint32_t.
 enum ScenePart : uint32_t {
     kPartGeometry = 1,     // meshes
-    kPartInstances = 2,    // where they are and how they move, and the world's centre; of their materials, whether they
-                           // have alpha and hide their backs
-    kPartMaterials = 4,    // all else of materials; what they emit is in the lights too
+    kPartInstances = 2,    // their transforms and motions, and the world's origin; whether their materials have alpha
+                           // and cull their backs
+    kPartMaterials = 4,    // everything else of materials; their emission is part of the lights too
     kPartTextures = 8,     // images
-    kPartLights = 16,      // near and far ones, and how often each is drawn, but for the environment's own
-    kPartTrees = 32,       // not here: a tracer's (tracer/)
-    kPartEnvironment = 64, // its pixels, and the tables that draw one; with another environment go the lights too
-    kPartShapes = 128, // what the vertices of meshes that move are made of, which never changes; geometry goes with it
-    kPartPoses = 256,  // PlacedScene::poses: how these vertices stand
+    kPartLights = 16,      // near and far lights, and their sampling, except for the environment's own tables
+    kPartTrees = 32,       // not here: they belong to a tracer (tracer/)
+    kPartEnvironment = 64, // pixels and sampling tables; with another environment the lights change too
+    kPartShapes = 128,     // inputs of deforming vertices, which never change; needs geometry too
+    kPartPoses = 256,      // PlacedScene::poses, the state of these vertices
     kAllParts = 511,
 };
 
-/// An update copies parts of the scene (ScenePart): what it is given may go away afterwards. The view, and each copy of
-/// it, is void after an update: view() has the new one. Work that was queued before an update still sees the scene as
-/// it was. All throw Error(OutOfMemory), after which the part is empty and no view may be used until it is updated
+/// An update copies parts of the scene (ScenePart) from arguments that need not outlive it. It invalidates the view
+/// and its copies; view() returns the new one. Work that was queued before an update still sees the previous scene.
+/// All updates throw Error(OutOfMemory), after which the part is empty and no view may be used until it is updated
 /// again.
 class SceneOnDevice {
 public:
@@ -39,16 +39,16 @@ public:
 
     void update(Queue& queue, const PlacedScene& prepared, uint32_t parts);
 
-    /// Meshes whose vertices were moved here, for trees that are fitted to them.
+    /// Meshes whose vertices have moved here, for refitting trees.
     std::vector<DeformedMesh> deformed(const PlacedScene& prepared) const {
         return deforming_.deformed(prepared, meshes_);
     }
-    /// The meshes' positions as they are now are those of meshes_before() until the next call.
+    /// Keeps the meshes' present positions for meshes_before() until the next call.
     void keep_positions() { deforming_.keep_positions(); }
     const MeshView* meshes_before() const { return deforming_.is_empty() ? view_.meshes : deforming_.before(); }
 
 private:
-    // One part each (ScenePart says what is in it).
+    // One function per part (see ScenePart).
     void update_geometry(Queue& queue, const PlacedScene& prepared);
     void update_instances(Queue& queue, const PlacedScene& prepared);
     void update_materials(Queue& queue, const Scene& scene);
@@ -60,16 +60,16 @@ private:
     void update_micromaps(Queue& queue, const Scene& scene, uint32_t parts); // after all of these
 
     SceneView view_{};
-    std::vector<MeshView> meshes_; // where none deforms: empty
+    std::vector<MeshView> meshes_; // empty if none deforms
     DeformingMeshes deforming_;
     OpacityMicromaps micromaps_;
     Buffer<std::byte> geometry_, instances_, materials_, lights_, environment_, textures_;
 };
 
-/// What SceneView::known will be.
+/// The value of SceneView::known.
 MaterialsKnown materials_known(const Scene& scene);
 
-/// Bytes that SceneOnDevice asks for.
+/// Bytes that SceneOnDevice allocates.
 std::size_t predicted_bytes(const PlacedScene& prepared, bool on_cuda);
 
 } // namespace pertev

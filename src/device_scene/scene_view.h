@@ -32,37 +32,38 @@ struct InstanceView {
     Transform local_from_world;
     uint32_t mesh;
     uint32_t material;
-    uint16_t has_alpha;   // 1 where a hit may be refused by its alpha
-    uint16_t hides_back;  // 1 where rays from the camera pass the back
-    uint16_t is_mirrored; // 1 where world_from_local turns winding over
-    uint16_t is_hidden;   // 1 where it is not there, and world_from_local says nothing
-    uint32_t is_baked;    // 1 where the walk has its triangles in the world, 0 where it goes into its own space
+    uint16_t has_alpha;   // 1 if alpha may reject a hit
+    uint16_t hides_back;  // 1 if camera rays pass through the back
+    uint16_t is_mirrored; // 1 if world_from_local reverses winding
+    uint16_t is_hidden;   // 1 if it does not exist and world_from_local is undefined
+    uint32_t is_baked;    // 1 if its triangles are traversed in the world, 0 if in its own space
 };
 
 struct SceneView {
     const InstanceView* instances;
-    const uint32_t* passing;              // a bit each, 32 a word: 1 where a ray may pass a surface of the instance
+    const uint32_t* passing;              // one bit each, 32 per word: 1 if rays may pass a surface of the instance
     const OpacityMicromapView* micromaps; // [instance_count]; null: none
     const MeshView* meshes;
     const MaterialParameters* materials;
-    MaterialsKnown known; // of all of them
+    MaterialsKnown known; // shading variant of all materials
     const TextureImageView* images;
     const float* linear_from_srgb; // [256]
     LightSetView lights;
-    uint32_t any_alpha;       // 0 lets every hit skip the look at its instance
-    uint32_t any_hidden_back; // the same for hits of the camera's rays
-    Vec3 centre;              // of the moved world, in the scene's coordinates, metres (device_scene/place_meshes.h)
-    Vec3 position_shift;      // what the layer of positions adds to those of the moved world, metres
-    // Triangles of all instances, numbered in their order: those of instance i are first_triangle[i] and on, up to
-    // first_triangle[i + 1]. Null where there are more than 32 bits count.
+    uint32_t any_alpha;       // 0 if hits need not check their instance for alpha
+    uint32_t any_hidden_back; // 0 if hits of camera rays need not check their instance for culled backs
+    Vec3 centre;              // origin of the translated world, in the scene's coordinates, metres
+                              // (device_scene/place_meshes.h)
+    Vec3 position_shift;      // offset of the layer of positions relative to the translated world, metres
+    // Triangles of all instances are numbered consecutively: those of instance i are from first_triangle[i] to
+    // first_triangle[i + 1]. Null if their number exceeds 32 bits.
     const uint32_t* first_triangle; // [instance_count + 1]
     uint32_t instance_count;
     uint32_t background;     // 1 + the instance that layers show as background (Instance::is_background); 0: none
-    uint64_t triangle_count; // of all instances
+    uint64_t triangle_count; // total of all instances
     MotionsView motions;     // while the shutter is open
 };
 
-/// Whether a camera ray that meets this instance shows the background; true of kNoHit, too.
+/// Whether a camera ray that hits this instance shows the background; true for kNoHit too.
 HD inline bool shows_background(const SceneView& scene, uint32_t instance) {
     return instance == kNoHit || instance + 1 == scene.background;
 }
@@ -77,7 +78,7 @@ HD inline TriangleIndices triangle_indices(const MeshView& mesh, uint32_t primit
     return {i[0], i[1], i[2]};
 }
 
-/// Value of a vertex attribute at barycentrics (u, v): weights of the second and third vertex.
+/// Vertex attribute at barycentrics (u, v), the weights of the second and third vertex.
 template <class T>
 HD T interpolate(const T* values, TriangleIndices i, float u, float v) {
     return (1.0f - u - v) * values[i.a] + u * values[i.b] + v * values[i.c];

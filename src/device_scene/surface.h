@@ -1,7 +1,7 @@
 #pragma once
 
-// What a ray has hit, ready for shading: place, geometric and shading normal, BSDF and emission, with textures and
-// vertex colours applied. One function for baked and instanced geometry: both read the mesh through its instance.
+// A hit prepared for shading: position, geometric and shading normal, BSDF and emission, with textures and vertex
+// colours. One function serves baked and instanced geometry, because both read the mesh through its instance.
 
 #include "device_scene/accept_hit.h"
 #include "device_scene/make_bsdf.h"
@@ -13,35 +13,35 @@
 namespace pertev {
 
 struct Surface {
-    Vec3 position;         // moved world, metres
-    Vec3 error;            // bound of its rounding, per component
-    Vec3 geometric_normal; // unit, out of the front; wo may lie on either side
-    Frame frame;           // shading frame, its normal within a quarter turn of it
+    Vec3 position;         // translated world, metres
+    Vec3 error;            // bound of its rounding error, per component
+    Vec3 geometric_normal; // unit, outwards at the front; wo may lie on either side
+    Frame frame;           // shading frame, whose normal is within a quarter turn of it
     Bsdf bsdf;
-    Rgb emission; // W/(sr m2); of an unlit surface its colour
+    Rgb emission; // W/(sr m2); for an unlit surface its colour
     Rgb albedo;   // base colour, for the auxiliary channel
     TriangleId triangle;
     uint32_t material;
     bool is_unlit;
-    float tilt; // of the interpolated normal (shadow_terminator.h); 0 where the mesh has none
+    float tilt; // tilt of the interpolated normal (shadow_terminator.h); 0 if the mesh has none
 
     /// Returns the context of a draw of light that is scattered to `wo`; `time`: of the ray, while the shutter is open.
     HD LightContext light_context(Vec3 wo, float time = kAtRest) const {
         return {position, dot(wo, frame.normal) < 0 ? -frame.normal : frame.normal, bsdf.lets_through(), time};
     }
 
-    /// Both directions before the triangle, or both behind it.
+    /// Whether both directions are on the same side of the triangle.
     HD bool same_side(Vec3 wo, Vec3 wi) const {
         return (dot(wo, geometric_normal) > 0) == (dot(wi, geometric_normal) > 0);
     }
-    /// Whether the shading frame takes the pair for what the triangle says it is, reflection or transmission. Where
-    /// they disagree (near the horizon of a bent normal) no light is carried: it would leak through.
+    /// Whether the shading frame classifies the pair as the triangle does, as reflection or transmission. Where they
+    /// disagree (near the horizon of a bent normal) no light is scattered, because it would leak.
     HD bool is_consistent(Vec3 wo, Vec3 wi, Vec3 wo_local, Vec3 wi_local) const {
         return same_side(wo, wi) == (wo_local.z * wi_local.z > 0);
     }
 
-    /// The BSDF as it scatters from this triangle: light along wi to wo (unit, world space), by the lobes of `classes`.
-    /// Not reciprocal: render/particle_scatter.h has its adjoint.
+    /// The BSDF of this triangle for light along wi to wo (unit, world space), by the lobes of `classes`. It is not
+    /// reciprocal: render/particle_scatter.h has its adjoint.
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, LobeClasses classes = kAllLobeClasses) const {
         const Vec3 wo_local = frame.to_local(wo), wi_local = frame.to_local(wi);
         if (!is_consistent(wo, wi, wo_local, wi_local)) return {};
@@ -52,10 +52,10 @@ struct Surface {
         return {(1.0f / from.slope) * value.f, value.pdf / from.slope};
     }
 
-    /// About how much of evaluate() is by diffuse lobes, [0, 1]: a guide for denoisers.
+    /// Approximate fraction of evaluate() from diffuse lobes, [0, 1]: a guide for denoisers.
     HD Rgb diffuse_share(Vec3 wo, Vec3 wi) const { return bsdf.diffuse_share(frame.to_local(wo), frame.to_local(wi)); }
 
-    /// A wi in world space with the density of evaluate(), or of a delta lobe; pdf 0: nothing.
+    /// Samples a wi in world space with the density of evaluate(), or of a delta lobe; pdf 0: none.
     HD BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
         const Vec3 wo_local = frame.to_local(wo);
         BsdfSample sample = bsdf.sample(wo_local, u_lobe, u);
@@ -69,15 +69,15 @@ struct Surface {
         const bool goes_on = is_consistent(wo, wi, wo_local, sample.wi);
         sample.wi = wi;
         if (goes_on) return sample;
-        // A mirror or smooth glass needs no soft horizon: its direction is the right one but here, where it is folded
-        // back at the triangle's plane, so that no light is lost.
+        // A mirror or smooth glass needs no terminator correction: its direction is right unless it is below the
+        // triangle's plane, where it is folded back, so that no light is lost.
         if (!sample.is_delta() || frame.normal == geometric_normal) return {};
         sample.wi = folded(wi);
         return sample;
     }
 
-    /// The delta direction `wi_local` of the BSDF seen from wo, in world space, folded back as sample() does it. False
-    /// where it carries nothing.
+    /// The BSDF's delta direction `wi_local` for wo, in world space, folded back as in sample(). Returns false if it
+    /// carries no light.
     HD bool place_specular(Vec3 wo, Vec3 wo_local, Vec3 wi_local, Vec3& wi) const {
         wi = normalize(frame.to_world(wi_local));
         if (is_consistent(wo, wi, wo_local, wi_local)) return true;
@@ -85,19 +85,19 @@ struct Surface {
         return !(frame.normal == geometric_normal);
     }
 
-    /// Mirrored at the triangle's plane.
+    /// Mirrors at the triangle's plane.
     HD Vec3 folded(Vec3 wi) const { return wi - (2.0f * dot(wi, geometric_normal)) * geometric_normal; }
 };
 
-/// Bound of the rounding of a point on a light, per component: 16 units, as of an instance that is not turned.
+/// Bound of the rounding error of a point on a light, per component: 16 units, as for an unrotated instance.
 HD inline Vec3 light_point_error(Vec3 point) { return 0x1p-20f * abs(point); }
 
-/// The ray from a point of a surface, known to `error`, of unit normal `normal`, to what was drawn of a light; it ends
-/// there. `lamp_error`: bound of what the motion of a lamp adds to the error of its point, metres.
+/// The shadow ray from a point of a surface, known to `error`, with unit normal `normal`, to a sample point on a
+/// light, where it ends. `lamp_error` is a bound of the error that an emitter's motion adds to its point, metres.
 HD inline Ray ray_to_light(const LightSample& light, Vec3 position, Vec3 error, Vec3 normal, float lamp_error = 0) {
     Ray ray;
     ray.origin = offset_ray_origin(position, error, normal, light.wi);
-    if (light.distance < kInfinity) { // to a point: t_max = 1 is that point
+    if (light.distance < kInfinity) { // t_max = 1 is the light's point
         Vec3 end = light.light_point;
         if (light.instance != kNoLight) {
             const Vec3 off = light_point_error(end) + Vec3{lamp_error, lamp_error, lamp_error};
@@ -112,22 +112,24 @@ HD inline Ray ray_to_light(const LightSample& light, Vec3 position, Vec3 error, 
     return ray;
 }
 
-/// Corners and everything else of a triangle that make_surface looks at twice.
+/// Vertices and other data of a triangle that make_surface needs repeatedly.
 struct PlacedTriangle {
     TriangleIndices i;
     Vec3 a, ab, ac; // first corner and the edges from it, world space
     Vec3 normal;    // unit, by the winding in the mesh's own space
-    Vec3 position;  // of the hit, off the edges
-    Vec3 error;     // bound of its rounding and of all that the test of a triangle of this size adds, per component
+    Vec3 position;  // position of the hit, kept off the edges
+    Vec3 error;     // bound of its rounding error and of everything that the intersection test of a triangle of this
+                    // size adds, per component
 
     HD Vec3 at(float u, float v) const { return a + (u * ab + v * ac); }
 };
 
-/// In units of 2^-24. Of a baked triangle the walk has the very corners, so what counts is the rounding of the point P
-/// and of the origin that is moved off it (1 each), of the terms of a + u ab + v ac (3) and of the test of a triangle
-/// from there (6): 2 of |P| and 10 of the edges. An instance's walk moves the origin by L = local_from_world, t: with
-/// the rounding of L itself 5 |M| (|L||P| + |t|), M = world_from_local. Its corners here are off by 4 |M||a| + 4 |T|,
-/// which is at most 8 |M| (|L||P| + |t|) and 4 |M||L| of the edges. As |M||L| is at least 1, 16 times holds all of it.
+/// The bound in units of 2^-24. For a baked triangle the traversal uses the same vertices, so the error comes from
+/// rounding the point P and the offset origin (1 each), the terms of a + u ab + v ac (3) and the test of a triangle
+/// from there (6): 2 of |P| and 10 of the edges. In an instance the traversal transforms the origin by L =
+/// local_from_world, t: including the rounding of L itself that is 5 |M| (|L||P| + |t|), M = world_from_local. Its
+/// vertices here have an error of 4 |M||a| + 4 |T|, which is at most 8 |M| (|L||P| + |t|) and 4 |M||L| of the edges.
+/// As |M||L| is at least 1, a factor of 16 covers everything.
 HD inline Vec3 hit_error(const InstanceView& instance, Vec3 position, Vec3 ab, Vec3 ac) {
     const Vec3 edges = abs(ab) + abs(ac);
     if (instance.is_baked != 0) return 0x1p-23f * abs(position) + 0x1.4p-21f * edges;
@@ -136,12 +138,13 @@ HD inline Vec3 hit_error(const InstanceView& instance, Vec3 position, Vec3 ab, V
            transform_sizes(instance.world_from_local, transform_sizes(l, abs(position) + edges) + abs(l.translation));
 }
 
-/// Why no light leaks at an edge: there the computed point may lie behind a neighbour's plane by its error e (the
-/// largest component), and no move along its own normal mends that. So none of its weights is under 16 e s / (2 area),
-/// s the longest component of ab and ac; that is 16 e s / length >= 4.6 e off an edge of that length. Where the
-/// neighbour stands at an angle x to this triangle, the origin, up to 1.7 e off this one, is then 4.6 e sin x - 1.7 e
-/// cos x within the other: past the 1.7 e that rounding can take, from 42 degrees to flat, and for most triangles (11
-/// e) from 17. Slivers are taken for a sixteenth as high as long, so that no point moves by more than 900 e.
+/// Why no light leaks at an edge: there the computed point may be behind a neighbour's plane by its error e (the
+/// largest component), and an offset along its own normal does not correct that. So each of its weights is at least
+/// 16 e s / (2 area), with s the longest component of ab and ac; that is 16 e s / length >= 4.6 e away from an edge
+/// of that length. If the neighbour forms an angle x with this triangle, the origin, up to 1.7 e off this one, is
+/// then 4.6 e sin x - 1.7 e cos x inside the other: more than the 1.7 e of rounding from 42 degrees to flat, and for
+/// most triangles (11 e) from 17 degrees. Slivers count as at least a sixteenth as high as long, so that no point
+/// moves by more than 900 e.
 HD inline PlacedTriangle place_triangle(const InstanceView& instance, const MeshView& mesh, const Hit& hit) {
     PlacedTriangle triangle;
     triangle.i = triangle_indices(mesh, hit.primitive);
@@ -150,7 +153,7 @@ HD inline PlacedTriangle place_triangle(const InstanceView& instance, const Mesh
     triangle.ab = transform_point(m, mesh.positions[triangle.i.b]) - triangle.a;
     triangle.ac = transform_point(m, mesh.positions[triangle.i.c]) - triangle.a;
     const float size = max(max_component(abs(triangle.ab)), max_component(abs(triangle.ac)));
-    const float inv = 1.0f / size; // scaled: the product of two tiny edges would underflow
+    const float inv = 1.0f / size; // scaled, because the product of two tiny edges would underflow
     const Vec3 across = cross(inv * triangle.ab, inv * triangle.ac);
     const float sign = instance.is_mirrored != 0 ? -1.0f : 1.0f;
     triangle.normal = normalize_or(sign * across, Vec3{0, 0, 1});
@@ -162,8 +165,8 @@ HD inline PlacedTriangle place_triangle(const InstanceView& instance, const Mesh
     return triangle;
 }
 
-/// The normal by the winding, which says which side emits (scene/material.h), or its opposite where there are vertex
-/// normals that call the other side the front: of shading.
+/// Front normal for shading: the normal by the winding, which defines the emitting side (scene/material.h), or its
+/// opposite if vertex normals define the other side as the front.
 HD inline Vec3 front_normal(const InstanceView& instance, const MeshView& mesh, const PlacedTriangle& triangle) {
     if (mesh.normals == nullptr) return triangle.normal;
     const Vec3 sum = mesh.normals[triangle.i.a] + mesh.normals[triangle.i.b] + mesh.normals[triangle.i.c];
@@ -171,7 +174,7 @@ HD inline Vec3 front_normal(const InstanceView& instance, const MeshView& mesh, 
     return is_behind ? -triangle.normal : triangle.normal;
 }
 
-/// The frame before the normal map: interpolated normal and tangent, turned as the map's coordinates are.
+/// The frame before the normal map: interpolated normal and tangent, rotated like the map's coordinates.
 HD inline Frame tangent_frame(const InstanceView& instance, const MeshView& mesh, const PlacedTriangle& triangle,
                               const Hit& hit, Vec3 normal, const TextureRef& map) {
     if (mesh.tangents == nullptr) return make_frame(normal); // no texture coordinates either (make_tangents.h)
@@ -188,8 +191,8 @@ HD inline float corner_tilt(const InstanceView& instance, Vec3 local_normal, Vec
     return sine_between(normalize_or(normal, geometric_normal), geometric_normal);
 }
 
-/// The shading frame at the hit, seen from `wo` (unit). Writes `tilt` of the interpolated normal, before the normal
-/// map: a map's bumps have no neighbours whose horizon they would have to clear.
+/// The shading frame at the hit, seen from `wo` (unit). Writes the `tilt` of the interpolated normal, before the
+/// normal map, because a map's bumps have no neighbours whose horizon matters.
 template <MaterialsKnown kKnown>
 HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instance, const MeshView& mesh,
                               const MaterialParameters& material, const PlacedTriangle& triangle, const Hit& hit,
@@ -212,12 +215,12 @@ HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instan
                                           scene.linear_from_srgb);
         normal = mapped_normal(frame, {texel.x, texel.y, texel.z}, material.normal_scale);
     }
-    const bool behind = dot(wo, geometric_normal) < 0; // valid_normal looks from the front
+    const bool behind = dot(wo, geometric_normal) < 0; // valid_normal expects the front
     const float side = behind ? -1.0f : 1.0f;
     return make_frame(side * valid_normal(side * normal, side * geometric_normal, wo));
 }
 
-/// The surface at `hit` of a ray that arrives along `direction` (unit).
+/// The surface at `hit` for a ray that arrives along `direction` (unit).
 template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
 HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 direction) {
     const InstanceView& instance = scene.instances[hit.instance];
@@ -240,7 +243,7 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
             scene.lights, instance.material,
             texture_coordinate(mesh, material.emission_texture, triangle.i, hit.u, hit.v));
     }
-    // In one expression, so that the BSDF is made where it stays.
+    // In one expression, so that the BSDF is constructed in place.
     return {.position = triangle.position,
             .error = triangle.error,
             .geometric_normal = geometric_normal,

@@ -1,7 +1,7 @@
 #pragma once
 
-// The least and the greatest value of one channel of an image over any box of texels: a pyramid of halved sizes, whose
-// first level is of 2x2 texels. The texels themselves are the image's.
+// Minimum and maximum of one channel of an image over any box of texels: a pyramid of halved sizes, whose first level
+// has cells of 2x2 texels. The texels themselves are the image's.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@
 
 namespace pertev {
 
-/// Of what is not finite nothing is known: the range is all numbers.
+/// A range of values. If a value is not finite, the range is unbounded.
 struct ValueRange {
     float least, most;
 };
@@ -19,7 +19,7 @@ HD constexpr ValueRange any_value() { return {-kInfinity, kInfinity}; }
 
 HD inline ValueRange join(ValueRange a, ValueRange b) { return {min(a.least, b.least), max(a.most, b.most)}; }
 
-/// Of a * b for any a, b in the ranges, which rounds as these products do.
+/// Range of a * b for any a, b in the ranges, with the rounding of such products.
 HD inline ValueRange multiply(ValueRange a, ValueRange b) {
     if (!(a.least > -kInfinity && b.least > -kInfinity && a.most < kInfinity && b.most < kInfinity)) return any_value();
     const float ll = a.least * b.least, lm = a.least * b.most, ml = a.most * b.least, mm = a.most * b.most;
@@ -53,10 +53,10 @@ HD inline ValueRange cell_of(const TexelBoundsView& bounds, uint32_t level, uint
     return is_finite(value) ? ValueRange{value, value} : any_value();
 }
 
-/// Along a side of a box, that are looked at one by one.
+/// Cells along a side of a box that are read one by one.
 inline constexpr uint32_t kMostCells = 8;
 
-/// Of all texels of the box, and of some beside it.
+/// Range of all texels of the box, and of some beside it.
 HD inline ValueRange range_of(const TexelBoundsView& bounds, TexelSpan x, TexelSpan y) {
     uint32_t level = 0;
     while ((x.last >> level) - (x.first >> level) >= kMostCells || (y.last >> level) - (y.first >> level) >= kMostCells)
@@ -69,7 +69,7 @@ HD inline ValueRange range_of(const TexelBoundsView& bounds, TexelSpan x, TexelS
     return range;
 }
 
-/// Stage: cell i of a level, from the level below.
+/// Stage that computes cell i of a level from the level below.
 struct HalveTexelBounds {
     TexelBoundsView bounds;
     uint32_t level; // at least 1

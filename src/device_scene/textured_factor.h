@@ -1,6 +1,6 @@
 #pragma once
 
-// A number of a material as its texture has it at a place on a mesh.
+// A numeric parameter of a material at a point of a mesh, with its texture.
 
 #include "device_scene/scene_view.h"
 
@@ -11,7 +11,7 @@ HD inline Vec2 texture_coordinate(const MeshView& mesh, const TextureRef& ref, T
     return uv != nullptr ? interpolate(uv, i, u, v) : Vec2{0, 0};
 }
 
-/// `factor` times the one channel that `ref` reads.
+/// Multiplies `factor` by the channel of `ref`.
 HD inline float textured_factor(const SceneView& scene, const MeshView& mesh, float factor, const TextureRef& ref,
                                 TriangleIndices i, float u, float v) {
     if (!ref.has_image()) return factor;

@@ -1,8 +1,7 @@
 #pragma once
 
-// Scenes that are part of the program and are named instead of given as a file: those of our own under scenes/, as glTF
-// files without companions, or as OBJ files with one file of materials and no textures. The definitions are written by
-// cmake/embed_scenes.cmake.
+// Built-in scenes, which are named instead of given as a file: our own scenes from scenes/, as self-contained glTF
+// files, or as OBJ files with one file of materials and no textures. cmake/embed_scenes.cmake writes the definitions.
 
 #include <cstddef>
 #include <optional>
@@ -12,12 +11,12 @@
 
 namespace pertev {
 
-/// The glTF or OBJ file of a built-in scene ("cornell-box"); nothing where there is no scene of that name.
+/// The glTF or OBJ file of a built-in scene ("cornell-box"); nothing if there is no scene of that name.
 std::optional<std::span<const std::byte>> builtin_scene(std::string_view name);
-/// The MTL file of a built-in scene that is an OBJ file; nothing for others.
+/// The MTL file of a built-in OBJ scene; nothing for others.
 std::optional<std::span<const std::byte>> builtin_materials(std::string_view name);
 
-/// All names, for messages.
+/// Names of all built-in scenes, for messages.
 std::vector<std::string_view> builtin_scene_names();
 
 } // namespace pertev

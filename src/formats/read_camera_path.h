@@ -1,9 +1,9 @@
 #pragma once
 
-// A camera's path from a JSON file:
+// Reads a camera path from a JSON file:
 //     {"keys": [{"time": 0, "eye": [0, 1, 5], "target": [0, 1, 0], "up": [0, 1, 0], "fov": 45}, ...]}
-// time in seconds from 0 on, rising; eye and target in metres; up (0, 1, 0 without); fov: full vertical angle of view
-// in degrees, of all keys or of none.
+// time is in seconds from 0 on, ascending; eye and target in metres; up defaults to 0, 1, 0; fov is the full vertical
+// field of view in degrees, given for all keys or none.
 
 #include <filesystem>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads a panorama: light from far away.
+// Reads a panorama of distant light.
 
 #include <filesystem>
 
@@ -9,8 +9,8 @@
 
 namespace pertev {
 
-/// The equirectangular picture at `path` (.hdr, .exr; also .png and .jpg, whose whites are cut off, with a warning), 3
-/// channels, linear. Throws Error(BadInput) that names the file for what cannot be read.
+/// Reads the equirectangular picture at `path` (.hdr, .exr; also .png and .jpg, whose highlights are clipped, with a
+/// warning): 3 channels, linear. Throws Error(BadInput) that names the file if it cannot be read.
 Image read_environment_image(const std::filesystem::path& path, Messages& messages);
 
 } // namespace pertev

@@ -12,22 +12,22 @@
 
 namespace pertev {
 
-/// The scene in a file, or the one that is part of the program under this name (formats/builtin_scenes.h). Throws
-/// Error(BadInput) that names the file, the place in it and what would be right; so it does for an animation or a scene
-/// that the file does not have, with the list of those that it has. What was left out or repaired is said
-/// in `messages`. The scene has been through validate().
+/// Reads the scene of a file, or the built-in one with this name (formats/builtin_scenes.h). Throws Error(BadInput)
+/// that names the file, the location in it and what would be right, and, for an animation or a scene that the file
+/// does not have, a list of those that it has. `messages` reports what was left out or repaired. The scene has passed
+/// validate().
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
 
-/// Whether files of this name's kind can say if a surface emits from one face or from both; so can built-in scenes.
+/// Whether files of this name's format can say if a surface emits from one face or from both; built-in scenes can.
 bool tells_lamp_sides(const std::filesystem::path& path);
 
-/// Whether files of this name's kind tell their unit and which way is up, so that ReadOptions::space means nothing to
-/// them; so do built-in scenes.
+/// Whether files of this name's format define their unit and up axis, so that ReadOptions::space has no effect;
+/// built-in scenes do.
 bool tells_space(const std::filesystem::path& path);
 
 /// Whether a name could be a scene's: it has an extension from above or is that of a built-in scene.
 bool is_scene_name(const std::filesystem::path& path);
-/// What there is to be named, for messages: "a scene file (.obj ...) nor a built-in scene (...)".
+/// List of the possible names for messages: "a scene file (.obj ...) nor a built-in scene (...)".
 std::string scene_kinds();
 
 } // namespace pertev

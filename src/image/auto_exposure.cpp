@@ -7,14 +7,14 @@ namespace pertev {
 namespace {
 
 constexpr float kMiddleGrey = 0.18f;
-// Of what counts: half of what is promised, for what a small picture averages away.
+// Share of the counting pixels: half of what is promised, because a small picture averages highlights away.
 constexpr double kBurntShare = 0.005;
-constexpr double kBrightShare = 0.1;  // likewise
-constexpr float kBright = 0.8f;       // as shown: 1 is white
+constexpr double kBrightShare = 0.1;  // share of the counting pixels, like kBurntShare
+constexpr float kBright = 0.8f;       // displayed value; 1 is white
 constexpr double kTrimmedShare = 0.1; // at either end of the mean
-constexpr int kMostHundredths = 6000; // of a stop
+constexpr int kMostHundredths = 6000; // hundredths of a stop
 
-/// Light of one place in the picture, and how many pixels it stands for.
+/// Light at one position of the picture, and the number of pixels that it represents.
 struct Tone {
     float light; // luminance, or the largest channel
     double weight;

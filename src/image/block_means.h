@@ -1,7 +1,7 @@
 #pragma once
 
-// A picture of means over square blocks of pixels: the noise of its samples is smaller by the block's side, what the
-// blocks show stays.
+// Downsamples a picture by means over square blocks of pixels, which reduces the noise of its samples by the block's
+// side.
 
 #include <cstdint>
 
@@ -9,8 +9,8 @@
 
 namespace pertev {
 
-/// One pixel a block of `side` x `side` pixels, side >= 1; blocks that reach over the right and lower border are means
-/// over the pixels there are. Sums are in double, row by row.
+/// One pixel per block of `side` x `side` pixels, side >= 1; blocks at the right and lower border average fewer
+/// pixels. Sums are in double, row by row.
 Image block_means(const Image& image, uint32_t side);
 
 } // namespace pertev

@@ -174,7 +174,7 @@ private:
         };
         decoded_bytes_ += max(check_size(header.data->width(), header.data->height()),
                               check_size(header.display->width(), header.display->height()));
-        check_decoded_bytes(name_, decoded_bytes_, bytes_.size()); // of all parts
+        check_decoded_bytes(name_, decoded_bytes_, bytes_.size()); // total of all parts
         uint64_t chunks =
             (header.data->height() + rows_per_chunk(*header.compression) - 1) / rows_per_chunk(*header.compression);
         if (header.is_tiled) {
@@ -187,8 +187,8 @@ private:
             fail(fmt::format("{} chunks of pixels do not fit into the file; it is cut short", chunks));
     }
 
-    // Of pixels: deflate reaches 1032:1; DWA keeps one number for a block of 64 pixels and deflates that (a black
-    // picture of 3840 x 2160: 11200:1).
+    // Maximum expansion of pixels: deflate reaches 1032:1; DWA stores one number for a block of 64 pixels and
+    // deflates that (a black picture of 3840 x 2160: 11200:1).
     static uint64_t most_per_byte(uint8_t compression) {
         return compression == kDwaa || compression == kDwab ? 20000 : 2000;
     }
@@ -200,7 +200,7 @@ private:
     std::span<const std::byte> bytes_;
     const std::string& name_;
     std::size_t offset_ = 0;
-    uint64_t decoded_bytes_ = 0; // of the parts so far
+    uint64_t decoded_bytes_ = 0; // sum of the parts so far
 };
 
 } // namespace

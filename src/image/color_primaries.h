@@ -1,9 +1,9 @@
 #pragma once
 
-// Colours by other primaries than ours: linear R, G, B of a picture to linear Rec. 709, which all light is computed in.
+// Conversion of colours with other primaries to linear Rec. 709, in which all light is computed.
 //
-// Source: SMPTE RP 177 for the matrix of a set of primaries; the adaptation of the white point by Bradford's cone
-// responses (Lam 1985, as Lindbloom gives them), so that white stays white.
+// Source: SMPTE RP 177 for the matrix of a set of primaries; chromatic adaptation of the white point by Bradford's
+// cone responses (Lam 1985, as Lindbloom gives them), so that white stays white.
 
 #include <array>
 #include <optional>
@@ -25,14 +25,15 @@ inline constexpr ColorPrimaries kRec709 = {
 
 using ColorMatrix = std::array<std::array<double, 3>, 3>; // row by row
 
-/// Whether colours by these primaries are ours: no number is further than 0.0005 from that of Rec. 709.
+/// Whether the primaries are those of Rec. 709, up to 0.0005 per number.
 bool is_rec709(const ColorPrimaries& primaries);
 
-/// The matrix that makes linear R, G, B by these primaries linear Rec. 709. Nothing where they are degenerate: a number
+/// The matrix from linear R, G, B with these primaries to linear Rec. 709. Nothing if they are degenerate: a number
 /// that is not finite or larger than 4, primaries on one line, or a white that no positive amounts of them give.
 std::optional<ColorMatrix> rec709_from(const ColorPrimaries& primaries);
 
-/// Multiplies R, G, B of each pixel, with or without alpha. Grey pictures and pixels that are not finite stay.
+/// Multiplies R, G, B of each pixel, with or without alpha. Grey pictures and pixels that are not finite do not
+/// change.
 void convert_colors(const ColorMatrix& matrix, Image& image);
 
 } // namespace pertev

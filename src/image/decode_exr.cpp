@@ -12,7 +12,7 @@ namespace {
 
 using Channels = std::vector<ExrReader::ChannelInfo>;
 
-// Those of `there` named so, in that order; nothing when one is missing.
+// Selects the named channels in this order; nothing if one is missing.
 std::optional<Channels> select(const Channels& there, std::initializer_list<const char*> names) {
     Channels result;
     for (const char* name : names) {

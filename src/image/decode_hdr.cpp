@@ -14,7 +14,8 @@
 namespace pertev {
 namespace {
 
-// Of float RGB: new coding packs 127 of each channel in 2 bytes; old coding has no bound, but more is not a picture.
+// Maximum expansion to float RGB: new coding packs 127 values of each channel in 2 bytes; old coding has no bound,
+// but this is plausible.
 constexpr uint64_t kMostPerByte = 2000;
 
 using Rgbe = std::array<uint8_t, 4>;

@@ -3,7 +3,7 @@
 // Radiance HDR (RGBE): flat, old and new run-length coding, all eight orientations. Called by decode_image.
 //
 // Source: Ward, "Real Pixels", Graphics Gems II, 1991; the Radiance reference manual, "Picture File Format". A pixel
-// is mantissa * 2^(exponent - 136), without Radiance's later half unit, as other renderers read it.
+// is mantissa * 2^(exponent - 136), without Radiance's later half unit, as in other renderers.
 
 #include <cstddef>
 #include <optional>
@@ -16,10 +16,10 @@
 
 namespace pertev {
 
-/// RGB picture, linear, by the primaries of the file. Values are divided by the header's EXPOSURE and COLORCORR
+/// RGB picture, linear, with the primaries of the file. Values are divided by the header's EXPOSURE and COLORCORR
 /// (products of all lines).
 Image decode_hdr(std::span<const std::byte> bytes, const std::string& name);
-/// The numbers of the header's line PRIMARIES; nothing where there is none, or eight zeros, which Photoshop writes for
+/// The numbers of the header's line PRIMARIES; nothing if there is none, or eight zeros, which Photoshop writes for
 /// none.
 std::optional<ColorPrimaries> read_hdr_primaries(std::span<const std::byte> bytes, const std::string& name);
 /// See read_image_header.

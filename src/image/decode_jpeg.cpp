@@ -16,9 +16,9 @@
 namespace pertev {
 namespace {
 
-// Of RGBA bytes: a block of 64 pixels takes at least one bit a component.
+// Maximum expansion to RGBA bytes: a block of 64 pixels takes at least one bit per component.
 constexpr uint64_t kMostPerByte = 4096;
-// Each scan passes over the whole picture, however few bytes it has; encoders write about ten.
+// Each scan processes the whole picture, however few bytes it has; encoders write about ten.
 constexpr int kMostScans = 100;
 
 // libjpeg reports errors by a call that must not return, here a jump. The steps below hold nothing that has a

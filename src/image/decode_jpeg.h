@@ -1,8 +1,8 @@
 #pragma once
 
-// JPEG by libjpeg-turbo: baseline and progressive; grey, YCbCr, RGB, CMYK and YCCK. Called by decode_image, which says
-// what the result holds. Slow integer DCT and the library's exact up-sampling, whose SIMD versions give the same bytes
-// as its C version: the pixels do not depend on the processor.
+// Decodes JPEG with libjpeg-turbo: baseline and progressive; grey, YCbCr, RGB, CMYK and YCCK. decode_image calls it
+// and describes the result. It uses the slow integer DCT and the library's exact up-sampling, whose SIMD versions
+// give the same bytes as its C version, so pixels do not depend on the processor.
 
 #include <cstddef>
 #include <span>

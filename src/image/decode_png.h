@@ -1,7 +1,7 @@
 #pragma once
 
-// PNG by libpng: every colour type and depth, palettes, transparency, interlacing. Called by decode_image, which says
-// what the results hold. Only the chunks that change pixel values are looked at.
+// Decodes PNG with libpng: every colour type and depth, palettes, transparency, interlacing. decode_image calls it
+// and describes the results. Only chunks that affect pixel values are read.
 
 #include <cstddef>
 #include <span>

@@ -1,7 +1,6 @@
 #pragma once
 
-// An OpenEXR file open in memory: what decode_exr and read_exr both stand on. Scanline and tiled parts alike, full
-// resolution only.
+// An OpenEXR file in memory, the basis of decode_exr and read_exr. Scanline and tiled parts, full resolution only.
 
 #include <cstddef>
 #include <memory>
@@ -30,14 +29,15 @@ public:
     ExrReader& operator=(const ExrReader&) = delete;
 
     std::size_t part_count() const;
-    /// Empty where the file does not name the part.
+    /// Empty if the file does not name the part.
     std::string part_name(std::size_t part) const;
     std::vector<ChannelInfo> channels(std::size_t part) const; // sorted by name
-    uint32_t width() const;                                    // of the first part's display window
+    uint32_t width() const;                                    // size of the first part's display window
     uint32_t height() const;
-    ExrMetadata metadata() const; // of the first part
-    bool has_primaries() const;   // the first part's header has an attribute `chromaticities`, which all parts share
-    std::optional<ColorPrimaries> primaries() const; // nothing also where that attribute is of another type
+    ExrMetadata metadata() const; // header of the first part
+    bool has_primaries() const;   // whether the first part's header has the attribute `chromaticities`, which all
+                                  // parts share
+    std::optional<ColorPrimaries> primaries() const; // nothing also if that attribute has another type
 
     /// Values of the named channels of a part, in that order, over the display window. Ids (uint) stay integers
     /// unless `all_as_float`. Throws Error(BadInput) for damaged pixels and for a subsampled channel.

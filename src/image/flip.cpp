@@ -187,7 +187,7 @@ Features find_features(const Plane& lightness, Size size, float pixels_per_degre
     return {strength(edge), strength(point)};
 }
 
-// What is compared of one picture.
+// Data of one picture for the comparison.
 struct Perceived {
     std::vector<Vec3> colour; // Hunt-adjusted L*a*b* after the eye's filter
     Features features;

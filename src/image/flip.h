@@ -1,10 +1,10 @@
 #pragma once
 
-// FLIP: how visible the difference of two pictures is to somebody who flips between them, 0 (not at all) to 1.
+// FLIP: visibility of the difference between two pictures when a viewer alternates them, from 0 (none) to 1.
 //
 // Source: Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", HPG 2020; HDR: Andersson et al.,
 // "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics 2021 Short Papers. Where paper and the
-// authors' program differ, the program counts (filter radii, edges of the picture repeated outwards).
+// authors' program differ, this follows the program (filter radii, edges of the picture repeated outwards).
 
 #include <vector>
 
@@ -12,11 +12,11 @@
 
 namespace pertev {
 
-/// The paper's viewer: a display 0.7 m wide with 3840 pixels, seen from 0.7 m.
+/// The paper's viewing conditions: a display 0.7 m wide with 3840 pixels, seen from 0.7 m.
 inline constexpr float kDefaultPixelsPerDegree = 67.0206432765823f;
 
 struct FlipResult {
-    double mean = 0; // of the map
+    double mean = 0; // mean of the map
     Image map;       // 1 channel, the error of each pixel in [0, 1]
 };
 
@@ -24,11 +24,11 @@ struct FlipResult {
 /// NaN counts as 0. Symmetric. Throws Error(BadInput) when the sizes differ.
 FlipResult flip(const Image& picture, const Image& reference, float pixels_per_degree = kDefaultPixelsPerDegree);
 
-/// HDR-FLIP: the largest LDR-FLIP of each pixel over a range of exposures that follows from the reference's luminance,
-/// each through the ACES curve of the source. The number of exposures grows with the reference's contrast.
+/// HDR-FLIP: the maximum LDR-FLIP of each pixel over a range of exposures that follows from the reference's
+/// luminance, each through the ACES curve of the source. The number of exposures grows with the reference's contrast.
 FlipResult hdr_flip(const Image& picture, const Image& reference, float pixels_per_degree = kDefaultPixelsPerDegree);
 
-/// The same of each of `pictures`; the reference is looked at once for all of them.
+/// HDR-FLIP of each of `pictures`; the reference is processed once for all of them.
 std::vector<FlipResult> hdr_flips(const std::vector<const Image*>& pictures, const Image& reference,
                                   float pixels_per_degree = kDefaultPixelsPerDegree);
 

@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-/// Float picture; colours are linear Rec. 709 unless the holder says otherwise.
+/// Float picture; colours are linear Rec. 709 unless stated otherwise.
 struct Image {
     uint32_t width = 0, height = 0;
     uint32_t channels = 3;     // 1 to 4: Y, (Y, A), RGB, RGBA
@@ -18,7 +18,7 @@ struct Image {
     float* at(uint32_t x, uint32_t y) { return pixels.data() + (std::size_t(y) * width + x) * channels; }
 };
 
-/// 8-bit RGBA picture as a file holds it: colour channels still encoded (sRGB, or data such as normals), alpha linear.
+/// 8-bit RGBA picture as in a file: colour channels still encoded (sRGB, or data such as normals), alpha linear.
 struct Rgba8Image {
     uint32_t width = 0, height = 0;
     std::vector<uint8_t> pixels; // [height * width * 4]

@@ -1,6 +1,6 @@
 #pragma once
 
-// Which picture format a file holds, told from its first bytes: names and extensions lie.
+// Identifies picture formats from the first bytes, because names and extensions may be wrong.
 
 #include <cstddef>
 #include <filesystem>
@@ -15,9 +15,9 @@ enum class ImageFormat { Png, Jpeg, Hdr, Exr };
 /// The format whose magic bytes `bytes` starts with; nothing for any other content.
 std::optional<ImageFormat> recognise_image(std::span<const std::byte> bytes);
 
-/// Of pictures that are read and written.
+/// Extensions of pictures that are read and written.
 inline constexpr std::string_view kPictureExtensions[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr"};
-/// Whether the name has one of kPictureExtensions, in letters of either case.
+/// Whether the name has one of kPictureExtensions, in either case.
 bool is_picture_name(const std::filesystem::path& file);
 
 } // namespace pertev

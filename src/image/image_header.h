@@ -1,6 +1,6 @@
 #pragma once
 
-// How large a picture will be in memory, off its file's header alone: to be known before the pixels are decoded.
+// The size of a picture in memory according to its file's header, known before the pixels are decoded.
 
 #include <cstdint>
 
@@ -8,7 +8,7 @@ namespace pertev {
 
 struct ImageHeader {
     uint32_t width = 0, height = 0;
-    bool is_float = false; // decode_image gives an Image; else an Rgba8Image
+    bool is_float = false; // decode_image returns an Image; else an Rgba8Image
 };
 
 } // namespace pertev

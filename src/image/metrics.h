@@ -1,7 +1,7 @@
 #pragma once
 
-// How far a picture is from its reference, as numbers: what `pertev compare` prints and the tests hold bounds on.
-// FLIP is in image/flip.h. Sums are in double and in one fixed order.
+// Numeric differences between a picture and its reference, which `pertev compare` prints and tests bound. FLIP is in
+// image/flip.h. Sums are in double and in one fixed order.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,49 +14,51 @@ namespace pertev {
 
 struct TrimmedError {
     double rel_mse = 0;            // mean over the kept pixels and their channels of (x - r)^2 / (r^2 + 0.01)
-    double mean[3] = {};           // of the picture's R, G, B over the kept pixels
-    double reference_mean[3] = {}; // of the reference's
-    uint64_t pixels = 0;           // how many were kept
+    double mean[3] = {};           // mean of the picture's R, G, B over the kept pixels
+    double reference_mean[3] = {}; // mean of the reference's R, G, B over the kept pixels
+    uint64_t pixels = 0;           // number of kept pixels
 };
 
-/// relMSE over the `keep` part (0, 1] of the pixels with the least error, at least one: fireflies do not drown the
-/// rest. A pixel with a value that is not finite counts as the worst, and makes rel_mse infinite where it is kept.
-/// Both pictures have 3 or 4 channels (alpha is not compared). Throws Error(BadInput) when their sizes differ.
+/// relMSE over the fraction `keep`, in (0, 1], of the pixels with the least error, at least one, so that fireflies do
+/// not dominate. A pixel with a value that is not finite counts as the worst, and makes rel_mse infinite if it is
+/// kept. Both pictures have 3 or 4 channels (alpha is not compared). Throws Error(BadInput) if their sizes differ.
 TrimmedError relative_error(const Image& picture, const Image& reference, double keep = 0.98);
 
 struct TrimmedVariance {
-    double rel_mse = 0; // what relative_error would be on average if the true picture were known
-    double mean = 0;    // of all channels over the pixels
+    double rel_mse = 0; // expectation of relative_error with respect to the true picture
+    double mean = 0;    // mean of all channels over the pixels
 };
 
-/// Variance of pictures that differ by chance alone, as relMSE of one of them: s^2 / (m^2 + 0.01), s^2 the unbiased
-/// variance of a pixel's channel over the pictures, m its mean. Takes them one by one and keeps two sums a value, so
-/// that memory does not grow with their number.
+/// Variance of pictures that differ only by noise, as relMSE of one of them: s^2 / (m^2 + 0.01), where s^2 is the
+/// unbiased variance of a pixel's channel over the pictures and m its mean. It takes them one by one and keeps two
+/// sums per value, so that memory does not grow with their number.
 class VarianceOfPictures {
 public:
-    /// With 3 or 4 channels (alpha is left out). Throws Error(BadInput) where its size is not that of the first.
+    /// Adds a picture with 3 or 4 channels (alpha is ignored). Throws Error(BadInput) if its size is not that of the
+    /// first.
     void add(const Image& picture);
-    /// The `keep` part (0, 1] of the pixels with the least variance, at least one, the best first. After two pictures.
-    std::vector<std::size_t> best_pixels(double keep) const;
-    /// Means over these pixels, and R, G, B. A pixel with a value that is not finite makes rel_mse infinite. After two
+    /// The fraction `keep`, in (0, 1], of the pixels with the least variance, at least one, the best first. Needs two
     /// pictures.
+    std::vector<std::size_t> best_pixels(double keep) const;
+    /// Means over these pixels, and R, G, B. A pixel with a value that is not finite makes rel_mse infinite. Needs
+    /// two pictures.
     TrimmedVariance over(const std::vector<std::size_t>& pixels) const;
 
 private:
     TrimmedVariance of_pixel(std::size_t i) const;
 
-    Image first_;                               // origin of the differences, which lose no digits that way
+    Image first_;                               // differences are relative to it, which preserves precision
     std::vector<double> differences_, squares_; // sums, [pixel][R, G, B]
     uint32_t count_ = 0;
 };
 
-/// Mean of (x - r)^2 over pixels and R, G, B. Infinite where a value is not finite. Throws as relative_error.
+/// Mean of (x - r)^2 over pixels and R, G, B; infinite if a value is not finite. Throws as relative_error.
 double mean_squared_error(const Image& picture, const Image& reference);
 
 /// Peak signal-to-noise ratio in dB for values up to `peak`; infinite for equal pictures.
 double peak_signal_to_noise(double mean_squared_error, double peak = 1);
 
-/// Throws Error(BadInput) that tells both sizes, unless they are equal and each picture has 3 or 4 channels.
+/// Throws Error(BadInput) with both sizes unless they are equal and each picture has 3 or 4 channels.
 void check_comparable(const Image& picture, const Image& reference);
 
 } // namespace pertev

@@ -1,13 +1,13 @@
 #pragma once
 
-// The hash that names a picture in the one-picture law: printed at the end of a render and by `pertev info`.
+// The hash of a picture in the one-picture law, printed at the end of a render and by `pertev info`.
 
 #include "base/hash.h"
 #include "image/image.h"
 
 namespace pertev {
 
-/// Hash of width, height (uint32), then the bits of R, G, B, and A where there is one, row by row from the top. Grey
+/// Hash of width, height (uint32), then the bits of R, G, B, and A if there is one, row by row from the top. Grey
 /// counts as R = G = B. A picture has the same hash after it was written as EXR and read again.
 Hash128 picture_hash(const Image& picture);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// What R, G and B of a picture file with float colours mean: the attribute `chromaticities` of OpenEXR ("Technical
-// Introduction"), the line PRIMARIES of Radiance HDR. A file without them holds Rec. 709.
+// Primaries of a picture file with float colours: the attribute `chromaticities` of OpenEXR ("Technical
+// Introduction"), the line PRIMARIES of Radiance HDR. A file without them has Rec. 709.
 
 #include <cstddef>
 #include <optional>
@@ -13,8 +13,8 @@
 
 namespace pertev {
 
-/// The matrix that makes the file's colours Rec. 709. Nothing where they are, as those of PNG and JPEG, or, after a
-/// warning that starts with `name`, where its primaries are degenerate. Throws as decode_image does.
+/// The matrix from the file's colours to Rec. 709. Nothing if they are Rec. 709, as in PNG and JPEG, or if its
+/// primaries are degenerate, which gives a warning that starts with `name`. Throws as decode_image does.
 std::optional<ColorMatrix> color_matrix_of(std::span<const std::byte> bytes, const std::string& name,
                                            Messages* messages);
 

@@ -11,9 +11,9 @@
 
 namespace pertev {
 
-/// All channels of all parts. Throws Error(BadInput), which names the file, for what is damaged or not EXR.
+/// Reads all channels of all parts. Throws Error(BadInput), which names the file, if it is damaged or not EXR.
 ExrFile read_exr(const std::filesystem::path& path);
-/// The same from memory; `name` starts every message.
+/// Reads a file from memory; `name` starts every message.
 ExrFile read_exr(std::span<const std::byte> bytes, const std::string& name);
 
 } // namespace pertev

@@ -1,6 +1,6 @@
 #pragma once
 
-// Any picture file as one linear float picture: for comparing pictures and for environment maps.
+// Reads any picture file as one linear float picture, for comparisons and environment maps.
 
 #include <cstddef>
 #include <filesystem>
@@ -12,12 +12,11 @@
 
 namespace pertev {
 
-/// The picture at `path`, linear Rec. 709. PNG and JPEG are taken as sRGB and decoded; their alpha is kept (4 channels)
-/// where some pixel is not opaque. Colours of EXR and HDR are converted from the primaries
-/// that the file states. Grey becomes RGB, so the
-/// result has 3 or 4 channels. Throws as read_file and decode_image do.
+/// Reads the picture at `path` as linear Rec. 709. PNG and JPEG are decoded as sRGB; their alpha is kept (4 channels)
+/// if some pixel is not opaque. Colours of EXR and HDR are converted from the primaries that the file states. Grey
+/// becomes RGB, so the result has 3 or 4 channels. Throws as read_file and decode_image do.
 Image read_image(const std::filesystem::path& path, Messages* messages = nullptr);
-/// The same from memory; `name` starts every message.
+/// Reads a picture from memory; `name` starts every message.
 Image read_image(std::span<const std::byte> bytes, const std::string& name, Messages* messages = nullptr);
 
 } // namespace pertev

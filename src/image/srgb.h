@@ -1,6 +1,6 @@
 #pragma once
 
-// The sRGB transfer functions, IEC 61966-2-1, one result on every device.
+// The sRGB transfer functions, IEC 61966-2-1, with the same results on every device.
 
 #include "base/host_device.h"
 #include "math/portable_math.h"
@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-/// Linear value of an encoded one in [0, 1]; continues as an odd function outside.
+/// Linear value of an encoded one in [0, 1]; extended as an odd function outside.
 HD inline float srgb_decode(float encoded) {
     const float e = abs(encoded);
     return copysign(e <= 0.04045f ? e / 12.92f : pow((e + 0.055f) / 1.055f, 2.4f), encoded);
@@ -17,7 +17,7 @@ HD inline float srgb_decode(float encoded) {
 /// Encoded value of a linear one, clamped to [0, 1]; 0 for NaN.
 HD inline float srgb_encode(float linear) {
     const float x = clamp(linear, 0.0f, 1.0f);
-    // At 1 the formula rounds to just below.
+    // At 1 the formula rounds to slightly less.
     if (x >= 1.0f) return 1.0f;
     return x <= 0.0031308f ? 12.92f * x : 1.055f * pow(x, 1.0f / 2.4f) - 0.055f;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// The linear values of the 256 sRGB-encoded bytes.
+// Linear values of the 256 sRGB-encoded bytes.
 
 #include <array>
 

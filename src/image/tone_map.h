@@ -1,6 +1,6 @@
 #pragma once
 
-// From scene light to what a display shows: linear Rec. 709 in, sRGB-encoded [0, 1] out, on either device.
+// Tone mapping of scene light for a display: linear Rec. 709 in, sRGB-encoded [0, 1] out, on either device.
 //   Srgb     clamps, then encodes
 //   Agx      Sobotka's AgX, base look: log2 encoding and a sigmoid in rotated, inset primaries. Curve and matrices of
 //            Wrensch, "Minimal AgX Implementation", iolite-engine.com, 2023 (polynomial of degree 6)
@@ -23,7 +23,7 @@ namespace tone {
 HD inline float dot3(float a, float b, float c, Rgb v) { return a * v.r + b * v.g + c * v.b; }
 HD inline Rgb clamp_to_unit(Rgb c) { return {clamp(c.r, 0.0f, 1.0f), clamp(c.g, 0.0f, 1.0f), clamp(c.b, 0.0f, 1.0f)}; }
 
-// Log2 range of AgX about middle grey, in stops of scene light: 0.18 * 2^-10 to 0.18 * 2^6.5.
+// Log2 range of AgX around middle grey, in stops of scene light: 0.18 * 2^-10 to 0.18 * 2^6.5.
 HD inline float agx_curve(float light) {
     constexpr float kLowest = -12.47393f, kHighest = 4.026069f;
     if (!(light > 0)) return 0.0f;
@@ -71,8 +71,8 @@ HD inline Rgb neutral(Rgb c) {
 /// Factor of an exposure in stops, for tone_map.
 HD inline float exposure_scale(float stops) { return exp2(stops); }
 
-/// Display-encoded sRGB in [0, 1] of linear light times `scale`. Any input is allowed: NaN and negative values count
-/// as 0, infinity as 2^40.
+/// Tone-maps linear light times `scale` to display-encoded sRGB in [0, 1]. Any input is allowed: NaN and negative
+/// values count as 0, infinity as 2^40.
 HD inline Rgb tone_map(Rgb linear, ToneMap kind, float scale = 1.0f) {
     constexpr float kMost = 0x1p40f; // its square is still finite
     const Rgb c = {clamp(linear.r * scale, 0.0f, kMost), clamp(linear.g * scale, 0.0f, kMost),
@@ -90,7 +90,7 @@ HD inline Rgb tone_map(Rgb linear, ToneMap kind, float scale = 1.0f) {
     return {};
 }
 
-/// One 8-bit RGBA pixel to be shown. `light` has alpha in it as a factor; alpha is clamped to [0, 1] and stays linear.
+/// One 8-bit RGBA pixel for display. `light` is premultiplied by alpha; alpha is clamped to [0, 1] and stays linear.
 HD inline void tone_map_pixel(Rgb light, float alpha, ToneMap kind, float scale, uint8_t* rgba) {
     alpha = clamp(alpha, 0.0f, 1.0f);
     if (alpha > 0 && alpha < 1) light = (1.0f / alpha) * light;

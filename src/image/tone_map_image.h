@@ -1,6 +1,6 @@
 #pragma once
 
-// A linear picture as 8-bit sRGB, for PNG, JPEG and viewers.
+// Converts a linear picture to 8-bit sRGB, for PNG, JPEG and viewers.
 
 #include "base/value_names.h"
 #include "image/image.h"
@@ -8,10 +8,10 @@
 
 namespace pertev {
 
-/// `linear` times 2^exposure_stops, tone-mapped and rounded to the nearest byte. One or two channels are grey; alpha
-/// is the second or fourth channel, clamped, not tone-mapped, and 255 where there is none. Colour that comes with
-/// alpha is taken as premultiplied, as in EXR, and divided by it: PNG stores it unmultiplied. Without `keep_alpha` the
-/// result is opaque: the picture over black.
+/// Multiplies `linear` by 2^exposure_stops, tone-maps it and rounds it to the nearest byte. One or two channels are
+/// grey; alpha is the second or fourth channel, clamped, not tone-mapped, and 255 if absent. Colour with alpha is
+/// premultiplied, as in EXR, and divided by it, because PNG stores it unmultiplied. Without `keep_alpha` the result
+/// is opaque: the picture over black.
 Rgba8Image tone_map_image(const Image& linear, ToneMap kind, float exposure_stops = 0, bool keep_alpha = true);
 
 inline constexpr ValueName<ToneMap> kToneMaps[] = {

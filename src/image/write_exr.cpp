@@ -42,8 +42,8 @@ private:
     std::size_t offset_ = 0;
 };
 
-constexpr std::size_t kMostChunkBytes = std::size_t(1) << 28; // of 16 rows, which OpenEXR packs at once
-constexpr std::size_t kMostRowBytes = std::size_t(1) << 30;   // it counts them in int
+constexpr std::size_t kMostChunkBytes = std::size_t(1) << 28; // for 16 rows, which OpenEXR compresses at once
+constexpr std::size_t kMostRowBytes = std::size_t(1) << 30;   // OpenEXR counts them in int
 
 constexpr std::size_t row_bytes(uint32_t width, std::size_t channels) { return sizeof(float) * width * channels; }
 

@@ -63,7 +63,7 @@ private:
                 x += run;
                 continue;
             }
-            std::size_t end = x + 1; // of the bytes up to the next run worth coding
+            std::size_t end = x + 1; // end of the bytes before the next run worth coding
             while (end < pixels.size() && end - x < 128 && run_length(pixels, c, end) < 3) ++end;
             byte(end - x);
             for (; x < end; ++x) byte(pixels[x][c]);

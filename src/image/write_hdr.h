@@ -10,8 +10,8 @@
 
 namespace pertev {
 
-/// Rounded to the nearest RGBE value: 8 bits below the largest channel's leading bit. Negative and NaN become 0,
-/// infinity the largest value. Alpha is left out; grey is repeated.
+/// Rounds to the nearest RGBE value: 8 bits below the largest channel's leading bit. Negative values and NaN become
+/// 0, infinity the largest value. Alpha is dropped; grey is repeated.
 std::vector<std::byte> encode_hdr(const Image& linear);
 
 /// Replaces `path` atomically. Throws Error(FileWrite).

@@ -1,6 +1,6 @@
 #pragma once
 
-// Writes JPEG by libjpeg-turbo: slow integer DCT; without chroma subsampling unless asked for. Alpha is left out.
+// Writes JPEG with libjpeg-turbo: slow integer DCT; without chroma subsampling by default. Alpha is dropped.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,9 +18,9 @@ void check_jpeg_size(const std::string& name, uint32_t width, uint32_t height);
 /// `quality`: libjpeg's scale, 1 to 100. Throws as check_jpeg_size.
 std::vector<std::byte> encode_jpeg(const Rgba8Image& picture, int quality = 95);
 
-/// The same picture, packed by all threads: strips of rows side by side, joined by restart markers to one file. Decodes
-/// to the very pixels of encode_jpeg. `half_chroma`: colour at half the resolution, which is smaller and faster. Throws
-/// as check_jpeg_size.
+/// Encodes the picture on all threads: strips of rows in parallel, joined by restart markers to one file. It decodes
+/// to the same pixels as encode_jpeg. `half_chroma` stores colour at half the resolution, which is smaller and
+/// faster. Throws as check_jpeg_size.
 std::vector<std::byte> encode_jpeg_strips(const Rgba8Image& picture, int quality, bool half_chroma);
 
 /// Replaces `path` atomically. Throws Error(FileWrite).

@@ -18,7 +18,7 @@ namespace {
 constexpr int kLevel = 3, kWindowBits = 15, kMemory = 8;
 constexpr unsigned char kStreamHeader[2] = {0x78, 0x5e}; // RFC 1950: a window of 32 KiB, a fast level
 constexpr std::size_t kWindow = std::size_t(1) << kWindowBits;
-constexpr std::size_t kPartBytes = std::size_t(1) << 17; // of rows that one thread deflates at once
+constexpr std::size_t kPartBytes = std::size_t(1) << 17; // bytes of rows that one thread deflates at once
 
 using Bytes = std::vector<std::byte>;
 
@@ -95,7 +95,7 @@ std::vector<Bytes> deflate_in_parts(const Bytes& bytes, std::size_t part_bytes) 
         parts[i] = {deflate_part(bytes, begin, end), adler32_z(1, zlib_bytes(bytes.data() + begin), end - begin)};
     });
     std::vector<Bytes> stream;
-    uLong sum = 1; // of no bytes
+    uLong sum = 1; // checksum of no bytes
     for (std::size_t i = 0; i < parts.size(); ++i) {
         sum = adler32_combine(sum, parts[i].sum, static_cast<z_off_t>(end_of(i) - i * part_bytes));
         stream.push_back(std::move(parts[i].deflated));
@@ -112,7 +112,7 @@ Bytes encode_png(const Rgba8Image& picture, bool with_alpha) {
     const std::size_t rgba_bytes = std::size_t(picture.width) * 4, channels = with_alpha ? 4 : 3;
     PERTEV_CHECK(rgba_bytes > 0 && picture.height > 0 && picture.pixels.size() == rgba_bytes * picture.height);
     const std::size_t row_bytes = 1 + picture.width * channels;
-    const std::size_t rows = std::max(kPartBytes / row_bytes, std::size_t(1)); // of a part
+    const std::size_t rows = std::max(kPartBytes / row_bytes, std::size_t(1)); // rows of a part
     Bytes filtered(row_bytes * picture.height);
     parallel_for(picture.height, rows, [&](uint64_t y) {
         filter_row(picture.pixels.data() + y * rgba_bytes, picture.width, channels, filtered.data() + y * row_bytes);

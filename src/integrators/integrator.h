@@ -1,7 +1,7 @@
 #pragma once
 
-// The seam between an algorithm of light transport and what lives around it: sessions, the command line, viewers. Each
-// algorithm has a folder of its own and includes no other; integrators/kinds/make_integrator.h knows them all.
+// The interface between light-transport algorithms and their users: sessions, the command line, viewers. Each
+// algorithm has its own folder and includes no other; integrators/kinds/make_integrator.h knows them all.
 
 #include <atomic>
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace pertev {
 
-/// Rays traced, by kind.
+/// Number of rays traced, by kind.
 struct RayCounts {
     uint64_t camera = 0, bounce = 0, shadow = 0;
     uint64_t total() const { return camera + bounce + shadow; }
@@ -23,14 +23,14 @@ inline RayCounts operator+(const RayCounts& a, const RayCounts& b) {
     return {a.camera + b.camera, a.bounce + b.bounce, a.shadow + b.shadow};
 }
 
-/// The sizes that decide, together with the settings, how much of a device's memory an integrator takes.
+/// Sizes that determine, with the settings, the device memory of an integrator.
 struct WorkSize {
-    uint32_t width = 0, height = 0; // of the picture, in pixels
-    uint32_t samples = 1;           // of each pixel in one call of render()
+    uint32_t width = 0, height = 0; // pixels of the picture
+    uint32_t samples = 1;           // samples per pixel in one call of render()
     uint64_t triangles = 0;         // in all instances of the scene
-    bool walks_on_host = false;     // threads of the CPU can trace rays without the tracer (SceneTracer::host_trees)
+    bool walks_on_host = false;     // CPU threads can trace rays without the tracer (SceneTracer::host_trees)
     bool has_times = false;         // something moves while the shutter is open
-    bool splits_light = false;      // a frame (FilmView::frame) keeps diffuse light and the rest apart
+    bool splits_light = false;      // a frame (FilmView::frame) separates diffuse light from the rest
     bool tells_bounce = false;      // a frame records its first bounce
 
     uint64_t pixels() const { return uint64_t(width) * height; }
@@ -49,55 +49,54 @@ class Integrator {
 public:
     virtual ~Integrator() = default;
 
-    /// Takes the memory for work of this size and keeps what it holds already if that is enough. begin() calls it. A
-    /// dry run (Queue::make_dry_run) calls it alone, to predict what begin() takes. Throws Error(OutOfMemory).
+    /// Allocates memory for work of this size, unless what it holds suffices. begin() calls it. A dry run
+    /// (Queue::make_dry_run) calls only this, to predict the memory of begin(). Throws Error(OutOfMemory).
     virtual void reserve(const WorkSize& size) = 0;
-    /// Returns an upper bound of the bytes that work of this size takes of the host's memory besides.
+    /// Returns an upper bound of the additional host memory, in bytes, for work of this size.
     virtual std::size_t most_host_bytes(const WorkSize& size) const {
         static_cast<void>(size);
         return 0;
     }
 
-    /// From now on samples are of this picture, and `tracer` traces their rays. Both stay as they are until the next
-    /// begin(). Memory is taken for `samples` of each pixel (WorkSize); more may be asked for. Another camera takes
-    /// none. Throws Error(OutOfMemory).
+    /// Starts a picture: samples are taken of `picture`, and `tracer` traces their rays. Both must not change until
+    /// the next begin(). Memory is allocated for `samples` per pixel (WorkSize); render() may be called for more. A
+    /// change of camera alone allocates nothing. Throws Error(OutOfMemory).
     virtual void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) = 0;
 
-    /// Said before begin(): it will be given the picture of the begin() before it, unchanged, and so are the settings.
-    /// What was found out for that picture may be kept.
+    /// Announces that the next begin() gets the same picture and settings as the last one, so that precomputed data
+    /// may be kept.
     virtual void expect_same_picture() {}
-    /// Whether something was found out for the picture begun that another picture's begin() would throw away.
+    /// Whether the current picture has precomputed data that begin() of another picture would discard.
     virtual bool has_made() const { return false; }
 
-    /// Makes what all samples of the picture begun need, where that is not there; render() does so where this was not
-    /// called. Asks `goes_on` on the caller's thread, before it begins and every tenth of a second or so (on a GPU
-    /// between passes of kernels), with the share of it that is done, [0, 1], as far as that is known; it never falls.
-    /// Returns false, and there is nothing, once that is false. Throws Error(DeviceFault), and what `goes_on` throws.
+    /// Precomputes what all samples of the current picture need, if it is missing; otherwise render() does it. Calls
+    /// `goes_on` on the caller's thread, before it starts and about every tenth of a second (on a GPU between passes
+    /// of kernels), with the share that is done, in [0, 1], as far as known; it never falls. Once `goes_on` returns
+    /// false, it discards the data and returns false. Throws Error(DeviceFault), and what `goes_on` throws.
     virtual bool make_ready(const std::function<bool(double share)>& goes_on) {
-        static_cast<void>(goes_on); // there is nothing to make
+        static_cast<void>(goes_on); // nothing to precompute
         return true;
     }
 
     /// Adds samples [first, first + count) of every pixel to `film`, which has the picture's size, and returns when
-    /// that is done. A film view of a noisy frame (render/noisy_frame.h) takes one sample alone. A sample is a function
-    /// of the picture, the settings and its number alone, so work may be split any way. Throws Error(DeviceFault).
+    /// they are done. The film view of a noisy frame (render/noisy_frame.h) takes only one sample. A sample depends
+    /// only on the picture, the settings and its number, so work may be split in any way. Throws Error(DeviceFault).
     virtual void render(uint32_t first, uint32_t count, const FilmView& film) = 0;
 
-    /// As render(), but where that takes long for a few samples it asks `goes_on` on the caller's thread every tenth of
-    /// a second or so, and ends once that is false. Returns how many of the samples, from the first on, are in the
-    /// film, whole; nothing is there of the others. Throws what render() and `goes_on` do.
+    /// Renders like render(), but if few samples take long, it calls `goes_on` on the caller's thread about every
+    /// tenth of a second and stops once that returns false. Returns how many samples, from the first on, are complete
+    /// in the film; it contains nothing of the others. Throws what render() and `goes_on` do.
     virtual uint32_t render_while(uint32_t first, uint32_t count, const FilmView& film,
                                   const std::function<bool()>& goes_on) {
-        static_cast<void>(goes_on); // who asks for few samples waits for them
+        static_cast<void>(goes_on); // few samples are rendered to the end
         render(first, count, film);
         return count;
     }
 
-    /// Where it can, render() returns at once when `*flag` is true, and the film is then to be thrown away. Null:
-    /// never.
+    /// Lets render() return early when `*flag` is true, if it can; the film must then be discarded. Null: never.
     virtual void abandon_when(const std::atomic<bool>*) {}
 
-    /// Since begin().
+    /// Rays traced since begin().
     virtual RayCounts rays() const = 0;
 };
 

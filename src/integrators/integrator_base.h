@@ -39,7 +39,7 @@ protected:
     bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }
     uint32_t pixels() const { return picture_.camera.width * picture_.camera.height; }
 
-    static constexpr uint32_t kLoopCount = 256; // least pixels that a thread of the loop takes at once
+    static constexpr uint32_t kLoopCount = 256; // minimum number of pixels that a thread of the loop takes at once
     /// Calls work(begin, end) with ranges of [0, count) on all threads and adds up the rays that the calls return.
     template <class Work>
     void share_out(uint64_t count, uint64_t least, const Work& work) {
@@ -53,7 +53,7 @@ protected:
     }
 
     Queue& queue_;
-    Settings settings_, picture_settings_; // for the next begin(); of the current picture
+    Settings settings_, picture_settings_; // settings of the next begin(), and of the current picture
     uint32_t batch_;
     PictureView picture_{};
     SceneTracer* tracer_ = nullptr;

@@ -98,8 +98,8 @@ public:
 
 protected:
     using Base::kLoopCount, Base::queue_, Base::rays_, Base::tracer_;
-    static constexpr std::size_t kMostBytes = std::size_t(1) << 30; // of a device
-    static constexpr uint32_t kLeastCount = 32;                     // samples that there is room for
+    static constexpr std::size_t kMostBytes = std::size_t(1) << 30; // maximum bytes on a device
+    static constexpr uint32_t kLeastCount = 32;                     // minimum number of samples in memory
 
     static std::size_t bytes_of(const Room& room) {
         Job job = {};
@@ -174,7 +174,7 @@ protected:
         rays_ = rays_ + rays_of(counts);
     }
 
-    Room room_{}; // of the wavefront
+    Room room_{}; // sizes of the wavefront
     Readback<Counts> seen_;
 
 private:

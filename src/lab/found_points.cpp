@@ -6,7 +6,6 @@
 
 #include "accel/kd_tree/point_kd_tree.h"
 #include "accel/octree/point_octree.h"
-#include "lab/svg_plot.h"
 #include "math/bounds3.h"
 #include "math/portable_math.h"
 #include "math/random.h"
@@ -160,8 +159,11 @@ std::string svg_of(const FoundPoints& found) {
     }
     const auto [x, y] = at(found.at);
     content += fmt::format(R"(<path d="M{0:.1f} {1:.1f}h12m-6 -6v12" stroke="#d62728" stroke-width="2"/>)", x - 6, y);
-    return svg_drawing(kDrawnSide + 2 * kDrawnMargin, kDrawnTop + kDrawnSide + kDrawnMargin,
-                       fmt::format("Points found in a tree: {}", found.tree), content + '\n');
+    return fmt::format(
+        R"(<svg xmlns="http://www.w3.org/2000/svg" width="{:.0f}" height="{:.0f}">)"
+        R"(<text x="{:.0f}" y="18" font-family="sans-serif" font-size="14">Points found in a tree: {}</text>{}</svg>)"
+        "\n",
+        kDrawnSide + 2 * kDrawnMargin, kDrawnTop + kDrawnSide + kDrawnMargin, kDrawnMargin, found.tree, content);
 }
 
 } // namespace pertev

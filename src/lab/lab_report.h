@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "image/image.h"
 #include "tracer/built_structure.h"
 #include "tracer/combination.h"
 
@@ -76,12 +75,6 @@ struct LabReport {
     std::vector<std::string> notes;          // what was asked for and is not there, and why
     std::vector<std::string> heat_map_names; // combinations of all that were made
     std::vector<HeatMap> heat_maps;          // of the fastest, the fastest first
-};
-
-/// A picture and what stands beneath it.
-struct Picture {
-    std::string caption;
-    Rgba8Image image;
 };
 
 /// Million rays a second where a run takes so long; 0 where it took no time.

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "image/auto_exposure.h"
+#include "image/false_color.h"
 #include "image/flip.h"
 #include "image/metrics.h"
 #include "image/tone_map_image.h"
@@ -45,6 +46,16 @@ Image mean_of(const Image& a, const Image& b) {
     Image mean = a;
     for (std::size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * a.pixels[i] + 0.5f * b.pixels[i];
     return mean;
+}
+
+/// Errors in [0, 1] as false colours; none of an empty picture.
+Rgba8Image draw_errors(const Image& errors) {
+    Rgba8Image image = {errors.width, errors.height, std::vector<uint8_t>(4 * errors.pixels.size(), 255)};
+    for (std::size_t i = 0; i < errors.pixels.size(); ++i) {
+        set_pixel(image, static_cast<uint32_t>(i % errors.width), static_cast<uint32_t>(i / errors.width),
+                  false_color(errors.pixels[i]));
+    }
+    return image;
 }
 
 class TransportRunner {
@@ -194,11 +205,16 @@ private:
             reference_ = mean_of(halves[0], halves[1]);
         }
         exposure_stops_ = auto_exposure_stops(reference_, ToneMap::Agx);
-        add_picture("the reference", reference_);
+        add_picture("reference", describe_reference(report_.reference), reference_);
     }
 
-    void add_picture(const std::string& caption, const Image& picture) {
-        report_.pictures.push_back({caption, tone_map_image(picture, ToneMap::Agx, exposure_stops_, false)});
+    void add_picture(const std::string& title, const std::string& caption, const Image& picture,
+                     const Image& error = {}) {
+        report_.pictures.push_back({.title = title,
+                                    .caption = caption,
+                                    .image = tone_map_image(picture, ToneMap::Agx, exposure_stops_, false),
+                                    .error = draw_errors(error),
+                                    .linear = picture});
     }
 
     /// One repetition of one integrator.
@@ -311,10 +327,12 @@ private:
         }
         if (number == 0) {
             const TransportFigures& last = figures.back();
-            add_picture(fmt::format("{}, {}{} samples, {:.3g} s, relMSE {:.3g}", row.name,
-                                    row.is_solved ? fmt::format("{} patches, ", last.patches) : "", last.samples,
-                                    last.seconds, last.rel_mse),
-                        pictures.back());
+            add_picture(
+                row.name,
+                fmt::format("{}{} samples, {:.3g} s, relMSE {:.3g}; beside it the HDR-FLIP of each pixel, mean {:.3g}",
+                            row.is_solved ? fmt::format("{} patches, ", last.patches) : "", last.samples, last.seconds,
+                            last.rel_mse, last.flip),
+                pictures.back(), flips.back().map);
         }
         row.repetitions.push_back(std::move(figures));
     }

@@ -1,22 +1,15 @@
 #include "lab/thesis.h"
 
 #include <algorithm>
-#include <span>
 
 #include <fmt/format.h>
 
-#include "lab/html_table.h"
-#include "lab/svg_plot.h"
 #include "lab/text_table.h"
-#include "lab/write_html.h"
-#include "lab/write_thesis_pictures.h"
 
 namespace pertev {
 namespace {
 
-constexpr const char* kTree = "Every column walks the same tree: binned, top down by the surface area heuristic.";
-
-const std::string kNotMade = "Not made: ";
+constexpr const char* kTree = "Every column traverses the same tree: binned, top down by the surface area heuristic.";
 
 constexpr WalkOptions kWithRta = {.rta = true, .near_first = true};
 constexpr WalkOptions kWithoutRta = {.rta = false, .near_first = true};
@@ -46,11 +39,6 @@ std::optional<double> seconds_of(const LabReport& report, const ThesisVariant& v
 
 using Names = std::vector<std::string>;
 
-struct Table {
-    std::string title;
-    std::vector<std::vector<std::string>> rows; // the first is the head
-};
-
 /// The variants of these names that this kind of device has, in their own order.
 std::vector<ThesisVariant> variants_named(const Names& names, bool is_cuda) {
     std::vector<ThesisVariant> variants = thesis_variants(is_cuda);
@@ -58,84 +46,71 @@ std::vector<ThesisVariant> variants_named(const Names& names, bool is_cuda) {
     return variants;
 }
 
-/// Two columns a variant.
-void add_head(const std::vector<ThesisVariant>& variants, std::vector<std::string>& head) {
+/// A row for each depth, with frames per second, seconds per frame and Mrays/s of each variant. With several reports
+/// each row begins with the scene.
+ResultTable depth_table(std::span<const LabReport> reports, std::string name, std::string title,
+                        const std::vector<ThesisVariant>& variants) {
+    ResultTable table = {std::move(name), std::move(title)};
+    if (reports.size() > 1) table.columns.push_back({"scene", "scene", "", ""});
+    table.columns.push_back({"depth", "depth", "", ""});
     for (const ThesisVariant& v : variants) {
-        head.push_back(fmt::format("{} frames/s (s)", v.name));
-        head.push_back(fmt::format("{} Mrays/s", v.name));
+        table.columns.push_back({fmt::format("{}_frames_per_second", v.name), v.name, "frames/s", "{:.2f}"});
+        table.columns.push_back({fmt::format("{}_seconds", v.name), v.name, "s", "{:.5f}"});
+        table.columns.push_back({fmt::format("{}_mrays", v.name), v.name, "Mrays/s", "{:.2f}"});
     }
-}
-
-/// A row for each depth of the report, with `first` in front.
-void add_rows(const LabReport& report, const std::vector<ThesisVariant>& variants,
-              const std::vector<std::string>& first, Table& table) {
-    for (int depth = report.first_depth; depth <= largest_depth(report); ++depth) {
-        std::vector<std::string> row = first;
-        row.push_back(fmt::format("{}", depth));
-        for (const ThesisVariant& v : variants) {
-            const CombinationFigures* c = find(report, v.combination);
-            if (const std::optional<double> seconds = seconds_of(report, v, depth)) {
-                const double rays = static_cast<double>(frame_rays(report, depth));
-                row.push_back(fmt::format("{} ({})", fixed_text(1 / *seconds, 2), fixed_text(*seconds, 5)));
-                row.push_back(fixed_text(rays / *seconds * 1e-6, 2));
-            } else {
-                row.insert(row.end(), 2, c != nullptr && c->wrong ? "WRONG" : "-");
+    for (const LabReport& report : reports) {
+        for (int depth = report.first_depth; depth <= largest_depth(report); ++depth) {
+            std::vector<ResultCell>& row = table.rows.emplace_back();
+            if (reports.size() > 1) row.emplace_back(report.scene);
+            row.emplace_back(depth);
+            for (const ThesisVariant& v : variants) {
+                const CombinationFigures* c = find(report, v.combination);
+                if (const std::optional<double> seconds = seconds_of(report, v, depth)) {
+                    const double rays = static_cast<double>(frame_rays(report, depth));
+                    row.insert(row.end(), {1 / *seconds, *seconds, rays / *seconds * 1e-6});
+                } else {
+                    row.insert(row.end(), 3, c != nullptr && c->wrong ? ResultCell("WRONG") : ResultCell());
+                }
             }
         }
-        table.rows.push_back(row);
     }
-}
-
-/// Of one scene: a row a depth.
-Table depth_table(const LabReport& report, const std::string& title, const std::vector<ThesisVariant>& variants) {
-    Table table = {title, {{"depth"}}};
-    add_head(variants, table.rows[0]);
-    add_rows(report, variants, {}, table);
     return table;
 }
-
-/// Table 6.6.
-Table peer_table(const ThesisReport& thesis) {
-    const std::vector<ThesisVariant> variants =
-        variants_named({"SWW", "PSWW", "Packet", "PPacket", "A"}, on_cuda(thesis));
-    const LabReport& one = thesis.scenes.front();
-    Table table = {fmt::format("Table 6.6: {} at {}x{} against Aila and Laine's kernel (A)",
-                               thesis.scenes.size() > 1 ? "both scenes" : one.scene, one.width, one.height),
-                   {{"scene", "depth"}}};
-    add_head(variants, table.rows[0]);
-    for (const LabReport& report : thesis.scenes) add_rows(report, variants, {report.scene}, table);
-    return table;
-}
-
-/// How the pictures of chapters 2 to 4 were made, and in which time.
-Table picture_table(const ThesisReport& thesis) { return {"Pictures of chapters 2 to 4", table_of(thesis.pictures)}; }
 
 /// As the thesis's captions number them, and then what its figures draw and no table has.
-std::vector<Table> tables_of(const ThesisReport& thesis) {
+std::vector<ResultTable> tables_of(const ThesisReport& thesis) {
     const bool is_cuda = on_cuda(thesis);
     const char* const both_ways =
         is_cuda ? "with and without persistent threads" : "without persistent threads, which a CPU has not got";
     const char* const without_rta = is_cuda ? "with persistent threads and without RTA"
                                             : "without RTA, and without persistent threads, which a CPU has not got";
-    const Names in_figures = {"SWW-R", "PSWW-R", "Packet-R", "PPacket-R"};
     const Names of_table_5 = is_cuda ? Names{"PSWW-R", "PPacket-R"} : Names{"SWW-R", "Packet-R"};
-    std::vector<Table> tables, beside;
+    std::vector<ResultTable> tables, beside;
     for (std::size_t i = 0; i < thesis.scenes.size(); ++i) {
-        const LabReport& report = thesis.scenes[i];
-        tables.push_back(depth_table(report, fmt::format("Table 6.{}: {} {}", 3 + i, report.scene, both_ways),
+        const std::span<const LabReport> report(&thesis.scenes[i], 1);
+        const std::string& scene = report[0].scene;
+        tables.push_back(depth_table(report, fmt::format("table-6.{}", 3 + i),
+                                     fmt::format("Table 6.{}: {} {}", 3 + i, scene, both_ways),
                                      variants_named({"SWW", "PSWW", "Packet", "PPacket"}, is_cuda)));
-        std::vector<ThesisVariant> rest = variants_named(in_figures, is_cuda);
+        std::vector<ThesisVariant> rest = variants_named({"SWW-R", "PSWW-R", "Packet-R", "PPacket-R"}, is_cuda);
         if (i > 0) {
-            const std::string title = fmt::format("Table 6.5: {} {}", report.scene, without_rta);
-            tables.push_back(depth_table(report, title, variants_named(of_table_5, is_cuda)));
+            tables.push_back(depth_table(report, "table-6.5", fmt::format("Table 6.5: {} {}", scene, without_rta),
+                                         variants_named(of_table_5, is_cuda)));
             std::erase_if(rest, [&](const ThesisVariant& v) {
                 return std::ranges::find(of_table_5, v.name) != of_table_5.end();
             });
         }
-        const std::string title = fmt::format("Figures 6.9 to 6.11 beside: {} without RTA", report.scene);
-        if (!rest.empty()) beside.push_back(depth_table(report, title, rest));
+        const std::string title = fmt::format("Figures 6.9 to 6.11 beside: {} without RTA", scene);
+        if (!rest.empty()) beside.push_back(depth_table(report, fmt::format("beside-{}", i + 1), title, rest));
     }
-    if (!thesis.scenes.empty()) tables.push_back(peer_table(thesis));
+    if (!thesis.scenes.empty()) {
+        const LabReport& one = thesis.scenes.front();
+        tables.push_back(
+            depth_table(thesis.scenes, "table-6.6",
+                        fmt::format("Table 6.6: {} at {}x{} against Aila and Laine's kernel (A)",
+                                    thesis.scenes.size() > 1 ? "both scenes" : one.scene, one.width, one.height),
+                        variants_named({"SWW", "PSWW", "Packet", "PPacket", "A"}, is_cuda)));
+    }
     tables.insert(tables.end(), beside.begin(), beside.end());
     return tables;
 }
@@ -157,7 +132,7 @@ std::string missing(const LabReport& report, const ThesisVariant& v) {
 /// What stands below the tables, a line each: interruptions, what is missing, what tests that leak lose.
 std::vector<std::string> notes_of(const ThesisReport& thesis) {
     std::vector<std::string> notes;
-    for (const std::string& line : thesis.lacking) notes.push_back(kNotMade + line);
+    for (const std::string& line : thesis.lacking) notes.push_back("Not made: " + line);
     for (const LabReport& report : thesis.scenes) {
         if (report.interrupted) {
             notes.push_back(fmt::format("{}: interrupted; this is what had been measured.", report.scene));
@@ -179,57 +154,54 @@ std::vector<std::string> notes_of(const ThesisReport& thesis) {
     return notes;
 }
 
-/// Frames a second over depth of the variants of these names, in all scenes.
-ThesisFigure figure_of(const ThesisReport& thesis, const char* number, const std::string& title,
-                       const std::vector<std::string>& names) {
-    std::vector<Curve> curves;
-    bool has_variant = false;
-    for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
-        if (std::ranges::find(names, v.name) == names.end()) continue;
-        has_variant = true;
-        for (const LabReport& report : thesis.scenes) {
-            Curve curve = {fmt::format("{}: {}", report.scene, v.name), {}};
+ResultTable frames_of(const ThesisReport& thesis) {
+    ResultTable table = {"frames", "Frames over the depth of paths"};
+    for (const LabReport& report : thesis.scenes) {
+        for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
             for (int depth = report.first_depth; depth <= largest_depth(report); ++depth) {
-                if (const auto seconds = seconds_of(report, v, depth)) curve.points.emplace_back(depth, 1 / *seconds);
+                const std::optional<double> seconds = seconds_of(report, v, depth);
+                if (!seconds) continue;
+                table.add({{"scene", "scene", report.scene},
+                           {"variant", "variant", v.name},
+                           {"series", "series", fmt::format("{}: {}", report.scene, v.name)},
+                           {"depth", "depth", depth},
+                           {"frames_per_second", "frames/s", 1 / *seconds},
+                           {"seconds", "frame", *seconds, "s"},
+                           {"mrays", "Mrays/s", static_cast<double>(frame_rays(report, depth)) / *seconds * 1e-6}});
             }
-            if (!curve.points.empty()) curves.push_back(std::move(curve));
         }
     }
-    const std::string full = fmt::format("Figure {}: {}", number, title);
-    ThesisFigure figure = {number, full, svg_curves(full, "depth", "frames/s", curves), {}};
-    if (figure.svg.empty()) {
-        figure.missing = !has_variant     ? "needs a GPU"
-                         : curves.empty() ? "was not measured; the notes say why"
-                                          : "needs more than one depth; the tables have what there is";
+    return table;
+}
+
+ResultTable scenes_of(const ThesisReport& thesis) {
+    ResultTable table = {"scenes", "Scenes"};
+    for (const LabReport& r : thesis.scenes) {
+        table.add({{"scene", "scene", r.scene},
+                   {"triangles", "triangles", r.triangles},
+                   {"width", "width", r.width},
+                   {"height", "height", r.height},
+                   {"runs", "runs", r.runs},
+                   {"warm_ups", "for warming up", r.warm_ups},
+                   {"device", "device", r.device},
+                   {"camera", "camera", r.camera}});
     }
-    return figure;
+    return table;
 }
 
-std::string html_of(const Table& table) {
-    return fmt::format("<h3>{}</h3>\n{}", html_text(table.title), html_table(table.rows));
-}
+bool is_rendered(const ThesisPicture& picture) { return picture.stats.samples > 0; }
 
-std::string pictures_of(const ThesisReport& thesis) {
-    std::string html;
-    for (std::size_t i = 0; i < std::max(thesis.local.size(), thesis.global.size()); ++i) {
-        std::string images;
-        for (const auto* pictures : {&thesis.local, &thesis.global}) {
-            const bool is_there = i < pictures->size() && !(*pictures)[i].image.pixels.empty();
-            if (is_there) images += html_image((*pictures)[i].image, (*pictures)[i].caption, 512);
-        }
-        if (images.empty()) continue;
-        html += fmt::format("<h3>Figure 6.{}: local and global illumination</h3>\n{}", 7 + i, images);
+/// Beneath a picture: what it shows, how it was made, in which time.
+std::string caption_of(const ThesisPicture& picture) {
+    std::string text = picture.shows;
+    if (is_rendered(picture)) {
+        const std::string solved =
+            picture.solve_seconds > 0 ? fmt::format("solved in {} s, ", fixed_text(picture.solve_seconds, 2)) : "";
+        text += fmt::format(" Integrator {}, {}{} sample{} a pixel in {} s{}.", picture.integrator, solved,
+                            picture.stats.samples, picture.stats.samples == 1 ? "" : "s",
+                            fixed_text(picture.stats.render_seconds, 2), picture.interrupted ? " (interrupted)" : "");
     }
-    return html;
-}
-
-std::string about(const LabReport& report) {
-    std::string text =
-        fmt::format("{}: {} triangles, {}x{}, {} runs after {} for warming up, on {}", report.scene, report.triangles,
-                    report.width, report.height, report.runs, report.warm_ups, report.device);
-    if (report.device == "CPU" && report.threads > 0) text += fmt::format(" with {} threads", report.threads);
-    if (!report.camera.empty()) text += ", camera " + report.camera;
-    return text + fmt::format(", pertev {}.", report.commit);
+    return text + (picture.command.empty() ? " Made by the laboratory alone." : " Made by: " + picture.command);
 }
 
 } // namespace
@@ -259,10 +231,58 @@ std::vector<ThesisVariant> thesis_variants(bool is_cuda) {
              speculative(kWoop, DynamicFetch)}};
 }
 
-std::vector<ThesisFigure> figures_of(const ThesisReport& thesis) {
-    return {figure_of(thesis, "6.9", "RTA with persistent speculative while-while", {"PSWW", "PSWW-R"}),
-            figure_of(thesis, "6.10", "speculative while-while, with and without RTA", {"SWW", "SWW-R"}),
-            figure_of(thesis, "6.11", "RTA with packets", {"PPacket", "PPacket-R", "Packet", "Packet-R"})};
+ResultTable table_of(std::span<const ThesisPicture> pictures) {
+    ResultTable table = {"pictures", "Pictures of chapters 2 to 4"};
+    for (const ThesisPicture& p : pictures) {
+        const bool has_pixels = p.svg.empty(), rendered = is_rendered(p);
+        const double seconds = std::max(p.stats.render_seconds, 1e-9), rays = static_cast<double>(p.stats.rays.total());
+        table.add({{"file", "picture", p.file()},
+                   {"place", "", p.place},
+                   {"title", "", p.title},
+                   {"shows", "", p.shows},
+                   {"integrator", "integrator", if_said(p.integrator)},
+                   {"command", "", if_said(p.command)},
+                   {"width", "width", has_pixels ? ResultCell(p.image.width) : ResultCell()},
+                   {"height", "height", has_pixels ? ResultCell(p.image.height) : ResultCell()},
+                   {"samples", "samples", rendered ? ResultCell(p.stats.samples) : ResultCell()},
+                   {"solve_seconds", "solved in", if_timed(p.solve_seconds), "s", "{:.3f}"},
+                   {"render_seconds", "rendered in", rendered ? ResultCell(p.stats.render_seconds) : ResultCell(), "s",
+                    "{:.3f}"},
+                   {"rays", "", rendered ? ResultCell(p.stats.rays.total()) : ResultCell()},
+                   {"interrupted", "interrupted", p.interrupted},
+                   {"frames_per_second", "one sample", rendered ? ResultCell(p.stats.samples / seconds) : ResultCell(),
+                    "frames/s", "{:.2f}"},
+                   {"mrays", "Mrays/s", rendered && rays > 0 ? ResultCell(rays / seconds * 1e-6) : ResultCell(), "",
+                    "{:.2f}"}});
+    }
+    return table;
+}
+
+Measurement measurement_of(const ThesisReport& thesis, Measurement m) {
+    m.kind = "thesis";
+    m.title = fmt::format("Bellek 2014, Realtime photo-realistic rendering using modern GPU systems: {} made anew",
+                          thesis.pictures.empty() ? "chapter 6" : "chapters 2 to 4 and 6");
+    ResultTable variants = {"variants", "Variants"}, lacking = {"lacking", "Not made"};
+    for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
+        variants.add({{"name", "variant", v.name}, {"meaning", "meaning", v.meaning}});
+    }
+    for (const std::string& line : thesis.lacking) lacking.add({{"what", "what, and why", line}});
+    m.tables = {variants, lacking, scenes_of(thesis)};
+    for (ResultTable& table : tables_of(thesis)) m.tables.push_back(std::move(table));
+    m.tables.push_back(frames_of(thesis));
+    m.tables.push_back(table_of(thesis.pictures));
+    m.notes = notes_of(thesis);
+    m.notes.emplace_back(kTree);
+    for (const ThesisPicture& p : thesis.pictures) {
+        m.pictures.push_back({.group = fmt::format("{}: {}", p.place, p.title),
+                              .title = p.name,
+                              .caption = caption_of(p),
+                              .image = p.image,
+                              .svg = p.svg,
+                              .file = p.file()});
+    }
+    m.pictures.insert(m.pictures.end(), thesis.local_and_global.begin(), thesis.local_and_global.end());
+    return m;
 }
 
 std::string text_of(const ThesisReport& thesis) {
@@ -271,46 +291,12 @@ std::string text_of(const ThesisReport& thesis) {
         text += fmt::format("{:10} {}\n", v.name, v.meaning);
     }
     text += fmt::format("{}\n", kTree);
-    for (const Table& table : tables_of(thesis)) text += '\n' + table.title + '\n' + align_columns(table.rows);
-    if (const Table pictures = picture_table(thesis); pictures.rows.size() > 1) {
-        text += '\n' + pictures.title + '\n' + align_columns(pictures.rows);
-    }
+    std::vector<ResultTable> tables = tables_of(thesis);
+    if (!thesis.pictures.empty()) tables.push_back(table_of(thesis.pictures));
+    for (const ResultTable& table : tables) text += '\n' + table.title + '\n' + text_of(table);
     text += '\n';
     for (const std::string& note : notes_of(thesis)) text += note + '\n';
     return text;
-}
-
-std::string html_of(const ThesisReport& thesis) {
-    std::string body;
-    const std::vector<std::string> notes = notes_of(thesis);
-    if (!notes.empty()) {
-        body += "<h2>Notes</h2>\n<ul>\n";
-        for (const std::string& note : notes) {
-            const bool is_alarm = note.find("WRONG") != std::string::npos ||
-                                  note.find("interrupted") != std::string::npos || note.starts_with(kNotMade);
-            body += fmt::format("<li{}>{}</li>\n", is_alarm ? " class=\"wrong\"" : "", html_text(note));
-        }
-        body += "</ul>\n";
-    }
-    body += html_of(std::span(thesis.pictures));
-    if (const Table pictures = picture_table(thesis); pictures.rows.size() > 1) body += html_of(pictures);
-    body += "<h2>Chapter 6</h2>\n<p>Measured anew. A frame of depth d is one camera ray a pixel and its d - 1 diffuse "
-            "bounces; traversal alone. RTA: redundant traversal avoidance.</p>\n<ul>\n";
-    for (const ThesisVariant& v : thesis_variants(on_cuda(thesis))) {
-        body += fmt::format("<li>{}: {}</li>\n", html_text(v.name), html_text(v.meaning));
-    }
-    body += fmt::format("</ul>\n<p>{}</p>\n", kTree);
-    for (const Table& table : tables_of(thesis)) body += html_of(table);
-    body += pictures_of(thesis);
-    for (const ThesisFigure& figure : figures_of(thesis)) {
-        body +=
-            figure.svg.empty() ? fmt::format("<p>{}: {}.</p>\n", html_text(figure.title), figure.missing) : figure.svg;
-    }
-    for (const LabReport& report : thesis.scenes) body += "<p>" + html_text(about(report)) + "</p>\n";
-    const char* chapters = thesis.pictures.empty() ? "chapter 6" : "chapters 2 to 4 and 6";
-    return html_page(
-        fmt::format("Bellek 2014, Realtime photo-realistic rendering using modern GPU systems: {} made anew", chapters),
-        body);
 }
 
 } // namespace pertev

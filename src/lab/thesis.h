@@ -8,10 +8,12 @@
 // unit-triangle test, boxes that are not grown. Pictures of chapters 2 to 4 stand beside these
 // (thesis_pictures.h).
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "lab/lab_report.h"
+#include "lab/measurement.h"
 #include "lab/thesis_pictures.h"
 
 namespace pertev {
@@ -26,28 +28,22 @@ struct ThesisVariant {
 /// What there is on this kind of device: on a CPU nothing is persistent.
 std::vector<ThesisVariant> thesis_variants(bool is_cuda);
 
-/// Reports of Cornell box and Sibenik, in this order, of exactly the variants' combinations; `local` and `global` are
-/// pictures of the two scenes, empty where one could not be made. Captions are the caller's, notes on pictures that
-/// were cut short included. The device is a GPU where a report's is not "CPU".
+/// Reports of Cornell box and Sibenik, in this order, of exactly the variants' combinations. Captions of pictures are
+/// the caller's, with notes on pictures that were cut short. The device is a GPU if a report's is not "CPU".
 struct ThesisReport {
     std::vector<LabReport> scenes;
-    std::vector<Picture> local, global;
-    std::vector<ThesisPicture> pictures; // of chapters 2 to 4, in their order
-    std::vector<std::string> lacking;    // what could not be made, and why: a line each
+    std::vector<ResultPicture> local_and_global; // figures 6.7 and 6.8
+    std::vector<ThesisPicture> pictures;         // of chapters 2 to 4, in their order
+    std::vector<std::string> lacking;            // what could not be made, and why: a line each
 };
 
-struct ThesisFigure {
-    const char* number; // "6.9"
-    std::string title;
-    std::string svg;     // a file by itself; empty: there is nothing to draw,
-    std::string missing; // and why
-};
-
-/// Figures 6.9 to 6.11: frames a second over the depth of paths.
-std::vector<ThesisFigure> figures_of(const ThesisReport& thesis);
-
-/// Tables, and below them what has no figures and why, and how many rays A loses.
+/// Tables 6.3 to 6.6 and what figures 6.9 to 6.11 draw beside them, "frames" (a row for each scene, variant and depth,
+/// of which the page draws these figures), "pictures" of chapters 2 to 4, "variants", "scenes"; as notes, what has no
+/// figures and why, and how many rays A loses.
+Measurement measurement_of(const ThesisReport& thesis, Measurement head = {});
 std::string text_of(const ThesisReport& thesis);
-std::string html_of(const ThesisReport& thesis);
+
+/// How each picture was made, and in which time: a row a picture. What a picture has not got is empty.
+ResultTable table_of(std::span<const ThesisPicture> pictures);
 
 } // namespace pertev

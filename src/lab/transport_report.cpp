@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "math/portable_math.h"
 
 namespace pertev {
@@ -176,6 +178,15 @@ uint32_t equal_samples(const TransportScene& scene) {
 std::optional<double> efficiency(const TransportPoint& point) {
     const double work = point.rel_mse.mean * point.seconds.mean;
     return work > 0 && std::isfinite(work) ? std::optional(1 / work) : std::nullopt;
+}
+
+std::string describe_reference(const TransportReference& reference) {
+    if (!reference.file.empty()) return reference.file + "; its own noise is not known";
+    if (!reference.rel_mse) return reference.integrator + "; it was not made";
+    return fmt::format("{}, {} samples of each pixel, {:.3g} s; its own noise: relMSE {:.2g}, HDR-FLIP of one half "
+                       "against the other {:.2g}",
+                       reference.integrator, reference.samples, reference.seconds, *reference.rel_mse,
+                       reference.flip.value_or(0));
 }
 
 bool has_findings(const TransportScene& scene) {

@@ -13,8 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "image/image.h"
-#include "lab/lab_report.h"
+#include "lab/measurement.h"
 
 namespace pertev {
 
@@ -64,7 +63,7 @@ struct TransportScene {
     TransportReference reference;
     std::vector<TransportRow> rows;
     std::vector<std::string> notes;
-    std::vector<Picture> pictures; // the reference, then the last of each integrator's first repetition
+    std::vector<ResultPicture> pictures; // the reference, then the last of each integrator's first repetition
     bool interrupted = false;
 };
 
@@ -115,6 +114,9 @@ uint32_t equal_samples(const TransportScene& scene);
 
 /// 1 / (relMSE seconds), of means; none where either is 0. That of light without noise tells nothing of work done.
 std::optional<double> efficiency(const TransportPoint& point);
+
+/// "path, 1024 samples, 12.3 s; its noise: relMSE 1e-05"
+std::string describe_reference(const TransportReference& reference);
 
 /// Whether anything was measured.
 bool has_findings(const TransportScene& scene);

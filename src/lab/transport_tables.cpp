@@ -1,4 +1,4 @@
-// text_of and the tables of write_transport.h.
+#include "lab/transport_tables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,35 +7,26 @@
 #include <fmt/format.h>
 
 #include "base/byte_units.h"
-#include "lab/text_table.h"
-#include "lab/write_transport.h"
 
 namespace pertev {
 namespace {
-
-std::string with_band(const Estimate& estimate) {
-    const bool is_finite = std::isfinite(estimate.mean) && std::isfinite(estimate.half_width.value_or(0));
-    return estimate.half_width && is_finite ? uncertain_text(estimate.mean, *estimate.half_width)
-                                            : fmt::format("{:.3g}", estimate.mean);
-}
 
 struct TableLine {
     const TransportRow* row;
     std::optional<TransportPoint> point;
 };
 
-/// Of the rows with figures, the least relMSE first; those without a point last.
+/// Rows with figures, the least relMSE first; those without a point last.
 template <class PointOf>
 std::vector<TableLine> lines_of(const TransportScene& scene, const PointOf& point_of) {
     std::vector<TableLine> lines;
     for (const TransportRow& row : scene.rows) {
         if (!row.repetitions.empty()) lines.push_back({&row, point_of(row)});
     }
-    const auto error = [](const TableLine& line) {
-        return line.point && std::isfinite(line.point->rel_mse.mean) ? line.point->rel_mse.mean
-                                                                     : std::numeric_limits<double>::max();
-    };
-    std::ranges::stable_sort(lines, [&](const TableLine& a, const TableLine& b) { return error(a) < error(b); });
+    std::ranges::stable_sort(lines, {}, [](const TableLine& line) {
+        const bool has_error = line.point && std::isfinite(line.point->rel_mse.mean);
+        return has_error ? line.point->rel_mse.mean : std::numeric_limits<double>::max();
+    });
     return lines;
 }
 
@@ -44,78 +35,133 @@ std::optional<double> efficiency_of_path(const std::vector<TableLine>& lines) {
     return path != lines.end() && path->point ? efficiency(*path->point) : std::nullopt;
 }
 
-/// Efficiency, and that over path's.
-std::vector<std::string> efficiency_cells(const TableLine& line, const std::optional<double>& of_path) {
-    const std::optional<double> own = efficiency(*line.point);
-    if (!own) return {"", ""};
-    return {fmt::format("{:.3g}", *own), of_path ? fmt::format("{:.3g}", *own / *of_path) : ""};
+template <class Value>
+ResultCell value_at(const std::optional<TransportPoint>& point, const Value& value) {
+    return point ? ResultCell(value(*point)) : ResultCell();
 }
 
-/// Of the device's memory, and where there is any the host's beside.
-std::string memory_text(const TransportRow& row) {
-    const std::string device = fmt::format("{:.1f}", mebibytes(row.bytes));
-    return row.host_bytes > 0 ? fmt::format("{} + {:.1f}", device, mebibytes(row.host_bytes)) : device;
+/// Errors with the half widths of their 95 % intervals, and efficiency with its ratio to that of path.
+Fields point_fields(const TableLine& line, const std::optional<double>& of_path) {
+    const auto own = line.point ? efficiency(*line.point) : std::nullopt;
+    const auto& p = line.point;
+    return {
+        {"rel_mse", "relMSE", value_at(p, [](const auto& at) { return at.rel_mse.mean; }), "", "{:.3g}"},
+        {"rel_mse_half_width", "±", value_at(p, [](const auto& at) { return at.rel_mse.half_width; }), "", "{:.2g}"},
+        {"hdr_flip", "HDR-FLIP", value_at(p, [](const auto& at) { return at.flip.mean; }), "", "{:.3g}"},
+        {"hdr_flip_half_width", "±", value_at(p, [](const auto& at) { return at.flip.half_width; }), "", "{:.2g}"},
+        {"efficiency", "1/(relMSE s)", own, "", "{:.3g}"},
+        {"of_path", "of path's", own && of_path ? ResultCell(*own / *of_path) : ResultCell(), "", "{:.3g}"}};
 }
 
-void add_cells(std::vector<std::string>& to, const std::vector<std::string>& cells) {
-    to.insert(to.end(), cells.begin(), cells.end());
+void append(Fields& to, const Fields& fields) { to.insert(to.end(), fields.begin(), fields.end()); }
+
+Fields scene_fields(const TransportScene& s) {
+    const TransportReference& r = s.reference;
+    const bool is_made = r.file.empty();
+    return {{"scene", "scene", s.name},
+            {"interrupted", "", s.interrupted},
+            {"reference", "reference", is_made ? r.integrator : r.file},
+            {"reference_samples", "its samples", is_made ? ResultCell(r.samples) : ResultCell()},
+            {"reference_seconds", "its time", is_made ? ResultCell(r.seconds) : ResultCell(), "s", "{:.3g}"},
+            {"reference_rel_mse", "its relMSE", r.rel_mse, "", "{:.2g}"}};
 }
 
-} // namespace
+ResultTable scenes_of(const TransportReport& report) {
+    ResultTable table = {"scenes", "Scenes"};
+    for (const TransportScene& s : report.scenes) {
+        Fields fields = scene_fields(s);
+        append(fields, {{"reference_hdr_flip_of_halves", "HDR-FLIP of its halves", s.reference.flip},
+                        {"reference_lacks", "it lacks", if_said(s.reference.lacks)},
+                        {"equal_seconds", "equal time", equal_seconds(s), "s"},
+                        {"equal_samples", "equal samples", equal_samples(s)},
+                        {"triangles", "triangles", s.triangles},
+                        {"width", "width", report.width},
+                        {"height", "height", report.height},
+                        {"max_depth", "scatterings", report.max_depth},
+                        {"repetitions", "repetitions", report.repetitions},
+                        {"seed", "seed", report.seed},
+                        {"budget_seconds", "time of each integrator", report.seconds, "s"},
+                        {"camera", "camera", s.camera},
+                        {"shows", "shows", if_said(s.shows)}});
+        table.add(fields);
+    }
+    return table;
+}
 
-TransportTable equal_time_table(const TransportScene& scene) {
-    const double seconds = equal_seconds(scene);
-    const std::vector<TableLine> lines =
-        lines_of(scene, [&](const TransportRow& row) { return at_time(row, seconds); });
-    const std::optional<double> of_path = efficiency_of_path(lines);
-    TransportTable table = {{"integrator", "relMSE", "HDR-FLIP", "samples", "1/(relMSE s)", "of path's", "MiB + host's",
-                             "light that it finds"}};
-    for (const TableLine& line : lines) {
-        std::vector<std::string> cells = {line.row->name};
-        if (line.point) {
-            add_cells(cells, {with_band(line.point->rel_mse), with_band(line.point->flip),
-                              line.row->is_solved
-                                  ? fmt::format("{:.4g}; {:.0f} patches", line.point->samples, line.point->patches)
-                                  : fmt::format("{:.4g}", line.point->samples)});
-            add_cells(cells, efficiency_cells(line, of_path));
-        } else {
-            const char* what = line.row->is_solved ? "solution" : "sample";
-            const std::string first =
-                fmt::format("its first {} takes {:.3g} s", what, points_of(*line.row).front().seconds.mean);
-            add_cells(cells, {first, "", "", "", ""});
+/// Means over repetitions with their bands, which a page draws.
+void add_points(const TransportScene& scene, ResultTable& table) {
+    for (const TransportRow& row : scene.rows) {
+        for (const TransportPoint& p : points_of(row)) {
+            const auto edge = [](const Estimate& e, double sign) {
+                return e.half_width ? ResultCell(e.mean + sign * *e.half_width) : ResultCell();
+            };
+            table.add({{"scene", "scene", scene.name},
+                       {"integrator", "integrator", row.name},
+                       {"finds_all", "finds all light", row.finds_all},
+                       {"is_solved", "is solved", row.is_solved},
+                       {"samples", "samples of each pixel", p.samples},
+                       {"patches", "patches", p.patches > 0 ? ResultCell(p.patches) : ResultCell()},
+                       {"repetitions", "repetitions", p.repetitions},
+                       {"seconds", "rendering", p.seconds.mean, "s"},
+                       {"seconds_half_width", "±", p.seconds.half_width, "s"},
+                       {"rel_mse", "relMSE", p.rel_mse.mean},
+                       {"rel_mse_low", "relMSE, low", edge(p.rel_mse, -1)},
+                       {"rel_mse_high", "relMSE, high", edge(p.rel_mse, 1)},
+                       {"hdr_flip", "HDR-FLIP", p.flip.mean},
+                       {"hdr_flip_low", "HDR-FLIP, low", edge(p.flip, -1)},
+                       {"hdr_flip_high", "HDR-FLIP, high", edge(p.flip, 1)},
+                       {"efficiency", "1/(relMSE s)", efficiency(p)},
+                       {"reference_rel_mse", "relMSE of the reference", scene.reference.rel_mse}});
         }
-        add_cells(cells, {memory_text(*line.row), line.row->light});
-        table.push_back(cells);
+    }
+}
+
+ResultTable repetitions_of(const TransportReport& report) {
+    ResultTable table = {"repetitions", "All pictures"};
+    for (const TransportScene& scene : report.scenes) {
+        for (const TransportRow& row : scene.rows) {
+            const bool has_figures = !row.repetitions.empty();
+            Fields first = scene_fields(scene);
+            append(
+                first,
+                {{"integrator", "integrator", row.name},
+                 {"light", "light that it finds", row.light},
+                 {"finds_all", "finds all", row.finds_all},
+                 {"is_solved", "is solved", row.is_solved},
+                 {"refused", "not run because", if_said(row.refused)},
+                 {"device_bytes", "device memory", has_figures ? ResultCell(row.bytes) : ResultCell(), "bytes"},
+                 {"host_bytes", "host memory", has_figures ? ResultCell(row.host_bytes) : ResultCell(), "bytes"},
+                 {"invalid_samples", "invalid samples", has_figures ? ResultCell(row.invalid_samples) : ResultCell()}});
+            const auto add = [&](std::optional<std::size_t> repetition, const std::optional<TransportFigures>& f) {
+                const auto figure = [&](auto member) { return f ? ResultCell((*f).*member) : ResultCell(); };
+                Fields fields = first;
+                append(fields, {{"repetition", "repetition", repetition},
+                                {"samples", "samples", figure(&TransportFigures::samples)},
+                                {"seconds", "rendering", figure(&TransportFigures::seconds), "s"},
+                                {"rel_mse", "relMSE", figure(&TransportFigures::rel_mse)},
+                                {"hdr_flip", "HDR-FLIP", figure(&TransportFigures::flip)},
+                                {"patches", "patches", f && f->patches > 0 ? ResultCell(f->patches) : ResultCell()},
+                                {"made_seconds", "before samples", figure(&TransportFigures::made_seconds), "s"}});
+                table.add(fields);
+            };
+            if (!has_figures) add({}, {});
+            for (std::size_t i = 0; i < row.repetitions.size(); ++i) {
+                for (const TransportFigures& figures : row.repetitions[i]) add(i, figures);
+            }
+        }
     }
     return table;
 }
 
-TransportTable equal_samples_table(const TransportScene& scene) {
-    const uint32_t samples = equal_samples(scene);
-    const std::vector<TableLine> lines =
-        lines_of(scene, [&](const TransportRow& row) { return at_samples(row, samples); });
-    const std::optional<double> of_path = efficiency_of_path(lines);
-    TransportTable table = {{"integrator", "relMSE", "HDR-FLIP", "seconds", "1/(relMSE s)", "of path's"}};
-    for (const TableLine& line : lines) {
-        if (line.row->is_solved) table.push_back({line.row->name, "no samples: it is solved"});
-        if (!line.point) continue;
-        std::vector<std::string> cells = {line.row->name, with_band(line.point->rel_mse), with_band(line.point->flip),
-                                          with_band(line.point->seconds)};
-        add_cells(cells, efficiency_cells(line, of_path));
-        table.push_back(cells);
-    }
-    return table;
+Fields report_fields(const TransportReport& r) {
+    return {{"device", "", r.device},           {"commit", "", r.commit},
+            {"threads", "", r.threads},         {"width", "", r.width},
+            {"height", "", r.height},           {"max_depth", "", r.max_depth},
+            {"repetitions", "", r.repetitions}, {"seed", "", r.seed},
+            {"budget_seconds", "", r.seconds}};
 }
 
-std::string describe_reference(const TransportReference& reference) {
-    if (!reference.file.empty()) return reference.file + "; its own noise is not known";
-    if (!reference.rel_mse) return reference.integrator + "; it was not made";
-    return fmt::format("{}, {} samples of each pixel, {:.3g} s; its own noise: relMSE {:.2g}, HDR-FLIP of one half "
-                       "against the other {:.2g}",
-                       reference.integrator, reference.samples, reference.seconds, *reference.rel_mse,
-                       reference.flip.value_or(0));
-}
-
+/// "cast: point, spot and ... lights alone", a line for each integrator without figures.
 std::vector<std::string> rows_without_figures(const TransportScene& scene) {
     std::vector<std::string> lines;
     for (const TransportRow& row : scene.rows) {
@@ -125,6 +171,86 @@ std::vector<std::string> rows_without_figures(const TransportScene& scene) {
     }
     return lines;
 }
+
+/// Appends the rows of `part` with the scene's name in front.
+void add_all(const TransportScene& scene, ResultTable part, ResultTable& all) {
+    all.columns = std::move(part.columns);
+    all.columns.insert(all.columns.begin(), {"scene", "scene", "", ""});
+    for (std::vector<ResultCell>& row : part.rows) {
+        row.insert(row.begin(), scene.name);
+        all.rows.push_back(std::move(row));
+    }
+}
+
+} // namespace
+
+ResultTable equal_time_table(const TransportScene& scene) {
+    const double seconds = equal_seconds(scene);
+    const std::vector<TableLine> lines =
+        lines_of(scene, [&](const TransportRow& row) { return at_time(row, seconds); });
+    const std::optional<double> of_path = efficiency_of_path(lines);
+    ResultTable table = {"equal_time", fmt::format("After {:.3g} s of rendering each", seconds)};
+    for (const TableLine& line : lines) {
+        const TransportRow& row = *line.row;
+        const auto& p = line.point;
+        Fields fields = {{"integrator", "integrator", row.name}};
+        append(fields, point_fields(line, of_path));
+        append(fields,
+               {{"samples", "samples", value_at(p, [](const auto& at) { return at.samples; }), "", "{:.4g}"},
+                {"patches", "patches", p && row.is_solved ? ResultCell(p->patches) : ResultCell(), "", "{:.0f}"},
+                {"first_seconds", "first takes", p ? ResultCell() : ResultCell(points_of(row).front().seconds.mean),
+                 "s", "{:.3g}"},
+                {"device_mebibytes", "device", mebibytes(row.bytes), "MiB", "{:.1f}"},
+                {"host_mebibytes", "host", row.host_bytes > 0 ? ResultCell(mebibytes(row.host_bytes)) : ResultCell(),
+                 "MiB", "{:.1f}"},
+                {"light", "light that it finds", row.light}});
+        table.add(fields);
+    }
+    return table;
+}
+
+ResultTable equal_samples_table(const TransportScene& scene) {
+    const uint32_t samples = equal_samples(scene);
+    const std::vector<TableLine> lines =
+        lines_of(scene, [&](const TransportRow& row) { return at_samples(row, samples); });
+    const std::optional<double> of_path = efficiency_of_path(lines);
+    ResultTable table = {"equal_samples", fmt::format("After {} samples of each pixel", samples)};
+    for (const TableLine& line : lines) {
+        if (!line.point && !line.row->is_solved) continue;
+        Fields fields = {{"integrator", "integrator", line.row->name}};
+        append(fields, point_fields(line, of_path));
+        const auto& p = line.point;
+        append(fields,
+               {{"seconds", "rendering", value_at(p, [](const auto& at) { return at.seconds.mean; }), "s", "{:.3g}"},
+                {"seconds_half_width", "±", value_at(p, [](const auto& at) { return at.seconds.half_width; }), "s",
+                 "{:.2g}"},
+                {"note", "", line.row->is_solved ? ResultCell("no samples: it is solved") : ResultCell()}});
+        table.add(fields);
+    }
+    return table;
+}
+
+Measurement measurement_of(const TransportReport& report, Measurement m) {
+    m.kind = "transport", m.title = "Laboratory of light transport";
+    m.interrupted = report.interrupted;
+    ResultTable by_time = {"equal_time", "At equal time"}, by_samples = {"equal_samples", "At equal samples"},
+                points = {"points", "Means over repetitions"};
+    for (const TransportScene& scene : report.scenes) {
+        if (has_findings(scene)) {
+            add_all(scene, equal_time_table(scene), by_time);
+            add_all(scene, equal_samples_table(scene), by_samples);
+        }
+        add_points(scene, points);
+        for (const auto& lines : {rows_without_figures(scene), scene.notes}) {
+            for (const std::string& line : lines) m.notes.push_back(scene.name + ": " + line);
+        }
+        m.pictures.insert(m.pictures.end(), scene.pictures.begin(), scene.pictures.end());
+    }
+    m.tables = {scenes_of(report), by_time, by_samples, points, repetitions_of(report)};
+    return m;
+}
+
+std::string csv_of(const TransportReport& report) { return csv_of(repetitions_of(report), report_fields(report)); }
 
 std::string text_of(const TransportReport& report) {
     std::string text;
@@ -136,10 +262,9 @@ std::string text_of(const TransportReport& report) {
             const std::string of = report.repetitions == 1
                                        ? "one repetition, so that nothing is known of its noise"
                                        : fmt::format("mean of {} repetitions ± 95 % confidence", report.repetitions);
-            text += fmt::format("\nafter {:.3g} s of rendering each ({})\n{}", equal_seconds(scene), of,
-                                align_columns(equal_time_table(scene)));
-            text += fmt::format("\nafter {} samples of each pixel\n{}", equal_samples(scene),
-                                align_columns(equal_samples_table(scene)));
+            const ResultTable by_time = equal_time_table(scene), by_samples = equal_samples_table(scene);
+            text += fmt::format("\n{} ({})\n{}\n{}\n{}", by_time.title, of, text_of(by_time), by_samples.title,
+                                text_of(by_samples));
         }
         const std::vector<std::string> without = rows_without_figures(scene);
         if (!without.empty() || !scene.notes.empty()) text += '\n';

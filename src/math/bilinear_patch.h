@@ -1,7 +1,8 @@
 #pragma once
 
-// A density over the unit square that is bilinear between four corners, and points drawn by it. The inversion draws y
-// from the marginal, which is linear, and then x from the conditional, which is linear too. It keeps strata.
+// A density over the unit square that is bilinear between four corners, and its sampling. The inversion samples y
+// from the marginal, which is linear, and then x from the conditional, which is linear too. It preserves
+// stratification.
 //
 // Source: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th edition, 2023, sections 2.3.2 and A.5.1.
 
@@ -11,12 +12,12 @@
 
 namespace pertev {
 
-/// Returns the x in [0, 1] that `u` in [0, 1] draws with a density in proportion to lerp(a, b, x); a, b > 0.
+/// Samples x in [0, 1] by `u` in [0, 1] with a density proportional to lerp(a, b, x); a, b > 0.
 HD inline float sample_linear(float u, float a, float b) {
     return min(u * (a + b) / (a + sqrt(lerp(a * a, b * b, u))), 1.0f);
 }
 
-/// The density in proportion to the bilinear mean of its corners, each within [2^-20, 2^20].
+/// The density proportional to the bilinear interpolation of its corners, each within [2^-20, 2^20].
 struct BilinearPatch {
     float f00, f10, f01, f11; // at (0, 0), (1, 0), (0, 1) and (1, 1)
 

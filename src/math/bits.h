@@ -1,6 +1,6 @@
 #pragma once
 
-// Counting bits, in one instruction on either device.
+// Bit counting in one instruction on either device.
 
 #include <bit>
 #include <cstdint>
@@ -17,7 +17,7 @@ HD inline uint32_t count_ones(uint32_t x) {
 #endif
 }
 
-/// x is not 0.
+/// Index of the highest bit of x, which is not 0.
 HD inline uint32_t highest_bit(uint32_t x) {
 #if PERTEV_ON_DEVICE
     return 31u - static_cast<uint32_t>(__clz(x));

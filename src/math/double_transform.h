@@ -1,7 +1,6 @@
 #pragma once
 
-// An affine map in double, for chains of nodes: their places may lie far from the origin and lead back to it. Host
-// only.
+// An affine map in double, for chains of nodes, whose transforms may lead far from the origin and back. Host only.
 
 #include "math/double_vec3.h"
 #include "math/transform.h"
@@ -18,7 +17,7 @@ inline DoubleVec3 transform_point(const DoubleTransform& m, DoubleVec3 p) {
     return DoubleVec3{dot(m.row0, p), dot(m.row1, p), dot(m.row2, p)} + m.translation;
 }
 
-/// a after b: p' = a(b(p)).
+/// The map `b` followed by `a`: p' = a(b(p)).
 inline DoubleTransform compose(const DoubleTransform& a, const DoubleTransform& b) {
     const auto row = [&](DoubleVec3 r) {
         return DoubleVec3{dot(r, {b.row0.x, b.row1.x, b.row2.x}), dot(r, {b.row0.y, b.row1.y, b.row2.y}),
@@ -30,7 +29,7 @@ inline DoubleTransform compose(const DoubleTransform& a, const DoubleTransform& 
 inline DoubleTransform to_double(const Transform& m) {
     return {to_double(m.row0), to_double(m.row1), to_double(m.row2), to_double(m.translation)};
 }
-/// Each number is rounded.
+/// Rounds each number.
 inline Transform to_float(const DoubleTransform& m) {
     return {to_float(m.row0), to_float(m.row1), to_float(m.row2), to_float(m.translation)};
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Vectors in double, for geometry that is made once, before it is traced: there neither tiny nor huge triangles leave
-// the range, and what cancels keeps its digits.
+// Vectors in double, for geometry that is computed once before tracing: neither tiny nor huge triangles leave the
+// range, and cancellation keeps enough digits.
 
 #include <cmath>
 
@@ -18,7 +18,7 @@ struct DoubleVec3 {
 HD inline DoubleVec3 to_double(Vec3 v) {
     return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
-/// Each component rounded.
+/// Rounds each component.
 HD inline Vec3 to_float(DoubleVec3 v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
@@ -30,8 +30,8 @@ HD inline DoubleVec3 cross(DoubleVec3 a, DoubleVec3 b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// `v` at unit length, for any finite length but 0, else not finite. What is unit as near as floats can tell is left
-/// alone, so that doing it twice changes nothing.
+/// Returns `v` at unit length for any finite length but 0, else not finite. A vector that is unit within the
+/// precision of floats does not change, so the function is idempotent.
 HD inline Vec3 normalize_safely(Vec3 v) {
     const float square = length_squared(v);
     if (abs(square - 1) <= 0x1p-22f) return v;

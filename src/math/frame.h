@@ -16,7 +16,7 @@ struct Frame {
     HD Vec3 to_world(Vec3 v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
 };
 
-/// Frame about the unit vector n; the tangent is some direction across it, a continuous function of n but at n.z = 0.
+/// Frame around the unit vector n; the tangent is some direction across it, continuous in n except at n.z = 0.
 HD inline Frame make_frame(Vec3 n) {
     const float sign = copysign(1.0f, n.z);
     const float a = -1.0f / (sign + n.z);

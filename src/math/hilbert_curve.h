@@ -1,7 +1,7 @@
 #pragma once
 
-// Where a point lies along Hilbert's curve through a cube: points that are near each other along the curve are near
-// each other in space, so an even split of the curve splits the points into compact parts.
+// Position of a point on Hilbert's curve through a cube: neighbours on the curve are neighbours in space, so an even
+// split of the curve splits the points into compact parts.
 //
 // Source: Skilling, "Programming the Hilbert curve", AIP Conference Proceedings 707, 2004.
 
@@ -12,10 +12,10 @@
 
 namespace pertev {
 
-/// Position along the curve, 30 bits, of a cell of the cube with 2^10 cells a side.
+/// Position on the curve, 30 bits, of a cell of the cube with 2^10 cells per side.
 inline uint32_t hilbert_position(std::array<uint32_t, 3> cell) {
     constexpr uint32_t top = 1u << 9;
-    for (uint32_t q = top; q > 1; q >>= 1) { // undo the turns of each level
+    for (uint32_t q = top; q > 1; q >>= 1) { // undoes the rotations of each level
         const uint32_t p = q - 1;
         for (uint32_t& c : cell) {
             if ((c & q) != 0) {
@@ -40,7 +40,7 @@ inline uint32_t hilbert_position(std::array<uint32_t, 3> cell) {
     return position;
 }
 
-/// Position of `point` along the curve through the cube about `bounds`, whose longest side is the cube's.
+/// Position of `point` on the curve through the cube around `bounds`, whose longest side is the cube's.
 inline uint32_t hilbert_position(Vec3 point, const Bounds3& bounds) {
     const float side = max_component(bounds.size());
     const float scale = side > 0 ? 1024.0f / side : 0.0f;

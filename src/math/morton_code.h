@@ -1,6 +1,6 @@
 #pragma once
 
-// The Morton curve through a cube of cells: a code has the bits of x, y and z in turns.
+// The Morton curve through a cube of cells: a code interleaves the bits of x, y and z.
 
 #include <cstdint>
 

@@ -10,7 +10,7 @@
 namespace pertev {
 namespace {
 
-constexpr double kTolerance = 0x1p-11; // of a box's size
+constexpr double kTolerance = 0x1p-11; // in units of a box's size
 
 using Matrix = std::array<DoubleVec3, 3>; // rows
 
@@ -82,7 +82,7 @@ double dot(const std::array<double, 4>& a, const Vec4& b) {
 
 RigidMotion at_key(const MotionKey& key, Vec3 pivot) { return rigid_motion(key.turn, pivot, key.place); }
 
-/// Of one thing, at times 0, 1 / segments, ..., 1.
+/// Motion of one object through its positions at the times 0, 1 / segments, ..., 1.
 Motion motion_through(const PlacedBox& thing, std::span<const std::optional<Transform>> places) {
     const Vec3 middle = thing.box.centre();
     Motion motion;
@@ -94,7 +94,7 @@ Motion motion_through(const PlacedBox& thing, std::span<const std::optional<Tran
             const auto turn = nearest_rotation(over(linear_part(*now), linear_part(thing.world_from_local)));
             if (turn) {
                 std::array<double, 4> q = quaternion_of(*turn);
-                const double sign = dot(q, key.turn) < 0 ? -1 : 1; // the nearer one of the two
+                const double sign = dot(q, key.turn) < 0 ? -1 : 1; // the nearer of the two quaternions
                 key.turn = {static_cast<float>(sign * q[0]), static_cast<float>(sign * q[1]),
                             static_cast<float>(sign * q[2]), static_cast<float>(sign * q[3])};
             }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Rigid motions as the host makes them: keys fitted to places that are known at any time (math/rigid_motion.h).
+// Fits rigid motions on the host: keys for positions that are known at any time (math/rigid_motion.h).
 
 #include <cstdint>
 #include <functional>
@@ -16,30 +16,30 @@ namespace pertev {
 
 inline constexpr uint32_t kFewestMotionSegments = 8, kMostMotionSegments = 64;
 
-/// Something whose motion is asked for: a box in its own space, and where it has been put.
+/// An object whose motion is fitted: a box in its own space, and its transform at rest.
 struct PlacedBox {
     Transform world_from_local; // invertible
-    Bounds3 box;                // its own space; not empty
+    Bounds3 box;                // in its own space; not empty
 };
 
-/// The motion of one thing; without keys it stands still.
+/// The motion of one object; without keys it does not move.
 struct Motion {
     std::vector<MotionKey> keys;
     Vec3 pivot;
 };
 
 struct FittedMotions {
-    uint32_t segments = 0; // of each motion: it has one key more
+    uint32_t segments = 0; // segments of each motion, which has one key more
     std::vector<Motion> motions;
 };
 
-/// Where each thing is at a time in [0, 1], as PlacedBox::world_from_local; none: it is as at the key before.
+/// [object] PlacedBox::world_from_local at a time in [0, 1]; nothing: the same as at the previous key.
 using PlacesAt = std::function<std::vector<std::optional<Transform>>(double time)>;
 
-/// The rigid motions that take each thing from where it has been put to where it is. What is no rigid motion of it (its
-/// scale, its shear) stays as it has been put: the nearest rotation is taken. Segments are as many, a power of two, as
-/// keep all corners within 2^-11 of the box's size of where they are, at several times between the keys and at the
-/// times `looks`, but at most kMostMotionSegments.
+/// Fits the rigid motions that move each object from its position at rest to its position at a time. Non-rigid
+/// changes (scale, shear) are ignored: the nearest rotation is used. The number of segments is the least power of two
+/// that keeps all corners within 2^-11 of the box's size, at several times between the keys and at the times `looks`,
+/// but at most kMostMotionSegments.
 FittedMotions fit_motions(std::span<const PlacedBox> things, const PlacesAt& places_at,
                           std::span<const double> looks = {});
 
@@ -48,13 +48,12 @@ struct MotionKeys {
     uint32_t segments = 0;
     std::vector<MotionKey> keys;       // [motions * (segments + 1)]
     std::vector<Vec3> pivots;          // [motions]
-    std::vector<uint32_t> of_instance; // [instances] number of its motion, or kNoMotion
+    std::vector<uint32_t> of_instance; // [instances] index of its motion, or kNoMotion
 
     MotionsView view() const { return {keys.data(), pivots.data(), of_instance.data(), segments}; }
 };
 
-/// Box of all places that what is in `box_in_world`, where it has been put, takes with motion number `motion`, rounded
-/// outwards.
+/// Box of all positions of `box_in_world`, given at rest, during motion number `motion`, rounded outwards.
 Bounds3 swept_bounds(const MotionKeys& motions, uint32_t motion, const Bounds3& box_in_world);
 
 } // namespace pertev

@@ -54,7 +54,7 @@ HD inline BinaryScale split_mantissa(float x) {
     return {float_of((bits & 0x7fffffu) + sqrt_half), exponent - (subnormal ? 23 : 0)};
 }
 
-/// True where log, log2 have no finite value; then `result` is what they give.
+/// Returns true if log and log2 have no finite value; `result` is their result then.
 HD inline bool log_is_special(float x, float& result) {
     if (x > 0 && x < kInfinity) return false;
     result = x == 0 ? -kInfinity : (x > 0 ? kInfinity : kNaN);

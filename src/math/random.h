@@ -1,12 +1,12 @@
 #pragma once
 
-// Counter-based random bits: each function hashes words of its own choice (a pixel, a sample, a dimension) into bits
-// that look independent. No state, so the numbers depend on what they are for and not on when they are drawn.
+// Counter-based random bits: each function hashes words (a pixel, a sample, a dimension) into bits that appear
+// independent. There is no state, so numbers depend on their purpose and not on the order of draws.
 //
 // Source: Jarzynski, Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020: pcg, pcg3d and pcg4d, which pass the
 // most of TestU01 at their cost. The high bits are the better ones.
 //
-// `Word`, here and in sampler.h: uint32_t, or eight of them at once (math/words8.h), with the same bits of each.
+// `Word`, here and in sampler.h, is uint32_t, or eight of them at once (math/words8.h) with the same bits in each.
 
 #include <cstdint>
 #include <type_traits>
@@ -34,7 +34,7 @@ HD inline Word hash_word(Word x) {
     return (word >> 22) ^ word;
 }
 
-/// A permutation of triples: three words in, three words out, each of which depends on all.
+/// A permutation of triples: three words in, three words out, each of which depends on all inputs.
 template <class Word = uint32_t>
 HD inline Hash3Of<Word> hash_words(std::type_identity_t<Word> x, std::type_identity_t<Word> y,
                                    std::type_identity_t<Word> z) {
@@ -53,7 +53,7 @@ HD inline Hash3Of<Word> hash_words(std::type_identity_t<Word> x, std::type_ident
     return {x, y, z};
 }
 
-/// The same of four words.
+/// A permutation of four words, like that of three.
 template <class Word = uint32_t>
 HD inline Hash4Of<Word> hash_words(std::type_identity_t<Word> x, std::type_identity_t<Word> y,
                                    std::type_identity_t<Word> z, std::type_identity_t<Word> w) {

@@ -1,11 +1,11 @@
 #pragma once
 
-// Rigid motion while a shutter is open: where a thing that turns and goes along is at a time, as a move of the place
-// that it has been given. Time goes from 0 (the shutter opens) to 1 (it closes). Between keys the pivot goes straight
-// and evenly; the turn is the normalised mean of both quaternions (nlerp), about one axis.
+// Rigid motion while a shutter is open: the position of a rotating and translating object at a time, relative to its
+// position at rest. Time goes from 0 (the shutter opens) to 1 (it closes). Between keys the pivot moves linearly; the
+// rotation is the normalised mean of both quaternions (nlerp), about one axis.
 //
-// The move at a time, forth and back, is one portable function: both devices compute it to the same bits. Lengths,
-// angles and the parameter of a ray stay what they are, up to rounding.
+// The motion at a time, forwards and back, is one portable function with the same bits on both devices. Lengths,
+// angles and ray parameters do not change, up to rounding.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,19 +18,19 @@
 namespace pertev {
 
 inline constexpr uint32_t kNoMotion = 0xffffffffu;
-inline constexpr float kAtRest = -1; // for a time: everything is where it has been put
+inline constexpr float kAtRest = -1; // stands for a time: everything is at its position at rest
 
 struct MotionKey {
-    Vec4 turn;  // unit quaternion (x, y, z, w); less than a quarter turn of four dimensions from the keys beside it
-    Vec3 place; // of the pivot, metres
+    Vec4 turn;  // unit quaternion (x, y, z, w), at less than a quarter turn in four dimensions from adjacent keys
+    Vec3 place; // position of the pivot, metres
     float unused = 0;
     bool operator==(const MotionKey&) const = default;
 };
 static_assert(sizeof(MotionKey) == 32);
 
-/// A motion at one time: p goes to turn(p - pivot) + place.
+/// A motion at one time: p maps to turn(p - pivot) + place.
 struct RigidMotion {
-    Vec3 row0 = {1, 0, 0}, row1 = {0, 1, 0}, row2 = {0, 0, 1}; // of the turn
+    Vec3 row0 = {1, 0, 0}, row1 = {0, 1, 0}, row2 = {0, 0, 1}; // rows of the rotation
     Vec3 pivot = {0, 0, 0}, place = {0, 0, 0};
 
     HD Vec3 turn(Vec3 v) const { return {dot(row0, v), dot(row1, v), dot(row2, v)}; }
@@ -39,18 +39,18 @@ struct RigidMotion {
     HD Vec3 move(Vec3 p) const { return turn(p - pivot) + place; }
     HD Vec3 move_back(Vec3 p) const { return turn_back(p - place) + pivot; }
 
-    /// Bound of the rounding of move() of `p` and of move_back() of what came of it, together, for all components,
-    /// metres: for each, rows are off by 6 units of 2^-24, a turn adds 3 and the sums 2, of at most all lengths
-    /// together.
+    /// Bound of the rounding error of move() for `p` followed by move_back(), for all components, metres: for each of
+    /// the two, rows are off by 6 units of 2^-24, a rotation adds 3 and the sums 2, of at most the sum of all
+    /// lengths.
     HD float error(Vec3 p) const {
         const auto size = [](Vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); };
         return 0x1p-19f * (size(p) + size(pivot) + size(place));
     }
 };
 
-/// `q`: the turn, a quaternion of any length but 0.
+/// `q` is the rotation, a quaternion with any length but 0.
 HD inline RigidMotion rigid_motion(Vec4 q, Vec3 pivot, Vec3 place) {
-    // Twice over the squared length: the rows below are then those of the unit quaternion.
+    // Two divided by the squared length gives the rows of the unit quaternion.
     const float s = 2.0f / (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
     const float xx = s * q.x * q.x, yy = s * q.y * q.y, zz = s * q.z * q.z;
     const float xy = s * q.x * q.y, xz = s * q.x * q.z, yz = s * q.y * q.z;
@@ -62,7 +62,7 @@ HD inline RigidMotion rigid_motion(Vec4 q, Vec3 pivot, Vec3 place) {
             place};
 }
 
-/// Of one thing. `keys`, at least two, stand at the times 0, 1 / segments, ..., 1.
+/// Motion of one object. `keys`, at least two, are at the times 0, 1 / segments, ..., 1.
 HD inline RigidMotion motion_at(const MotionKey* keys, uint32_t segments, Vec3 pivot, float time) {
     const float at = time * static_cast<float>(segments);
     const uint32_t first = static_cast<uint32_t>(to_int(at, 0, static_cast<int>(segments) - 1));
@@ -71,7 +71,7 @@ HD inline RigidMotion motion_at(const MotionKey* keys, uint32_t segments, Vec3 p
     return rigid_motion((1.0f - f) * a.turn + f * b.turn, pivot, (1.0f - f) * a.place + f * b.place);
 }
 
-/// The motion of one thing; without keys it stands still.
+/// The motion of one object; without keys it does not move.
 struct MotionTrack {
     const MotionKey* keys = nullptr;
     Vec3 pivot = {0, 0, 0};
@@ -83,16 +83,16 @@ struct MotionTrack {
     }
 };
 
-/// Those of a scene's instances. Plain pointers, host's or device's; null where nothing moves.
+/// Motions of a scene's instances, as plain pointers of host or device; null if nothing moves.
 struct MotionsView {
     const MotionKey* keys = nullptr;       // [motions * (segments + 1)]
     const Vec3* pivots = nullptr;          // [motions]
-    const uint32_t* of_instance = nullptr; // [instances] number of its motion, or kNoMotion
+    const uint32_t* of_instance = nullptr; // [instances] index of its motion, or kNoMotion
     uint32_t segments = 0;
 
     HD bool is_there() const { return keys != nullptr; }
     HD uint32_t of(uint32_t instance) const { return is_there() ? of_instance[instance] : kNoMotion; }
-    /// `time`: in [0, 1], or kAtRest.
+    /// `time` is in [0, 1], or kAtRest.
     HD RigidMotion at(uint32_t motion, float time) const {
         return MotionTrack{keys + std::size_t(motion) * (segments + 1), pivots[motion], segments}.at(time);
     }

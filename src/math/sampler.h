@@ -1,13 +1,12 @@
 #pragma once
 
-// The random numbers of a path: a pure function of (pixel, sample index, group, number in the group, seed), each
-// strictly inside (0, 1). A group is four numbers that belong together: what a path decides by them is stratified
-// together.
+// Random numbers of a path: a pure function of (pixel, sample index, group, number in the group, seed), each strictly
+// inside (0, 1). A group is four numbers that are stratified together, for decisions that belong together.
 //
-// Sobol: for each (pixel, group, seed) its own random shuffle and scrambling of one four-dimensional sequence. Of the
-// first 2^k samples of a pixel one falls into each 2^k-th of any number, and into each box 2^-a x 2^-(k-a) of the first
-// two numbers and of the last two; of the first 4^k one into each box with sides that are powers of 1/4 and volume
-// 4^-k, in all four. Different groups are independent.
+// Sobol: each (pixel, group, seed) has its own random shuffle and scrambling of one four-dimensional sequence. Of the
+// first 2^k samples of a pixel one falls into each of the 2^k equal intervals of any number, and into each box 2^-a x
+// 2^-(k-a) of the first two numbers and of the last two; of the first 4^k one falls into each four-dimensional box
+// whose sides are powers of 1/4 and whose volume is 4^-k. Different groups are independent.
 //
 // Sources: the sequence is Faure's over the field of four elements (Niederreiter, "Point sets and sequences with small
 // discrepancy", 1987), whose digits here are pairs of bits; that pairs of it can be (0,2)-sequences in base 2 as well
@@ -29,21 +28,21 @@ enum class SamplerKind : uint8_t {
     Independent, // white noise: for tests and comparisons
 };
 
-/// `Word`: of one path, or of eight (math/random.h).
+/// Key of the random numbers of a sample; `Word` is for one path, or for eight (math/random.h).
 template <class Word>
 struct SampleKeyOf {
     Word pixel = {};   // any numbering of the pixels
     Word sample = {};  // index among the samples of the pixel
-    uint32_t seed = 0; // another seed, another picture of the same expectation
+    uint32_t seed = 0; // another seed gives another picture with the same expectation
 };
 using SampleKey = SampleKeyOf<uint32_t>;
 
-/// ((bits >> 9) + 0.5) 2^-23: the middles of 2^23 equal parts of (0, 1), exact.
+/// The value ((bits >> 9) + 0.5) 2^-23: the middles of 2^23 equal parts of (0, 1), exact.
 HD inline float unit_interval(uint32_t bits) { return float_of((bits >> 9) | 0x3f800000u) - 0x1.fffffep-1f; }
 
 template <class Word>
 HD inline Word reverse_bits(Word x) {
-    static_assert(std::is_same_v<Word, uint32_t>); // of eight words: math/words8.h
+    static_assert(std::is_same_v<Word, uint32_t>); // math/words8.h has the overload for eight words
 #if PERTEV_ON_DEVICE
     return __brev(x);
 #else
@@ -54,11 +53,11 @@ HD inline Word reverse_bits(Word x) {
 #endif
 }
 
-/// A random permutation in which bit k of the result depends on the bits 0 to k of x alone: Owen's nested scrambling of
-/// a fraction whose first digit is bit 0.
+/// A random permutation in which bit k of the result depends only on the bits 0 to k of x: Owen's nested scrambling
+/// of a fraction whose first digit is bit 0.
 template <class Word>
 HD inline Word owen_scramble_reversed(Word x, Word key) {
-    x ^= x * 0x3d20adeau; // even factors: each bit is changed by lower ones only
+    x ^= x * 0x3d20adeau; // even factors: each bit depends only on lower ones
     x += key;
     x *= (key >> 16) | 1u;
     x ^= x * 0x05526c56u;
@@ -69,7 +68,8 @@ HD inline Word owen_scramble_reversed(Word x, Word key) {
 /// Elements of the field of four: 0, 1, w and w + 1 = w^2.
 enum class FieldElement : uint8_t { One, W, WSquared };
 
-/// Sixteen digits in base 4, each times `factor`. A digit is two bits, the first of them the more significant one.
+/// Multiplies each of sixteen digits in base 4 by `factor`. A digit is two bits, of which the first is the more
+/// significant.
 template <class Word>
 HD inline Word multiply_digits(FieldElement factor, Word x) {
     const Word first = x & 0x55555555u, second = x >> 1 & 0x55555555u;
@@ -85,7 +85,8 @@ HD inline Word multiply_digits(FieldElement factor, Word x) {
 }
 
 /// Component of Faure's sequence, first digit in the lowest bits: digit k is the sum over j of C(j, k) a^(j-k) times
-/// digit j of the index, a = `factor`. C(j, k) is odd where j has every bit of k (Lucas), hence one step a bit of k.
+/// digit j of the index, a = `factor`. C(j, k) is odd if j has every bit of k (Lucas), so there is one step per bit
+/// of k.
 template <class Word>
 HD inline Word pascal_transform(FieldElement factor, Word x) {
     const bool is_w = factor == FieldElement::W;
@@ -97,8 +98,8 @@ HD inline Word pascal_transform(FieldElement factor, Word x) {
     return x;
 }
 
-/// Component `number` of the sequence's point `index`, unscrambled, first digit in bit 0. The sum of a digit's bits in
-/// the first one's place makes the pairs (0, 1) and (2, 3) nets in base 2 as well; base 4 does not see it.
+/// Component `number` of the sequence's point `index`, unscrambled, first digit in bit 0. Adding a digit's bits in
+/// the first one's position makes the pairs (0, 1) and (2, 3) nets in base 2 as well, and does not affect base 4.
 template <class Word>
 HD inline Word sequence_component(Word index, uint32_t number) {
     switch (number) {
@@ -127,21 +128,21 @@ using SampleBits = SampleBitsOf<uint32_t>;
 /// The first or the last two numbers of a group.
 enum class Pair : uint8_t { First, Last };
 
-/// What the four numbers of a group share.
+/// Values shared by the four numbers of a group.
 template <class Word>
 struct GroupKeys {
-    Word index; // of the point, shuffled, first digit in bit 0
+    Word index; // shuffled index of the point, first digit in bit 0
     Hash3Of<Word> keys;
 };
 
 template <class Word>
 HD inline GroupKeys<Word> group_keys(SampleKeyOf<Word> key, std::type_identity_t<Word> group) {
     const Hash3Of<Word> keys = hash_words<Word>(key.pixel, group, Word{} + key.seed);
-    // The order of the points is shuffled by scrambling the index.
+    // Scrambling the index shuffles the order of the points.
     return {reverse_bits(owen_scramble_reversed(reverse_bits(key.sample), keys.x)), keys};
 }
 
-/// Inlined, like sample_bits, so that `number` is known: a switch at run time takes 2 % of a render on the CPU.
+/// Inlined, like sample_bits, so that `number` is a constant: a switch at run time costs 2 % of a render on the CPU.
 template <class Word>
 [[gnu::always_inline]] HD inline Word scrambled_component(const GroupKeys<Word>& group, uint32_t number) {
     const Word key = number % 2 == 0 ? group.keys.y : group.keys.z;
@@ -149,7 +150,7 @@ template <class Word>
         owen_scramble_reversed(sequence_component(group.index, number), number < 2 ? key : hash_word(key)));
 }
 
-/// 32 bits of each of two numbers of a group.
+/// 32 bits each of two numbers of a group.
 template <class Word = uint32_t>
 [[gnu::always_inline]] HD inline SampleBitsOf<Word>
 sample_bits(SamplerKind kind, std::type_identity_t<SampleKeyOf<Word>> key, std::type_identity_t<Word> group,

@@ -1,8 +1,8 @@
 #pragma once
 
-// Scalar functions with one meaning on both devices: every operation here rounds as IEEE 754 says or does not round
-// at all. Unqualified sqrt, floor or abs on a float may be double (or int) on the host, so the renderer uses these
-// names, inside its namespace. What needs a polynomial is in math/portable_math.h.
+// Scalar functions with one meaning on both devices: every operation here rounds as IEEE 754 requires, or does not
+// round. Unqualified sqrt, floor or abs on a float may be double (or int) on the host, so the renderer uses these
+// names inside its namespace. Functions that need a polynomial are in math/portable_math.h.
 
 #include <cmath>
 #include <cstdint>
@@ -25,7 +25,7 @@ template <class T>
 HD constexpr T max(T a, T b) {
     return a < b ? b : a;
 }
-/// `lo` for NaN.
+/// Returns `lo` for NaN.
 template <class T>
 HD constexpr T clamp(T x, T lo, T hi) {
     return x > lo ? (x < hi ? x : hi) : lo;
@@ -44,7 +44,7 @@ HD inline float float_of(uint32_t bits) {
 
 HD inline float abs(float x) {
 #if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
-    return ::fabsf(x); // a part of the instruction that takes it
+    return ::fabsf(x); // folded into the instruction that uses it
 #else
     return float_of(bits_of(x) & 0x7fffffffu);
 #endif
@@ -52,8 +52,8 @@ HD inline float abs(float x) {
 HD inline float copysign(float magnitude, float sign) {
     return float_of((bits_of(magnitude) & 0x7fffffffu) | (bits_of(sign) & 0x80000000u));
 }
-/// 1 / x, correctly rounded, for 2^-126 <= |x| < 2^126; beyond, devices differ. On the device by the three instructions
-/// that the compiler takes for these x too, without its branch to the others.
+/// Returns 1 / x, correctly rounded, for 2^-126 <= |x| < 2^126; beyond, devices differ. The device uses the three
+/// instructions that the compiler uses for these x, without its branch for others.
 HD inline float reciprocal_of_normal(float x) {
 #if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
     float r;
@@ -72,7 +72,7 @@ HD inline float fma(float a, float b, float c) { return ::fmaf(a, b, c); }
 HD inline float square(float x) { return x * x; }
 HD inline float lerp(float a, float b, float t) { return a + t * (b - a); }
 
-/// Float to integer, cut towards zero and clamped to [lo, hi]; `lo` for NaN. lo and hi within +-2^30.
+/// Truncates a float to an integer, clamped to [lo, hi]; `lo` for NaN. lo and hi are within +-2^30.
 HD inline int to_int(float x, int lo, int hi) {
     if (!(x > static_cast<float>(lo))) return lo;
     if (!(x < static_cast<float>(hi))) return hi;

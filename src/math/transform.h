@@ -1,6 +1,6 @@
 #pragma once
 
-// Affine map as a 3x4 matrix, rows first: p' = M p + t. Names read `world_from_local`.
+// An affine map as a 3x4 matrix by rows: p' = M p + t. Names read `world_from_local`.
 
 #include <optional>
 
@@ -18,13 +18,13 @@ struct Transform {
 
 HD inline Vec3 transform_vector(const Transform& m, Vec3 v) { return {dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)}; }
 HD inline Vec3 transform_point(const Transform& m, Vec3 p) { return transform_vector(m, p) + m.translation; }
-/// Transpose of the linear part times `n`: with m = local_from_world this carries a normal from local to world.
+/// Transpose of the linear part times `n`: with m = local_from_world this transforms a normal from local to world.
 HD inline Vec3 transform_transposed(const Transform& m, Vec3 n) { return n.x * m.row0 + n.y * m.row1 + n.z * m.row2; }
-/// The absolute values of the linear part times `v`: what bounds of rounding go through.
+/// Absolute values of the linear part times `v`, for error bounds.
 HD inline Vec3 transform_sizes(const Transform& m, Vec3 v) {
     return {dot(abs(m.row0), v), dot(abs(m.row1), v), dot(abs(m.row2), v)};
 }
-/// The same map into a world whose origin was moved to `centre`.
+/// The map into a world whose origin was moved to `centre`.
 HD inline Transform moved_to(Transform m, Vec3 centre) {
     m.translation = m.translation - centre;
     return m;
@@ -37,17 +37,17 @@ HD inline bool is_finite(const Transform& m) {
 }
 HD inline float determinant(const Transform& m) { return dot(m.row0, cross(m.row1, m.row2)); }
 
-/// a after b: p' = a(b(p)). Host only: evaluated in double, rounded once.
+/// The map `b` followed by `a`: p' = a(b(p)). Host only: evaluated in double, rounded once.
 Transform compose(const Transform& a, const Transform& b);
-/// Inverse, evaluated in double. Throws nothing: a singular map gives values that are not finite.
+/// Inverse, evaluated in double. Does not throw: a singular map gives values that are not finite.
 Transform inverse(const Transform& m);
-/// Whether `m` has no inverse that floats can hold.
+/// Whether floats cannot hold the inverse of `m`.
 bool is_singular(const Transform& m);
 /// Product of the largest absolute row sums of the linear part and of its inverse (infinity-norm condition number).
 float condition_number(const Transform& m);
 
-/// `m` with scale, shear and mirroring taken out: the same origin, the same -z, upright in the same plane. Nothing
-/// where those directions are lost.
+/// Removes scale, shear and mirroring from `m`: the same origin, the same -z, upright in the same plane. Nothing if
+/// those directions are degenerate.
 std::optional<Transform> without_scale(const Transform& m);
 
 Transform make_translation(Vec3 t);
@@ -56,7 +56,8 @@ Transform make_scale(Vec3 s);
 Transform make_rotation(float x, float y, float z, float w);
 /// Column-major 4x4 as glTF stores it; the last row is taken as (0, 0, 0, 1).
 Transform transform_from_columns(const float (&m)[16]);
-/// World from camera for an eye that looks along -z with +y up (glTF). `up` is not parallel to target - eye.
+/// World-from-camera transform for an eye that looks along -z with +y up (glTF). `up` is not parallel to target -
+/// eye.
 Transform look_at(Vec3 eye, Vec3 target, Vec3 up);
 
 } // namespace pertev

@@ -1,14 +1,14 @@
 #pragma once
 
-// Sums of many terms in a fixed binary tree, the halves of which are added once they are whole. Rounding is by about
-// log2(count) units in the last place of the sum of magnitudes, where one term after the other is by as many as there
-// are terms; and the tree depends on the count alone, so that the bytes of a sum do too.
+// Pairwise summation in a fixed binary tree. The rounding error is about log2(count) units in the last place of the
+// sum of magnitudes, where sequential summation has as many as there are terms. The tree depends only on the count,
+// so the bytes of a sum do too.
 //
 // Source: Higham, "The Accuracy of Floating Point Summation", SIAM Journal on Scientific Computing 14(4), 1993
 // (pairwise summation).
 //
-// The tree: the left half has as many terms as the largest power of two below the count, the right half the others. So
-// terms [m 2^k, (m + 1) 2^k) are a tree of their own wherever all of them are there.
+// The left half of the tree has as many terms as the largest power of two below the count, the right half the others.
+// So terms [m 2^k, (m + 1) 2^k) form a subtree wherever all of them exist.
 
 #include <bit>
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace pertev {
 
-/// Of `count` terms from `first` on, a power of two: the same tree without calls.
+/// Sum of `count` terms from `first` on, where count is a power of two: the same tree without calls.
 template <uint64_t count, class Term>
 inline auto tree_sum_of_block(uint64_t first, Term& term) -> std::decay_t<decltype(term(first))> {
     if constexpr (count == 1) {
@@ -28,7 +28,7 @@ inline auto tree_sum_of_block(uint64_t first, Term& term) -> std::decay_t<declty
     }
 }
 
-/// Of `count` terms from `first` on, 1 at least.
+/// Sum of `count` terms from `first` on; count is at least 1.
 template <class Term>
 auto tree_sum_of(uint64_t first, uint64_t count, Term& term) -> std::decay_t<decltype(term(first))> {
     constexpr uint64_t block = 16;

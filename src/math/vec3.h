@@ -1,7 +1,7 @@
 #pragma once
 
 // Three floats: a point, direction or normal. Products are evaluated left to right, unfused, so that both devices
-// round alike.
+// round equally.
 
 #include "base/host_device.h"
 #include "math/scalar.h"
@@ -25,7 +25,7 @@ HD inline float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; 
 HD inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 HD inline float length_squared(Vec3 a) { return dot(a, a); }
 HD inline float length(Vec3 a) { return sqrt(dot(a, a)); }
-/// `a` at unit length; not finite for a zero vector.
+/// Returns `a` at unit length; not finite for a zero vector.
 HD inline Vec3 normalize(Vec3 a) { return (1.0f / length(a)) * a; }
 
 HD inline Vec3 min(Vec3 a, Vec3 b) { return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)}; }
@@ -35,7 +35,7 @@ HD inline float max_component(Vec3 a) { return max(a.x, max(a.y, a.z)); }
 HD inline bool is_finite(Vec3 a) { return is_finite(a.x) && is_finite(a.y) && is_finite(a.z); }
 HD inline Vec3 lerp(Vec3 a, Vec3 b, float t) { return a + t * (b - a); }
 
-/// a.x, a.y or a.z for k = 0, 1, 2; selects, so that device code keeps `a` in registers.
+/// Returns a.x, a.y or a.z for k = 0, 1, 2, by selects, so that device code keeps `a` in registers.
 HD inline float component(Vec3 a, int k) { return k == 0 ? a.x : (k == 1 ? a.y : a.z); }
 
 } // namespace pertev

@@ -10,12 +10,12 @@ namespace pertev {
 
 inline constexpr uint32_t kWords = 8;
 
-/// Operators are those of its words, which a scalar on one side is spread to.
+/// Eight words with element-wise operators; a scalar operand is broadcast.
 using Words8 = uint32_t __attribute__((vector_size(32)));
 
 template <>
 inline Words8 reverse_bits(Words8 x) {
-    // Bytes of each word in the opposite order, then their halves by a table of sixteen, swapped.
+    // Reverses the bytes of each word, then the bits of each half byte by a table of sixteen, and swaps the halves.
     const __m128i word = _mm_setr_epi8(3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12);
     const __m128i half = _mm_setr_epi8(0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15);
     const __m256i table = _mm256_broadcastsi128_si256(half), low = _mm256_set1_epi8(15);

@@ -7,7 +7,7 @@
 namespace pertev {
 namespace {
 
-constexpr float kAlike = 1; // of normals: no component differs by more
+constexpr float kAlike = 1; // maximum difference of any component of two similar normals
 
 int longest_axis(Vec3 size) { return size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2); }
 

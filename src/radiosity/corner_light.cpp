@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMostHanging = 8; // levels between the patches on either side of an edge
 
-/// Of the patches of all sheets of one surface that meet at a place, by their areas.
+/// Sets the area-weighted mean of the patches of all sheets of one surface that meet at a point.
 void show_means(std::span<CornerSheet> sheets) {
     for (CornerSheet& sheet : sheets) {
         double sum[3] = {}, areas = 0;
@@ -24,7 +24,7 @@ void show_means(std::span<CornerSheet> sheets) {
     }
 }
 
-/// Corners that lie on the edge of a larger patch.
+/// Corners on the edge of a larger patch.
 class HangingCorners {
 public:
     HangingCorners(CornerTable& table, const PatchTree& tree) : table_(table), tree_(tree) {}

@@ -94,7 +94,7 @@ std::vector<CornerTable::Corner> CornerTable::corners_by_bucket() {
     return sorted;
 }
 
-/// Of a bucket's corners, in order; sheet_of_ gets numbers within the bucket.
+/// Sheets of a bucket's corners, in order; sheet_of_ gets indices within the bucket.
 std::vector<CornerSheet> CornerTable::sheets_of(std::span<const Corner> corners, std::span<const Rgb> irradiance) {
     std::vector<CornerSheet> sheets;
     const Corner* before = nullptr;

@@ -1,10 +1,9 @@
 #pragma once
 
-// Which corners of patches lie at one place and on one surface. A place is the corner's own, rounded to floats: patches
-// of triangles that share an edge divide it by the same numbers, so that nothing has to be said about how near two
-// places may be (but for vertices: radiosity/welded_vertices.h). Corners there whose normals are about the same are a
-// sheet. Of any number of corners at a place there are as many sheets as directions are told apart, so that time grows
-// as patches do.
+// Finds the corners of patches that are at the same position on one surface. A position is the corner's own, rounded
+// to floats: patches of triangles that share an edge divide it by the same numbers, so no tolerance is needed (except
+// for vertices: radiosity/welded_vertices.h). Corners there with similar normals form a sheet. The number of sheets
+// at a position is limited by the number of distinct directions, so time grows linearly with patches.
 
 #include <cstdint>
 #include <functional>
@@ -19,9 +18,9 @@ namespace pertev {
 struct CornerSheet {
     Vec3 place;           // metres
     Vec3 normal;          // unit
-    double areas = 0;     // of its patches, m2
+    double areas = 0;     // total area of its patches, m2
     double light[3] = {}; // irradiance by area, W
-    Rgb shown;            // of all its corners, W/m2
+    Rgb shown;            // displayed irradiance of all its corners, W/m2
 };
 
 class CornerTable {
@@ -29,27 +28,27 @@ public:
     /// `scene` and `tree` outlive it.
     CornerTable(const SceneView& scene, const PatchTree& tree, std::span<const Rgb> irradiance);
 
-    /// Of corner `number` of a patch.
+    /// Sheet of corner `number` of a patch.
     CornerSheet& sheet_of(uint32_t patch, uint32_t number) { return sheets_[sheet_of_[3 * uint64_t(patch) + number]]; }
     const CornerSheet& sheet_of(uint32_t patch, uint32_t number) const {
         return sheets_[sheet_of_[3 * uint64_t(patch) + number]];
     }
-    /// All that lie at a place, in a fixed order.
+    /// All sheets at a position, in a fixed order.
     std::span<CornerSheet> at(Vec3 place);
-    /// Where weights of the second and third corner of a patch's triangle lie.
+    /// Position with these weights of the second and third corner of a patch's triangle.
     Vec3 place_of(uint32_t patch, double u, double v) const;
     Vec3 normal_of(uint32_t patch) const { return normals_[patch]; }
 
-    /// Calls body(sheets) for the sheets of each place, from any thread.
+    /// Calls body(sheets) for the sheets of each position, from any thread.
     void for_each_place(const std::function<void(std::span<CornerSheet>)>& body);
 
-    /// Of so many patches, at most.
+    /// Maximum bytes for a number of patches.
     static std::size_t most_bytes(uint64_t patches);
 
 private:
     struct Corner {
         Vec3 place;
-        uint32_t direction, id; // of its normal; 3 patch + number
+        uint32_t direction, id; // direction of its normal; 3 patch + number
     };
     std::size_t buckets() const { return first_sheet_.size() - 1; }
     std::size_t bucket_of(Vec3 place) const;
@@ -61,10 +60,10 @@ private:
     std::vector<Vec3> normals_;                        // [patches]
     std::vector<uint32_t> sheet_of_;                   // [3 patches]
     std::vector<uint32_t> first_corner_, first_sheet_; // [buckets + 1]
-    std::vector<CornerSheet> sheets_;                  // by bucket, by place
+    std::vector<CornerSheet> sheets_;                  // by bucket, by position
 };
 
-/// Whether two patches or sheets with these normals show one light where they meet: within 30 degrees.
+/// Whether two patches or sheets with these normals share one light where they meet: within 30 degrees.
 inline bool is_same_surface(Vec3 a, Vec3 b) { return dot(a, b) > 0.866f; }
 
 } // namespace pertev

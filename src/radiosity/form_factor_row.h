@@ -1,7 +1,7 @@
 #pragma once
 
-// One equation of a radiosity system: what a patch receives. Its irradiance is what comes from outside, from lights
-// that are no patches, and the sum over patches j of factor_j times their radiosity.
+// One row of a radiosity system. A patch's irradiance is direct light from lights that are no patches, plus the sum
+// over patches j of factor_j times their radiosity.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,13 +13,13 @@
 namespace pertev {
 
 struct FormFactor {
-    uint32_t patch; // that light comes from
-    float factor;   // F from the row's patch to it: the share of the hemisphere, by cosine, that it covers
+    uint32_t patch; // the sending patch
+    float factor;   // F from the row's patch to it: the cosine-weighted share of the hemisphere that it covers
 };
 
-inline constexpr std::size_t kOfAllocation = 16; // bytes that an allocator adds to each row that is kept
+inline constexpr std::size_t kOfAllocation = 16; // overhead of an allocator per stored row
 
-/// By ascending patch, each once; together 1 at most.
+/// Form factors by ascending patch, without duplicates; their sum is at most 1.
 struct FormFactorRow {
     std::vector<FormFactor> factors;
     Rgb direct; // irradiance by point, spot and directional lights and the environment, W/m2
@@ -28,11 +28,11 @@ struct FormFactorRow {
         factors.clear();
         direct = {};
     }
-    /// Adds up those of one patch, and puts them in order.
+    /// Merges the factors of each patch and sorts them.
     void sort();
 };
 
-/// Irradiance by what all patches send, `radiosity` [patches], W/m2. A tree_sum in double.
+/// Irradiance from all patches with `radiosity` [patches], W/m2. A tree_sum in double.
 Rgb gather(std::span<const FormFactor> row, const std::vector<Rgb>& radiosity);
 
 } // namespace pertev

@@ -7,7 +7,7 @@
 namespace pertev {
 namespace {
 
-constexpr double kNearestShare = 1e-9; // of a triangle's size: what is nearer to the face's plane bounds nothing
+constexpr double kNearestShare = 1e-9; // relative to the triangle; anything nearer to the face's plane sets no bound
 
 uint32_t pixel_within(double place, double lowest, double extent, uint32_t pixels) {
     const double at = (place - lowest) / extent * pixels;

@@ -14,9 +14,10 @@ namespace {
 
 constexpr uint32_t kMostPasses = 24, kSweeps = 3;
 constexpr uint64_t kLinksAtOnce = 256; // whose rays are traced together
-constexpr float kRaysOfLimit = 8;      // of a link that may be wrong by as much as it is allowed to
+constexpr float kRaysOfLimit = 8;      // rays of a link whose possible error equals the limit
 
-/// More links than there may be. Whether it is thrown is the same for any number of threads: what a round makes is
+/// Thrown if there are too many links. That does not depend on the number of threads: the links of a round are
+/// counted, and their sum does not depend on the order.
 /// added up, and its sum does not depend on the order.
 struct TooManyLinks {};
 
@@ -150,7 +151,8 @@ private:
         return receiver && (is_larger || !source) ? link.receiver : link.source;
     }
 
-    /// Of the most light, what is likely to be seen; in the middle of a cluster there is always something near.
+    /// Share of the maximum light that is probably visible; in the middle of a cluster there is always something
+    /// near.
     float share(const Link& link) const { return is_even(link) || link.rays == 0 ? 1.0f : link.visible(); }
     /// The least that it could turn out to be.
     float least_share(const Link& link) const { return is_even(link) ? 1.0f : 1.0f / (kRaysOfLimit + 2); }
@@ -189,8 +191,8 @@ private:
     WorkWatch& watch_;
     uint32_t seed_;
     uint64_t most_links_;
-    float limit_;                 // of what a link may stand for, W/m2
-    std::vector<uint8_t> wishes_; // [patches] to be divided
+    float limit_;                 // maximum light that a link may represent, W/m2
+    std::vector<uint8_t> wishes_; // [patches] whether to divide
 };
 
 HierarchicalSolution solve_by_links(const SolvedScene& scene, PatchTree coarse, float patch_size,
@@ -209,7 +211,7 @@ HierarchicalSolution solve_by_links(const SolvedScene& scene, PatchTree coarse, 
         }
         watch.begin(fmt::format("links, pass {}", solution.passes + 1), 0);
         refiner.refine(links);
-        if (watch.is_over() && solution.passes == 0) break; // links that are not there yet would pass nothing on
+        if (watch.is_over() && solution.passes == 0) break; // links that do not exist yet would transport nothing
         nodes.sort(links);
         for (uint32_t k = 0; k < kSweeps; ++k) solution.left = nodes.sweep(links);
         ++solution.passes;

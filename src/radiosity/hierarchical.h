@@ -1,12 +1,12 @@
 #pragma once
 
-// Hierarchical radiosity: a link says that the light of a source is the same all over a receiver, as near as it needs
-// to be. What is far away or dark is linked as a whole, cluster by cluster of triangles, what is near and bright part
-// by part: an oracle asks what a link could be wrong by, and where that is too much its receiver or its source is
-// divided, whichever is larger. So there are about as many links as patches, and not their square.
+// Hierarchical radiosity: a link states that the light of a source is uniform over a receiver, within a tolerance.
+// Distant or dark parts are linked as a whole, as clusters of triangles, and near and bright ones by smaller parts:
+// an oracle estimates the error of a link, and if that is too large its receiver or its source is divided, whichever
+// is larger. So the number of links is about that of patches, not its square.
 //
 // Sources: Hanrahan, Salzman, Aupperle, "A Rapid Hierarchical Radiosity Algorithm", SIGGRAPH 1991; clusters: Smits,
-// Arvo, Greenberg 1994 (radiosity/cluster_tree.h). Light by way of no surface, of lamps too, is found by shadow rays.
+// Arvo, Greenberg 1994 (radiosity/cluster_tree.h). Shadow rays find direct light, including that of emitters.
 
 #include <cstdint>
 #include <vector>
@@ -19,27 +19,27 @@
 namespace pertev {
 
 struct HierarchicalSolution {
-    PatchTree tree;              // as it was divided
+    PatchTree tree;              // the final subdivision
     std::vector<Rgb> irradiance; // [patches] W/m2
     uint64_t links = 0, passes = 0;
-    double left = 1;            // share of the light that the last pass changed; 1: there was none
-    double without_direct = 0;  // share of the patches that direct light was not found for
-    std::size_t bytes = 0;      // of links and of what stands for patches and clusters
-    bool reached_limit = false; // ended by the most passes there are
-    float link_error = 0;       // that it was made by: what was asked for, or a multiple of it
+    double left = 1;            // share of the light that the last pass changed; 1 if there was no pass
+    double without_direct = 0;  // share of the patches without computed direct light
+    std::size_t bytes = 0;      // memory of links, patches and clusters
+    bool reached_limit = false; // stopped by the maximum number of passes
+    float link_error = 0;       // the link error that was used: the requested one, or a multiple of it
 };
 
-/// `coarse`: whole triangles. They are divided until no edge is longer than `patch_size` (metres), but where the oracle
-/// asks for it alone. Once `watch` is over the solution ends where it is. Where there would be more than `most_links`
-/// all begins anew with twice the link error, as often as it takes: the bytes are those of that error asked for at
-/// once. Throws Error(OverLimit) where no error up to kLargestLinkError has so few.
+/// `coarse` has whole triangles. They are divided until no edge is longer than `patch_size` (metres), but only where
+/// the oracle requests it. Once `watch` is over the solution ends in its present state. If there would be more than
+/// `most_links`, everything restarts with twice the link error, repeatedly if needed; the bytes equal those of
+/// requesting that error directly. Throws Error(OverLimit) if no error up to kLargestLinkError has so few.
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,
                                           const RadiositySettings& settings, WorkWatch& watch,
                                           uint64_t most_links = kMostLinks);
 
 inline constexpr float kLargestLinkError = 1e6f;
 
-/// What it holds at most, were all patches as small as they may become.
+/// Maximum memory in bytes, if all patches were as small as possible.
 std::size_t most_hierarchical_bytes(uint64_t patches, uint64_t triangles);
 
 } // namespace pertev

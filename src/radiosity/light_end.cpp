@@ -11,11 +11,11 @@
 namespace pertev {
 namespace {
 
-constexpr double kLeastLoss = 1e-6; // of what a patch gathers, beyond rounding
+constexpr double kLeastLoss = 1e-6; // share of the light that a patch gathers, beyond rounding
 
 double channel(Rgb c, int k) { return static_cast<double>(k == 0 ? c.r : k == 1 ? c.g : c.b); }
 
-/// Patches that light of channel `k` reaches and never leaves.
+/// Number of patches that light of channel `k` reaches and never leaves.
 uint64_t count_endless(const RadiositySystem& system, int k) {
     const std::size_t count = system.patches.size();
     std::vector<uint8_t> loses(count, 0), is_lit(count, 0);
@@ -30,7 +30,7 @@ uint64_t count_endless(const RadiositySystem& system, int k) {
         loses[i] = kept < 1 - kLeastLoss ? 1 : 0;
         is_lit[i] = reached ? 1 : 0;
     }
-    for (bool changes = true; changes;) { // as often as light has to go from patch to patch
+    for (bool changes = true; changes;) { // repeated as often as light passes from patch to patch
         changes = false;
         const auto spread = [&](std::size_t i) {
             for (const FormFactor& from : system.row(i)) {

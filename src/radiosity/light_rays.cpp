@@ -12,9 +12,9 @@ constexpr uint32_t kRaysAtOnce = 64;
 struct AskedLight {
     Ray ray;
     TriangleId target;
-    Rgb irradiance;            // of lights that are no patches
+    Rgb irradiance;            // irradiance of lights that are no patches
     PatchCode lamp = kNoPatch; // else the patch,
-    float factor = 0;          // and what it counts for
+    float factor = 0;          // and its form factor
     uint32_t key = 0;
 };
 

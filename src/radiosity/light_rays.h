@@ -1,37 +1,37 @@
 #pragma once
 
-// What a patch receives by shadow rays to points drawn on lights: of point, spot and directional lights and the
-// environment its irradiance, of lamps (patches that emit) form factors.
+// Direct light of a patch by shadow rays to sample points on lights: irradiance of point, spot and directional lights
+// and the environment, and form factors of emitters (patches that emit).
 
 #include "radiosity/row_maker.h"
 
 namespace pertev {
 
-/// How often lights are drawn for a row, and how light that rays of another kind find as well is weighed.
+/// Number of light samples for a row, and the MIS weights of light that rays of another kind find too.
 struct LightRays {
     uint32_t count = 0;          // rays
-    uint32_t hemisphere = 0;     // rays of the other kind, drawn by the cosine; 0: they find no light
-    bool finds_lamps = false;    // else lamps are left to form factors
-    bool finds_sky_alone = true; // nothing else finds the environment
+    uint32_t hemisphere = 0;     // number of rays of the other kind, with cosine density; 0: they find no light
+    bool finds_lamps = false;    // otherwise form factors account for emitters
+    bool finds_sky_alone = true; // no other rays find the environment
 
-    /// Of what a draw with density `light_pdf` has found, 1/sr, where `cosine` is that of its direction: the power
-    /// heuristic over as many draws of either kind as there are.
+    /// Weight of a sample with density `light_pdf`, 1/sr, and the `cosine` of its direction: the power heuristic for
+    /// the numbers of samples of either kind.
     float weight_of_light(float light_pdf, float cosine) const;
     float weight_of_hemisphere(float light_pdf, float cosine) const;
 };
 
-/// The groups of a row's random numbers (math/sampler.h): place on the patch and direction; place, and point on a
+/// Groups of a row's random numbers (math/sampler.h): position on the patch and direction; position, and point on a
 /// light.
 enum RowGroup : uint32_t { kGroupHemisphere, kGroupLights };
 
-/// A place on a patch, from which its rays start.
+/// A point on a patch where its rays start.
 struct PatchPlace {
     Vec3 position, error; // metres
     Vec3 normal;          // unit, out of the patch's side
 };
 PatchPlace place_on_patch(const SceneView& scene, const Patch& patch, Vec2 u);
 
-/// Adds them to `row`.
+/// Adds the direct light to `row`.
 void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, const LightRays& rays,
                     FormFactorRow& row);
 

@@ -6,10 +6,10 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kDraws = 4; // of a pair of places, for each ray between places that face each other
-constexpr float kFar = 8;      // radii of a source, from where on its middle stands for all of it
+constexpr uint32_t kDraws = 4; // samples of a pair of points, for each ray between points that face each other
+constexpr float kFar = 8;      // distance, in radii of a source, from which on its middle represents it
 
-/// From a place to a patch, which turns its front to it or does not.
+/// From a point to a patch, which may face it or not.
 float form_factor_at(const PatchPlace& place, const LinkedPatch& source) {
     const Vec3 way = source.ball.centre - place.position;
     if (!(dot(source.normal, source.corner[0] - place.position) < 0)) return 0;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Factors of links: geometry in closed form, and rays for what of it is seen. Links are asked for many at a time, so
-// that their rays are traced together.
+// Factors of links: geometry in closed form, and rays for visibility. Links are requested in batches, so that their
+// rays are traced together.
 
 #include <memory>
 #include <vector>
@@ -14,29 +14,29 @@ namespace pertev {
 
 class LinkFactors {
 public:
-    /// Both outlive it.
+    /// Both arguments outlive it.
     LinkFactors(const SolvedScene& scene, const LinkNodes& nodes, uint32_t seed)
         : scene_(scene), nodes_(nodes), seed_(seed) {}
 
     void clear();
-    /// Has the factor of `link` found by `rays` rays, at most kMostRaysOfLink.
+    /// Requests the factor of `link` with `rays` rays, at most kMostRaysOfLink.
     void ask(const Link& link, uint32_t rays);
-    /// Traces the rays of all that were asked for.
+    /// Traces the rays of all requests.
     void trace();
-    /// Of the next one, in the order in which they were asked for.
+    /// Returns the next result, in the order of the requests.
     void answer(Link& link);
 
 private:
     struct Sight {
         Ray ray;
         TriangleId start, target;
-        float weight; // of it where it is seen
+        float weight; // weight if it is visible
     };
     struct Asked {
-        uint32_t first = 0, count = 0; // sights
-        float known = 0;               // of what is seen without a ray
-        float scale = 1;               // of the sum of weights
-        uint32_t rays = 0, seen = 0;   // that were looked along, and found to be free without a ray
+        uint32_t first = 0, count = 0; // range of sights
+        float known = 0;               // sum of what is visible without a ray
+        float scale = 1;               // factor of the sum of weights
+        uint32_t rays = 0, seen = 0;   // rays traced, and free without a ray
     };
     void ask_patches(const Link& link, uint32_t rays, uint32_t key, Asked& asked);
     void ask_clusters(const Link& link, uint32_t rays, uint32_t key, Asked& asked);

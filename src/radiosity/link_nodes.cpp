@@ -12,7 +12,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kDirectRays = 32; // of each quarter of a patch, and 16 to lamps
+constexpr uint32_t kDirectRays = 32; // per quarter of a patch, and 16 to emitters
 constexpr uint32_t kFirstBounces = 12;
 
 struct Lit {
@@ -27,7 +27,7 @@ int light_level(float light, double mean) {
     return to_int(static_cast<float>(std::floor(power)), -6, 1);
 }
 
-/// What a node receives: from everywhere alike, and by direction.
+/// Light that a node receives: independent of direction, and by direction.
 struct Received {
     Rgb even;
     SentLight directed;
@@ -156,7 +156,7 @@ void LinkNodes::gather(std::span<const Link> links) {
     std::ranges::fill(cluster_gathered_, Rgb{});
     std::ranges::fill(cluster_received_, SentLight{});
     parallel_for_ranges(links.size(), 1024, [&](uint64_t begin, uint64_t end) {
-        // Those of a receiver are of the range that its first one is in.
+        // Links of a receiver belong to the range of its first one.
         while (begin > 0 && begin < end && links[begin].receiver == links[begin - 1].receiver) ++begin;
         while (begin < end) {
             uint64_t last = begin + 1;
@@ -293,8 +293,8 @@ void LinkNodes::add_patches() {
     stale_.clear();
 }
 
-/// Of a patch that may be divided quarter by quarter, to see whether it should be. False, and the patch is as before,
-/// where the watch was over meanwhile: rows are cut short then.
+/// Finds the direct light of a patch that may be divided, per quarter, to see whether it should be. Returns false,
+/// with the patch unchanged, if the watch was over meanwhile, because rows are then incomplete.
 bool LinkNodes::find_direct(uint32_t number, RowMaker& of_whole, RowMaker& of_quarter) {
     const Patch& patch = tree_.patches[number];
     const uint32_t parts = can_divide(kIsPatch | number) ? 4 : 1;

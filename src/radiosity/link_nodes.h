@@ -1,8 +1,8 @@
 #pragma once
 
-// What links are between, and the light of it: clusters of triangles above, triangles, their patches and the patches
-// that these were divided into below. Light that a cluster receives is kept by direction, in the three sums that what
-// it sends is kept in too, so that each triangle below takes what its normal makes of it.
+// Nodes between which links transport light: clusters of triangles at the top, triangles, their patches and the
+// patches into which these were divided below. Light that a cluster receives is stored by direction, in the same
+// three sums as its sent light, so that each triangle below takes the part that its normal determines.
 //
 // Sources: clusters that send and receive: Sillion, "A Unified Hierarchical Algorithm for Global Illumination with
 // Scattering Volumes and Object Clusters", IEEE TVCG 1(3), 1995; their light by direction: Christensen, Lischinski,
@@ -25,14 +25,14 @@ class RowMaker;
 
 class LinkNodes {
 public:
-    /// `coarse`: whole triangles. No patch whose edges are shorter than `patch_size` (metres) will be divided. `scene`
+    /// `coarse` has whole triangles. Patches with edges shorter than `patch_size` (metres) are not divided. `scene`
     /// and `watch` outlive it.
     LinkNodes(const SolvedScene& scene, PatchTree coarse, float patch_size, const RadiositySettings& settings,
               WorkWatch& watch);
 
-    /// All of the scene; of a scene of one triangle side the patch itself.
+    /// The whole scene; for a single triangle side its patch.
     NodeCode root() const { return code_of_cluster(0); }
-    /// The cluster, or its triangle where it has but one.
+    /// The cluster, or its triangle if it has only one.
     NodeCode code_of_cluster(uint32_t cluster) const;
     const Cluster& cluster(NodeCode code) const { return clusters_.clusters[cluster_of(code)]; }
     const Ball& ball(NodeCode code) const { return is_cluster(code) ? cluster(code).ball : shape(code).ball; }
@@ -44,12 +44,12 @@ public:
     }
     const PatchQuad& quad(PatchCode code) const { return tree_.quads[code]; }
     const PatchTree& tree() const { return tree_; }
-    /// The triangle, of those of a cluster, that has the share `u` in [0, 1) of their area before it.
+    /// The triangle of a cluster at the fraction `u`, in [0, 1), of its area.
     PatchCode triangle_at(const Cluster& cluster, double u) const;
-    /// Half of it is that of backs.
+    /// Area; half of it belongs to backs.
     float area(NodeCode code) const;
 
-    /// Reflected light that leaves it, W/m2; of a cluster the most that any of its triangles has.
+    /// Reflected light that leaves it, W/m2; for a cluster the maximum of its triangles.
     Rgb sent(PatchCode code) const { return is_patch(code) ? patch_sent_[number_of(code)] : quad_sent_[code]; }
     float most_sent(NodeCode code) const {
         return is_cluster(code) ? most_sent_[cluster_of(code)] : luminance(sent(code));
@@ -58,28 +58,28 @@ public:
     Rgb power_towards(NodeCode code, Vec3 direction) const;
     Rgb power(NodeCode code) const;
 
-    /// Of patches that light reaches by way of no surface, its mean. W/m2, luminance.
+    /// Mean direct light of patches that have any: luminance, W/m2.
     float mean_direct() const { return static_cast<float>(mean_of_lit(direct_)); }
     bool can_divide(NodeCode code) const {
         return is_cluster(code) || !is_patch(code) || shape(code).longest > patch_size_;
     }
-    /// Patches over which that light changes by more than `limit`, W/m2.
+    /// Whether direct light varies over the patch by more than `limit`, W/m2.
     bool direct_changes(uint32_t patch, float limit) const { return direct_spread_[patch] > limit; }
 
-    /// Gathers over all links, which lie in receivers' order, and passes light down and up. Returns the share of the
+    /// Gathers over all links, which are sorted by receiver, and passes light down and up. Returns the share of the
     /// light that has changed.
     double sweep(std::span<const Link> links);
 
-    /// Share of the patches that direct light was not found for at the beginning, as the watch was over: they are
+    /// Share of the patches whose direct light was not found at the beginning because the watch was over: they are
     /// black.
     double without_direct() const { return without_direct_; }
 
-    /// Puts links in receivers' order: those of one stay in theirs.
+    /// Sorts links by receiver; the order of those of one receiver is stable.
     void sort(std::vector<Link>& links) const;
 
-    /// Divides patches with a wish, [patches].
+    /// Divides the patches that are marked, [patches].
     void divide(std::span<const uint8_t> wishes);
-    /// A link from before the last divide(): of what its patches have become.
+    /// Updates a link from before the last divide().
     Link after_division(Link link) const {
         link.receiver = now(link.receiver);
         link.source = now(link.source);
@@ -87,12 +87,12 @@ public:
     }
 
     const std::vector<Rgb>& irradiance() const { return irradiance_; } // [patches] W/m2
-    const std::vector<Rgb>& direct() const { return direct_; }         // of it, by way of no surface
+    const std::vector<Rgb>& direct() const { return direct_; }         // part of it that is direct light
     PatchTree take_tree() { return std::move(tree_); }
     std::size_t bytes() const;
-    /// Of so many patches and triangle sides, at most.
+    /// Maximum bytes for these numbers of patches and triangle sides.
     static std::size_t most_bytes(uint64_t patches, uint64_t faces);
-    /// And beside these while it is made, before there are links.
+    /// Additional maximum bytes during construction, before there are links.
     static std::size_t most_first_bytes(uint64_t faces);
 
 private:
@@ -104,15 +104,15 @@ private:
     std::size_t index_of(NodeCode code) const;
     std::size_t index_count() const { return clusters_.clusters.size() + tree_.quads.size() + tree_.patches.size(); }
     void add_patches();
-    /// Light by way of surfaces, before there are links: by the rays that found the direct light. About, but good for
-    /// telling what is lit from what lies in walls and pillars; links then begin with what is sent by it.
+    /// Estimates indirect light before there are links, from the rays that found the direct light. It is approximate,
+    /// but distinguishes lit patches from those inside walls and pillars; links are then refined according to it.
     void spread_first_light();
-    double mean_of_lit(std::span<const Rgb> light) const; // [patches]; 0: all is black
+    double mean_of_lit(std::span<const Rgb> light) const; // [patches]; 0 if all is black
     bool find_direct(uint32_t patch, RowMaker& of_whole, RowMaker& of_quarter);
     void gather(std::span<const Link> links);
     double pass_on();
     void receive(NodeCode receiver, std::span<const Link> links);
-    /// Of a patch, or of all in a tree of them: radiosity, W/m2, and what leaves it and has changed of that, W.
+    /// For a patch or its tree of parts: radiosity, W/m2, and the leaving light and its change, W.
     struct Pushed {
         Rgb sent;
         double changed = 0, all = 0;
@@ -132,14 +132,14 @@ private:
     ClusterTree clusters_;
     std::vector<double> area_before_; // [triangles of clusters_ + 1] m2
     std::vector<LinkedPatch> patch_shapes_, quad_shapes_;
-    std::vector<Patch> quad_patches_;                                                          // what quads were
+    std::vector<Patch> quad_patches_; // the patches that quads replaced
     std::vector<Rgb> direct_, gathered_, irradiance_, patch_sent_, quad_gathered_, quad_sent_; // W/m2
     std::vector<float> direct_spread_;                                                         // luminance, W/m2
-    std::vector<SentLight> cluster_sent_, cluster_received_; // the latter W/m2, by where it comes from
-    std::vector<Rgb> cluster_gathered_;                      // from everywhere alike, W/m2
+    std::vector<SentLight> cluster_sent_, cluster_received_; // the latter W/m2, by direction of arrival
+    std::vector<Rgb> cluster_gathered_;                      // independent of direction, W/m2
     std::vector<float> most_sent_;
-    std::vector<PatchCode> became_;                   // [patches] quads
-    std::vector<uint32_t> stale_;                     // patches whose direct light is to be found
+    std::vector<PatchCode> became_;                   // [patches] quads that replaced them
+    std::vector<uint32_t> stale_;                     // patches whose direct light must be found
     std::vector<std::vector<FormFactor>> first_rows_; // [patches] until there are links
     double without_direct_ = 0;
 };

@@ -33,7 +33,7 @@ bool balls_meet(const Ball& a, const Ball& b) { return !(length(a.centre - b.cen
 float most_form_factor(const Ball& receiver, const Ball& source, float area) {
     const float nearest = length(source.centre - receiver.centre) - receiver.radius; // to its middle
     if (!(nearest > source.radius)) return 1;
-    const float of_ball = square(source.radius / nearest); // of a ball that is faced
+    const float of_ball = square(source.radius / nearest); // upper bound for a sphere that is faced directly
     const float gap = nearest - source.radius;
     return min(min(of_ball, area * kInvPi / max(square(gap), 1e-30f)), 1.0f);
 }

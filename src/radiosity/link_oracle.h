@@ -1,13 +1,13 @@
 #pragma once
 
-// What a link is between, and what it could be wrong by.
+// Geometry of linked nodes, and error bounds of links.
 
 #include "radiosity/cluster_tree.h"
 #include "radiosity/patches.h"
 
 namespace pertev {
 
-/// A patch or what was one, as links see it.
+/// A patch or former patch in a link.
 struct LinkedPatch {
     Vec3 corner[3]; // metres
     Vec3 normal;    // unit, out of its side
@@ -17,14 +17,14 @@ struct LinkedPatch {
 
 LinkedPatch linked_patch(const SceneView& scene, const Patch& patch);
 
-/// Whether anything of a ball, or of a patch, lies before `patch`.
+/// Whether any part of a sphere, or of a patch, is in front of `patch`.
 bool is_before(const LinkedPatch& patch, const Ball& ball);
 bool is_before(const LinkedPatch& patch, const LinkedPatch& other);
 
-/// Whether they overlap: then there is no direction from one to the other.
+/// Whether they overlap, so that there is no direction from one to the other.
 bool balls_meet(const Ball& a, const Ball& b);
 
-/// The form factor from any place in `receiver` to a source of this ball and area is at most so much.
+/// Upper bound of the form factor from any point in `receiver` to a source with this sphere and area.
 float most_form_factor(const Ball& receiver, const Ball& source, float area);
 
 } // namespace pertev

@@ -1,7 +1,7 @@
 #pragma once
 
-// Links of hierarchical radiosity: light of a source that is taken as even over a receiver. Either is a patch, what was
-// a patch before it was divided, or a cluster of triangles.
+// Links of hierarchical radiosity: light of a source that counts as uniform over a receiver. Either is a patch, a
+// former patch that was divided, or a cluster of triangles.
 
 #include <cstdint>
 
@@ -19,14 +19,14 @@ inline constexpr uint32_t kMostRaysOfLink = 16;
 
 struct Link {
     NodeCode receiver, source;
-    /// Of a patch as source and as receiver: the form factor from the receiver to it. Else, with V the share of the
-    /// source that is seen, V / (pi distance^2), times the cosine at a patch that receives. Where they overlap: of the
-    /// power of the source.
+    /// If source and receiver are patches: the form factor from the receiver to the source. Otherwise, with V the
+    /// visible share of the source, V / (pi distance^2), times the cosine at a receiving patch. If they overlap: the
+    /// factor of the source's power.
     float factor = 0;
-    uint16_t rays = 0; // that it was found by; 0: it is not known yet
-    uint16_t seen = 0; // of them
+    uint16_t rays = 0; // rays traced for it; 0: unknown so far
+    uint16_t seen = 0; // rays that reached the source
 
-    /// How much of the source is likely to be seen (Laplace's rule of succession).
+    /// Estimated visible share of the source (Laplace's rule of succession).
     float visible() const { return (static_cast<float>(seen) + 1) / (static_cast<float>(rays) + 2); }
 };
 static_assert(sizeof(Link) == 16);

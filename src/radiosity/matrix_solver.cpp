@@ -47,7 +47,8 @@ std::vector<double> eliminate(const RadiositySystem& system, int k, const KeepSo
     return b;
 }
 
-/// Of lamps and of what is no patch, once over no surface: all that is known before the elimination is through.
+/// Direct light of emitters and other lights, without reflections: the solution as far as it is known before the
+/// elimination is complete.
 SolvedSystem solve_direct_light(const RadiositySystem& system) {
     std::vector<Rgb> exitance;
     for (const SystemPatch& patch : system.patches) exitance.push_back(patch.exitance);

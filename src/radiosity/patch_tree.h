@@ -1,10 +1,10 @@
 #pragma once
 
-// Where on a triangle which patch lies. Each side of a triangle is a face with a tree of its own: a quad divides what
-// it stands for into four by the middles of the edges, and the leaves are patches.
+// Locates patches on triangles. Each side of a triangle is a face with its own tree: a quad divides its part into
+// four by the middles of the edges, and the leaves are patches.
 //
-// Faces are numbered 2 t + s, t being the triangle's number in the scene (SceneView::first_triangle) and s its side: 0
-// where its geometric normal points to, 1 behind it.
+// Faces are numbered 2 t + s, with the triangle's number t in the scene (SceneView::first_triangle) and its side s: 0
+// in the direction of its geometric normal, 1 behind it.
 
 #include <cstdint>
 
@@ -14,14 +14,14 @@
 
 namespace pertev {
 
-/// What a root or a child of a quad says: a patch's number with kIsPatch, a quad's number, or kNoPatch.
+/// Code of a root or of a quad's child: a patch's number with kIsPatch, a quad's number, or kNoPatch.
 using PatchCode = uint32_t;
 inline constexpr PatchCode kIsPatch = 0x80000000u, kNoPatch = 0xffffffffu;
 HD inline constexpr bool is_patch(PatchCode code) { return code >= kIsPatch && code != kNoPatch; }
 HD inline constexpr uint32_t number_of(PatchCode code) { return code & ~kIsPatch; }
 
-/// Children at the corners, then the one in the middle, whose corners are the middles of the edges opposite to them. A
-/// child that is a quad has the greater number.
+/// Children at the corners, then the middle one, whose corners are the middles of the opposite edges. A child quad
+/// has a greater number than its parent.
 struct PatchQuad {
     PatchCode child[4];
 };
@@ -30,15 +30,15 @@ struct PatchTreeView {
     const PatchCode* roots; // [faces]
     const PatchQuad* quads;
 
-    /// The patch of `face` at `weights`, those of the triangle's corners; the weights become those of the patch's
-    /// corners. kNoPatch where the face has none.
+    /// The patch of `face` at `weights` of the triangle's corners, which become weights of the patch's corners.
+    /// kNoPatch if the face has none.
     HD PatchCode find(uint32_t face, Vec3& weights) const {
         PatchCode code = roots[face];
         while (code < kIsPatch) code = quads[code].child[descend(weights)];
         return code;
     }
 
-    /// Which child `weights` lie in; they become those of its corners.
+    /// The child that contains `weights`, which become weights of its corners.
     HD static uint32_t descend(Vec3& weights) {
         const Vec3 twice = 2.0f * weights;
         if (twice.x >= 1) {
@@ -58,7 +58,7 @@ struct PatchTreeView {
     }
 };
 
-/// Corners of a patch, places on its triangle (weights of the second and third corner).
+/// Corners of a patch as positions on its triangle (weights of the second and third corner).
 struct PatchCorners {
     Vec2 at[3] = {{0, 0}, {1, 0}, {0, 1}};
 

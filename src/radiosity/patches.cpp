@@ -34,7 +34,7 @@ bool has_area(const PlacedTriangle& triangle) {
     return area > 0 && is_finite(area);
 }
 
-/// Of the surface over a patch, by a few places on it.
+/// Sets reflectance and exitance of a patch from a few samples of its surface.
 void set_surface(const SceneView& scene, Patch& patch) {
     Rgb reflectance, exitance;
     for (uint32_t child = 0; child < 4; ++child) {
@@ -42,7 +42,7 @@ void set_surface(const SceneView& scene, Patch& patch) {
         const PlacedTriangle triangle = place_on(scene, patch, place);
         const Surface surface = make_surface(scene, {0, place.x, place.y, patch.instance, patch.primitive},
                                              -normal_of(scene, patch, triangle));
-        if (surface.is_unlit) continue; // seen by the camera alone
+        if (surface.is_unlit) continue; // visible only to the camera
         reflectance += 0.25f * surface.bsdf.diffuse_albedo();
         exitance += (0.25f * kPi) * surface.emission;
     }

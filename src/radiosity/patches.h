@@ -1,8 +1,8 @@
 #pragma once
 
-// The patches of a scene: both sides of its triangles, divided until no edge is longer than asked for, each with a
-// reflectance and an exitance that are the mean of what its surface has there. Sides that neither reflect diffusely nor
-// emit have none: light ends there.
+// The patches of a scene: both sides of its triangles, divided until no edge exceeds the patch size, each with the
+// mean reflectance and exitance of its surface. Sides that neither reflect diffusely nor emit have none; light is
+// absorbed there.
 //
 // Source: Goral, Torrance, Greenberg, Battaile, "Modeling the Interaction of Light Between Diffuse Surfaces", SIGGRAPH
 // 1984, section 3.
@@ -24,7 +24,7 @@ struct Patch {
     PatchCorners corners;
     float area = 0;  // m2
     Rgb reflectance; // [0, 1]
-    Rgb exitance;    // by itself, W/m2
+    Rgb exitance;    // own emission, W/m2
 
     uint32_t side() const { return face % 2; }
 };
@@ -39,26 +39,25 @@ struct PatchTree {
     void split(const SceneView& scene, uint32_t number);
 };
 
-/// The triangle that a patch is part of, with a place on it.
+/// The triangle of a patch, with a point on it.
 PlacedTriangle place_on(const SceneView& scene, const Patch& patch, Vec2 place);
-/// Unit, out of the patch's side.
+/// Unit normal of the patch's side.
 Vec3 normal_of(const SceneView& scene, const Patch& patch, const PlacedTriangle& triangle);
-/// Which side of a triangle a ray along `direction` arrives at.
+/// Side of a triangle at which a ray along `direction` arrives.
 uint32_t side_met(const SceneView& scene, uint32_t instance, uint32_t primitive, Vec3 direction);
-/// Number of the face at a hit.
+/// Number of the face of a hit.
 inline uint32_t face_of(const SceneView& scene, uint32_t instance, uint32_t primitive, uint32_t side) {
     return 2 * (scene.first_triangle[instance] + primitive) + side;
 }
 
-/// Patches at most that make_patches makes: both sides of each triangle, whatever they are made of.
+/// Maximum number of patches that make_patches makes: both sides of each triangle, whatever their material.
 uint64_t count_patches(const SceneView& scene, float patch_size);
 
 /// Throws Error(OverLimit) for more than kMostPatches.
 void check_patch_count(uint64_t patches, float patch_size);
 
-/// `scene` lies in the host's memory and numbers its triangles. Throws Error(OverLimit) where there are more than
-/// kMostPatches; Error(BadInput) where none of them reflects: there is nothing to solve.
-/// Error(Interrupted) where `watch` is over.
+/// `scene` is in host memory and numbers its triangles. Throws Error(OverLimit) for more than kMostPatches;
+/// Error(BadInput) if none reflects, because there is nothing to solve; Error(Interrupted) if `watch` is over.
 PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watch = nullptr);
 
 } // namespace pertev

@@ -1,6 +1,6 @@
 #pragma once
 
-// The form factor from a place to a triangle in closed form, as nothing stood between them.
+// Closed form factor from a point to a triangle without occlusion.
 //
 // Source: Lambert 1760; Baum, Rushmeier, Winget, "Improving Radiosity Solutions Through the Use of Analytically
 // Determined Form-Factors", SIGGRAPH 1989, section 2: the sum over the polygon's edges of the angle that each covers
@@ -11,8 +11,8 @@
 
 namespace pertev {
 
-/// `corner`: metres from the place. `normal`: unit, of the receiver. Of what lies before the receiver, whichever side
-/// of the triangle it sees.
+/// `corner` is in metres from the point. `normal` is the receiver's, unit. Counts the part in front of the receiver,
+/// whichever side of the triangle it sees.
 inline float triangle_form_factor(const Vec3 (&corner)[3], Vec3 normal) {
     Vec3 above[4]; // clipped by the receiver's plane
     int count = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a radiosity solution is asked for beside its scene.
+// Settings of a radiosity solution besides its scene.
 
 #include <cstdint>
 
@@ -8,18 +8,18 @@
 
 namespace pertev {
 
-/// How much of the light that leaves a patch arrives at which others.
+/// How form factors are computed.
 enum class FormFactors : uint8_t {
-    Rays,     // by rays through the scene: radiosity/ray_rows.cpp
-    Hemicube, // by projection on half a cube: radiosity/hemicube.h
+    Rays,     // rays through the scene: radiosity/ray_rows.cpp
+    Hemicube, // projection on half a cube: radiosity/hemicube.h
 };
 
-/// How the system of linear equations is solved. All of them come to one solution.
+/// How the system of linear equations is solved. All solvers have one solution.
 enum class RadiositySolver : uint8_t {
     Southwell,    // progressive refinement: the patch with most unsent light sends next
     GaussSeidel,  // each patch gathers in turn
     Matrix,       // elimination
-    Hierarchical, // by links of patches and clusters of all sizes: radiosity/hierarchical.h
+    Hierarchical, // links between patches and clusters of all sizes: radiosity/hierarchical.h
 };
 
 inline constexpr ValueName<FormFactors> kFormFactors[] = {{FormFactors::Rays, "rays"},
@@ -32,16 +32,16 @@ constexpr const auto& names_of_all(FormFactors) { return kFormFactors; }
 constexpr const auto& names_of_all(RadiositySolver) { return kRadiositySolvers; }
 
 struct RadiositySettings {
-    float patch_size = 0;      // metres: no edge of a patch is longer; 0: kPatchOfScene of the scene's longest side
-    uint32_t subdivisions = 2; // how often a patch is divided where light changes over it
-    float contrast = 0.1f;     // it changes there: by this share of the mean of its corners
-    uint32_t rays = 256;       // of a patch
+    float patch_size = 0;      // maximum edge of a patch, metres; 0: kPatchOfScene of the scene's longest side
+    uint32_t subdivisions = 2; // maximum number of times that a patch is divided where light varies
+    float contrast = 0.1f;     // variation from which on it is divided, relative to the mean of its corners
+    uint32_t rays = 256;       // per patch
     uint32_t hemicube = 128;   // pixels along an edge of a hemicube's top
     FormFactors form_factors = FormFactors::Rays;
     RadiositySolver solver = RadiositySolver::GaussSeidel;
-    float tolerance = 1e-4f; // share of the light that may be left unsent
-    uint32_t steps = 0;      // of Southwell: patches that send at most; 0: as many as tolerance takes
-    float link_error = 0.1f; // of Hierarchical: share of the mean light that a link may be wrong by
+    float tolerance = 1e-4f; // share of the light that may remain unsent
+    uint32_t steps = 0;      // for Southwell: maximum number of sending patches; 0: as many as tolerance needs
+    float link_error = 0.1f; // for Hierarchical: permitted error of a link relative to the mean light
     uint32_t seed = 0;
 
     bool operator==(const RadiositySettings&) const = default;

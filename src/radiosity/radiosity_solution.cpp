@@ -19,17 +19,18 @@ constexpr char kMagic[16] = {'p', 'e', 'r', 't', 'e', 'v', ' ', 'r', 'a', 'd', '
 constexpr int kVersion = 3;
 constexpr int kFirstWithLight = 2, kFirstWithExtent = 3;
 
-/// What a file begins with; then its SolvedLight, SolvedExtent, text, roots, quads and patches.
+/// The start of a file; its SolvedLight, SolvedExtent, text, roots, quads and patches follow.
 struct Header {
     char magic[16];
     uint64_t text, roots, quads, patches; // bytes; elements
-    Hash128 geometry, content;            // of the text and all that follows it, and of the ambient light
+    Hash128 geometry, content;            // hashes of the geometry, and of the text, all that follows it and the
+                                          // ambient light
     float ambient[3];
     uint32_t unused;
 };
 static_assert(sizeof(Header) == 96 && sizeof(SolvedLight) == 32 && sizeof(SolvedExtent) == 8);
 
-/// 0 where it is no such file, or of a later version.
+/// Returns 0 if it is no such file, or of a later version.
 int version_of(const Header& header) {
     constexpr std::size_t kName = sizeof kMagic - 1;
     if (std::memcmp(header.magic, kMagic, kName) != 0) return 0;

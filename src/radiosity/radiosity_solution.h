@@ -1,7 +1,7 @@
 #pragma once
 
-// A radiosity solution: the irradiance of every patch of a scene's surfaces. It does not depend on a camera, so that
-// one file serves any number of pictures of the scene.
+// A radiosity solution: the irradiance of every patch of a scene's surfaces. It does not depend on a camera, so one
+// file serves any number of pictures of the scene.
 
 #include <cstddef>
 #include <filesystem>
@@ -17,61 +17,61 @@
 
 namespace pertev {
 
-/// How far a solution has come.
+/// How complete a solution is.
 enum class SolvedPart : uint32_t {
     All,
-    SomeDirectLight, // that is found for some patches; nothing that surfaces pass on
-    DirectLight,     // nothing that surfaces pass on
-    SomeBounces,     // light is still to be passed on; no patch is divided for its light
-    SomeDivided,     // all light; patches are not divided as far as was asked for
+    SomeDirectLight, // direct light of some patches; no reflected light
+    DirectLight,     // direct light; no reflected light
+    SomeBounces,     // some reflected light is missing; no patch is divided for its light
+    SomeDivided,     // all light; patches are not divided as far as requested
 };
 
 struct SolvedExtent {
     SolvedPart part = SolvedPart::All;
-    /// [0, 1], 0 of All and SomeDivided. Share of the patches without direct light; of the light that surfaces still
-    /// have to pass on, or that the last step changed.
+    /// Missing part in [0, 1], 0 for All and SomeDivided: share of the patches without direct light, or of the light
+    /// that surfaces still have to reflect, or that the last step changed.
     float left = 0;
 
     bool operator==(const SolvedExtent&) const = default;
 };
 
-/// What a solution holds: "direct light alone, nothing that surfaces pass on"; empty for all.
+/// Describes a solution, for example "direct light alone, nothing that surfaces pass on"; empty for a complete one.
 std::string describe(const SolvedExtent& extent);
 
 struct RadiositySolution {
     Hash128 geometry;                 // geometry_hash of its scene
-    std::optional<SolvedLight> light; // of its scene; none: of a file that does not say
-    std::string made;                 // by which settings, a JSON object
+    std::optional<SolvedLight> light; // light of its scene; none if the file does not state it
+    std::string made;                 // settings that made it, a JSON object
     std::vector<PatchCode> roots;     // [faces]
     std::vector<PatchQuad> quads;
     std::vector<PatchLight> patches;
-    Rgb ambient;         // RadiosityView's
-    SolvedExtent extent; // All, unless it was ended
+    Rgb ambient;         // copied to RadiosityView
+    SolvedExtent extent; // All, unless it was interrupted
 
     std::size_t bytes() const {
         return roots.size() * sizeof(PatchCode) + quads.size() * sizeof(PatchQuad) +
                patches.size() * sizeof(PatchLight);
     }
     RadiosityView view() const { return {{roots.data(), quads.data()}, patches.data(), ambient}; }
-    /// Of all its bytes.
+    /// Hash of all its bytes.
     Hash128 hash() const;
 };
 
-/// Changes with the vertices, triangles and materials' numbers of every instance and with where it stands.
+/// Hash of the vertices, triangles, materials' numbers and transform of every instance.
 Hash128 geometry_hash(const Scene& scene);
 
 /// Throws Error(FileWrite).
 void write_solution(const std::filesystem::path& path, const RadiositySolution& solution);
 
-/// Whether the file begins as a solution's does.
+/// Whether the file begins like a solution.
 bool is_solution(const std::filesystem::path& path);
 
-/// Of any scene. Throws Error(BadInput) that says why where there is no such file, where it is none, damaged or cut
-/// short: whatever it holds, what is returned is safe to look things up in.
+/// Reads a solution of any scene. Throws Error(BadInput) with the reason if the file does not exist, or is no
+/// solution, damaged or truncated. Whatever the file contains, lookups in the result are safe.
 RadiositySolution read_any_solution(const std::filesystem::path& path);
 
-/// The same; throws Error(BadInput) too where it is of another scene or of this one under other light. Of a file that
-/// does not say what light it was solved for that is a warning; of one that was ended before it was whole too.
+/// Reads a solution of `scene`. Throws Error(BadInput) too if it belongs to another scene, or to this one under other
+/// light. A file that does not state its light gives a warning, and so does an incomplete solution.
 RadiositySolution read_solution(const std::filesystem::path& path, const Scene& scene, Messages& messages);
 
 } // namespace pertev

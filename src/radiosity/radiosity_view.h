@@ -1,6 +1,6 @@
 #pragma once
 
-// A radiosity solution as device code sees it: what light every place of a surface receives.
+// A radiosity solution in device code: the irradiance at every point of a surface.
 
 #include "math/rgb.h"
 #include "radiosity/patch_tree.h"
@@ -9,18 +9,18 @@ namespace pertev {
 
 /// Irradiance of a patch, W/m2.
 struct alignas(16) PatchLight {
-    Rgb corner[3]; // shared with the patches around
+    Rgb corner[3]; // shared with adjacent patches
     Rgb mean;
 };
 static_assert(sizeof(PatchLight) == 48);
 
 struct RadiosityView {
     PatchTreeView tree;
-    const PatchLight* patches = nullptr; // null: there is no solution
-    Rgb ambient;                         // irradiance that is on top everywhere, of light that is not solved for
-    bool is_flat = false;                // patches are shown as they are, without what is between them
+    const PatchLight* patches = nullptr; // null if there is no solution
+    Rgb ambient;                         // irradiance added everywhere, for light that is not solved
+    bool is_flat = false;                // shows patches without interpolation
 
-    /// Irradiance at weights (1 - u - v, u, v) of a face, W/m2; black where it has no patch.
+    /// Irradiance at weights (1 - u - v, u, v) of a face, W/m2; black if it has no patch.
     HD Rgb irradiance(uint32_t face, float u, float v) const {
         Vec3 weights = {1.0f - u - v, u, v};
         const PatchCode code = tree.find(face, weights);

@@ -1,7 +1,7 @@
 #pragma once
 
-// The two ways to find a row of form factors. A row is a function of the scene, the patch, its number and the settings
-// alone, whichever thread makes it.
+// The two methods to compute a row of form factors. A row depends only on the scene, the patch, its number and the
+// settings, whichever thread computes it.
 
 #include <memory>
 #include <optional>
@@ -16,7 +16,7 @@
 
 namespace pertev {
 
-/// What a row is made of: `sources` are the patches that it names. Once `watch` is over, rows are cut short.
+/// Inputs of a row: `sources` are the patches to which it refers. Once `watch` is over, rows are incomplete.
 struct RowScene {
     const SolvedScene& scene;
     const PatchTree& sources;
@@ -25,16 +25,16 @@ struct RowScene {
     bool is_over() const { return watch != nullptr && watch->is_over(); }
 };
 
-/// For one thread: it keeps its memory from row to row.
+/// Computes rows in one thread and reuses its memory.
 class RowMaker {
 public:
     virtual ~RowMaker() = default;
-    /// The row of `patch`, which may be one of the sources or a part of one. `number` is what its random numbers are
-    /// drawn by.
+    /// Computes the row of `patch`, which may be one of the sources or a part of one. `number` is the key of its
+    /// random numbers.
     virtual void make(const Patch& patch, uint32_t number, FormFactorRow& row) = 0;
 };
 
-/// What rows by hemicubes share.
+/// Data that hemicube rows share.
 struct HemicubeScene {
     struct PlacedCorners {
         Vec3 at[3]; // metres
@@ -42,7 +42,7 @@ struct HemicubeScene {
     };
     HemicubeScene(const SceneView& scene, uint32_t resolution);
 
-    std::vector<PlacedCorners> triangles; // all that are there
+    std::vector<PlacedCorners> triangles; // all triangles of the scene
     HemicubePixels pixels;
 };
 
@@ -51,13 +51,13 @@ std::unique_ptr<RowMaker> make_ray_rows(const RowScene& scene, const RadiositySe
 std::unique_ptr<RowMaker> make_hemicube_rows(const RowScene& scene, const RadiositySettings& settings,
                                              const HemicubeScene& hemicube);
 
-/// Of a thread's hemicube, beside the row.
+/// Maximum bytes of a thread's hemicube, besides the row.
 std::size_t most_hemicube_bytes(uint32_t resolution);
 
-/// Makes them by what the settings say.
+/// Makes row makers according to the settings.
 class RowMakers {
 public:
-    /// All outlive it.
+    /// All arguments outlive it.
     RowMakers(const SolvedScene& scene, const PatchTree& sources, const RadiositySettings& settings,
               WorkWatch* watch = nullptr);
     std::unique_ptr<RowMaker> for_thread() const;

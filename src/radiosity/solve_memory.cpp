@@ -38,7 +38,7 @@ uint64_t found_factors(const RadiositySettings& s) {
     return s.form_factors == FormFactors::Rays ? s.rays + of_lights : 3 * uint64_t(s.hemicube) * s.hemicube;
 }
 
-/// Of threads that make rows: a list that grows by doubling, a copy to sort it, and what a hemicube sees.
+/// Memory of threads that make rows: a list that grows by doubling, a copy to sort it, and a hemicube.
 Parts making_rows(const RadiositySettings& s, const Counts& counts, uint64_t threads) {
     const std::size_t list = 4 * found_factors(s) * sizeof(FormFactor);
     Parts parts = {{"rows being made", threads * (list + 65536)}};

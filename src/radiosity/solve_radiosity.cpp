@@ -178,7 +178,7 @@ struct SolvedPatches {
     static Rgb left_without(Rgb all, Rgb part) {
         return {max(all.r - part.r, 0.0f), max(all.g - part.g, 0.0f), max(all.b - part.b, 0.0f)};
     }
-    /// What each has sent so far, W/m2.
+    /// Light that each has sent so far, W/m2.
     std::vector<Rgb> sent() const {
         std::vector<Rgb> all;
         all.reserve(irradiance.size());
@@ -191,7 +191,7 @@ struct SolvedPatches {
     }
 };
 
-/// How near to its end a solution is whose light that is left falls from 1 to `tolerance` by the same share each step.
+/// Progress of a solution whose remaining light falls from 1 to `tolerance` by a constant factor per step.
 double share_done(double left, double tolerance) {
     if (!(left > 0 && tolerance > 0 && tolerance < 1)) return 1;
     const auto halvings = [](double x) { return static_cast<double>(log2(static_cast<float>(x))); };
@@ -249,7 +249,7 @@ bool is_whole(const SolveStats& stats, const RadiositySettings& settings) {
            stats.left <= static_cast<double>(settings.tolerance);
 }
 
-/// Of a solution that was ended before its patches were divided.
+/// Extent of a solution that ended before its patches were divided.
 SolvedExtent extent_of(const SolveStats& stats, RadiositySolver solver) {
     const auto share = [](double x) { return static_cast<float>(std::clamp(x, 0.0, 1.0)); };
     if (stats.without_direct > 0) return {SolvedPart::SomeDirectLight, share(stats.without_direct)};

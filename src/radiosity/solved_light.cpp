@@ -94,7 +94,7 @@ private:
 
     const Scene& scene_;
     Hasher hasher_;
-    std::vector<std::optional<Hash128>> images_; // of those that were asked for
+    std::vector<std::optional<Hash128>> images_; // hashes of images that have been needed
 };
 
 Hash128 surfaces_hash(const Scene& scene) {
@@ -130,7 +130,8 @@ Hash128 lights_hash(const Scene& scene) {
     add_bytes(hasher, environment.scale);
     add_size(hasher, environment.image.width, environment.image.height);
     add_list(hasher, environment.image.pixels);
-    if (!environment.image.pixels.empty()) hasher.add_value(environment.rotation); // else it is the same all round
+    if (!environment.image.pixels.empty())
+        hasher.add_value(environment.rotation); // otherwise it is rotationally symmetric
     return hasher.result();
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// What the light of a solution was solved for, as hashes by which a file is held to the scene that it is shown with.
-// Neither knows anything of cameras and pictures, nor of what the solution does not: what mirrors, metal and glass look
-// like, roughness, normal maps, which backs the camera sees, names, and materials that no instance has.
+// The light of a solution as hashes, by which a file is compared with the scene that it is shown with. They do not
+// depend on cameras and pictures, nor on anything that does not affect the solution: mirrors, metal and glass,
+// roughness, normal maps, culled backs, names, and unused materials.
 
 #include "base/hash.h"
 #include "scene/scene.h"
@@ -10,13 +10,14 @@
 namespace pertev {
 
 struct SolvedLight {
-    Hash128 surfaces; // what instances reflect diffusely, emit and let through: materials, textures, vertices' colours
+    Hash128 surfaces; // diffuse reflection, emission and transparency of instances: materials, textures, vertex
+                      // colours
     Hash128 lights;   // point, spot and directional lights, the environment
 
     bool operator==(const SolvedLight&) const = default;
 };
 
-/// Of the scene as it is, at its time.
+/// Hashes of the scene in its present state and time.
 SolvedLight solved_light(const Scene& scene);
 
 } // namespace pertev

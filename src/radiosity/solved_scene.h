@@ -1,6 +1,6 @@
 #pragma once
 
-// What form factors are found in: a scene and its trees in the host's memory, and the patches on it.
+// A scene for form factors: its data and trees in host memory, and its patches.
 
 #include <optional>
 
@@ -10,20 +10,20 @@
 
 namespace pertev {
 
-/// The scene as rays on the host meet it.
+/// The scene for rays on the host.
 class SolvedScene {
 public:
-    /// `prepared` outlives it. Throws Error(BadInput) where vertices of the scene are moved by skins or morph targets,
-    /// Error(OverLimit) where it has too many triangles to number them.
+    /// `prepared` outlives it. Throws Error(BadInput) if skins or morph targets move vertices of the scene,
+    /// Error(OverLimit) if it has too many triangles to number them.
     explicit SolvedScene(const PreparedScene& prepared);
     SolvedScene(const SolvedScene&) = delete;
     SolvedScene& operator=(const SolvedScene&) = delete;
 
     const SceneView& view() const { return scene_->view(); }
     const HostTrees& trees() const { return *tracer_->host_trees(); }
-    /// Of the host's memory, for what rays need to know of the scene.
+    /// Bytes of host memory for the rays' scene data.
     std::size_t bytes() const { return queue_.allocated_bytes(); }
-    const Bounds3& bounds() const { return tracer_->bounds(); } // of all that rays can meet, metres
+    const Bounds3& bounds() const { return tracer_->bounds(); } // bounds of everything that rays can hit, metres
 
 private:
     Queue queue_;

@@ -15,12 +15,12 @@ struct Receiver {
     float factor; // from the receiver to the sender
 };
 
-/// Of each patch, those that receive of it, by ascending number.
+/// For each patch, those that receive light from it, by ascending number.
 class Receivers {
 public:
     explicit Receivers(const RadiositySystem& system) : starts_(system.patches.size() + 1) {}
 
-    /// False where it was to end.
+    /// Returns false if it must stop.
     bool find(const RadiositySystem& system, const KeepSolving& keep_going) {
         const auto goes_on = [&](std::size_t i) { return i % 1024 != 0 || !keep_going || keep_going(1); };
         all_.resize(system.factor_count());
@@ -73,14 +73,14 @@ private:
 };
 
 constexpr double kLeastAbsorbed = 1e-6;
-constexpr uint64_t kLeastWork = 64; // of a patch that sends: what it costs beside those that receive
+constexpr uint64_t kLeastWork = 64; // fixed cost of a sending patch, in units of receiving patches
 
 double light_of(const SystemPatch& patch, Rgb unsent) {
     return static_cast<double>(patch.area) *
            (static_cast<double>(unsent.r) + static_cast<double>(unsent.g) + static_cast<double>(unsent.b));
 }
 
-/// Sums over patches of what ambient light is made of.
+/// Sums over patches for the ambient light.
 struct Spread {
     double area = 0, squared = 0;
     double arrives[3] = {}, reflected[3] = {}; // by channel
@@ -95,9 +95,9 @@ Spread operator+(const Spread& a, const Spread& b) {
     return sum;
 }
 
-/// What unsent light would be everywhere if it were spread evenly, with all of its reflections. A patch that others
-/// cover the share s of the hemisphere of sends them s of its light, and receives s of what is spread: those that face
-/// nothing take no part in it.
+/// Irradiance if unsent light were distributed evenly, with all of its reflections. A patch whose hemisphere is
+/// covered by others with the share s sends them s of its light, and receives s of the distributed light; patches
+/// that face nothing take no part.
 Rgb ambient_of(const RadiositySystem& system, const std::vector<Rgb>& unsent) {
     const Spread spread = tree_sum(unsent.size(), [&](uint64_t i) -> Spread {
         const SystemPatch& patch = system.patches[i];

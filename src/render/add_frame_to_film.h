@@ -1,7 +1,7 @@
 #pragma once
 
-// Adds the samples of a noisy frame to a film: all that the path tracer would have added itself had it been given the
-// film, to the bit.
+// Adds the samples of a noisy frame to a film. The sums equal, to the bit, those of a path tracer that adds to the
+// film directly.
 
 #include "device_scene/surface.h"
 #include "render/film_view.h"
@@ -12,7 +12,7 @@ struct AddFrameToFilm {
     NoisyFrameView frame;
     FilmView film;
     SceneView scene;
-    bool is_first; // sample 0, which has the ids
+    bool is_first; // sample 0, which writes the ids
 
     HD void operator()(uint32_t pixel) const {
         const Float4 light = frame.light[pixel], place = frame.place[pixel];
@@ -30,7 +30,7 @@ struct AddFrameToFilm {
     }
 
 private:
-    /// Auxiliary channels, in the words of add_first_hit (render/first_hit.h).
+    /// Adds auxiliary channels as add_first_hit does (render/first_hit.h).
     HD void add_hit(uint32_t pixel, const Hit& hit) const {
         const Float4 normal = frame.normal[pixel], albedo = frame.albedo[pixel];
         add_channel(film, pixel, kFilmHits, 1.0f);
@@ -43,7 +43,7 @@ private:
         if ((film.aovs & kAovDepth) != 0) {
             add_channel(film, pixel, channel_offset(film.aovs, kAovDepth), normal.w);
         }
-        if ((film.aovs & kAovPosition) != 0) { // a frame keeps the hit, not the place
+        if ((film.aovs & kAovPosition) != 0) { // a frame stores the hit, not its position
             const InstanceView& instance = scene.instances[hit.instance];
             const uint32_t channel = channel_offset(film.aovs, kAovPosition);
             add_channels(film, pixel, channel, place_triangle(instance, scene.meshes[instance.mesh], hit).position);

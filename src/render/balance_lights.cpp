@@ -12,10 +12,10 @@ namespace {
 constexpr uint32_t kPoints = 2048, kDrawsPerPoint = 32, kCandidates = 16;
 
 struct SurfacePoint {
-    Vec3 position, normal; // metres, moved world; the normal unit, or zero for a triangle without area
+    Vec3 position, normal; // metres, translated world; unit normal, zero for a triangle without area
 };
 
-/// Triangles of all instances that are not hidden, counted through.
+/// Triangles of all instances that are not hidden, with consecutive numbers.
 class PlacedTriangles {
 public:
     PlacedTriangles(const Scene& scene, Vec3 centre) : scene_(scene), centre_(centre) {
@@ -45,7 +45,8 @@ private:
     std::vector<uint64_t> ends_;
 };
 
-/// Every other point lies on any triangle, where there is detail; the others on one drawn by its area among some.
+/// Draws a surface point. Every second one lies on a uniformly drawn triangle, which favours detail; the others on
+/// one drawn by area among several.
 SurfacePoint draw_point(const PlacedTriangles& triangles, uint32_t i) {
     const uint32_t candidates = i % 2 == 0 ? 1 : kCandidates;
     SurfacePoint point;
@@ -65,7 +66,7 @@ SurfacePoint draw_point(const PlacedTriangles& triangles, uint32_t i) {
     return point;
 }
 
-/// What arrives at a point on average a draw, and its mean square, were each kind drawn alone.
+/// Mean and mean square of the light at a point per sample, if only one kind of light were sampled.
 struct KindMoments {
     double near_mean = 0, far_mean = 0, near_square = 0, far_square = 0;
 };
@@ -85,7 +86,7 @@ KindMoments look_from(const SurfacePoint& point, uint32_t i, float offset, const
         const bool is_far = !(sample.distance < kInfinity);
         const float reach = is_far ? kInfinity : sample.distance - offset;
         if (trace_any(bvh, Ray{origin, 0.0f, sample.wi, reach}, accept_all)) continue;
-        // The probability of the kind is taken out: what is left is the estimate of that kind alone.
+        // Removes the probability of the kind, which leaves the estimate of that kind alone.
         constexpr double share = kEvenShare;
         const double value = static_cast<double>(cosine * luminance(sample.radiance) / sample.pdf) * share;
         (is_far ? moments.far_mean : moments.near_mean) += value / (share * kDrawsPerPoint);
@@ -127,7 +128,7 @@ void balance_lights(PreparedScene& prepared, const float* linear_from_srgb) {
             moments[i] = look_from(point, number, offset, lights, bvh);
         }
     });
-    // Relative variance with a share q of far draws: sum over points of (near / (1 - q) + far / q) / mean^2.
+    // Relative variance for a share q of far samples: sum over points of (near / (1 - q) + far / q) / mean^2.
     double average = 0, near_sum = 0, far_sum = 0;
     for (const KindMoments& m : moments) average += (m.near_mean + m.far_mean) / kPoints;
     for (const KindMoments& m : moments) {

@@ -1,9 +1,9 @@
 #pragma once
 
-// The order in which paths, trees of rays and walks begin. All samples of a pixel come first, then those of the next
-// pixel. So what is under way at a time comes from few pixels that lie side by side, and meets the same nodes,
-// triangles and textures while caches hold them (docs/performance.md, "The order in which samples begin"). No picture
-// depends on this order; which random numbers a sample has is another matter (math/sampler.h).
+// The order in which paths, ray trees and subpaths begin. All samples of a pixel come first, then those of the next
+// pixel. Thus the paths in flight come from a few adjacent pixels and access the same nodes, triangles and textures
+// while caches hold them (docs/performance.md, "The order in which samples begin"). No picture depends on this order;
+// a sample's random numbers are independent of it (math/sampler.h).
 
 #include <cstdint>
 
@@ -12,26 +12,26 @@
 
 namespace pertev {
 
-/// Rows of tiles in a band. A band is 64 pixels high and is gone through column by column, so that some thousand pixels
-/// that come together are about as wide as high.
+/// Rows of tiles in a band. A band is 64 pixels high and is processed column by column, so that a thousand or more
+/// consecutive pixels form an approximate square.
 inline constexpr uint32_t kBandRows = 16;
 
-/// The pixel that comes as number `place`.
+/// The pixel at position `place` of the order.
 HD inline uint32_t ordered_pixel(uint32_t place, uint32_t width, uint32_t height) {
     return tiled_pixel(place, width, height, kBandRows);
 }
 
-/// Which sample of which pixel, counted row by row in a film.
+/// A sample of a pixel; the pixel is counted row by row in a film.
 struct PixelSample {
     uint32_t pixel, sample;
 };
 
-/// Samples [first_sample, + samples) of the pixels at places [first_place, + pixels) of ordered_pixel.
+/// Samples [first_sample, + samples) of the pixels at positions [first_place, + pixels) of ordered_pixel.
 struct BeginOrder {
     uint32_t first_place, pixels, first_sample, samples;
 
     HD uint64_t count() const { return uint64_t(pixels) * samples; }
-    /// The one that comes as `number` < count(), in a picture of width x height.
+    /// The sample with the index `number` < count(), in a picture of width x height.
     HD PixelSample at(uint64_t number, uint32_t width, uint32_t height) const {
         const uint32_t place = static_cast<uint32_t>(number / samples);
         const uint32_t sample = static_cast<uint32_t>(number - uint64_t(place) * samples);

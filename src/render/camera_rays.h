@@ -1,7 +1,7 @@
 #pragma once
 
-// The camera's rays of a picture: where in a pixel and on the lens a sample lies is drawn from the pixel filter and the
-// lens; every integrator begins with them.
+// Camera rays of a picture. The pixel filter and the lens determine where a sample lies in the pixel and on the lens.
+// Every integrator starts with these rays.
 
 #include <cstdint>
 
@@ -11,19 +11,20 @@
 
 namespace pertev {
 
-/// The first groups of a sample's random numbers (math/sampler.h): place in the pixel; place on the lens, and the time.
+/// The first groups of a sample's random numbers (math/sampler.h): position in the pixel; position on the lens, and
+/// time.
 enum CameraGroup : uint32_t { kGroupCamera, kGroupLens, kCameraGroups };
-inline constexpr uint32_t kNumberTime = 2; // of the lens's group
+inline constexpr uint32_t kNumberTime = 2; // in the lens's group
 
 struct CameraRays {
     CameraView view;
     PixelFilterView filter;
-    Vec3 axis;              // unit, world space: depth is measured along it
+    Vec3 axis;              // unit, world space; depth is measured along it
     uint32_t width, height; // pixels
-    bool is_open = false;   // a shutter, through which something is seen to move
-    MotionTrack motion;     // of the camera
+    bool is_open = false;   // whether the shutter is open and something moves
+    MotionTrack motion;     // motion of the camera
 
-    /// The ray of the sample that lies at `in_filter` and `on_lens`, unit squares. Unit direction.
+    /// Ray of the sample at `in_filter` and `on_lens`, in unit squares. Its direction is unit.
     HD Ray ray(uint32_t pixel, Vec2 in_filter, Vec2 on_lens) const {
         const Vec2 offset = sample_filter(filter, in_filter);
         const uint32_t row = pixel / width;
@@ -31,25 +32,25 @@ struct CameraRays {
                             static_cast<float>(row) + 0.5f + offset.y};
         return make_camera_ray(view, place, on_lens);
     }
-    /// The same at `time` (below).
+    /// Ray of the sample at `time`, as time() draws it.
     HD Ray ray(uint32_t pixel, Vec2 in_filter, Vec2 on_lens, float time) const {
         const Ray still = ray(pixel, in_filter, on_lens);
         return motion.moves() ? moved(still, time) : still;
     }
-    /// The ray of a sample of `pixel`, by the numbers that `key` draws.
+    /// Ray of a sample of `pixel` with the random numbers of `key`.
     HD Ray ray(uint32_t pixel, SamplerKind sampler, SampleKey key) const {
         const Vec2 in_filter = sample_2d(sampler, key, kGroupCamera);
         const Vec2 on_lens = has_lens() ? sample_2d(sampler, key, kGroupLens) : Vec2{};
         return ray(pixel, in_filter, on_lens, motion.moves() ? time(sampler, key) : kAtRest);
     }
-    /// Of the sample that `key` draws, evenly over the time that the shutter is open, [0, 1).
+    /// Time of the sample with the random numbers of `key`, uniform over the open shutter, in [0, 1).
     HD float time(SamplerKind sampler, SampleKey key) const {
         return is_open ? sample_1d(sampler, key, kGroupLens, kNumberTime) : kAtRest;
     }
-    /// `axis` at the time of a ray.
+    /// The axis at a ray's time.
     HD Vec3 axis_at(float time) const { return motion.moves() ? motion.at(time).turn(axis) : axis; }
-    /// Density of a ray's direction where it counts as one that a white surface scatters, which a light meter does,
-    /// 1/sr; else 0.
+    /// For a light meter, whose rays count as scattered by a white surface, the density of the direction in 1/sr;
+    /// otherwise 0.
     HD float pdf_of_surface(Vec3 direction) const {
         return is_light_meter(view.projection) ? pdf_cosine_hemisphere(dot(direction, axis)) : 0.0f;
     }
@@ -62,7 +63,8 @@ private:
     }
 };
 
-/// `centre`: the origin of the scene's world, in the camera's coordinates. The shutter is left closed.
+/// Makes the rays of a camera with a closed shutter. `centre` is the origin of the scene's world in the camera's
+/// coordinates.
 inline CameraRays make_camera_rays(const Camera& camera, const PixelFilterView& filter, uint32_t width, uint32_t height,
                                    Vec3 centre) {
     const Vec3 axis = normalize(transform_vector(camera.world_from_camera, {0, 0, -1}));

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the camera's rays cost: nodes and triangles tested for each pixel, for pictures of it in false colours.
+// Traversal cost of camera rays: nodes and triangles tested for each pixel, for false-colour pictures.
 
 #include <vector>
 
@@ -10,9 +10,9 @@
 
 namespace pertev {
 
-/// Of the ray through the middle of each pixel and of the lens, row by row, by the tracer of camera rays, every surface
-/// opaque. Empty where that walk cannot tell: the ray's company has a say in it. Throws Error(OutOfMemory,
-/// DeviceFault).
+/// Counts the work of the ray through the middle of each pixel and of the lens, row by row, by the tracer of camera
+/// rays, with every surface opaque. Returns an empty list if the counts would depend on the other rays of a warp.
+/// Throws Error(OutOfMemory, DeviceFault).
 std::vector<RayWork> count_camera_work(Queue& queue, const SceneTracer& tracer, const PictureView& picture);
 
 } // namespace pertev

@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-/// Returns both parts in one; none where there is no such part.
+/// Joins two adjacent parts; nothing if they are not adjacent.
 std::optional<FilmPart> join(const FilmPart& a, const FilmPart& b) {
     if (a.is_empty()) return b;
     if (b.is_empty()) return a;

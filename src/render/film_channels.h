@@ -1,7 +1,7 @@
 #pragma once
 
-// What a film holds for each pixel: R, G, B, hits (1 a sample whose camera ray hit something), then the auxiliary
-// groups that the render was asked for. kAovTable is the one place that knows names, order and numbers of channels.
+// Channels of a film's pixel: R, G, B, hits (the number of samples whose camera ray hit something), then the
+// requested auxiliary groups. kAovTable alone defines names, order and numbers of channels.
 
 #include <cstdint>
 #include <optional>
@@ -17,23 +17,23 @@ namespace pertev {
 /// Groups of auxiliary channels; lower bits come first.
 enum AovBits : uint32_t {
     kAovAlbedo = 1,   // reflectance of the first surface
-    kAovNormal = 2,   // its shading normal, world space
+    kAovNormal = 2,   // shading normal of the first surface, world space
     kAovDepth = 4,    // distance along the camera's axis, metres
-    kAovPosition = 8, // the file's coordinates, of a far scene its own (SceneView::position_shift), metres
-    kAovIds = 16,     // no sums: ids of sample 0, see FilmView::ids
+    kAovPosition = 8, // in the file's coordinates, in metres; relative to SceneView::position_shift in a far scene
+    kAovIds = 16,     // ids of sample 0, which are not sums; see FilmView::ids
     kAovMotion = 32,  // not in the film: denoise/motion_vectors.h
 };
 
 inline constexpr uint32_t kFilmColorChannels = 4;
-inline constexpr uint32_t kFilmHits = 3; // of these, the channel that counts hits
+inline constexpr uint32_t kFilmHits = 3; // index of the channel that counts hits
 
 struct AovGroup {
     AovBits bit;
-    const char* name;        // as it is asked for
-    const char* layer;       // as files name it
-    const char* channels[3]; // names in files; null where there are fewer
+    const char* name;        // name on the command line
+    const char* layer;       // layer name in files
+    const char* channels[3]; // channel names in files; null if there are fewer
     bool is_summed;          // its channels are sums in the film
-    bool over_hits;          // mean over the samples that hit, not over all
+    bool over_hits;          // mean over the samples that hit something, not over all
 };
 
 inline constexpr AovGroup kAovTable[] = {
@@ -49,7 +49,7 @@ namespace film_channels {
 
 constexpr uint32_t kGroups = sizeof(kAovTable) / sizeof(kAovTable[0]);
 
-/// Sums of each group, four bits each: device code cannot read the table.
+/// Numbers of sums of all groups, packed in four bits each, because device code cannot read the table.
 constexpr uint32_t pack_widths() {
     uint32_t widths = 0;
     for (uint32_t i = 0; i < kGroups; ++i) {
@@ -69,7 +69,7 @@ constexpr bool is_in_order_of_bits() {
 }
 static_assert(is_in_order_of_bits());
 
-/// Sums of a pixel before those of group `index`.
+/// Number of sums of a pixel before those of group `index`.
 HD constexpr uint32_t sums_before(uint32_t aovs, uint32_t index) {
     uint32_t sums = kFilmColorChannels;
     for (uint32_t i = 0; i < index; ++i) sums += (aovs >> i & 1u) * (kWidths >> (4 * i) & 15u);
@@ -78,14 +78,14 @@ HD constexpr uint32_t sums_before(uint32_t aovs, uint32_t index) {
 
 } // namespace film_channels
 
-/// The first channel of group `aov` in a film that holds the groups `aovs`.
+/// First channel of group `aov` in a film with the groups `aovs`.
 HD constexpr uint32_t channel_offset(uint32_t aovs, AovBits aov) {
     uint32_t index = 0;
     while ((1u << index) < aov) ++index;
     return film_channels::sums_before(aovs, index);
 }
 
-/// Sums of a pixel in all.
+/// Total number of sums of a pixel.
 HD constexpr uint32_t film_channel_count(uint32_t aovs) {
     return film_channels::sums_before(aovs, film_channels::kGroups);
 }
@@ -94,9 +94,9 @@ HD constexpr uint32_t film_channel_count(uint32_t aovs) {
 const AovGroup& aov_group(AovBits aov);
 std::vector<std::string> channel_names(const AovGroup& group);
 
-/// By the name that it is asked for.
+/// Finds a group by its name on the command line.
 std::optional<AovBits> aov_named(std::string_view name);
-/// All of them, in the order of the bits.
+/// Names of all groups in the order of their bits.
 std::vector<std::string> aov_names();
 
 } // namespace pertev

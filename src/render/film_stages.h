@@ -1,8 +1,8 @@
 #pragma once
 
-// What is done with a film beyond adding samples: adding another film, and making floats or bytes to be shown of its
-// sums. On the film's own device, so that sums need not travel: a float is a quarter of one, a shown pixel a twelfth
-// of those of its colour. Launched by render/film.cpp.
+// Operations on films other than adding samples: adding another film, and computing floats or displayed bytes from
+// its sums. They run on the film's device, because a mean has a quarter of the size of its sum, and a displayed pixel
+// a twelfth of the size of its colour sums. render/film.cpp launches them.
 
 #include <cstdint>
 
@@ -12,7 +12,7 @@
 
 namespace pertev {
 
-/// One sum each.
+/// One call per sum.
 struct AddSums {
     const FixedSum* from;
     FixedSum* to;
@@ -20,7 +20,7 @@ struct AddSums {
     HD void operator()(uint32_t i) const { to[i] = to[i] + from[i]; }
 };
 
-/// One count each.
+/// One call per count.
 struct AddCounts {
     const uint64_t* from;
     uint64_t* to;
@@ -28,7 +28,7 @@ struct AddCounts {
     HD void operator()(uint32_t i) const { to[i] += from[i]; }
 };
 
-/// One pixel each. Ids belong to sample 0: a film that has not got it holds kNoHit, as where it hit nothing.
+/// One call per pixel. Ids belong to sample 0: a film without it holds kNoHit, as if nothing was hit.
 struct AddIds {
     const PixelIds* from;
     PixelIds* to;
@@ -38,13 +38,13 @@ struct AddIds {
     }
 };
 
-/// Takes a pixel of `from` where `to` has had no sample since it was cleared.
+/// Takes a pixel of `from` if `to` has had no sample there since it was cleared.
 struct AddFrames {
-    static constexpr uint32_t kNoSample = 0xffffffffu; // bits of the light's w
+    static constexpr uint32_t kNoSample = 0xffffffffu; // bits of w of the light
 
     const Float4* from;
     Float4* to;
-    uint32_t pixels, arrays; // each of `arrays` holds all pixels, that of the light first
+    uint32_t pixels, arrays; // each of `arrays` holds all pixels; the light comes first
 
     HD void operator()(uint32_t i) const {
         if (bits_of(to[i].w) != kNoSample) return;
@@ -52,29 +52,29 @@ struct AddFrames {
     }
 };
 
-/// Makes the means of some neighbouring channels of one pixel.
+/// One call per pixel: computes the means of some consecutive channels.
 struct ResolveFilm {
     FilmView film;
-    uint32_t first, channels; // of the film's
-    bool over_hits;           // the mean over samples that hit something, 0 where none did
-    uint64_t samples;         // of each pixel; 0: all means are 0
+    uint32_t first, channels; // channels of the film
+    bool over_hits;           // mean over samples that hit something, 0 if none did
+    uint64_t samples;         // per pixel; 0: all means are 0
     float* pixels;            // [pixels * channels]
 
     HD void operator()(uint32_t i) const {
         const FixedSum* sums = film.at_place(i);
-        const uint64_t count = over_hits ? sums[kFilmHits].high : samples; // ones are 2^64 units
+        const uint64_t count = over_hits ? sums[kFilmHits].high : samples; // each hit adds one, which is 2^64 units
         float* to = pixels + static_cast<uint64_t>(i) * channels;
         for (uint32_t c = 0; c < channels; ++c) to[c] = count == 0 ? 0.0f : mean_of(sums[first + c], count);
     }
 };
 
-/// What a display shows, one pixel each.
+/// One call per pixel: computes the bytes that a display shows.
 struct DisplayFilm {
     FilmView film;
-    uint64_t samples; // of each pixel, > 0
+    uint64_t samples; // per pixel, > 0
     ToneMap kind;
-    float scale;      // of light, before it is tone-mapped
-    bool keeps_alpha; // else 255
+    float scale;      // factor for the light before tone mapping
+    bool keeps_alpha; // otherwise alpha is 255
     uint8_t* pixels;  // [pixels * 4]
 
     HD void operator()(uint32_t i) const {

@@ -1,8 +1,8 @@
 #pragma once
 
-// A film is a list of targets. A target holds what samples leave of one kind (exact sums, ids, counts), in memory of
-// its own on the film's device. Films that hold other samples of one picture are added target by target, and a target
-// is kept as bytes from which it is made again; neither depends on the device.
+// A film is a list of targets. A target holds one kind of result (exact sums, ids, counts) in its own memory on the
+// film's device. Films with different samples of one picture are added target by target. A target can be saved as
+// bytes and restored from them; neither depends on the device.
 
 #include <algorithm>
 #include <cstddef>
@@ -22,7 +22,7 @@ namespace pertev {
 
 /// One layer of the finished picture: its name, channel names and pixels.
 struct FilmLayer {
-    std::string name; // as kAovTable names layer and channels
+    std::string name; // layer and channels are named as in kAovTable
     std::vector<std::string> channels;
     Image image;
 };
@@ -30,29 +30,30 @@ struct FilmLayer {
 class FilmTarget {
 public:
     virtual ~FilmTarget() = default;
-    /// The same of targets that hold the same kind of thing; no two targets of a film share one.
+    /// Name of the kind of target; unique within a film.
     virtual const char* name() const = 0;
-    /// As if no sample had been taken.
+    /// Resets the target to its state without samples.
     virtual void clear() = 0;
-    /// Tells those who add samples where it lies.
+    /// Sets the target's memory in the view of those who add samples.
     virtual void show(FilmView& view) const = 0;
-    /// Returns whether `other` is of the same kind, name and size.
+    /// Returns whether `other` has the same kind, name and size.
     virtual bool is_like(const FilmTarget& other) const = 0;
-    /// Takes what `other` holds of other samples, from any queue. Throws std::logic_error unless it is like this one.
+    /// Adds the contents of `other`, which holds other samples, from any queue. Throws std::logic_error unless
+    /// is_like() holds.
     virtual void add(const FilmTarget& other) = 0;
-    /// Resolves to layers of the picture, of a film of `width` columns that has so many samples of each pixel. The
-    /// film itself resolves its own targets.
+    /// Layers of the picture, for a film that is `width` columns wide and has `samples` samples per pixel. The film
+    /// resolves its own targets itself.
     virtual std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const {
         static_cast<void>(width), static_cast<void>(samples);
         return {};
     }
     virtual std::vector<std::byte> bytes() const = 0;
-    /// Becomes the target that `bytes` were of. Throws std::logic_error where their number is wrong.
+    /// Restores the target from `bytes`. Throws std::logic_error if their number is wrong.
     virtual void set_bytes(std::span<const std::byte> bytes) = 0;
 };
 
-/// A target of `count` elements, each of which starts with all bytes `kEmpty` and takes another film's by the stage
-/// `Add{from, to}`.
+/// A target of `count` elements, each with all bytes `kEmpty` at first. The stage `Add{from, to}` adds another film's
+/// elements.
 template <class T, class Add, unsigned char kEmpty>
 class ElementTarget : public FilmTarget {
 public:
@@ -88,7 +89,7 @@ public:
             }
             launch(*queue_, "add_films", static_cast<uint32_t>(count), Add{theirs, elements_.data() + first});
         }
-        queue_->wait(); // before the copy goes
+        queue_->wait(); // the copy must be finished before its source is freed
     }
 
     std::vector<std::byte> bytes() const override {

@@ -1,6 +1,7 @@
 #pragma once
 
-// Where samples are added, on the device. Channels of a pixel lie together, in the order of render/film_channels.h.
+// The film's device view, to which samples are added. Channels of a pixel are contiguous, in the order of
+// render/film_channels.h.
 
 #include <cstdint>
 
@@ -14,7 +15,7 @@
 
 namespace pertev {
 
-/// Ids of what sample 0 of a pixel hit first; each kNoHit where it hit nothing or was not taken.
+/// Ids of the first hit of a pixel's sample 0; kNoHit if it hit nothing or was not taken.
 struct PixelIds {
     uint32_t instance, primitive, material;
 };
@@ -22,12 +23,12 @@ struct PixelIds {
 struct FilmView {
     FixedSum* sums;    // [pixels * channels]
     PixelIds* ids;     // [pixels], or null
-    uint64_t* invalid; // one count of samples that were not finite or over kMaxSampleValue
+    uint64_t* invalid; // number of samples that were not finite or over kMaxSampleValue
     uint32_t channels;
     uint32_t aovs; // AovBits
     uint32_t width, height;
-    NoisyFrameView frame; // where it is there, samples go to it: there are no sums, ids or auxiliary channels
-    PixelWindow window;   // that sums and ids are of
+    NoisyFrameView frame; // if present, samples go to it, and there are no sums, ids or auxiliary channels
+    PixelWindow window;   // the window that sums and ids cover
 
     /// Whether it takes sums of every pixel of the picture, which is all that most integrators can fill.
     bool is_whole_picture() const { return !frame.is_there() && window.picture_width == 0; }
@@ -51,8 +52,8 @@ HD inline void add_radiance(const FilmView& film, uint32_t pixel, Rgb radiance) 
     atomic_add(&sums[2], to_fixed(radiance.b));
 }
 
-/// A pixel's sample goes to a frame: `radiance`, of which the first surface scatters `diffuse` by its diffuse lobes. A
-/// sample with an invalid channel is stored as black and counted.
+/// Stores a pixel's sample in a frame: `radiance`, of which the first surface scatters `diffuse` by its diffuse
+/// lobes. A sample with an invalid channel is stored as black and counted.
 HD inline void store_sample(const FilmView& film, uint32_t pixel, Rgb radiance, Rgb diffuse) {
     const bool is_valid = is_valid_sample(radiance.r) && is_valid_sample(radiance.g) && is_valid_sample(radiance.b);
     if (!is_valid) atomic_add(film.invalid, 1);
@@ -60,7 +61,7 @@ HD inline void store_sample(const FilmView& film, uint32_t pixel, Rgb radiance, 
     if (film.frame.splits_light()) film.frame.diffuse[pixel] = {diffuse.r, diffuse.g, diffuse.b, 0};
 }
 
-/// More light of a frame's sample, as store_sample takes it.
+/// Adds light to a frame's sample; arguments as in store_sample.
 HD inline void add_to_sample(const FilmView& film, uint32_t pixel, Rgb radiance, Rgb diffuse) {
     const Float4 before = film.frame.light[pixel];
     if (before.w == 0) return; // invalid
@@ -69,7 +70,7 @@ HD inline void add_to_sample(const FilmView& film, uint32_t pixel, Rgb radiance,
     store_sample(film, pixel, Rgb{before.x, before.y, before.z} + radiance, Rgb{d.x, d.y, d.z} + diffuse);
 }
 
-/// Adds a value to an auxiliary channel; an invalid one adds 0.
+/// Adds a value to an auxiliary channel; an invalid value adds 0.
 HD inline void add_channel(const FilmView& film, uint32_t pixel, uint32_t channel, float value) {
     if (is_valid_sample(value)) atomic_add(&film.pixel(pixel)[channel], to_fixed(value));
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a pixel filter looks up, in a device's memory.
+// The lookup table of a pixel filter in device memory.
 
 #include <optional>
 
@@ -9,12 +9,13 @@
 
 namespace pertev {
 
-/// Room for the table of any filter: another one takes no memory anew, and one that is there is not copied again.
+/// Memory for the table of any filter. A change of filter does not allocate, and a table that is already there is not
+/// copied again.
 class FilterTable {
 public:
     explicit FilterTable(Queue& queue) : table_(queue, kFilterTableSize + 1, "pixel filter") {}
 
-    /// The view of `filter`; of the one before, it may be void.
+    /// Copies the table of `filter` if needed and returns its view. The previous view becomes invalid.
     PixelFilterView set(PixelFilter filter, float radius) {
         if (filter != held_) {
             const std::vector<float> table = make_filter_table(filter);
@@ -26,7 +27,7 @@ public:
 
 private:
     Buffer<float> table_;
-    std::optional<PixelFilter> held_; // whose table it is
+    std::optional<PixelFilter> held_; // the filter whose table is stored
 };
 
 } // namespace pertev

@@ -1,6 +1,6 @@
 #pragma once
 
-// Auxiliary channels of what a camera ray met first, the same whatever integrator asks.
+// Auxiliary channels of the camera ray's first hit, the same for all integrators.
 
 #include "device_scene/surface.h"
 #include "render/film_view.h"
@@ -8,18 +8,18 @@
 
 namespace pertev {
 
-/// Of a camera ray's start and direction.
+/// Start and direction of a camera ray.
 struct RayLine {
     Vec3 origin, direction; // unit
 };
 
-/// Of a camera ray that met nothing.
+/// Adds the channels of a camera ray that hit nothing.
 HD inline void add_no_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample) {
     if ((film.aovs & kAovIds) != 0 && sample == 0) film.set_ids(pixel, {kNoHit, kNoHit, kNoHit});
 }
 
-/// `surface` is what `hit` made. A ground that was made up counts as background. `time`: of the ray, while the shutter
-/// is open.
+/// Adds the channels of `hit` with its `surface`. A generated ground counts as background. `time` is the ray's while
+/// the shutter is open.
 HD inline void add_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample, const RayLine& ray, const Hit& hit,
                              const Surface& surface, const PictureView& picture, float time = kAtRest) {
     if (shows_background(picture.scene, hit.instance)) return add_no_first_hit(film, pixel, sample);

@@ -1,8 +1,8 @@
 #pragma once
 
-// The film's number: a 128-bit two's complement integer in units of 2^-64. Samples are shifted in, bits below the unit
-// are cut (towards zero). Integer addition is associative, so a sum does not depend on order, split, device or resume,
-// and 10^6 samples lose nothing. docs/conventions.md, "The film adds exactly".
+// The film's number type: a 128-bit two's complement integer in units of 2^-64. Samples are shifted in, and bits
+// below the unit are truncated towards zero. Integer addition is associative, so a sum does not depend on order,
+// partition, device or interruption, and 10^6 samples lose nothing. See docs/conventions.md, "The film adds exactly".
 
 #include <cstdint>
 #include <cstring>
@@ -21,7 +21,7 @@ struct FixedSum {
 };
 static_assert(static_cast<double>(kMaxSamplesPerPixel) * static_cast<double>(kMaxSampleValue) < 0x1p63);
 
-/// x in fixed point. |x| <= kMaxSampleValue (2^40), finite.
+/// Converts x to fixed point. |x| <= kMaxSampleValue (2^40), finite.
 HD inline FixedSum to_fixed(float x) {
     const uint32_t bits = bits_of(x);
     const uint32_t exponent = (bits >> 23) & 0xff;
@@ -52,7 +52,7 @@ HD inline FixedSum operator+(FixedSum a, FixedSum b) {
     return {low, a.high + b.high + (low < b.low ? 1u : 0u)};
 }
 
-/// target += value, safe against other threads' additions to the same target.
+/// Adds atomically with respect to other additions to the same target.
 HD inline void atomic_add(FixedSum* target, FixedSum value) {
     if (value.low != 0) {
         const uint64_t old = atomic_add(&target->low, value.low);
@@ -61,7 +61,7 @@ HD inline void atomic_add(FixedSum* target, FixedSum value) {
     if (value.high != 0) atomic_add(&target->high, value.high);
 }
 
-/// sum / count, rounded once to the nearest float (ties to even). `count`: 1 to 2^37, far more than
+/// Returns sum / count, rounded once to the nearest float (ties to even). `count` is 1 to 2^37, far more than
 /// kMaxSamplesPerPixel.
 HD inline float mean_of(FixedSum sum, uint64_t count) {
     const bool negative = (sum.high >> 63) != 0;
@@ -69,14 +69,14 @@ HD inline float mean_of(FixedSum sum, uint64_t count) {
     const uint64_t high = negative ? ~sum.high + (sum.low == 0 ? 1 : 0) : sum.high;
     if ((low | high) == 0) return 0;
 
-    // The leading 64 bits in units of 2^exponent, and whether anything lies below them.
+    // The leading 64 bits in units of 2^exponent, and whether any lower bit is set.
     const uint32_t zeros = 63 - highest_bit(high != 0 ? high : low);
     const uint64_t leading = high == 0 ? low << zeros : zeros == 0 ? high : high << zeros | low >> (64 - zeros);
     bool sticky = high != 0 && low << zeros != 0;
     int exponent = (high != 0 ? 0 : -64) - static_cast<int>(zeros);
 
-    // The quotient has 26 bits or more: enough for one correct rounding. What lies below the leading bits is less than
-    // one of them, so it can only be part of what is left.
+    // The quotient has at least 26 bits, enough for one correct rounding. The bits below the leading ones are less
+    // than one of them, so they only affect the remainder.
     uint64_t quotient = leading;
     if ((count & (count - 1)) == 0) {
         exponent -= static_cast<int>(highest_bit(count));
@@ -84,12 +84,13 @@ HD inline float mean_of(FixedSum sum, uint64_t count) {
         quotient = leading / count;
         sticky = sticky || quotient * count != leading;
     }
-    const uint32_t cut = highest_bit(quotient) - 25; // down to 26: 24 of the float, one to round by, one for the rest
+    const uint32_t cut = highest_bit(quotient) - 25; // reduces to 26 bits: 24 of the float, one to round by, one for
+                                                     // the rest
     sticky = sticky || (quotient & ((uint64_t(1) << cut) - 1)) != 0;
     quotient >>= cut;
     exponent += static_cast<int>(cut);
-    // An odd last bit below the rounding bit stands for everything cut. The double is exact and so is its product with
-    // a power of two; its conversion rounds once. Neither is subnormal: the least mean is 2^-101.
+    // An odd last bit below the rounding bit stands for everything cut off. The double is exact, and so is its
+    // product with a power of two; its conversion rounds once. Neither is subnormal: the least mean is 2^-101.
     const double digits = static_cast<double>((quotient << 1) | (sticky ? 1 : 0));
     const uint64_t scale_bits = static_cast<uint64_t>(1023 + exponent - 1) << 52; // 2^(exponent - 1)
     double scale;

@@ -28,7 +28,7 @@ double hidden_back_share(Queue& queue, SceneTracer& tracer, const PictureView& p
                          {places.data(), instances.data()});
         return std::pair(places.download(), instances.download());
     };
-    const auto [met, met_instances] = find(RayKind::Bounce); // which see backs
+    const auto [met, met_instances] = find(RayKind::Bounce); // bounce rays hit back faces
     const auto [seen, seen_instances] = find(RayKind::Camera);
     uint32_t passed = 0;
     for (uint32_t i = 0; i < kRays; ++i) {

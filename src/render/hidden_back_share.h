@@ -1,6 +1,6 @@
 #pragma once
 
-// How much of a picture the camera sees through the backs of surfaces that hide them.
+// The share of a picture that the camera sees through culled back faces.
 
 #include "device/queue.h"
 #include "render/picture_view.h"
@@ -8,9 +8,9 @@
 
 namespace pertev {
 
-/// Share of the camera's rays, in [0, 1], that pass the back of a surface that is not double sided; of 4096 spread over
-/// the picture, which no setting changes: each is traced with such backs and without. Costs nothing where there is
-/// none. Throws Error(DeviceFault).
+/// Share of camera rays, in [0, 1], that pass through the back of a single-sided surface. It traces 4096 rays over
+/// the picture, independently of all settings, with and without such back faces. It does nothing if there are none.
+/// Throws Error(DeviceFault).
 double hidden_back_share(Queue& queue, SceneTracer& tracer, const PictureView& picture);
 
 } // namespace pertev

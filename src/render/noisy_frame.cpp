@@ -64,7 +64,7 @@ void NoisyFrame::add(const FilmTarget& other) {
            AddFrames{copy.view_.light, view_.light, pixels, static_cast<uint32_t>(arrays(splits_light()))});
     const uint64_t invalid = invalid_samples() + copy.invalid_samples();
     invalid_.upload({&invalid, 1});
-    queue_->wait(); // before the copy goes
+    queue_->wait(); // the copy must be finished before its source is freed
 }
 
 std::vector<std::byte> NoisyFrame::bytes() const {

@@ -1,8 +1,8 @@
 #pragma once
 
-// One sample of every pixel as plain numbers, told apart by the kind of light, and the surface that its camera ray met:
-// what a picture in real time is reconstructed from (denoise/). Stored, not summed: each pixel's sample is one path's,
-// so no two threads write to one place.
+// One sample of every pixel in floats, separated by kinds of light, and the G-buffer of its first hit; the input of
+// real-time reconstruction (denoise/). Samples are stored, not summed: each pixel's sample is one path, so no two
+// threads write to one location.
 
 #include <cstdint>
 
@@ -14,20 +14,22 @@
 
 namespace pertev {
 
-/// A distance that stands for "met nothing", metres.
+/// Distance that stands for "no hit", in metres.
 inline constexpr float kFarAway = 0x1p40f;
 
-/// What a frame's samples leave to ReSTIR (restir/), of each pixel. Null where they keep all light.
+/// Per-pixel data that a frame's samples leave for ReSTIR (restir/). Null if the samples keep all light.
 struct FirstBounceView {
-    // The samples leave out what lights send to the first surface, but by delta lobes of it; here stands the place on a
-    // light that the first bounce ran into, or nowhere.
+    // The samples omit direct light at the first surface, except by its delta lobes. Stored here is the sample point
+    // on the light that the first bounce hit, if any.
     LightPlace* light = nullptr;
 
-    // Null unless what the place met by the first bounce sends is wanted too (the samples keep it):
-    Float4* place = nullptr;   // bits of its instance (kNoHit: nothing) and primitive, u, v
-    Float4* way = nullptr;     // rgb throughput of the path when it came there; density of the first bounce, 1/sr
-    Float4* sent = nullptr;    // rgb, what of the sample the diffuse lobes there send
-    Float4* onwards = nullptr; // rgb, while the path goes on: share of what it finds that goes through these lobes
+    // These are null unless the light from the point that the first bounce hit is needed too (the samples include
+    // it):
+    Float4* place = nullptr;   // bits of instance (kNoHit: no hit) and primitive, u, v of the point that the first
+                               // bounce hit
+    Float4* way = nullptr;     // rgb throughput of the path on arrival; density of the first bounce, 1/sr
+    Float4* sent = nullptr;    // rgb, the part of the sample that diffuse lobes there send
+    Float4* onwards = nullptr; // rgb, share of the light of the rest of the path that passes through these lobes
 
     HD bool leaves_direct_light() const { return light != nullptr; }
     HD bool tells_bounce() const { return sent != nullptr; }
@@ -37,17 +39,18 @@ struct FirstBounceView {
     }
 };
 
-/// Arrays of one element a pixel, row by row.
+/// G-buffer and light of a frame: arrays with one element per pixel, row by row.
 struct NoisyFrameView {
-    Float4* light = nullptr;    // rgb of the sample, W/(sr m2); w: 0 where it was invalid, and counts as black, else 1
-    Float4* diffuse = nullptr;  // rgb, what of `light` the first surface scatters by its diffuse lobes. Null: all of
-                                // `light` but `emission`, in scenes that have no other lobes
-    Float4* emission = nullptr; // rgb, what of `light` the camera's ray meets itself; Gloss::passage
-    Float4* place = nullptr;    // bits of instance (kNoHit: nothing) and primitive, u, v
+    Float4* light = nullptr;    // rgb of the sample, W/(sr m2); w is 1, or 0 for an invalid sample, which counts as
+                                // black
+    Float4* diffuse = nullptr;  // rgb, the part of `light` that the first surface scatters by diffuse lobes. Null:
+                                // all of `light` but `emission`, in scenes without other lobes
+    Float4* emission = nullptr; // rgb, the part of `light` that the camera ray hits directly; Gloss::passage
+    Float4* place = nullptr;    // bits of instance (kNoHit: no hit) and primitive, u, v
     Float4* normal = nullptr;   // unit shading normal on the camera's side; depth along the camera's axis, metres
-    Float4* albedo = nullptr;   // rgb of diffuse lobes; GGX width of the sharpest other lobe, 1 without one
-    Float4* gloss = nullptr;    // rgb, about the share of light that other lobes reflect; metres from the first surface
-                                // to what the path met next (kFarAway: nothing)
+    Float4* albedo = nullptr;   // rgb of diffuse lobes; GGX width of the sharpest other lobe, or 1 without one
+    Float4* gloss = nullptr;    // rgb, approximate reflectance of the other lobes; metres from the first surface to
+                                // the path's next hit, kFarAway without one
     FirstBounceView first_bounce;
 
     HD bool is_there() const { return light != nullptr; }

@@ -1,15 +1,16 @@
 #pragma once
 
-// The adjoint of Surface::evaluate and Surface::sample: how a particle that carries power away from the lights is
-// scattered. It came from `wi` and goes on along `wo`; both point away from the surface.
+// The adjoint of Surface::evaluate and Surface::sample: scattering of a particle that carries power from the lights.
+// It arrives from `wi` and continues along `wo`; both point away from the surface.
 //
-// A BSDF needs no function of its own for that: in its units (bsdf_sample.h) evaluate(wi, wo) is its adjoint. A
-// surface's value K'(wo, wi) also holds raised directions and a cosine to the shading normal, where power asks for that
-// to the triangle. With etendue n^2 |w . Ng| dw the adjoint of K' is K'(wo, wi) n_o^2 |wo . Ng| / (n_i^2 |wi . Ng|),
-// and by the reciprocity of the BSDF f this is, l being wi lowered, with `slope` there,
+// A BSDF needs no separate function for that: in its units (bsdf_sample.h) evaluate(wi, wo) is its adjoint. But a
+// surface's value K'(wo, wi) also contains raised directions and a cosine with the shading normal, where power needs
+// the one with the triangle's normal. With etendue n^2 |w . Ng| dw the adjoint of K' is K'(wo, wi) n_o^2 |wo . Ng| /
+// (n_i^2 |wi . Ng|). By the reciprocity of the BSDF f this equals, with l being wi lowered and `slope` its slope,
 //     f(l, wo) |l . Ns| |wo . Ng| / (|wo . Ns| |wi . Ng| slope),
-// in which no index is left (Veach 1997, section 5.3, has it without the raise). What it is not the adjoint of: a delta
-// direction folded back at the triangle's plane, and a normal that valid_normal has turned, which then depends on wo.
+// which contains no index (Veach 1997, section 5.3, has it without the raise). It is not the adjoint for a delta
+// direction that is folded back at the triangle's plane, nor for a normal that valid_normal has turned, which then
+// depends on wo.
 
 #include "device_scene/surface.h"
 
@@ -17,12 +18,13 @@ namespace pertev {
 
 namespace particle {
 
-/// The direction at which the BSDF is asked: wi lowered. Delta lobes alone keep theirs, as Surface::sample does.
+/// The direction for which the BSDF is evaluated: wi lowered. Pure delta lobes keep theirs, as Surface::sample does.
 HD inline RaisedDirection lowered(const Surface& surface, Vec3 wi_local) {
     if (!(surface.tilt > 0) || surface.bsdf.has_delta_only()) return {wi_local, 1.0f};
     return lower_direction(wi_local, surface.tilt);
 }
-/// Delta lobes stand beside others that take the lowered direction: half of the samples are drawn for each.
+/// Whether a surface has delta lobes beside others that use the lowered direction; then half of the samples are drawn
+/// for each.
 HD inline bool is_split(const Surface& surface, const RaisedDirection& from) {
     return from.slope < 1 && surface.bsdf.has_delta() && !surface.bsdf.has_delta_only();
 }
@@ -33,20 +35,21 @@ HD inline float factor(const Surface& surface, Vec3 wo, Vec3 wi, Vec3 wo_local, 
 
 } // namespace particle
 
-/// Through a surface, a particle that came from `wi` comes to where the square of the refractive index is this; it was
+/// Square of the refractive index beyond a surface for a particle from `wi`, where it is `here`. Power is the same on
+/// both sides; radiance over n^2 (bsdf_sample.h) is arriving power divided by that square.
 /// `here`. Power is the same on both sides, radiance over n^2 (bsdf_sample.h) is power that arrives, over that square.
 HD inline float squared_index_beyond(const Surface& surface, Vec3 wi, float here) {
     const float squared = square(surface.bsdf.base.dielectric.ior);
     return surface.frame.to_local(wi).z > 0 ? here * squared : here / squared;
 }
-/// The same, where it goes on along `wo`: `here` but where that is through glass.
+/// Square of the refractive index along `wo`: `here`, unless the particle is transmitted through glass.
 HD inline float squared_index_along(const Surface& surface, Vec3 wi, Vec3 wo, float here) {
     const bool goes_through = surface.bsdf.base.kind == LobeKind::Dielectric && !surface.same_side(wo, wi);
     return goes_through ? squared_index_beyond(surface, wi, here) : here;
 }
 
-/// Power sent on per solid angle of `wo`, of 1 that came from `wi`, by the lobes of `classes`; and the density of
-/// sample_adjoint() at wo. Both directions unit, world space. Delta lobes give nothing.
+/// Power scattered per solid angle of `wo` for a power of 1 from `wi`, by the lobes of `classes`, and the density of
+/// sample_adjoint() at wo. Both directions are unit, in world space. Delta lobes contribute nothing.
 HD inline BsdfValue evaluate_adjoint(const Surface& surface, Vec3 wi, Vec3 wo, LobeClasses classes = kAllLobeClasses) {
     const Vec3 wo_local = surface.frame.to_local(wo), wi_local = surface.frame.to_local(wi);
     if (!surface.is_consistent(wo, wi, wo_local, wi_local)) return {};
@@ -58,8 +61,9 @@ HD inline BsdfValue evaluate_adjoint(const Surface& surface, Vec3 wi, Vec3 wo, L
             particle::is_split(surface, from) ? 0.5f * value.pdf : value.pdf};
 }
 
-/// Where a particle from `wi` (unit, world space) goes: the direction is in the sample's `wi`, its weight the factor of
-/// the particle's power. pdf 0: absorbed. The weight of a bent normal is not bounded where wo nears its horizon.
+/// Samples where a particle from `wi` (unit, world space) goes: the direction is the sample's `wi`, and its weight
+/// multiplies the particle's power. pdf 0 means absorption. With a bent normal the weight is unbounded as wo nears
+/// its horizon.
 HD inline BsdfSample sample_adjoint(const Surface& surface, Vec3 wi, float u_lobe, Vec2 u) {
     const Vec3 wi_local = surface.frame.to_local(wi);
     RaisedDirection from = particle::lowered(surface, wi_local);

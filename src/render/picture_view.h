@@ -1,7 +1,7 @@
 #pragma once
 
-// What samples are taken of: a scene, seen by a camera. Views and numbers; whoever begins a picture keeps what they
-// point to.
+// A scene as a camera sees it, which samples are taken from. It consists of views and numbers; whoever begins a
+// picture owns the memory.
 
 #include "device_scene/scene_view.h"
 #include "render/camera_rays.h"
@@ -11,7 +11,7 @@ namespace pertev {
 struct PictureView {
     SceneView scene;
     CameraRays camera;
-    bool hide_background = false; // a camera ray that hits nothing brings nothing: for pictures with alpha
+    bool hide_background = false; // camera rays that hit nothing return black, for pictures with alpha
 };
 
 } // namespace pertev

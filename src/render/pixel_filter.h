@@ -1,7 +1,8 @@
 #pragma once
 
-// Pixel reconstruction filters by importance sampling: a sample falls at a distance from the pixel's centre that is
-// drawn from the filter, and counts for that pixel alone with weight 1, so no filter makes fringes or needs splats.
+// Pixel reconstruction filters by importance sampling: the offset of a sample from the pixel's centre is drawn from
+// the filter, and the sample counts only for that pixel, with weight 1. Thus no filter causes ringing or needs
+// splatting.
 //
 // Source: Ernst, Stamminger, Greiner, "Filter Importance Sampling", RT 2006. All filters are separable and positive.
 
@@ -17,7 +18,7 @@ namespace pertev {
 
 enum class PixelFilter : uint8_t { Box, Tent, Gaussian, BlackmanHarris };
 
-/// Half the width of a filter's support where the user names none, pixels.
+/// Default half width of a filter's support, in pixels.
 float default_filter_radius(PixelFilter filter);
 
 inline constexpr int kFilterTableSize = 256;
@@ -25,16 +26,16 @@ inline constexpr int kFilterTableSize = 256;
 struct PixelFilterView {
     PixelFilter kind;
     float radius;       // pixels
-    const float* table; // [kFilterTableSize + 1], of make_filter_table; table kinds only
+    const float* table; // [kFilterTableSize + 1], from make_filter_table; only for filters with a table
 };
 
-/// Inverse of the cumulative distribution along one axis, in radii; empty for Box and Tent, which have closed forms.
-/// Entry i stands at the cumulative probability that a tent has reached at 2 i / kFilterTableSize - 1 of its radius:
-/// the inverse is steep where a filter fades out, and that puts the entries close together there. Gaussian: standard
-/// deviation radius / 3 (cut at 3 sigma). Blackman-Harris: the 4-term window over [-radius, radius].
+/// Inverse of the cumulative distribution along one axis, in units of the radius; empty for Box and Tent, which have
+/// closed forms. Entry i belongs to the cumulative probability that a tent reaches at 2 i / kFilterTableSize - 1 of
+/// its radius. This places the entries densely where the filter fades out and the inverse is steep. Gaussian:
+/// standard deviation radius / 3 (cut at 3 sigma). Blackman-Harris: the 4-term window over [-radius, radius].
 std::vector<float> make_filter_table(PixelFilter filter);
 
-/// Offset from the pixel's centre along one axis, pixels. u in (0, 1).
+/// Offset from the pixel's centre along one axis, in pixels. u in (0, 1).
 HD inline float sample_filter_axis(const PixelFilterView& filter, float u) {
     switch (filter.kind) {
     case PixelFilter::Box:

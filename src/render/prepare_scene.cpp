@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint64_t kManyCopiedTriangles = 1u << 18;
 
-/// Says where a material's index is not the one that is rendered.
+/// Warns of materials whose index of refraction is not the one that is rendered.
 void warn_of_indices(const Scene& scene, Messages& messages) {
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
@@ -28,11 +28,11 @@ void warn_of_indices(const Scene& scene, Messages& messages) {
     }
 }
 
-/// The one that is asked for, then those that will do as well.
+/// Returns the requested builder, then those whose cached trees may replace it.
 std::vector<BvhBuilder> builders_for(const PrepareOptions& options) {
     const TracerChoice choice = options.tracers.value_or(default_tracers(false));
     std::vector<BvhBuilder> builders = {options.builder.value_or(builder_of(choice))};
-    bool is_better = false; // than the one asked for
+    bool is_better = false; // better than the requested one
     for (const TreeBuild build : kValuesOf<TreeBuild>) {
         const BvhBuilder builder = *builder_of(structure_of(build));
         if (is_better && options.may_be_better) builders.push_back(builder);

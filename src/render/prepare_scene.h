@@ -1,8 +1,8 @@
 #pragma once
 
-// From a validated Scene to what a render needs on the host: where the origin of its world is (world_centre), which
-// meshes are baked into that world, the trees over them (built, or loaded from the cache), the lights. The same for
-// every device and every structure. The scene itself keeps its coordinates, and so do cameras.
+// Converts a validated Scene to the host data that a render needs: the origin of its world (world_centre), the meshes
+// that are baked into that world, their trees (built, or loaded from the cache) and the lights. It is the same for
+// every device and structure. The scene and its cameras keep their coordinates.
 
 #include <filesystem>
 #include <optional>
@@ -18,26 +18,32 @@ namespace pertev {
 
 struct PrepareOptions {
     BvhBuildSettings bvh;
-    std::optional<std::filesystem::path> bvh_cache; // folder of the on-disk cache; none = always build
-    std::optional<TracerChoice> tracers; // whose structures are built at once; none = the default's trees alone
-    std::optional<BvhBuilder> builder;   // of the trees; none = that of `tracers`, else of default ones
-    /// Where the cache holds a tree of a better TreeBuild than this one, take that.
+    std::optional<std::filesystem::path> bvh_cache; // folder of the disk cache; without one trees are always built
+    std::optional<TracerChoice> tracers; // tracers whose structures are built at once; without them only the default
+                                         // trees are
+    std::optional<BvhBuilder> builder;   // builder of the trees; by default that of `tracers` or of the default
+                                         // tracers
+    /// Accepts a cached tree of a better TreeBuild than the requested one.
     bool may_be_better = false;
-    bool keep_coordinates = false;             // the world is the scene's: for rays that are given in its coordinates
-    std::optional<Vec3> centre;                // of the moved world, in place of the scene's own (world_centre)
-    std::shared_ptr<const MotionKeys> motions; // PreparedScene's
+    bool keep_coordinates = false;             // keeps the scene's coordinates, for rays that are given in them
+    std::optional<Vec3> centre;                // origin of the translated world, in place of the scene's own
+                                               // (world_centre)
+    std::shared_ptr<const MotionKeys> motions; // becomes PreparedScene::motions
 };
 
 struct PreparedScene : PlacedScene {
-    BinaryTrees trees;                           // moved world and local spaces, by structures->builder()
+    BinaryTrees trees;                           // in the translated world and in local spaces, by
+                                                 // structures->builder()
     TopLevelBvh top_level;                       // over the instances that are not baked
-    std::shared_ptr<SceneStructures> structures; // of `trees` and of others, built when they are asked for
+    std::shared_ptr<SceneStructures> structures; // structures from `trees`, and others, which are built at the first
+                                                 // request
     uint64_t triangles = 0;                      // in all trees
-    std::vector<PlacedBvh> placed;               // what top_level is built of
-    double build_seconds = 0; // placement, trees (built or read from the cache), structures asked for at once
+    std::vector<PlacedBvh> placed;               // contents of top_level
+    double build_seconds = 0; // seconds for placement, trees (built or read from the cache) and the requested
+                              // structures
 };
 
-/// Of a scene that has a name: it outlives what is prepared.
+/// Prepares `scene`, which must outlive the result.
 PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, Messages& messages);
 PreparedScene prepare_scene(const Scene&& scene, const PrepareOptions& options, Messages& messages) = delete;
 

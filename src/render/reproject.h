@@ -1,6 +1,6 @@
 #pragma once
 
-// Where what a pixel shows was in the frame before.
+// Reprojection: where the content of a pixel was in the previous frame.
 //
 // Source: Schied et al., "Spatiotemporal Variance-Guided Filtering", HPG 2017, section 4.1.
 
@@ -19,7 +19,7 @@ HD inline Rgb rgb_of(Float4 a) { return {a.x, a.y, a.z}; }
 HD inline Vec3 vec3_of(Float4 a) { return {a.x, a.y, a.z}; }
 HD inline Float4 with_w(Rgb c, float w) { return {c.r, c.g, c.b, w}; }
 
-/// Where a scene's things stood in the frame before: the present ones where nothing has moved.
+/// Positions of the scene's objects in the previous frame; the present ones if nothing has moved.
 struct PreviousScene {
     const InstanceView* instances;
     const MeshView* meshes;
@@ -30,13 +30,13 @@ struct FrameCameras {
     uint32_t width, height; // pixels, of both frames
 };
 
-/// Of the frame before.
+/// A position in the previous frame.
 struct Reprojection {
-    Vec2 pixel;  // place of a pixel's centre
-    float depth; // that what is seen there must have, metres
+    Vec2 pixel;  // position of a pixel's centre
+    float depth; // expected depth of the same surface, metres
 };
 
-/// The world's point at `place` (NoisyFrameView).
+/// World-space point at `place` (NoisyFrameView).
 HD inline Vec3 point_at(const InstanceView* instances, const MeshView* meshes, Float4 place) {
     const InstanceView& instance = instances[bits_of(place.x)];
     const MeshView& mesh = meshes[instance.mesh];
@@ -44,8 +44,8 @@ HD inline Vec3 point_at(const InstanceView* instances, const MeshView* meshes, F
     return transform_point(instance.world_from_local, local);
 }
 
-/// Of `pixel`, whose sample met the surface at `place`. The sample lay somewhere about the pixel's centre; the centre
-/// is taken to move as it does.
+/// Reprojects `pixel`, whose sample hit the surface at `place`. The sample lies somewhere in the pixel; the centre is
+/// assumed to move with it.
 HD inline Reprojection reproject_surface(const FrameCameras& cameras, const SceneView& scene,
                                          const PreviousScene& before, Vec2 centre, Float4 place) {
     const Vec3 point = point_at(scene.instances, scene.meshes, place);
@@ -56,12 +56,12 @@ HD inline Reprojection reproject_surface(const FrameCameras& cameras, const Scen
     return {centre + (then.pixel - now.pixel), then.depth};
 }
 
-/// Cosine of two normals over which they may be of one place.
+/// Minimum cosine of two normals of what may be the same surface.
 inline constexpr float kSeenAlike = 0.5f;
 HD inline bool is_depth_alike(float seen, float depth) { return abs(seen - depth) <= 0.05f * depth; }
 
-/// Whether a pixel of which this is the normal and depth (NoisyFrameView::normal) shows about what lies at `depth` with
-/// this normal.
+/// Whether a pixel with this normal and depth (NoisyFrameView::normal) shows approximately the surface at `depth`
+/// with this normal; otherwise it is disoccluded.
 HD inline bool is_seen_alike(Float4 seen, float depth, Vec3 normal) {
     return is_depth_alike(seen.w, depth) && dot(vec3_of(seen), normal) > kSeenAlike;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// The camera's end of a light path: which place of the picture sees a point of the scene, through which point of the
-// lens, and how densely the camera's rays go there. The camera's own rays (render/camera_view.h) backwards.
+// The camera's end of a light path: the picture position that sees a point of the scene through a given point of the
+// lens, and the density of camera rays there. It inverts the camera rays of render/camera_view.h.
 
 #include "render/camera_rays.h"
 
@@ -9,14 +9,15 @@ namespace pertev {
 
 /// A point as the camera sees it.
 struct SeenVertex {
-    Vec3 from;      // on the lens (orthographic without one: in the camera's plane), world space
+    Vec3 from;      // on the lens, or in the camera's plane for an orthographic camera without one; world space
     Vec3 direction; // unit, from there to the point
-    Vec2 raster;    // place in the picture, pixels from its upper left corner
-    float density;  // of the camera's rays, were they even over the picture: 1/sr; orthographic 1/m2 across them
-    float distance_squared; // m2; 1 where the rays are parallel
+    Vec2 raster;    // position in the picture, pixels from its upper left corner
+    float density;  // density of camera rays if they were uniform over the picture: 1/sr; orthographic 1/m2 across
+                    // them
+    float distance_squared; // m2; 1 if the rays are parallel
 };
 
-/// Density of the camera's rays along `direction` (unit), as SeenVertex has it.
+/// Density of camera rays along `direction` (unit), as in SeenVertex.
 HD inline float camera_density(const CameraRays& camera, Vec3 direction) {
     const float cosine = dot(direction, camera.axis);
     const float view = 4.0f * camera.view.half_width * camera.view.half_height;
@@ -24,25 +25,26 @@ HD inline float camera_density(const CameraRays& camera, Vec3 direction) {
                                                      : 1.0f / (view * cosine * cosine * cosine);
 }
 
-/// False where `point` is not before the camera, or the camera is a light meter. `u`: of the lens.
+/// Projects `point` through the lens point `u`. Returns false if it is not in front of the camera, or if the camera
+/// is a light meter.
 HD inline bool see_vertex(const CameraRays& camera, Vec3 point, Vec2 u, SeenVertex& seen) {
     const CameraView& view = camera.view;
     const Vec3 local = transform_transposed(view.world_from_camera, point - view.world_from_camera.translation);
     const float depth = -local.z;
     if (!(depth > 0) || is_light_meter(view.projection)) return false;
     const Vec2 lens = camera.has_lens() ? view.aperture_radius * sample_uniform_disk_concentric(u) : Vec2{0, 0};
-    float x, y; // in the plane at distance 1, or of the orthographic view
+    float x, y; // in the plane at distance 1, or in the orthographic view
     Vec3 from = {lens.x, lens.y, 0};
     const bool is_parallel = has_parallel_rays(view.projection);
     if (!is_parallel) {
         x = local.x / depth;
         y = local.y / depth;
-        if (camera.has_lens()) { // where the ray meets the plane in focus
+        if (camera.has_lens()) { // intersection of the ray with the plane in focus
             const float t = view.focus_distance / depth;
             x = (lens.x + t * (local.x - lens.x)) / view.focus_distance;
             y = (lens.y + t * (local.y - lens.y)) / view.focus_distance;
         }
-    } else { // the rays through one point of the lens are parallel
+    } else { // all rays through one point of the lens are parallel
         const float lean = camera.has_lens() ? depth / view.focus_distance : 0.0f;
         from = {local.x + lean * lens.x, local.y + lean * lens.y, 0};
         x = from.x - lens.x;

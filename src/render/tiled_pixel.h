@@ -1,6 +1,6 @@
 #pragma once
 
-// Orders of a picture's pixels: tiles of 8 x 4, row by row inside, so that the 32 camera rays of a warp stay together.
+// Pixel orders: tiles of 8 x 4 pixels, row by row inside, so that the 32 camera rays of a warp are adjacent.
 
 #include <cstdint>
 
@@ -13,8 +13,8 @@ struct PixelPlace {
     uint32_t x, y; // column, row
 };
 
-/// The pixel that comes as number `i`. `band` rows of tiles are gone through together, column by column; 1: tiles come
-/// row by row. Columns and rows that do not fill a tile come last.
+/// The pixel with index `i`. Bands of `band` rows of tiles are processed column by column; with 1, tiles come row by
+/// row. Columns and rows that do not fill a tile come last.
 HD inline PixelPlace tiled_place(uint32_t i, uint32_t width, uint32_t height, uint32_t band = 1) {
     const uint32_t tiles_x = width / 8, tiles_y = height / 4, tiled = tiles_x * tiles_y * 32;
     if (i < tiled) {

@@ -12,7 +12,7 @@
 namespace pertev {
 namespace {
 
-/// Of each part of the trees.
+/// Returns the change of each part of the trees.
 std::vector<PartChange> changes_of(const Scene& scene, const MeshPlacement& placement, const SceneUpdate& update) {
     std::vector<PartChange> changes(1 + placement.mesh_tree_count, PartChange::None);
     const auto raise = [&](std::size_t part, PartChange change) { changes[part] = std::max(changes[part], change); };
@@ -32,7 +32,7 @@ std::vector<PartChange> changes_of(const Scene& scene, const MeshPlacement& plac
     return changes;
 }
 
-/// Those of the parts that change; the others are left empty.
+/// Returns the triangles of the parts that change; other parts are empty.
 SceneTriangles changed_triangles(const Scene& scene, const MeshPlacement& placement,
                                  const std::vector<PartChange>& changes) {
     SceneTriangles triangles;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Last stage of indirect light: what the place in a pixel's reservoir sends there is added to the frame's sample.
+// Last stage of indirect light: adds the light from the surface point in a pixel's reservoir to the frame's sample.
 
 #include "render/film_view.h"
 #include "restir/bounce_reservoir.h"
@@ -10,8 +10,8 @@ namespace pertev {
 struct AddIndirectLight {
     SceneView scene;
     PixelSurfaces here;
-    const BounceReservoir* reservoirs; // of places that their pixels see
-    FilmView film;                     // of the frame
+    const BounceReservoir* reservoirs; // reservoirs whose points are visible from their pixels
+    FilmView film;                     // the frame's film view
 
     HD void operator()(uint32_t pixel) const {
         const BounceReservoir reservoir = reservoirs[pixel];

@@ -1,16 +1,17 @@
 #pragma once
 
-// What a pixel keeps of indirect light: one place that its surface sees and what the diffuse lobes there send, 48
-// bytes.
+// A pixel's GI reservoir: one surface point that the pixel's surface sees, and the light that diffuse lobes there
+// send; 48 bytes.
 //
-// Diffuse lobes beneath a reflecting layer send A(wo) B: how much passes on the way out, times what has come in, which
-// no direction changes (shading/lobes/passage.h). B is kept, so that a place sends the right light to whoever looks.
-// That is what makes sharing exact; light by other lobes of the place stays with the path that found it. Where a normal
-// map's normal is bent towards an eye at grazing angles (shading_frame.h) the two differ, by a little.
+// Diffuse lobes beneath a reflecting layer send A(wo) B: the transmittance on the way out, times the light that has
+// entered, which does not depend on the direction (shading/lobes/passage.h). B is stored, so that a point sends the
+// right light to any receiver. Thus reuse is exact; light of other lobes at the point stays with the path that found
+// it. If a normal map's normal is bent towards the viewer at grazing angles (shading_frame.h), the two differ
+// slightly.
 //
-// Densities of places are counted in weights of their triangle's corners. The ratio of solid angles between two pixels
-// (the Jacobian of Ouyang et al., "ReSTIR GI: Path Resampling for Real-Time Path Tracing", HPG 2021, equation 11) is
-// then in the targets.
+// Densities of points are measured in barycentric weights of their triangle. The ratio of solid angles between two
+// pixels (the Jacobian of Ouyang et al., "ReSTIR GI: Path Resampling for Real-Time Path Tracing", HPG 2021, equation
+// 11) is then part of the target functions.
 
 #include "restir/light_reservoir.h"
 
@@ -20,21 +21,21 @@ struct alignas(16) BounceReservoir {
     uint32_t instance = kNoHit, primitive = 0;
     float u = 0, v = 0; // weights of the triangle's second and third vertex
     Rgb sent;           // B, W/(sr m2)
-    float weight = 0;   // as LightReservoir's
+    float weight = 0;   // contribution weight, as in LightReservoir
     float count = 0;
     float seen = 0;
     uint32_t source = 0;
-    float side = 0; // 1: `sent` leaves on the side that the corners run counter-clockwise on, or -1
+    float side = 0; // 1 if `sent` leaves on the front of the triangle (corners counter-clockwise), else -1
 
     HD Hit hit() const { return {0, u, v, instance, primitive}; }
 };
 static_assert(sizeof(BounceReservoir) == 48);
 
-/// A place as somebody sees it.
+/// A reservoir's point as seen from a surface.
 struct SeenPlace {
     Vec3 wi;       // unit, towards it
-    float measure; // solid angle over weights of corners
-    float side;    // BounceReservoir's, of the one who looks
+    float measure; // solid angle per barycentric measure
+    float side;    // which side is seen, in the sense of BounceReservoir::side
     bool is_there;
 };
 
@@ -51,13 +52,14 @@ HD inline PlacedTriangle place_of(const SceneView& scene, const BounceReservoir&
     return place_triangle(instance, scene.meshes[instance.mesh], reservoir.hit());
 }
 
-/// A(wo) of a surface, times its colours' luminance; 0 where it has no diffuse lobes.
+/// A(wo) of a surface, times its colours' luminance; 0 if it has no diffuse lobes.
 HD inline float diffuse_passage(const Surface& surface, Vec3 wo) {
     const Vec3 local = surface.frame.to_local(wo);
     return luminance(surface.bsdf.evaluate(local, {0, 0, copysign(1.0f, local.z)}, only(LobeClass::Diffuse)).f);
 }
 
-/// As that of light: by diffuse lobes of the surface alone, and without A, which the target need not know.
+/// Integrand of indirect light: scattered only by diffuse lobes of the surface, and without A, which the target does
+/// not need.
 HD inline Rgb light_scattered(const SceneView& scene, const Surface& surface, Vec3 wo,
                               const BounceReservoir& reservoir) {
     const SeenPlace seen = see_place(place_of(scene, reservoir), surface.position);

@@ -1,6 +1,7 @@
 #pragma once
 
-// First stage of direct light: some places on lights, and the one that the path's first bounce ran into, become one.
+// First stage of direct light: initial candidates. RIS picks one of several sample points on lights and the light
+// that the path's first bounce hit.
 //
 // Source: Bitterli et al. 2020, section 3 and algorithm 3, with candidates of light sampling and one of BSDF sampling
 // weighted by the balance heuristic (Wyman et al., "A Gentle Introduction to ReSTIR", SIGGRAPH 2023 courses).
@@ -14,7 +15,7 @@ namespace pertev {
 struct DrawCandidates {
     SceneView scene;
     PixelSurfaces here;
-    const LightPlace* met; // by the first bounce of each path
+    const LightPlace* met; // light that the first bounce of each path hit
     LightReservoir* to;
     uint32_t candidates;
 
@@ -40,7 +41,7 @@ struct DrawCandidates {
             const float density = drawn * light.pdf + (light.is_delta ? 0.0f : value.pdf);
             if (pick.takes(luminance(value.f * light.radiance) / density)) {
                 reservoir.place = place_of(light);
-                reservoir.source = 1; // not known to be seen
+                reservoir.source = 1; // visibility unknown
             }
         }
         LightSample light;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Which pixels a pixel takes from: where its surface was in the frame before, or some about it that see a surface like
-// its own. The choice depends on surfaces alone, never on light: so it bends no mean.
+// Selects the pixels that a pixel reuses: its position in the previous frame, or nearby ones that see a similar
+// surface. The choice depends only on surfaces, never on light, so it introduces no bias.
 
 #include "math/sampling.h"
 #include "render/reproject.h"
@@ -12,19 +12,19 @@ namespace pertev {
 inline constexpr uint32_t kNoPixel = 0xffffffffu;
 inline constexpr uint32_t kMostNeighbours = 3;
 
-/// Up to kMostNeighbours pixels, kNoPixel behind the last.
+/// Up to kMostNeighbours pixels, followed by kNoPixel.
 struct alignas(16) Neighbours {
     uint32_t pixels[kMostNeighbours] = {kNoPixel, kNoPixel, kNoPixel};
     uint32_t unused = 0;
 };
 
-/// In the frame before.
+/// Temporal neighbours: pixels of the previous frame.
 struct FindBefore {
     SceneView scene;
     PreviousScene scene_before;
     FrameCameras cameras;
-    const Float4 *place, *normal;               // NoisyFrameView's
-    const Float4 *place_before, *normal_before; // of the frame before
+    const Float4 *place, *normal;               // arrays of NoisyFrameView
+    const Float4 *place_before, *normal_before; // arrays of the previous frame
     Neighbours* to;
 
     HD void operator()(uint32_t pixel) const {
@@ -47,10 +47,10 @@ struct FindBefore {
     }
 };
 
-/// In the same frame.
+/// Spatial neighbours: pixels of the same frame.
 struct FindBeside {
     PixelSurfaces here;
-    const Float4* normal; // NoisyFrameView's
+    const Float4* normal; // array of NoisyFrameView
     uint32_t neighbours;
     float radius;
     Neighbours* to;

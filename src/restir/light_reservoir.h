@@ -1,6 +1,6 @@
 #pragma once
 
-// What a pixel keeps of direct light: one place on a light that stands for all, 32 bytes.
+// A pixel's reservoir of direct light: one sample point on a light that represents all; 32 bytes.
 
 #include "restir/pixel_surfaces.h"
 #include "shading/light_place.h"
@@ -9,15 +9,15 @@ namespace pertev {
 
 struct alignas(16) LightReservoir {
     LightPlace place;
-    float weight = 0;    // of the place: an integral over places is about weight times the integrand there. 0: nothing
-    float count = 0;     // candidates' worth that it stands for (M, confidence)
-    float seen = 0;      // while reservoirs are combined: shares of those whose pixel sees the place
-    uint32_t source = 0; // likewise: which of them it came from
+    float weight = 0;    // contribution weight W: the integral over points is about W times the integrand; 0 if empty
+    float count = 0;     // number of candidates that it represents (M, confidence)
+    float seen = 0;      // while reservoirs are combined: sum of the shares of pixels that see the point
+    uint32_t source = 0; // while reservoirs are combined: the entry that it came from
 };
 static_assert(sizeof(LightReservoir) == 32);
 
-/// Light that a surface scatters to wo from the reservoir's place, were nothing between: rgb of the integrand over
-/// places.
+/// Light that a surface scatters to wo from the reservoir's point without occlusion: the rgb integrand over sample
+/// points.
 HD inline Rgb light_scattered(const SceneView& scene, const Surface& surface, Vec3 wo,
                               const LightReservoir& reservoir) {
     LightSample light;
@@ -26,8 +26,8 @@ HD inline Rgb light_scattered(const SceneView& scene, const Surface& surface, Ve
     return measure * (surface.evaluate(wo, light.wi).f * light.radiance);
 }
 
-/// The ray from a surface's triangle to the reservoir's place, which ends before `target`. False where it is known that
-/// nothing arrives. `coin`: of the surface's pixel.
+/// Makes the shadow ray from a surface's triangle to the reservoir's point, which ends before `target`. Returns false
+/// if nothing can arrive. `coin` belongs to the surface's pixel.
 HD inline bool find_sight(const SceneView& scene, const LightReservoir& reservoir, const PlacedTriangle& from,
                           uint32_t coin, Ray& ray, TriangleId& target) {
     LightSample light;
@@ -40,11 +40,11 @@ HD inline bool find_sight(const SceneView& scene, const LightReservoir& reservoi
            AcceptHit{scene, {}, {}, coin}.passes_alpha(light.instance, light.primitive, light.b1, light.b2);
 }
 
-/// The numbers that ReSTIR draws of a pixel's sample, far behind those of paths (integrators/path/path_state.h).
+/// Random-number groups of ReSTIR for a pixel's sample, far behind those of paths (integrators/path/path_state.h).
 enum RestirGroup : uint32_t {
-    kGroupCandidates = 1u << 24, // of candidate k of sample s: point s * candidates + k of the group
+    kGroupCandidates = 1u << 24, // candidate k of sample s uses point s * candidates + k of the group
     kGroupPickCandidate,
-    kGroupNeighbours, // three of them
+    kGroupNeighbours, // three groups
     kGroupReuse = kGroupNeighbours + 3,
 };
 

@@ -1,8 +1,7 @@
 #pragma once
 
-// The surfaces that the pixels of a frame see, made again from what the frame keeps of them: a place on a triangle, and
-// the camera's ray, which follows from the pixel's and the frame's number. Where their instances have moved since, they
-// are where these are now.
+// Reconstructs the surfaces that a frame's pixels see from the G-buffer: a point on a triangle, and the camera ray,
+// which follows from the pixel's and the frame's number. Points move with instances that have moved since.
 
 #include "device_scene/surface.h"
 #include "math/float4.h"
@@ -11,20 +10,20 @@
 namespace pertev {
 
 struct PixelSurfaces {
-    const Float4* place; // NoisyFrameView's
+    const Float4* place; // array of NoisyFrameView
     CameraRays camera;
     SamplerKind sampler;
-    uint32_t sample, seed; // of the frame
+    uint32_t sample, seed; // the frame's sample number and seed
 
     HD bool is_there(uint32_t pixel) const { return bits_of(place[pixel].x) != kNoHit; }
     HD SampleKey key(uint32_t pixel) const { return {pixel, sample, seed}; }
-    /// The coin of blended surfaces between what the pixel sees and what that sees: the one of its path's next ray.
+    /// Coin of blended surfaces between the pixel's surface and what it sees, equal to that of its path's next ray.
     HD uint32_t coin(uint32_t pixel) const { return coin_key(key(pixel), 1, false); }
     HD Hit hit(uint32_t pixel) const {
         const Float4 p = place[pixel];
         return {0, p.z, p.w, bits_of(p.x), bits_of(p.y)};
     }
-    /// Of the camera's ray, unit.
+    /// Direction of the camera ray, unit.
     HD Vec3 direction(uint32_t pixel) const { return camera.ray(pixel, sampler, key(pixel)).direction; }
     HD PlacedTriangle triangle(const SceneView& scene, uint32_t pixel) const {
         const Hit at = hit(pixel);

@@ -10,7 +10,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kMostTraces = 20; // of a frame
+constexpr uint32_t kMostTraces = 20; // maximum number of traces per frame
 constexpr std::size_t kBounceArrays = 4;
 
 } // namespace
@@ -91,7 +91,8 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
     has_history_ = true;
 }
 
-/// `own` and `others`, by the neighbours found last, become `to`: of `entries` pixels at most.
+/// Combines `own` with reservoirs of `others` at the selected neighbours into `to`, for at most `entries` pixels
+/// each.
 template <class Reservoir>
 void Restir::reuse(const SceneView& scene, const PixelSurfaces& here, const PixelSurfaces& there, const Reservoir* own,
                    const Reservoir* others, Reservoir* to, float most_count, uint32_t entries, SceneTracer& tracer,
@@ -105,7 +106,7 @@ void Restir::reuse(const SceneView& scene, const PixelSurfaces& here, const Pixe
     launch(*queue_, "finish_reuse", pixels_, FinishReuse<Reservoir>{to});
 }
 
-/// Of entry `entry`, whether it sees the items of `reservoirs`.
+/// Finds whether the pixel of entry `entry` sees the points of `reservoirs`.
 template <class Reservoir>
 void Restir::ask(const SceneView& scene, const PixelSurfaces& surfaces, Reservoir* reservoirs, SceneTracer& tracer,
                  uint32_t entry) {

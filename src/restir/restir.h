@@ -1,9 +1,9 @@
 #pragma once
 
-// ReSTIR: light of the first surface, drawn by resampling from reservoirs that pixels share over the frame and over
-// time. A frame's samples leave that light out (render/noisy_frame_view.h, FirstBounceView), and it is added here to
-// them. Its stages are the files of this folder that the .cpp launches, each one function for both devices; the rays go
-// by the scene's tracer. Without bias, but for what RestirSettings names.
+// ReSTIR: light at the first surface by resampling from reservoirs that pixels share over the frame and over time. A
+// frame's samples omit that light (render/noisy_frame_view.h, FirstBounceView), and it is added to them here. The
+// stages are the files of this folder, each one function for both devices; the scene's tracer traces the rays. It is
+// unbiased except for what RestirSettings names.
 //
 // Sources: Bitterli et al., "Spatiotemporal Reservoir Resampling for Real-Time Ray Tracing with Dynamic Direct
 // Lighting", SIGGRAPH 2020; Lin et al., "Generalized Resampled Importance Sampling", SIGGRAPH 2022.
@@ -21,7 +21,7 @@
 
 namespace pertev {
 
-/// Which numbers a frame's samples are drawn by.
+/// Determines the random numbers of a frame's samples.
 struct SampleNumbers {
     SamplerKind sampler;
     uint32_t sample, seed;
@@ -32,19 +32,19 @@ public:
     /// `queue` outlives it.
     Restir(Queue& queue, uint32_t width, uint32_t height, RestirLight light);
 
-    /// What follows has nothing to do with what was seen before.
+    /// Discards the history, because the next frame shows something else.
     void cut() { has_history_ = false; }
-    /// What the samples of a frame are to leave.
+    /// Arrays in which the samples of a frame leave their first bounce.
     FirstBounceView first_bounce() const;
 
-    /// Adds to `frame`, which has left first_bounce(), the light that it left. `before`: where things stood in the
-    /// frame before. Throws Error(DeviceFault).
+    /// Adds to `frame` the light that its samples omitted; they must have filled first_bounce(). `before` has the
+    /// positions in the previous frame. Throws Error(DeviceFault).
     void add(const NoisyFrame& frame, const PictureView& picture, const SampleNumbers& numbers, SceneTracer& tracer,
              const PreviousScene& before, const RestirSettings& settings);
 
-    /// Traced by the last add(). Waits for it.
+    /// Number of rays that the last add() traced. Waits for it.
     uint64_t rays() const;
-    /// Which it was made for.
+    /// The light that it was made for.
     RestirLight light() const { return light_; }
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
@@ -65,16 +65,17 @@ private:
     CameraRays camera_before_ = {};
     SampleNumbers numbers_before_ = {};
     Buffer<LightPlace> met_;
-    Buffer<LightReservoir> reservoirs_; // of this frame's candidates; of the frame, which the next one begins with
-    Buffer<BounceReservoir> bounces_;   // the same of indirect light
-    Buffer<Float4> bounce_numbers_;     // FirstBounceView's
-    Buffer<Float4> seen_before_;        // place and normal of the frame before (NoisyFrameView)
+    Buffer<LightReservoir> reservoirs_; // two arrays: this frame's candidates, and the final reservoirs, with which
+                                        // the next frame begins
+    Buffer<BounceReservoir> bounces_;   // two arrays like `reservoirs_`, for indirect light
+    Buffer<Float4> bounce_numbers_;     // arrays of FirstBounceView
+    Buffer<Float4> seen_before_;        // place and normal of the previous frame (NoisyFrameView)
     Buffer<Neighbours> neighbours_;
     Buffer<Shares> shares_;
     Buffer<Ray> rays_;
     Buffer<Uint2> ray_ends_;
-    Buffer<uint32_t> ray_words_, ray_counts_; // of each time that rays were traced
-    uint32_t traced_ = 0;                     // times, in this frame
+    Buffer<uint32_t> ray_words_, ray_counts_; // for each trace of a frame
+    uint32_t traced_ = 0;                     // traces in this frame
 };
 
 } // namespace pertev

@@ -1,15 +1,16 @@
 #pragma once
 
-// A pixel's reservoir and those of its neighbours become one: for the frame before, and again for pixels beside.
-// Reservoirs of any kind have what light_reservoir.h and bounce_reservoir.h give theirs: light_scattered and
-// find_sight.
+// Spatial and temporal reuse: combines a pixel's reservoir with those of its neighbours, in the previous frame and
+// again in the same frame. It works for any reservoir with the functions of light_reservoir.h and bounce_reservoir.h:
+// light_scattered and find_sight.
 //
-// Item i, kept by pixel i, is picked by share(i, item i) target(own pixel, item i) weight i, with
+// Item i, the reservoir of pixel i, is picked by share(i, item i) target(own pixel, item i) weight i, with
 //   share(j, x) = count j target(j, x) / sum over all k of count k target(k, x)
-// the generalised balance heuristic over targets without visibility (Lin et al., "Generalized Resampled Importance
-// Sampling", SIGGRAPH 2022, section 5.1). A pixel's items are all seen by it, so that of the shares of the picked item
-// y only those count whose pixel sees y: AskForSight and CountSight find these, one pixel after the other, and the
-// weight is divided by their sum. So no light is lost or counted twice, whatever lies between, at one ray a neighbour.
+// This is the generalised balance heuristic over target functions without visibility (Lin et al., "Generalized
+// Resampled Importance Sampling", SIGGRAPH 2022, section 5.1). Each pixel sees its own item, so of the picked item's
+// shares only those of pixels that see it count: AskForSight and CountSight test them, one pixel after the other, and
+// the weight is divided by their sum. Thus no light is lost or counted twice, whatever the occlusion, at one ray per
+// neighbour.
 
 #include "restir/find_neighbours.h"
 #include "restir/sight_rays.h"
@@ -17,7 +18,7 @@
 
 namespace pertev {
 
-/// Pixels whose reservoirs are combined: the own one is entry 0.
+/// Number of pixels whose reservoirs are combined; the pixel itself is entry 0.
 inline constexpr uint32_t kMostEntries = kMostNeighbours + 1;
 
 /// Shares of the picked item, by entry.
@@ -28,13 +29,13 @@ struct alignas(16) Shares {
 template <class Reservoir>
 struct ReuseReservoirs {
     SceneView scene;
-    PixelSurfaces here, there; // entry 0; the others
+    PixelSurfaces here, there; // surfaces of entry 0, and of the others
     const Reservoir *own, *others;
     const Neighbours* neighbours;
     Reservoir* to;
     Shares* shares;
-    float most_count; // of a neighbour
-    uint32_t group;   // of random numbers
+    float most_count; // maximum count of a neighbour
+    uint32_t group;   // group of random numbers
 
     HD void operator()(uint32_t pixel) const {
         const Reservoir first = own[pixel];
@@ -50,7 +51,7 @@ struct ReuseReservoirs {
 private:
     HD void combine(uint32_t pixel, const Reservoir& first, Reservoir& result, Shares& result_shares) const {
         Reservoir entries[kMostEntries];
-        float targets[kMostEntries][kMostEntries]; // of pixel j, of item i
+        float targets[kMostEntries][kMostEntries]; // [j][i] target function of pixel j for item i
         entries[0] = first;
         uint32_t count = 1;
         for (uint32_t k = 0; k < kMostNeighbours && neighbours[pixel].pixels[k] != kNoPixel; ++k) {
@@ -96,11 +97,11 @@ private:
     }
 };
 
-/// Asks whether the pixel of entry `entry` sees the picked item, where that is not known.
+/// Makes a shadow ray to the picked item from the pixel of entry `entry`, if its visibility is unknown.
 template <class Reservoir>
 struct AskForSight {
     SceneView scene;
-    PixelSurfaces surfaces; // of that entry
+    PixelSurfaces surfaces; // surfaces of that entry
     const Neighbours* neighbours;
     const Shares* shares;
     Reservoir* reservoirs;
@@ -125,7 +126,7 @@ struct AskForSight {
     }
 };
 
-/// What became of the rays.
+/// Evaluates the traced shadow rays.
 template <class Reservoir>
 struct CountSight {
     SightRaysView rays;
@@ -143,7 +144,7 @@ struct CountSight {
     }
 };
 
-/// The weight is that of an item which all entries that count could have kept.
+/// Divides the weight by the shares of all entries that could have kept the item.
 template <class Reservoir>
 struct FinishReuse {
     Reservoir* reservoirs;

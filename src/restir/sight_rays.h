@@ -1,6 +1,6 @@
 #pragma once
 
-// Rays that ask whether two places see each other, side by side as a tracer takes them, each for a pixel.
+// Queue of shadow rays between two points, in a tracer's layout, each with its pixel.
 
 #include <cstdint>
 
@@ -13,8 +13,8 @@ namespace pertev {
 struct SightRaysView {
     Ray* rays;
     Uint2 *starts, *targets;
-    uint32_t* keys;   // then what the ray met
-    uint32_t* pixels; // whose they are
+    uint32_t* keys;   // keys, and after tracing the results
+    uint32_t* pixels; // pixel of each ray
     uint32_t* count;
 
     RayQueueView query() const { return {.rays = rays, .starts = starts, .targets = targets, .keys = keys}; }

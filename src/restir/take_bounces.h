@@ -1,7 +1,7 @@
 #pragma once
 
-// First stage of indirect light: the place that each path's first bounce met, with what it was found to send, is taken
-// out of the sample into a reservoir.
+// First stage of indirect light: makes initial GI reservoirs. It moves the point that each path's first bounce hit,
+// and the light found from there, out of the sample into a reservoir.
 //
 // Source: Ouyang et al. 2021 (bounce_reservoir.h), section 4.1.
 
@@ -13,7 +13,7 @@ namespace pertev {
 struct TakeBounces {
     SceneView scene;
     PixelSurfaces here;
-    FilmView film; // of the frame
+    FilmView film; // the frame's film view
     BounceReservoir* to;
 
     HD void operator()(uint32_t pixel) const {
@@ -49,7 +49,7 @@ struct TakeBounces {
     }
 
 private:
-    /// The diffuse part has the same light by a share that was rounded.
+    /// Subtracts the light from the sample. The diffuse part contains the same light, rounded by its share.
     HD void take_out(uint32_t pixel, Rgb light) const {
         Rgb diffuse = light;
         if (film.frame.splits_light()) {

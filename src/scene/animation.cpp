@@ -47,7 +47,8 @@ std::vector<bool> may_move(const Scene& scene) {
     for (std::size_t i = 0; i < moving.size(); ++i) {
         const uint32_t index = scene.instances[i].node;
         if (index == kNoNode) continue;
-        const uint32_t skin = scene.nodes[index].skin; // its joints move a skinned mesh, and not the node that shows it
+        const uint32_t skin = scene.nodes[index].skin; // a skinned mesh moves with its joints, not with the node that
+                                                       // shows it
         moving[i] = is_reshaped[index] || (skin == kNoSkin ? is_placed_anew[index] : skin_moves[skin]);
     }
     return moving;

@@ -13,11 +13,12 @@
 
 namespace pertev {
 
-/// Cosine is no view but a light meter (integrators/path/meter_light.h): rays from the origin over the hemisphere about
-/// -z, their density the cosine over pi, over the picture from (0, 0) to (1, 1) as math/sampling.h has them.
+/// Kind of projection. Cosine is not a view but a light meter (integrators/path/meter_light.h): its rays cover the
+/// hemisphere around -z with density cosine over pi, mapped from the picture's (0, 0) to (1, 1) as in
+/// math/sampling.h.
 enum class Projection : uint8_t { Perspective, Orthographic, Cosine };
 
-/// Whether all rays of a picture go one way, so that nothing looks smaller for being far away.
+/// Whether all rays are parallel, so that apparent size does not depend on distance.
 HD constexpr bool has_parallel_rays(Projection projection) {
     switch (projection) {
     case Projection::Perspective:
@@ -29,7 +30,7 @@ HD constexpr bool has_parallel_rays(Projection projection) {
     return true;
 }
 
-/// Whether it measures light and shows nothing.
+/// Whether it measures light and shows no picture.
 HD constexpr bool is_light_meter(Projection projection) {
     switch (projection) {
     case Projection::Perspective:
@@ -44,21 +45,21 @@ HD constexpr bool is_light_meter(Projection projection) {
 struct Camera {
     std::string name, origin;
     Projection projection = Projection::Perspective;
-    Transform world_from_camera; // rigid; readers take scale out
+    Transform world_from_camera; // rigid; readers remove scale
     float fov_y = 0.785398163f;  // Perspective: full vertical angle, radians, (0, pi)
     float ortho_height = 2;      // Orthographic: full height of the view, metres
-    float aspect = 0;            // width / height the file asks for; 0 = none
+    float aspect = 0;            // width / height in the file; 0: none
     float aperture_radius = 0;   // thin lens, metres; 0 = pinhole
     float focus_distance = 1;    // metres along -z to the plane in focus
     uint32_t node = kNoNode;     // index into Scene::nodes
-    // While the shutter is open, about the origin, from where world_from_camera has it (math/rigid_motion.h), metres in
-    // the world. Empty: it stands still.
+    // Motion while the shutter is open, around the origin, relative to world_from_camera (math/rigid_motion.h),
+    // metres in the world. Empty: the camera does not move.
     std::vector<MotionKey> motion;
 
     bool operator==(const Camera&) const = default;
 };
 
-/// Width / height of a picture of so many pixels.
+/// Aspect ratio, width / height, of a picture.
 inline float aspect_of(uint32_t width, uint32_t height) {
     return static_cast<float>(width) / static_cast<float>(height);
 }

@@ -5,15 +5,15 @@
 namespace pertev {
 namespace {
 
-constexpr float kLeastFovDeg = 0.01f, kMostFovDeg = 179; // as `fov`
+constexpr float kLeastFovDeg = 0.01f, kMostFovDeg = 179; // limits of `fov`
 
-/// One number of the keys, over time.
+/// One component of the keys over time.
 template <class Number>
 class Spline {
 public:
     Spline(const std::vector<CameraKey>& keys, const Number& number) : keys_(keys), number_(number) {}
 
-    /// Between key `before` and the next.
+    /// Value between key `before` and the next.
     double at(std::size_t before, double time_s) const {
         const double seconds = time(before + 1) - time(before), t = (time_s - time(before)) / seconds;
         const double t2 = t * t, t3 = t2 * t;

@@ -1,10 +1,11 @@
 #pragma once
 
-// A camera that goes from key to key: where it is and what it looks at, at given times.
+// A camera path: keys with position and target at given times.
 //
-// Between keys each number follows a cubic with the keys' values, whose slope at a key is that of the parabola through
-// it and its neighbours in time (at the ends, of the line to the neighbour): the three-point Hermite spline. So place
-// and speed are continuous, and keys are passed at their times. Products and sums in double alone: the same everywhere.
+// Between keys each component follows a cubic through the keys' values. Its slope at a key is that of the parabola
+// through the key and its neighbours in time (at the ends, of the line to the neighbour): the three-point Hermite
+// spline. Thus position and velocity are continuous, and keys are reached at their times. It uses only products and
+// sums in double, so results are equal everywhere.
 
 #include <vector>
 
@@ -15,15 +16,15 @@ namespace pertev {
 struct CameraKey {
     double time_s = 0;
     DoubleVec3 eye = {0, 0, 0}, target = {0, 0, 0}; // metres, in the coordinates of the scene's file
-    Vec3 up = {0, 1, 0};                            // of any length but 0
-    float fov_deg = 0;                              // full vertical angle of view, degrees; 0: the camera's own
+    Vec3 up = {0, 1, 0};                            // any length but 0
+    float fov_deg = 0;                              // full vertical field of view, degrees; 0: the camera's own
 };
 
 struct CameraPath {
-    std::vector<CameraKey> keys; // at least one; times rise; all have a fov_deg, or none
+    std::vector<CameraKey> keys; // at least one; times ascend; all or none have a fov_deg
 };
 
-/// The camera at `time_s`, which is finite; before the first and after the last key it stands there.
+/// The camera at `time_s`, which is finite. Before the first and after the last key it does not move.
 CameraKey sample_path(const CameraPath& path, double time_s);
 
 } // namespace pertev

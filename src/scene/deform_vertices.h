@@ -1,7 +1,7 @@
 #pragma once
 
-// One vertex of a deformed mesh at one time: morph targets are added, then the joints' transforms, blended by the
-// vertex's weights, move it. A stage (device/launch.h): each index writes its own vertex, and no other is looked at.
+// Deforms one vertex of a mesh at one time: adds morph targets, then applies the joints' transforms, blended by the
+// vertex's weights. It is a stage (device/launch.h); each index reads and writes only its own vertex.
 //
 // Source: glTF 2.0 sections 3.7.2.2 (morph targets) and 3.7.3.3 (skins).
 
@@ -16,17 +16,17 @@
 namespace pertev {
 
 struct MorphTargetView {
-    const Vec3 *positions, *normals, *tangents; // [vertices] each; null: none
+    const Vec3 *positions, *normals, *tangents; // [vertices] each, or null
 };
 
-/// Inverse transpose up to a positive factor: the cofactors, with the sign of the determinant.
+/// Transforms a normal by the inverse transpose up to a positive factor: the cofactors, with the determinant's sign.
 HD inline Vec3 deform_normal(const Transform& m, Vec3 n) {
     const Vec3 moved = {dot(cross(m.row1, m.row2), n), dot(cross(m.row2, m.row0), n), dot(cross(m.row0, m.row1), n)};
     return determinant(m) < 0 ? -moved : moved;
 }
 
 struct DeformVertices {
-    // Before: arrays of [vertices], or null where the mesh has none.
+    // Input: arrays of [vertices], or null if the mesh has none.
     const Vec3 *base_positions, *base_normals;
     const Vec4* base_tangents;
     const MorphTargetView* targets; // [target_count]
@@ -35,9 +35,9 @@ struct DeformVertices {
     uint32_t joints_per_vertex;
     const uint32_t* joints;             // [vertices * joints_per_vertex]
     const float* joint_weights;         // [vertices * joints_per_vertex]
-    const Transform* world_from_joints; // of each joint of the skin, with its inverse bind matrix
+    const Transform* world_from_joints; // [joint of the skin], with its inverse bind matrix
 
-    // After: written where not null. What would not be finite stays as it was before; normals and tangents are unit.
+    // Output: written if not null. Values that would not be finite keep the input; normals and tangents are unit.
     Vec3 *positions, *normals;
     Vec4* tangents;
 
@@ -56,7 +56,7 @@ struct DeformVertices {
         Transform skin;
         float handedness = 1;
         if (blend(i, skin)) {
-            if (determinant(skin) < 0) handedness = -1; // what mirrors the surface mirrors the bitangent with it
+            if (determinant(skin) < 0) handedness = -1; // mirroring the surface mirrors the bitangent
             position = transform_point(skin, position);
             normal = deform_normal(skin, normal);
             tangent = transform_vector(skin, tangent);
@@ -74,7 +74,7 @@ struct DeformVertices {
         tangents[i] = {tangent.x, tangent.y, tangent.z, handedness * base_tangents[i].w};
     }
 
-    /// The mean, by weight, of the transforms of the joints that move vertex `i`; false where none does.
+    /// Weighted mean of the transforms of the joints of vertex `i`. Returns false if it has none.
     HD bool blend(uint32_t i, Transform& mean) const {
         Transform sum = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
         float all = 0;
@@ -89,7 +89,7 @@ struct DeformVertices {
             all += weight;
         }
         if (!(all > 0)) return false;
-        const float inv = 1 / all; // weights are rounded in many files: their sum need not be 1
+        const float inv = 1 / all; // weights are rounded in many files, so their sum need not be 1
         mean = {inv * sum.row0, inv * sum.row1, inv * sum.row2, inv * sum.translation};
         return true;
     }

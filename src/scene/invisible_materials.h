@@ -1,7 +1,7 @@
 #pragma once
 
-// Materials that nobody can see, because they let all light through everywhere. Some exporters write `Tr 1` or an alpha
-// of 0 for opaque surfaces, and the picture is then empty without a word.
+// Detects materials that are invisible because they are fully transparent everywhere. Some exporters write `Tr 1` or
+// an alpha of 0 for opaque surfaces, and the picture would be empty without any message.
 
 #include <string>
 
@@ -10,8 +10,8 @@
 
 namespace pertev {
 
-/// Names each material, in a warning, whose opacity is 0 wherever a triangle has it: by its own alpha, by that of its
-/// textures, or by that of the vertices. `scene` has been through validate().
+/// Warns of each material whose opacity is 0 wherever a triangle uses it: by its own alpha, its textures' or the
+/// vertices'. `scene` has passed validate().
 void warn_of_invisible_materials(const Scene& scene, const std::string& file, Messages& messages);
 
 } // namespace pertev

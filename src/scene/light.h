@@ -1,6 +1,6 @@
 #pragma once
 
-// Lights that are not surfaces: KHR_lights_punctual's three kinds, and the environment.
+// Lights that are not surfaces: the three kinds of KHR_lights_punctual, and the environment.
 
 #include <algorithm>
 #include <cstdint>
@@ -20,15 +20,15 @@ struct Light {
     std::string name, origin;
     LightKind kind = LightKind::Point;
     Vec3 position;               // Point, Spot: metres, world space
-    Vec3 direction = {0, -1, 0}; // Spot, Directional: unit, the way the light travels, world space
+    Vec3 direction = {0, -1, 0}; // Spot, Directional: unit, direction in which the light travels, world space
     Rgb intensity = {1, 1, 1};   // Point, Spot: W/sr; Directional: irradiance on a surface that faces it, W/m2
-    float cos_inner = 1;         // Spot: full intensity within, falling to 0 at cos_outer (< cos_inner)
+    float cos_inner = 1;         // Spot: full intensity inside, falling to 0 at cos_outer (< cos_inner)
     float cos_outer = 0.70710678f;
-    float range = 0;         // Point, Spot: metres past which it gives no light; 0 = no end
+    float range = 0;         // Point, Spot: metres beyond which it gives no light; 0: unlimited
     uint32_t node = kNoNode; // index into Scene::nodes
 };
 
-/// What a kind of light has beside its strength.
+/// Properties that a kind of light has besides its strength.
 struct LightParts {
     bool place, direction, cone;
 };
@@ -44,31 +44,31 @@ HD constexpr LightParts parts_of(LightKind kind) {
     return {.place = false, .direction = true, .cone = false};
 }
 
-/// Of a light with a place: its flux over 2 pi times its intensity. The edge of a cone is the square of a ramp in the
-/// cosine (shading/punctual_light.h), a third of its width.
+/// For a light with a position: its flux divided by 2 pi times its intensity. The edge of a cone is the square of a
+/// ramp in the cosine (shading/punctual_light.h), which contributes a third of its width.
 inline double breadth_of_beam(const LightParts& parts, float cos_inner, float cos_outer) {
     if (!parts.cone) return 2;
     const double inner = static_cast<double>(cos_inner);
     return (1 - inner) + std::max(inner - static_cast<double>(cos_outer), 0.001) / 3;
 }
 
-/// Beside 1, the smallest difference of two floats: cones of one angle have this sharp an edge.
+/// The smallest difference between floats just below 1; the edge of a cone with two equal angles has this width.
 inline constexpr float kSharpestEdge = 0x1p-24f;
 
-/// Puts `light` at the origin of a node, shining along the node's -z; its strength does not scale. False where that
-/// direction is lost.
+/// Places `light` at the origin of a node, shining along the node's -z; scaling does not affect its strength. Returns
+/// false if the direction is lost.
 inline bool place_light(const Transform& world_from_node, Light& light) {
     light.position = world_from_node.translation;
     light.direction = normalize(-column(world_from_node, 2));
     return !parts_of(light.kind).direction || is_finite(light.direction);
 }
 
-/// Light from infinitely far away. Image columns run with longitude: the middle column looks along -z, +x is a quarter
+/// Light from infinitely far away. Image columns follow longitude: the middle column looks along -z, +x is a quarter
 /// to the right of it; row 0 is +y.
 struct Environment {
-    Image image;           // 3 channels, equirectangular, W/(sr m2); empty: `scale` alone, from everywhere
-    Rgb scale = {1, 1, 1}; // times the image
-    float rotation = 0;    // radians about +y, counter-clockwise seen from above
+    Image image;           // 3 channels, equirectangular, W/(sr m2); empty: uniform `scale`
+    Rgb scale = {1, 1, 1}; // factor for the image
+    float rotation = 0;    // radians around +y, counter-clockwise seen from above
 };
 
 } // namespace pertev

@@ -1,6 +1,6 @@
 #pragma once
 
-// A material says by plain numbers and references to textures what a surface is made of; shading/ makes BSDFs of it.
+// Materials as plain numbers and references to textures; shading/ makes BSDFs from them.
 
 #include <cstdint>
 #include <string>
@@ -22,41 +22,43 @@ enum class MaterialKind : uint8_t {
 
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
-/// MaterialParameters is the block of plain data that goes to a device as it stands. A new parameter is a member
-/// here, a row of visit_parameters, what its reader reads, and the code that uses it.
+/// MaterialParameters is plain data that is copied to a device unchanged. A new parameter needs a member here, a row
+/// in visit_parameters, its reading, and the code that uses it.
 struct MaterialParameters {
     MaterialKind kind = MaterialKind::Diffuse;
     AlphaMode alpha_mode = AlphaMode::Opaque;
 
-    // The front of a triangle is where its corners run counter-clockwise in the mesh's own space, whatever its vertex
-    // normals say; so a node that mirrors a mesh leaves it its front.
-    bool two_sided_emission = false; // else the front alone gives light; of unlit materials both faces are seen
-    bool double_sided = true;        // else rays from the camera pass the back; every other ray is stopped by it
+    // The front of a triangle is the side from which its corners run counter-clockwise in the mesh's own space,
+    // whatever its vertex normals are. Thus a node that mirrors a mesh keeps its front.
+    bool two_sided_emission = false; // otherwise only the front emits; unlit materials show both faces
+    bool double_sided = true;        // otherwise camera rays pass through the back; all other rays hit it
 
-    float alpha = 1;           // [0, 1]; times the base colour texture's alpha, the vertex colour's, and alpha_texture
-    float alpha_cutoff = 0.5f; // Mask: hit where alpha >= cutoff
+    float alpha = 1;           // [0, 1]; multiplied by the alpha of the base colour texture, the vertex colour and
+                               // alpha_texture
+    float alpha_cutoff = 0.5f; // Mask: a hit counts if alpha >= cutoff
 
-    Rgb base_color = {0.5f, 0.5f, 0.5f}; // [0, 1], linear; times the texture (alpha in .w of the texture)
-    Rgb emission = {0, 0, 0};            // W/(sr m2); times the texture
-    Rgb eta = {0.2f, 0.92f, 1.1f}, k = {3.9f, 2.45f, 2.14f}; // Conductor; default gold
+    Rgb base_color = {0.5f, 0.5f, 0.5f}; // [0, 1], linear; multiplied by the texture (whose .w is alpha)
+    Rgb emission = {0, 0, 0};            // W/(sr m2); multiplied by the texture
+    Rgb eta = {0.2f, 0.92f, 1.1f}, k = {3.9f, 2.45f, 2.14f}; // for Conductor; the default is gold
 
-    float metallic = 0;  // [0, 1]; times metallic_texture's channel
-    float roughness = 1; // [0, 1], perceptual: alpha_ggx = roughness^2; times roughness_texture's channel
-    float ior = 1.5f;    // Dielectric and MetallicRoughness: inside over outside, >= 1
+    float metallic = 0;  // [0, 1]; multiplied by metallic_texture's channel
+    float roughness = 1; // [0, 1], perceptual: alpha_ggx = roughness^2; multiplied by roughness_texture's channel
+    float ior = 1.5f;    // for Dielectric and MetallicRoughness: inside over outside, >= 1
     float normal_scale = 1;
 
     TextureRef base_color_texture;
-    TextureRef alpha_texture; // one channel, for OBJ map_d; none for glTF
+    TextureRef alpha_texture; // one channel, for OBJ map_d; not used by glTF
     TextureRef metallic_texture, roughness_texture, emission_texture;
     TextureRef normal_texture; // tangent space, x right, y up in texture space (OpenGL convention), linear
 
     bool is_emissive() const { return max_component(emission) > 0; }
-    /// Is looked for as a light. An unlit one is not: rays from the camera or a surface that meet it see its colour.
+    /// Whether it is sampled as an emitter. An unlit one is not: rays from the camera or a surface that hit it return
+    /// its colour.
     bool is_lamp() const { return is_emissive() && kind != MaterialKind::Unlit; }
 };
 
 /// Calls number(value, name, least, most) for each number of a material and each channel of its colours, and
-/// texture(reference, name) for each slot of a texture, with an image or without.
+/// texture(reference, name) for each texture slot, with or without an image.
 template <class Parameters, class Number, class Texture>
 void visit_parameters(Parameters& m, const Number& number, const Texture& texture) {
     const auto color = [&](auto& value, const char* name, float least, float most) {
@@ -80,18 +82,18 @@ void visit_parameters(Parameters& m, const Number& number, const Texture& textur
     texture(m.normal_texture, "normal_texture");
 }
 
-/// Calls texture(reference, name) for each slot of a texture, with an image or without.
+/// Calls texture(reference, name) for each texture slot, with or without an image.
 template <class Parameters, class Texture>
 void visit_textures(Parameters& m, const Texture& texture) {
     visit_parameters(
         m, [](auto&&...) {}, texture);
 }
 
-/// A material of a scene: its parameters, and what it is called.
+/// A material of a scene: its parameters and its name.
 struct Material : MaterialParameters {
-    std::string name, origin; // origin: where its file has it
+    std::string name, origin; // `origin` is its location in the file
 
-    /// Its slots that have an image.
+    /// Texture slots that have an image.
     std::vector<const TextureRef*> textures() const {
         std::vector<const TextureRef*> found;
         visit_textures(*this, [&](const TextureRef& texture, const char*) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// A triangle mesh: geometry only, in its local space. Material and place are the instance's.
+// A triangle mesh: only geometry, in local space. Material and transform belong to the instance.
 
 #include <array>
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace pertev {
 struct Mesh {
     std::string name, origin;
     std::vector<Vec3> positions;         // [vertices], metres
-    std::vector<Vec3> normals;           // [vertices] unit, or empty: the geometric normal is used
+    std::vector<Vec3> normals;           // [vertices] unit, or empty: the geometric normal applies
     std::vector<Vec4> tangents;          // [vertices] unit xyz, w = +-1 handedness of the bitangent; or empty
     std::array<std::vector<Vec2>, 2> uv; // [vertices] each, or empty
     std::vector<Vec4> colors;            // [vertices] linear RGBA in [0, 1], or empty
@@ -26,7 +26,7 @@ struct Mesh {
     uint32_t triangle_count() const { return static_cast<uint32_t>(indices.size() / 3); }
 };
 
-/// Box of all positions that a triangle uses.
+/// Box of all positions that triangles use.
 Bounds3 bounds_of(const Mesh& mesh);
 
 } // namespace pertev

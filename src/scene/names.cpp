@@ -9,7 +9,7 @@
 namespace pertev {
 namespace {
 
-/// Of a node and all above it.
+/// Appends the names of a node and its ancestors.
 void add_node_names(const Scene& scene, uint32_t node, Names& names) {
     for (std::size_t steps = 0; node != kNoNode && steps <= scene.nodes.size(); ++steps) {
         names.push_back(scene.nodes[node].name);
@@ -31,7 +31,8 @@ Names names_of(const Scene& scene, const Light& light) {
 }
 
 bool matches_name(std::string_view pattern, std::string_view name) {
-    // After a * that has taken too little, it takes one more: the last one alone, so that time is their product.
+    // If the text after a * does not match, the last * takes one more letter; only the last one, so that the time is
+    // the product of the lengths.
     std::size_t p = 0, n = 0, after_star = std::string_view::npos, taken = 0;
     while (n < name.size()) {
         const bool is_escaped = p + 1 < pattern.size() && pattern[p] == '\\';

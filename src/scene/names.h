@@ -1,6 +1,6 @@
 #pragma once
 
-// What things of a scene are called by whoever names them: on the command line, in light-path expressions.
+// Names of a scene's objects, as users refer to them on the command line and in light-path expressions.
 
 #include <string>
 #include <string_view>
@@ -15,17 +15,17 @@ inline constexpr const char* kEnvironmentName = "environment";
 
 using Names = std::vector<std::string_view>;
 
-/// Of an object: its own name, its mesh's, its material's, and those of all nodes above it. They live as long as the
-/// scene does.
+/// Names of an object: its own, its mesh's, its material's, and those of all ancestor nodes. They live as long as the
+/// scene.
 Names names_of(const Scene& scene, const Instance& instance);
-/// Of a point, spot or directional light: its own name and those of the nodes above it.
+/// Names of a point, spot or directional light: its own and those of its ancestor nodes.
 Names names_of(const Scene& scene, const Light& light);
 
-/// Whether `pattern` stands for all of `name`: * for any letters, ? for one, \ takes the next as it is.
+/// Whether `pattern` matches all of `name`: * matches any letters, ? one letter, and \ quotes the next letter.
 bool matches_name(std::string_view pattern, std::string_view name);
 bool has_name(const Names& names, std::string_view pattern);
 
-/// A few of the names that there are, for a message: "there are 'a', 'b', ...".
+/// Some of the existing names, for a message: "there are 'a', 'b', ...".
 std::string some_names(const std::vector<Names>& things);
 
 } // namespace pertev

@@ -6,7 +6,7 @@ namespace pertev {
 
 namespace {
 
-/// Rotation by a unit quaternion, then scale.
+/// Scale, then rotation by a unit quaternion.
 DoubleTransform turned_and_scaled(double x, double y, double z, double w, DoubleVec3 scale) {
     return {{(1 - 2 * (y * y + z * z)) * scale.x, 2 * (x * y - z * w) * scale.y, 2 * (x * z + y * w) * scale.z},
             {2 * (x * y + z * w) * scale.x, (1 - 2 * (x * x + z * z)) * scale.y, 2 * (y * z - x * w) * scale.z},
@@ -27,7 +27,7 @@ NodePlace place_of(const NodePose& pose) {
     place.world_from_node = turned_and_scaled(r[0] / size, r[1] / size, r[2] / size, r[3] / size, pose.scale);
     place.world_from_node.translation = pose.translation;
 
-    std::array<double, 4> rounded; // the linear part is made of floats
+    std::array<double, 4> rounded; // the linear part is computed from floats
     for (std::size_t i = 0; i < 4; ++i) rounded[i] = static_cast<double>(static_cast<float>(r[i]));
     const double length = length_of(rounded);
     const auto unit = [&](std::size_t i) { return static_cast<float>(rounded[i] / length); };

@@ -1,6 +1,6 @@
 #pragma once
 
-// What says that something stands in no node. Apart from scene/node.h, which device code need not read.
+// The value that stands for no node. It is separate from scene/node.h, which device code need not include.
 
 #include <cstdint>
 

@@ -18,7 +18,7 @@ Bounds3 bounds_of(std::span<const Vec3> positions, std::span<const uint32_t> ind
         parts[part] = bounds;
     });
     Bounds3 bounds;
-    for (const Bounds3& part : parts) bounds.extend(part); // in order: of two zeros the first counts
+    for (const Bounds3& part : parts) bounds.extend(part); // in order, because of two zeros the first counts
     return bounds;
 }
 

@@ -23,7 +23,7 @@ DoubleBounds3 box_in_file(const Scene& scene) {
     return box;
 }
 
-/// Places all that nodes place, relative to the scene's origin.
+/// Places everything that belongs to nodes, relative to the scene's origin.
 void place_anew(Scene& scene) {
     const std::vector<NodePlace> places = places_of(scene.nodes, parents_first(scene.nodes));
     const std::vector<Transform> world_from_node = world_from_nodes(places, scene.origin_in_file);
@@ -41,7 +41,8 @@ void place_anew(Scene& scene) {
     }
 }
 
-/// Of some of what the scene shows. Its meshes have not been through validate(): their indices may be out of range.
+/// Bounds of a sample of the scene's vertices. Its meshes have not passed validate(), so their indices may be out of
+/// range.
 Bounds3 sample_of(const Scene& scene) {
     Bounds3 sample;
     for (const Instance& instance : scene.instances) {
@@ -62,7 +63,7 @@ DoubleVec3 centre_of(const DoubleBounds3& box) {
     int exponent = 0; // side = fraction in [1/2, 1) times 2^exponent
     const double fraction = std::frexp(longest_side(box), &exponent);
     const double grid = std::ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
-    // Halves go away from zero; adding 0 makes a zero positive.
+    // Halves are rounded away from zero; adding 0 makes a zero positive.
     const auto rounded = [&](double a, double b) { return grid * std::round(0.5 * (a + b) / grid) + 0.0; };
     return {rounded(box.lo.x, box.hi.x), rounded(box.lo.y, box.hi.y), rounded(box.lo.z, box.hi.z)};
 }
@@ -85,7 +86,7 @@ void take_off_centre(Scene& scene) {
         if (is_singular(instance.world_from_local)) instance.is_hidden = true;
     }
     if (surely_stays(sample_of(scene))) return;
-    // Far away the first box is one of rounded places, and the second one is exact.
+    // Far away the first box has rounded positions; the second one is exact.
     for (int step = 0; step < 2; ++step) {
         const DoubleVec3 before = scene.origin_in_file;
         set_origin(box_in_file(scene), scene);

@@ -21,7 +21,7 @@ const T* data_or_null(const std::vector<T>& values) {
 bool turns_over(const DeformVertices& stage, uint64_t vertices, std::span<const Transform> joints) {
     const auto mirrors = [](const Transform& m) { return determinant(m) < 0; };
     if (std::ranges::none_of(joints, mirrors)) return false;
-    std::atomic<int64_t> balance{0}; // vertices turned inside out, less those that are not
+    std::atomic<int64_t> balance{0}; // inverted vertices minus those that are not
     parallel_for_ranges(vertices, kVerticesAtOnce, [&](uint64_t begin, uint64_t end) {
         int64_t sum = 0;
         for (uint64_t i = begin; i < end; ++i) {
@@ -36,7 +36,7 @@ bool turns_over(const DeformVertices& stage, uint64_t vertices, std::span<const 
 } // namespace
 
 bool same_pose(const MeshPose& a, const MeshPose& b) {
-    // Zeros of two signs are two, as what is computed from them may be.
+    // Zeros of different sign count as different, because results computed from them may differ.
     const auto same_bits = [](const auto& one, const auto& other) {
         return one.size() == other.size() &&
                (one.empty() || std::memcmp(one.data(), other.data(), std::as_bytes(std::span(one)).size()) == 0);

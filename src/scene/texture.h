@@ -1,7 +1,7 @@
 #pragma once
 
-// Texture images and how a material looks one up. (u, v) = (0, 0) is the upper left corner of the image's top row
-// (glTF); readers whose format has v pointing up flip it.
+// Texture images, and their use in materials. (u, v) = (0, 0) is the upper left corner of the image's top row (glTF);
+// readers of formats with v upwards flip it.
 
 #include <cstdint>
 #include <string>
@@ -17,21 +17,21 @@ enum class TextureFilter : uint8_t { Nearest, Linear };
 
 inline constexpr int32_t kNoImage = -1;
 
-/// One decoded image; exactly one of the two holds pixels.
+/// A decoded image; exactly one of the two members has pixels.
 struct TextureImage {
     std::string name;
     Rgba8Image rgba8;
-    Image rgba_float; // 4 channels, linear; for HDR and EXR sources
+    Image rgba_float; // 4 channels, linear; from HDR and EXR files
 };
 
-/// One use of an image by a material slot.
+/// The use of an image by a texture slot of a material.
 struct TextureRef {
-    int32_t image = kNoImage; // index into Scene::images; kNoImage: the slot's factor alone counts
+    int32_t image = kNoImage; // index into Scene::images; kNoImage: only the slot's factor counts
     Wrap wrap_s = Wrap::Repeat, wrap_t = Wrap::Repeat;
     TextureFilter filter = TextureFilter::Linear;
     uint8_t uv_set = 0;   // 0 or 1
     bool is_srgb = false; // colour channels of an 8-bit image are sRGB-encoded
-    uint8_t channel = 0;  // 0 to 3, for slots that read one number
+    uint8_t channel = 0;  // 0 to 3, for slots that use one channel
     // uv' = (m00 u + m01 v + m02, m10 u + m11 v + m12), KHR_texture_transform as one matrix
     float m00 = 1, m01 = 0, m02 = 0, m10 = 0, m11 = 1, m12 = 0;
 

@@ -22,7 +22,7 @@ auto is_unlit_in(const Scene& scene) {
     return [&](const Instance& instance) { return scene.materials[instance.material].kind == MaterialKind::Unlit; };
 }
 bool is_all_unlit(const Scene& scene) { return std::ranges::all_of(scene.instances, is_unlit_in(scene)); }
-/// Paths that find it take its colour on, though it is no light.
+/// Whether the scene has unlit surfaces. Paths carry their colour on, though they are no lights.
 bool has_unlit(const Scene& scene) { return std::ranges::any_of(scene.instances, is_unlit_in(scene)); }
 bool gives_light(const Environment& environment) {
     const Rgb scale = environment.scale;
@@ -37,7 +37,7 @@ bool has_any_light(const Scene& scene) {
     return has_punctual_light(scene) || has_lamp(scene) || is_all_unlit(scene) ||
            (scene.environment && gives_light(*scene.environment));
 }
-/// "no lamp, no point, spot or directional light, no environment"
+/// A list such as "no lamp, no point, spot or directional light, no environment".
 std::string no_lights_of(const Scene& scene) {
     return fmt::format("no lamp, no point, spot or directional light, {}",
                        scene.environment ? "and the environment is black" : "no environment");
@@ -47,7 +47,7 @@ void refuse(bool is_wrong, const char* setting, std::string_view value, std::str
     if (is_wrong) throw Error(ErrorCode::BadInput, setting, std::string(value), std::move(why));
 }
 
-/// Surfaces are to be lit, by lights that are not there.
+/// Whether there are surfaces to be lit but no lights that the integrator supports.
 bool lacks_lights(const RenderSettings& settings, const Scene& scene) {
     const bool wants_lights = needs_punctual_lights(settings.integrator) && !settings.ambient;
     return wants_lights && settings.path.max_depth > 0 && !has_punctual_light(scene) && !is_all_unlit(scene);
@@ -57,7 +57,7 @@ bool has_own_ambient(const RenderSettings& settings, const Scene& scene) {
            scene.environment && gives_light(*scene.environment);
 }
 
-/// "this scene has lamps alone"
+/// A phrase such as "this scene has lamps alone".
 std::string lights_of(const Scene& scene) {
     const bool has_environment = scene.environment && gives_light(*scene.environment);
     const std::string others =

@@ -1,6 +1,6 @@
 #pragma once
 
-// What an integrator cannot do, told in one line before anything is rendered.
+// Checks for things that an integrator cannot do, each reported in one line before rendering starts.
 
 #include <optional>
 
@@ -10,21 +10,21 @@
 
 namespace pertev {
 
-/// Whether the settings go together. Throws Error(BadInput), Error(OverLimit) for a tree of rays that is too deep.
+/// Checks that the settings are compatible. Throws Error(BadInput), Error(OverLimit) for a ray tree that is too deep.
 void check_integrator(const RenderSettings& settings);
 
-/// Whether what moves while a shutter is open can be blurred. Throws Error(BadInput).
+/// Checks that motion can be blurred if the shutter is open. Throws Error(BadInput).
 void check_shutter(const RenderSettings& settings);
 
-/// Whether the integrator can see by this camera. Throws Error(BadInput).
+/// Checks that the integrator supports this camera. Throws Error(BadInput).
 void check_camera(const RenderSettings& settings, const Camera& camera);
 
-/// Why nothing would be lit, for want of lights that the integrator knows, though mirrors may show lamps; or why no
-/// photon leaves a light. None where something may be lit.
+/// Why nothing would be lit, because the integrator supports none of the lights (though mirrors may show emitters),
+/// or because no photon leaves a light. Nothing if something may be lit.
 std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scene);
 
-/// Throws Error(BadInput) that says why_dark; a note tells what whitted leaves out, a warning that nothing in the scene
-/// gives light, its environment neither.
+/// Throws Error(BadInput) with the reason of why_dark. A note says what whitted leaves out, and a warning says if
+/// nothing in the scene, not even its environment, emits light.
 void check_light(const RenderSettings& settings, const Scene& scene, Messages& messages);
 
 } // namespace pertev

@@ -1,7 +1,7 @@
 #pragma once
 
-// Angles as people say them, in degrees. What holds radians has not always degrees that lead back to the same bits,
-// unless these are looked for.
+// Angles in degrees for people. Not every angle in radians has degrees that convert back to the same bits, so they
+// are searched for.
 
 #include <bit>
 #include <cstdint>
@@ -13,10 +13,10 @@ namespace pertev {
 
 inline constexpr float kRadiansPerDegree = kPi / 180.0f;
 
-/// Returns the degrees, in (0, 360), that choose_camera() makes `radians` of, to the bit where there are such.
+/// Returns degrees in (0, 360) that choose_camera() converts to `radians`, to the bit if there are such.
 inline float degrees_for(float radians) {
     const float near = radians * (180 / kPi);
-    const auto bits = std::bit_cast<uint32_t>(near); // those of the next floats are one more and one less
+    const auto bits = std::bit_cast<uint32_t>(near); // adding or subtracting one gives the adjacent floats
     for (uint32_t i = 0; i < 16; ++i) {
         for (const uint32_t candidate : {bits - i, bits + i}) {
             const auto degrees = std::bit_cast<float>(candidate);

@@ -6,7 +6,7 @@
 namespace pertev {
 
 void DeviceScene::set(const PreparedScene& scene, const RenderSettings& settings) {
-    tracer_.reset(); // with its trees, so that those of two scenes do not need to fit
+    tracer_.reset(); // freed with its trees, so that those of two scenes need not fit
     upload(scene, kAllParts, settings);
 }
 
@@ -14,7 +14,7 @@ void DeviceScene::update(const PreparedScene& scene, uint32_t parts, const Rende
     upload(scene, parts, settings);
 }
 
-/// The other parts stay. A part keeps its memory where that is large enough.
+/// Uploads `parts` and keeps the others. A part's memory is reused if it is large enough.
 void DeviceScene::upload(const PreparedScene& scene, uint32_t parts, const RenderSettings& settings) {
     const Stopwatch watch;
     if ((parts & kPartTrees) != 0) structures_ = prepared_structures_ = scene.structures;
@@ -43,14 +43,14 @@ void DeviceScene::upload(const PreparedScene& scene, uint32_t parts, const Rende
 bool DeviceScene::set_tracer(const RenderSettings& settings) {
     const TracerChoice choice = tracers_of(settings, queue_.is_cuda(), has_poses_);
     if (!scene_ || (tracer_ && tracer_->choice() == choice)) return false;
-    tracer_.reset(); // before the new one, so that two do not need to fit
+    tracer_.reset(); // freed before the new one, so that two need not fit
     tracer_.emplace(queue_, *structures_, choice);
     tracer_->set_surfaces(scene_->view());
     fit_trees();
     return true;
 }
 
-/// Fits the trees to the vertices that were moved on the device.
+/// Refits the trees to vertices that have moved on the device.
 void DeviceScene::fit_trees() {
     if (!has_poses_) return;
     try {

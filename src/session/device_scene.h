@@ -49,8 +49,9 @@ private:
     void fit_trees();
 
     Queue& queue_;
-    std::shared_ptr<SceneStructures> structures_, prepared_structures_; // as rays meet them, and as they were given
-    std::vector<PlacedBvh> placed_;                                     // as PreparedScene has them
+    std::shared_ptr<SceneStructures> structures_, prepared_structures_; // the structures that rays traverse, and
+                                                                        // those of the prepared scene
+    std::vector<PlacedBvh> placed_;                                     // the instances of PreparedScene
     std::vector<DeformedMesh> deformed_; // meshes whose vertices were moved on the device
     std::optional<SceneOnDevice> scene_;
     std::optional<SceneTracer> tracer_;

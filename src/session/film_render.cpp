@@ -13,10 +13,11 @@ namespace {
 
 constexpr uint32_t kFirstAtOnce = 16; // samples of a first pass
 
-/// Returns how many samples the next pass takes. It aims at a third of a second, so that progress moves and Ctrl-C is
-/// heard, at no cost that shows. If samples are cheaper together and there is no limit of time, as many as are done
-/// already go at once, as far as they do: progress is soon seen, and what a pass costs by itself is paid a few times.
-/// It never goes past the time that is left. `done` samples took `seconds`, `left` are to come.
+/// Returns the number of samples of the next pass. It aims at a third of a second, so that progress updates and
+/// Ctrl-C are timely at no noticeable cost. If samples are cheaper together and there is no time limit, a pass has as
+/// many samples as are done already, up to the number that the integrator prefers: progress shows early, and the cost
+/// of a pass is paid a few times only. It never exceeds the remaining time. `done` samples took `seconds`, and `left`
+/// remain.
 uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done, double seconds) {
     if (settings.pass_samples > 0) return std::min(left, settings.pass_samples);
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
@@ -58,7 +59,7 @@ void FilmRender::restart() {
     forget_samples();
 }
 
-/// The film itself is cleared when it is next looked at.
+/// The film itself is cleared at its next use.
 void FilmRender::forget_samples() {
     stats_ = {};
     film_is_old_ = true;
@@ -89,7 +90,7 @@ uint32_t FilmRender::render(SampleRange range, const KeepGoing& keep_going) {
     const RayCounts rays_before = stats_.rays;
     const double seconds_before = stats_.render_seconds;
     const Stopwatch watch;
-    // The first sample has nothing before it that could be kept.
+    // Before the first sample there is nothing to keep.
     const bool is_apart = keeps_samples_ && pictures_.abandon_flag() != nullptr && before > 0 && !has_steps;
     if (!is_apart) pass_film_.reset();
     Film& into = is_apart ? fit_film(pictures_.queue(), pass_film_, settings_) : into_film;
@@ -151,7 +152,8 @@ std::optional<Image> FilmRender::denoised() {
 
 RenderStats FilmRender::stats() {
     if (!hidden_back_share_) {
-        const PictureView picture = pictures_.view_of(camera_, settings_); // first, it checks that there is a scene
+        const PictureView picture = pictures_.view_of(camera_, settings_); // first, because it checks that there is a
+                                                                           // scene
         hidden_back_share_ = hidden_back_share(pictures_.queue(), pictures_.scene().tracer(), picture);
     }
     RenderStats stats = stats_;

@@ -12,9 +12,9 @@ namespace {
 
 constexpr uint32_t kMostFrames = 1'000'000'000;
 
-constexpr double kMostShutter = 1e6; // seconds, either way
+constexpr double kMostShutter = 1e6; // seconds, positive or negative
 
-/// Returns the number that `text` is; infinite if it is too large.
+/// Parses a number; infinite if it is too large.
 std::optional<double> seconds_in(std::string_view text) {
     const std::optional<double> value = parse_whole_float<double>(text);
     return value && !std::isnan(*value) ? value : std::nullopt;

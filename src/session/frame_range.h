@@ -1,6 +1,6 @@
 #pragma once
 
-// The frames of a moving picture: their numbers, their times, their files.
+// The frames of a moving picture: their numbers, times and files.
 
 #include <cstdint>
 #include <optional>
@@ -14,31 +14,32 @@ namespace pertev {
 
 struct FrameRange {
     uint32_t first = 0, last = 0;   // both are frames; first <= last
-    std::optional<double> fps;      // frames a second; none: all frames are of one time
-    std::optional<double> time_s;   // that time; none: at rest
-    uint32_t turntable = 0;         // frames that the camera takes to go round once; 0: it does not
-    std::optional<Shutter> shutter; // at each frame's time; none: a frame is of one moment
+    std::optional<double> fps;      // frames per second; without it all frames have one time
+    std::optional<double> time_s;   // that time; without it the scene is at rest
+    uint32_t turntable = 0;         // frames per revolution of the camera; 0: it does not revolve
+    std::optional<Shutter> shutter; // around each frame's time; without it a frame shows one moment
 
     uint32_t count() const { return last - first + 1; }
-    /// Frame k of a moving scene is at k / fps seconds.
+    /// Time of a frame of a moving scene: k / fps seconds for frame k.
     std::optional<double> time_of(uint32_t frame) const { return fps ? std::optional(frame / *fps) : time_s; }
-    /// The sample that a frame in real time takes of each pixel: the frame's number, as long as there are so many.
+    /// Index of the sample per pixel that a real-time frame takes: the frame's number, modulo the maximum.
     static uint32_t sample_of(uint32_t frame) { return frame % kMaxSamplesPerPixel; }
-    /// Share of a turn, in [0, 1).
+    /// Fraction of a revolution, in [0, 1).
     double turn_of(uint32_t frame) const { return turntable == 0 ? 0 : double(frame % turntable) / turntable; }
-    /// The same after `share` in [0, 1] of the time that the shutter is open.
+    /// Fraction of a revolution after `share` in [0, 1] of the time that the shutter is open.
     double turn_at(uint32_t frame, double share) const;
-    /// Of the frame before, also of the first one: motion vectors of a frame depend on no other that is rendered.
+    /// Time of the previous frame. The first frame has one too, so that a frame's motion vectors do not depend on
+    /// which others are rendered.
     std::optional<double> time_before(uint32_t frame) const {
         return fps ? std::optional((static_cast<double>(frame) - 1) / *fps) : time_s;
     }
     double turn_before(uint32_t frame) const { return turntable == 0 ? 0 : turn_of(frame % turntable + turntable - 1); }
 };
 
-/// Whether `pattern` names a file for each frame: it has a '#'.
+/// Whether `pattern` names a file for each frame, that is, contains a '#'.
 bool names_frames(const std::string& pattern);
-/// The file of a frame: its number in place of each run of '#', with zeros before it up to the run's length. All '#'
-/// stand in the file's name, not in its folder's.
+/// Name of a frame's file: the frame's number, zero-padded, replaces each run of '#'. All '#' must be in the file's
+/// name, not in its folder's.
 std::string frame_file(const std::string& pattern, uint32_t frame);
 
 /// Returns how long the shutter is open; none if that was not given. Throws Error(BadInput).

@@ -22,8 +22,8 @@ void FrameSequence::scene_changes() {
     has_moved_ = true;
 }
 
-/// Returns the reservoirs of frames with these settings; null if samples keep all light. Others than those of the last
-/// frame begin anew.
+/// Returns the reservoirs of frames with these settings; null if samples keep all light. They restart if the settings
+/// differ from those of the last frame.
 Restir* FrameSequence::restir_for(const RestirSettings& settings, const RenderSettings& of_light) {
     const PathSettings& path = of_light.path;
     const uint32_t width = of_light.width, height = of_light.height;
@@ -35,7 +35,7 @@ Restir* FrameSequence::restir_for(const RestirSettings& settings, const RenderSe
     const bool fits =
         restir_ && restir_->light() == settings.light && restir_->width() == width && restir_->height() == height;
     if (!fits) {
-        restir_.reset(); // before the new one, so that two do not need to fit
+        restir_.reset(); // freed before the new one, so that two need not fit
         restir_.emplace(pictures_.queue(), width, height, settings.light);
     }
     if (settings != restir_settings_) restir_->cut();
@@ -58,14 +58,14 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
     of_light.height = scaled_side(settings.height, reconstruction);
     number_ = number;
     NoisyFrame& frame = fit_frame(scene, sample_, of_light.width, of_light.height);
-    if (!reconstruction_ || !light_change_ || !light_change_->fits(frame)) { // of another size, or of other signals
+    if (!reconstruction_ || !light_change_ || !light_change_->fits(frame)) { // another size, or other signals
         light_change_.reset();
-        reconstruction_.reset(); // before the new one, so that two do not need to fit
+        reconstruction_.reset(); // freed before the new one, so that two need not fit
         reconstruction_.emplace(pictures_.queue(), of_light.width, of_light.height);
         light_change_.emplace(pictures_.queue(), of_light.width, of_light.height, frame.splits_light(),
                               reconstruction_->room_for_change());
     }
-    if (camera_before_) { // of another sequence
+    if (camera_before_) { // belongs to another sequence
         camera_before_.reset();
         has_moved_ = false;
     }
@@ -101,7 +101,7 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
         features_.reset();
         reconstruction_->add(frame, light.camera.view, light.scene, before, change, reconstruction);
     }
-    has_moved_ = false; // the frame is whole, whatever follows
+    has_moved_ = false; // the frame is complete, whatever follows
     const bool has_changed = std::exchange(scene_has_changed_, false);
     keep_light(number, camera, of_light, reconstruction.follow_light && has_changed);
     return true;
@@ -123,9 +123,9 @@ void FrameSequence::take_sample(uint32_t number, const Camera& camera, RenderSet
     kind_seconds_.shadow += seconds.shadow;
 }
 
-/// Returns how light has changed since the frame before, if that has left a small picture of the scene as it was.
+/// Returns the change of light since the previous frame, if that has left a small picture of its scene.
 LightChangeView FrameSequence::look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings) {
-    // The picture serves once, because the frame takes its room.
+    // The picture can be used once, because the frame reuses its memory.
     const std::optional<LightBefore> before = std::exchange(light_before_, {});
     const bool is_known = settings.follow_light && scene_has_changed_ && before && reconstruction_->frames() > 0 &&
                           before->path == of_light.path;
@@ -134,7 +134,7 @@ LightChangeView FrameSequence::look_for_change(const RenderSettings& of_light, c
     return light_change_->compare();
 }
 
-/// Leaves that picture for the next frame if `goes_on`, because what has moved once mostly goes on.
+/// Leaves that picture for the next frame if `goes_on`, because motion usually continues.
 void FrameSequence::keep_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on) {
     light_before_.reset();
     if (!goes_on) return;
@@ -157,7 +157,7 @@ RenderResult FrameSequence::result(const Camera& camera, const RenderSettings& s
     result.layers = std::move(seen.layers);
     result.ids = std::move(seen.ids);
     if (number_ == 0 || (settings.aovs & kAovIds) == 0) return result;
-    of_layers.aovs = kAovIds; // they are sample 0's
+    of_layers.aovs = kAovIds; // ids are those of sample 0
     result.ids = pictures_.render_aside(camera, of_layers).ids;
     return result;
 }

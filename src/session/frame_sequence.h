@@ -1,9 +1,9 @@
 #pragma once
 
-// The frames of a sequence in real time, of a scene on a device: each takes one sample of each pixel, and is
-// reconstructed with what the frames before it have seen. It has the history, the reservoirs of ReSTIR, the temporal
-// gradients of light, and what motion vectors compare with. A frame is a function of scene, camera, settings and number
-// of all frames since the last cut, on every device alike. It needs no session.
+// Real-time frames of a scene on a device: each takes one sample per pixel and is reconstructed with the history of
+// earlier frames. It owns the history, the ReSTIR reservoirs, the temporal gradients of light, and the reference of
+// motion vectors. A frame depends only on scene, camera, settings and numbers of all frames since the last cut, on
+// every device alike. It needs no session.
 
 #include <optional>
 
@@ -20,38 +20,37 @@ public:
     /// `pictures` outlives it.
     explicit FrameSequence(PictureRenderer& pictures) : pictures_(pictures), sharing_timer_(pictures.queue()) {}
 
-    /// Forgets what earlier frames have seen.
+    /// Discards the history.
     void cut();
-    /// To be called before each change of the scene, which is then in another state of the same sequence. Throws
-    /// Error(OutOfMemory).
+    /// Must be called before each change of the scene within a sequence. Throws Error(OutOfMemory).
     void scene_changes();
 
-    /// Renders sample `number` of each pixel and reconstructs the picture. `restir` is off if the path settings ask for
-    /// indirect light alone, or find light by one strategy alone. Another resolution_scale is a cut. Returns false, and
-    /// the frames begin anew, if the renderer was abandoned. Throws Error(OutOfMemory, DeviceFault), and
-    /// Error(BadInput) for an integrator that makes no frames (makes_frames) or for an open shutter.
+    /// Renders sample `number` of each pixel and reconstructs the picture. `restir` is ignored if the path settings
+    /// request indirect light only, or a single light strategy. Another resolution_scale is a cut. Returns false, and
+    /// restarts the sequence, if the renderer was abandoned. Throws Error(OutOfMemory, DeviceFault), and
+    /// Error(BadInput) for an integrator without frames (makes_frames) or for an open shutter.
     bool render(uint32_t number, const Camera& camera, const RenderSettings& settings,
                 const ReconstructionSettings& reconstruction, const RestirSettings& restir);
 
-    // These are about the last frame. All but rays() and the seconds throw as render().
+    // The following functions refer to the last frame. All but rays() and the seconds throw as render().
 
     Reconstruction& reconstruction() { return reconstruction_.value(); }
-    /// For its exposure (session/adaptive_exposure.h).
+    /// Tones of the frame for the exposure (session/adaptive_exposure.h).
     FrameTones tones() const;
-    /// Returns the frame as a picture of one sample, and the layers that the settings ask for of that sample alone,
-    /// without motion; ids are of sample 0, as those of any picture. It has no times and shares.
+    /// Returns the frame as a picture of one sample, with the requested layers of that sample, without motion; ids
+    /// are of sample 0, as in any picture. It has no times and shares.
     RenderResult result(const Camera& camera, const RenderSettings& settings);
     RayCounts rays() const { return restir_ ? rays_ + RayCounts{0, 0, restir_->rays()} : rays_; }
-    /// Seconds of its rays by kind, without those of ReSTIR; all 0 unless the settings ask for them (time_kinds).
+    /// Seconds of its rays by kind, without those of ReSTIR; all 0 unless the settings request them (time_kinds).
     const SceneTracer::Seconds& kind_seconds() const { return kind_seconds_; }
     /// Seconds that ReSTIR took; 0 without it.
     double sharing_seconds() const { return restir_ ? sharing_timer_.seconds() : 0; }
 
-    /// From now on motion() compares with the scene as it is now, seen by `camera`. Reconstruction begins anew. Throws
+    /// Makes the present scene, seen by `camera`, the reference of motion(). Reconstruction restarts. Throws
     /// Error(OutOfMemory).
     void keep_as_before(const Camera& camera);
-    /// Returns how many pixels to the right and up each pixel of this picture has moved since keep_as_before(): 0 after
-    /// a cut (denoise/motion_vectors.h). Throws Error(OutOfMemory, DeviceFault).
+    /// Returns by how many pixels, to the right and up, each pixel has moved since keep_as_before(); 0 after a cut
+    /// (denoise/motion_vectors.h). Throws Error(OutOfMemory, DeviceFault).
     Image motion(const Camera& camera, const RenderSettings& settings);
 
 private:
@@ -66,13 +65,14 @@ private:
     std::optional<NoisyFrame> features_; // if light is found at a lower resolution
     std::optional<Reconstruction> reconstruction_;
     std::optional<Restir> restir_;
-    RestirSettings restir_settings_;      // of the last frame
-    DeviceTimer sharing_timer_;           // of the last frame's reservoirs
-    bool has_moved_ = false;              // since the last frame: the scene has places before
-    std::optional<Camera> camera_before_; // of keep_as_before()
+    RestirSettings restir_settings_;      // settings of the last frame
+    DeviceTimer sharing_timer_;           // time of the last frame's reservoirs
+    bool has_moved_ = false;              // whether the scene has moved since the last frame and holds its previous
+                                          // positions
+    std::optional<Camera> camera_before_; // camera of keep_as_before()
     bool scene_has_changed_ = false;      // since the last frame
     std::optional<LightChange> light_change_;
-    /// The frame whose scene light_change_ holds.
+    /// The frame whose scene is in light_change_.
     struct LightBefore {
         Camera camera;
         uint32_t number = 0;
@@ -81,7 +81,7 @@ private:
     std::optional<LightBefore> light_before_;
     RayCounts rays_;
     SceneTracer::Seconds kind_seconds_;
-    uint32_t number_ = 0;                          // of the last frame's sample
+    uint32_t number_ = 0; // sample number of the last frame
 };
 
 } // namespace pertev

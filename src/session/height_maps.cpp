@@ -17,7 +17,7 @@
 namespace pertev {
 namespace {
 
-constexpr float kMostScale = 0x1p20f; // of heights, either way
+constexpr float kMostScale = 0x1p20f; // limit of |scale| of heights
 
 [[noreturn]] void refuse(const HeightMapText& map, const std::string& why) {
     throw Error(ErrorCode::BadInput, "displacement", map.text, why);
@@ -28,7 +28,7 @@ std::optional<float> number_of(std::string_view text) {
     return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-/// What follows the last comma, cut off; none where that is no number.
+/// Parses and removes the number after the last comma; nothing if that is no number.
 std::optional<float> take_last_number(std::string_view& text) {
     const std::size_t comma = text.rfind(',');
     if (comma == std::string_view::npos) return std::nullopt;
@@ -102,7 +102,9 @@ std::shared_ptr<const HeightMaps> read_height_maps(std::span<const HeightMapText
         for (uint32_t i = 0; i < scene.materials.size(); ++i) {
             all.push_back({scene.materials[i].name});
             if (!matches_name(map.material, scene.materials[i].name)) continue;
-            if (!heights) heights = read_heights(map, messages); // first: a file that is missing is missing anywhere
+            if (!heights)
+                heights = read_heights(map, messages); // before the material is checked, so that a missing
+                                                       // file is always reported
             check_coordinates(map, scene, i);
             of_material[i] = {i, *heights, map.scale, map.middle, map.text};
         }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Height maps that the user gives to materials: what displaces surfaces for `integrator=reyes`.
+// Height maps that the user assigns to materials, as displacement for `integrator=reyes`.
 
 #include <memory>
 #include <span>
@@ -14,18 +14,18 @@
 namespace pertev {
 
 struct HeightMapText {
-    std::string material; // * and ? stand for letters (scene/names.h)
+    std::string material; // * and ? are wildcards (scene/names.h)
     std::string file;
-    float scale = 1, middle = 0; // of HeightMap
-    std::string text;            // as it was asked for
+    float scale = 1, middle = 0; // copied to HeightMap
+    std::string text;            // text of the request
 };
 
-/// Of MATERIAL=FILE,SCALE or MATERIAL=FILE,SCALE,MIDDLE. Throws Error(BadInput).
+/// Parses MATERIAL=FILE,SCALE or MATERIAL=FILE,SCALE,MIDDLE. Throws Error(BadInput).
 HeightMapText parse_height_map(std::string_view text);
 
-/// Reads the files: the first channel of PNG, JPEG, HDR or EXR, as it is stored, [0, 1] of whole numbers. Of maps that
-/// are for the same material the last counts. Null where nothing is asked for. Throws Error(BadInput) for a material
-/// that the scene does not have or whose meshes have no texture coordinates, and as decode_image does.
+/// Reads the files: the first channel of PNG, JPEG, HDR or EXR, as stored; integers map to [0, 1]. The last map for a
+/// material counts. Returns null if `texts` is empty. Throws Error(BadInput) for a material that the scene does not
+/// have or whose meshes have no texture coordinates, and as decode_image does.
 std::shared_ptr<const HeightMaps> read_height_maps(std::span<const HeightMapText> texts, const Scene& scene,
                                                    Messages* messages = nullptr);
 

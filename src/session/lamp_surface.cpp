@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMostLookups = 1 << 24;
 
-/// Edges in parts of about a texel; at least 4 parts, as the filter is not even.
+/// Number of parts per edge, of about a texel each; at least 4, because the filter is not uniform.
 int parts_of(const TextureRef& ref, const TextureImageView& image, const Vec2 (&uv)[3]) {
     double texels = 0;
     for (int k = 0; k < 3; ++k) {
@@ -20,7 +20,7 @@ int parts_of(const TextureRef& ref, const TextureImageView& image, const Vec2 (&
         texels = std::max(
             {texels, static_cast<double>(abs(edge.x)) * image.width, static_cast<double>(abs(edge.y)) * image.height});
     }
-    return static_cast<int>(std::clamp(std::ceil(texels), 4.0, 4096.0)); // 4 for no number
+    return static_cast<int>(std::clamp(std::ceil(texels), 4.0, 4096.0)); // 4 for NaN
 }
 
 /// Adds the mean over a triangle, times `weight`, to `sum`.
@@ -77,7 +77,7 @@ LampSurface lamp_surface(const Scene& scene, const Instance& instance) {
                                    std::max(1, static_cast<int>(most_parts)));
         add_mean(images.data(), ref, uv, parts, area, colours);
     }
-    // Area vectors of one direction add up to all of the area.
+    // Area vectors of equal direction add up to the whole area.
     surface.is_flat =
         std::sqrt(normals[0] * normals[0] + normals[1] * normals[1] + normals[2] * normals[2]) > 0.9999 * surface.area;
     if (ref.has_image() && surface.area > 0) {

@@ -16,7 +16,7 @@ namespace {
     throw Error(ErrorCode::BadInput, "device", name, reason);
 }
 
-/// Throws Error(BadInput).
+/// Parses the index of cuda:N. Throws Error(BadInput).
 int cuda_index(const std::string& name) {
     if (name == "cuda") return 0;
     int index = 0;
@@ -83,7 +83,7 @@ bool ComingMachine::may_be_cuda() {
 }
 
 std::unique_ptr<Queue> ComingMachine::take() {
-    is_cuda(); // with its notice
+    is_cuda(); // for its notice
     return queue_ ? std::move(queue_) : coming_.get();
 }
 

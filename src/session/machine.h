@@ -13,26 +13,26 @@
 
 namespace pertev {
 
-/// The queue of the device named. `auto` takes the first CUDA device that works, else the CPU with a notice that says
-/// why; `cpu` never touches CUDA. Throws Error(BadInput) with the reason when the device named cannot be used.
+/// Returns the queue of the named device. `auto` is the first working CUDA device, else the CPU with a notice of the
+/// reason; `cpu` never touches CUDA. Throws Error(BadInput) with the reason if the device cannot be used.
 std::unique_ptr<Queue> choose_device(const std::string& name, Messages& messages);
 
-/// Sets the number of threads that work for the calling thread, and returns the device's queue as choose_device does.
+/// Sets the number of threads that work for the calling thread, and returns the queue of choose_device.
 std::unique_ptr<Queue> take_machine(const MachineOptions& options, Messages& messages);
 
-/// Does the same while its user reads a scene, because a GPU's driver takes as long to start as that does. If there is
-/// no driver, a GPU that is named is refused at once; all else is known later.
+/// Takes the machine while its user reads a scene, because starting a GPU's driver takes as long as that. If there is
+/// no driver, a named GPU is refused at once; everything else is known later.
 class ComingMachine {
 public:
     /// Throws as choose_device. `messages` outlives it.
     ComingMachine(const MachineOptions& options, Messages& messages);
 
-    /// Waits until that is known. Throws Error(BadInput) where a GPU that is named cannot be used.
+    /// Waits until the device is known. Throws Error(BadInput) if a named GPU cannot be used.
     bool is_cuda();
-    /// As is_cuda, but waits for no driver: true where that is not known yet, but a driver's library is there. What is
-    /// made for a GPU then may turn out to be of no use, or a GPU that is named be refused later.
+    /// Whether the device may be a GPU, without waiting for a driver: true if that is not known yet but a driver's
+    /// library exists. Data made for a GPU may then turn out to be unused, and a named GPU may still be refused.
     bool may_be_cuda();
-    /// Waits for it; to be called once. Throws Error(BadInput, DeviceFault).
+    /// Waits for the queue; must be called once. Throws Error(BadInput, DeviceFault).
     std::unique_ptr<Queue> take();
 
 private:
@@ -40,7 +40,7 @@ private:
     Messages& messages_;
     std::future<std::string> why_no_gpu_;
     std::future<std::unique_ptr<Queue>> coming_;
-    std::unique_ptr<Queue> queue_; // the CPU's, where that is named
+    std::unique_ptr<Queue> queue_; // the CPU's queue, if the CPU is named
     std::optional<bool> is_cuda_;
 };
 

@@ -46,7 +46,7 @@ Camera meter_camera(const Scene& scene, const MeterPlace& place) {
     const Frame frame = make_frame(normalize(place.normal));
     Camera camera;
     camera.projection = Projection::Cosine;
-    // The camera looks along -z, so that its x and y change places with the frame's.
+    // The camera looks along -z, so its x and y are swapped relative to the frame's.
     const Vec3 x = frame.bitangent, y = frame.tangent, z = -frame.normal;
     camera.world_from_camera = {
         {x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}, point + 0x1p-19f * largest * frame.normal};

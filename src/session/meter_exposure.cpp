@@ -7,9 +7,9 @@
 namespace pertev {
 namespace {
 
-/// The meter's settings: the picture's light paths and shape, and the same device; all else fixed.
+/// The meter's settings: light paths, aspect ratio and device of the picture, and fixed values for everything else.
 RenderSettings meter_settings(const RenderSettings& picture) {
-    // Of the ratio in lowest terms, so that 1280x720 and 640x360 have one meter.
+    // The aspect ratio in lowest terms, so that 1280x720 and 640x360 have the same meter.
     const uint32_t common = std::gcd(picture.width, picture.height);
     const float width = static_cast<float>(picture.width / common),
                 height = static_cast<float>(picture.height / common);
@@ -23,7 +23,7 @@ RenderSettings meter_settings(const RenderSettings& picture) {
     meter.aovs = 0;
     meter.light_paths = nullptr;
     meter.time_kinds = false;
-    if (finds_all_light(meter.integrator)) meter.integrator = IntegratorKind::Path; // the light is the same
+    if (finds_all_light(meter.integrator)) meter.integrator = IntegratorKind::Path; // they give the same light
     meter.path.sampler = SamplerKind::Sobol;
     meter.path.seed = 0;
     return meter;
@@ -31,8 +31,8 @@ RenderSettings meter_settings(const RenderSettings& picture) {
 
 Rgb light_of(const float* pixel) { return {pixel[0], pixel[1], pixel[2]}; }
 
-/// `light` without what comes straight from lamps, `emitted`, by the very same camera rays. Where lamps make up the
-/// better part of a pixel, it does not count. Both are RGBA without the sky.
+/// Returns `light` without the direct light of emitters, `emitted`, which has the same camera rays. A pixel that
+/// shows mostly emitters does not count. Both are RGBA without the sky.
 Image scattered_light(Image light, const Image& emitted) {
     for (std::size_t i = 0; i < light.pixels.size(); i += 4) {
         float* pixel = &light.pixels[i];

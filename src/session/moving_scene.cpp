@@ -14,7 +14,7 @@
 namespace pertev {
 namespace {
 
-/// What moves while the shutter is open, now or before, has changed.
+/// Marks the instances that move while the shutter is open, now or before, as changed.
 void add_moving(const std::shared_ptr<const MotionKeys>& now, const std::shared_ptr<const MotionKeys>& before,
                 SceneUpdate& update) {
     for (const auto& motions : {now, before}) {
@@ -28,8 +28,8 @@ void add_moving(const std::shared_ptr<const MotionKeys>& now, const std::shared_
     update.moved_instances.erase(copies.begin(), copies.end());
 }
 
-/// Shares of the time that the shutter is open at which an animation has a key, the first of many, and halfway between
-/// these.
+/// Shares of the open shutter's time at which an animation has a key, the first ones if there are many, and the
+/// midpoints between them.
 std::vector<double> keys_within(const Scene& scene, double time_s, const Shutter& shutter) {
     constexpr std::size_t kMost = 64;
     const double open_s = shutter.time_at(time_s, 0), length_s = shutter.close_s - shutter.open_s;
@@ -59,7 +59,7 @@ MovingScene::MovingScene(Scene rest, std::optional<double> time_s, PrepareOption
     if (time_s) prepared_.poses = posed_.poses();
 }
 
-/// Those of instances that walks take into their own space (place_meshes) and that move while the shutter is open.
+/// Motions of the instances that are not baked (place_meshes) and move while the shutter is open.
 std::shared_ptr<const MotionKeys> MovingScene::motions_at(double time_s) {
     if (!shutter_ || !posed_.is_animated()) return nullptr;
     const Scene& now = scene();

@@ -1,13 +1,12 @@
 #pragma once
 
-// A scene that moves, ready to be rendered at any of its times: the scene as it is at a time (scene/pose/posed_scene.h)
-// and what is prepared of it, of which a step in time renews what moved and nothing else. For whoever shows times one
-// after the other:
+// A moving scene that can be rendered at any time: the scene at a time (scene/pose/posed_scene.h) and its prepared
+// form, of which a time step updates only what moved. For use at several times:
 //     MovingScene moving(open_scene(...), first_time_s, options, messages);
 //     Session session(queue, moving.prepared(), camera, settings);
 //     session.update_scene(moving.prepared(), moving.set_time(next_time_s, messages));
-// The world's centre is that of the scene at rest, so pictures at a time are the same, to the bit, whatever times came
-// before.
+// The world's origin is that of the scene at rest, so the picture at a time does not depend on earlier times, to the
+// bit.
 
 #include <optional>
 
@@ -19,9 +18,9 @@ namespace pertev {
 
 class MovingScene {
 public:
-    /// Prepares `rest`, which has been through validate(), as it is at `time_s`; none: at rest. `options` name no
-    /// centre and no motions. `shutter`: instances move while it is open; only where there is a time. Throws as
-    /// PosedScene::set_time and prepare_scene.
+    /// Prepares `rest`, which has passed validate(), at `time_s`, or at rest without one. `options` contain no centre
+    /// and no motions. Instances move while `shutter` is open, if there is a time. Throws as PosedScene::set_time and
+    /// prepare_scene.
     MovingScene(Scene rest, std::optional<double> time_s, PrepareOptions options, Messages& messages,
                 std::optional<Shutter> shutter = std::nullopt);
     MovingScene(const MovingScene&) = delete; // prepared() points into it
@@ -30,14 +29,14 @@ public:
     const Scene& scene() const { return posed_.scene(); }
     const PreparedScene& prepared() const { return prepared_; }
     bool is_animated() const { return posed_.is_animated(); }
-    double end_s() const; // all animations have come to their end, seconds; 0 without any
-    std::optional<double> time_s() const { return time_s_; } // none: at rest
+    double end_s() const;                                    // end of all animations, seconds; 0 without any
+    std::optional<double> time_s() const { return time_s_; } // nothing at rest
 
-    /// Goes to `time_s`. Returns the parts (ScenePart) that Session::update_scene must take of prepared(): 0 where the
-    /// picture's scene stays as it is. Throws as the constructor; the next set_time then makes good for it.
+    /// Moves to `time_s`. Returns the parts (ScenePart) of prepared() that Session::update_scene must upload, 0 if
+    /// the scene of the picture does not change. Throws as the constructor; the next set_time then repairs the state.
     uint32_t set_time(double time_s, Messages& messages);
 
-    /// The cameras of the scene at a time, without going there.
+    /// The cameras of the scene at a time, without moving the scene there.
     std::vector<Camera> cameras_at(double time_s) { return posed_.places_at(time_s).cameras; }
 
 private:
@@ -47,7 +46,7 @@ private:
     std::optional<Shutter> shutter_;
     std::optional<double> time_s_;
     PreparedScene prepared_;
-    bool is_behind_ = false; // an update threw: prepared_ is not of the scene
+    bool is_behind_ = false; // an update threw, so prepared_ is outdated
     PrepareOptions options_;
 };
 

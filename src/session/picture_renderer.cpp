@@ -12,7 +12,7 @@ bool is_film_of(const Film& film, const RenderSettings& settings) {
 
 Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings) {
     if (film && is_film_of(*film, settings)) return *film;
-    film.reset(); // before the new one, so that two do not need to fit
+    film.reset(); // freed before the new one, so that two need not fit
     return film.emplace(queue, settings.width, settings.height, settings.aovs, light_layers_of(settings));
 }
 
@@ -21,7 +21,7 @@ NoisyFrame& fit_frame(const DeviceScene& scene, std::optional<NoisyFrame>& frame
     if (frame && frame->width() == width && frame->height() == height && frame->splits_light() == splits_light) {
         return *frame;
     }
-    frame.reset(); // before the new one, so that two do not need to fit
+    frame.reset(); // freed before the new one, so that two need not fit
     return frame.emplace(scene.queue(), width, height, splits_light);
 }
 
@@ -36,7 +36,7 @@ PictureView PictureRenderer::view_of(const Camera& camera, const RenderSettings&
     return picture;
 }
 
-/// Returns the camera's motion while the shutter is open, in the moved world and on the device.
+/// Returns the camera's motion while the shutter is open, in the translated world and on the device.
 MotionTrack PictureRenderer::motion_of(const Camera& camera, Vec3 centre) {
     if (camera.motion.empty()) return {};
     std::vector<MotionKey> keys = camera.motion;
@@ -65,7 +65,7 @@ Integrator& PictureRenderer::begin(const Camera& camera, const RenderSettings& s
     if (!is_aside) aside_ = {};
     const bool stays = held.integrator && change_settings(*held.integrator, held.settings, wanted);
     if (!stays) {
-        held.integrator.reset(); // with its queues
+        held.integrator.reset(); // freed with its queues
         held.integrator = make_integrator(queue(), wanted);
     }
     held.settings = wanted;
@@ -74,7 +74,7 @@ Integrator& PictureRenderer::begin(const Camera& camera, const RenderSettings& s
     tracer.time_kinds(settings.time_kinds);
     integrator.abandon_when(nullptr);
     if (stays && number != 0 && number == begun_number_) integrator.expect_same_picture();
-    if (!is_aside) begun_number_ = 0; // in case the next line throws
+    if (!is_aside) begun_number_ = 0; // because the next line may throw
     integrator.begin(picture, tracer, samples);
     if (!is_aside) begun_number_ = number;
     queue().wait();

@@ -1,7 +1,7 @@
 #pragma once
 
-// Takes samples of any picture of a scene on a device, by the integrator that the picture's settings ask for. The
-// integrator keeps its queues from one picture to the next, so films, frames and the meter share one PictureRenderer.
+// Takes samples of any picture of a scene on a device, by the integrator of the picture's settings. The integrator
+// keeps its queues from one picture to the next, so films, frames and the meter share one PictureRenderer.
 
 #include <atomic>
 #include <memory>
@@ -14,9 +14,9 @@
 
 namespace pertev {
 
-/// Returns `film` as a picture of these settings needs it: the same film, or a new one without samples.
+/// Returns `film` if it fits a picture of these settings, else replaces it by a new one without samples.
 Film& fit_film(Queue& queue, std::optional<Film>& film, const RenderSettings& settings);
-/// Likewise returns a frame that takes single samples of the scene at this size.
+/// Returns `frame` if it fits single samples of the scene at this size, else replaces it by a new one.
 NoisyFrame& fit_frame(const DeviceScene& scene, std::optional<NoisyFrame>& frame, uint32_t width, uint32_t height);
 bool is_film_of(const Film& film, const RenderSettings& settings);
 
@@ -29,20 +29,20 @@ public:
     Queue& queue() { return scene_.queue(); }
     PictureView view_of(const Camera& camera, const RenderSettings& settings);
 
-    /// Returns an integrator that is ready to add `samples` samples of this picture, and that nothing abandons. What an
-    /// integrator makes before its samples is kept if `number`, which new_number() gave, is that of the begin() before.
-    /// 0 stands for a picture whose samples do not go on. Throws Error(BadInput) if the camera or a shutter does not go
-    /// with the settings, and Error(OutOfMemory, DeviceFault).
+    /// Returns an integrator that is ready to add `samples` samples of this picture, and that nothing abandons. Its
+    /// precomputed data is kept if `number`, which new_number() returned, equals that of the previous begin(). 0
+    /// stands for a picture whose samples are not continued. Throws Error(BadInput) if the camera or the shutter is
+    /// incompatible with the settings, and Error(OutOfMemory, DeviceFault).
     Integrator& begin(const Camera& camera, const RenderSettings& settings, uint32_t samples, uint64_t number = 0);
-    /// Numbers a picture whose samples go on from one begin() to the next. Pictures that come between take another
-    /// integrator if it has made something for the last of these.
+    /// Returns a number for a picture whose samples continue over several begin() calls. Pictures in between use
+    /// another integrator if the one of the latest such picture has precomputed data.
     uint64_t new_number() { return ++last_number_; }
 
-    /// Renders `settings.samples` samples from `first` on into a film of their own. Throws as begin().
+    /// Renders `settings.samples` samples from `first` on into a separate film. Throws as begin().
     RenderResult render_aside(const Camera& camera, const RenderSettings& settings, uint32_t first = 0);
 
-    /// From now on films and frames break off in the middle of a sample while `*flag` is true, on the CPU alone. Null:
-    /// never. `flag` outlives this.
+    /// Lets films and frames abort in the middle of a sample while `*flag` is true, on the CPU only. Null: never.
+    /// `flag` outlives this.
     void abandon_when(const std::atomic<bool>* flag) { abandon_ = queue().is_cuda() ? nullptr : flag; }
     const std::atomic<bool>* abandon_flag() const { return abandon_; }
     bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }
@@ -52,14 +52,14 @@ private:
 
     DeviceScene& scene_;
     FilterTable filter_;
-    Buffer<MotionKey> camera_motion_; // while the shutter is open
+    Buffer<MotionKey> camera_motion_; // used while the shutter is open
     struct HeldIntegrator {
         std::unique_ptr<Integrator> integrator;
-        IntegratorSettings settings; // that it has
+        IntegratorSettings settings; // settings of the integrator
     };
-    HeldIntegrator main_, aside_; // aside_ is for other pictures while main_ has made something for the film's
+    HeldIntegrator main_, aside_; // aside_ renders other pictures while main_ holds precomputed data of the film's
     uint64_t last_number_ = 0;
-    uint64_t begun_number_ = 0; // of the picture that main_ has begun
+    uint64_t begun_number_ = 0; // number of the picture that main_ has begun
     const std::atomic<bool>* abandon_ = nullptr;
 };
 

@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-/// "1.50" as "1.5", and "-0.00" as "0".
+/// Removes trailing zeros: "1.5" for "1.50", and "0" for "-0.00".
 std::string without_idle_zeros(std::string number) {
     if (number.find('.') != std::string::npos) {
         number.erase(number.find_last_not_of('0') + 1);
@@ -20,8 +20,8 @@ std::string without_idle_zeros(std::string number) {
     return number == "-0" ? "0" : number;
 }
 
-/// Returns how many digits `size` has above the point, below 1 for zeros behind it: 3 of 250, 0 of 0.5, -1 of 0.05. 1
-/// for 0.
+/// Returns the number of digits of `size` before the decimal point, below 1 for leading zeros after it: 3 for 250, 0
+/// for 0.5, -1 for 0.05, and 1 for 0.
 int digits_above_point(double size) {
     int digits = 1;
     for (double power = 10; size >= power; power *= 10) ++digits;

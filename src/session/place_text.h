@@ -1,7 +1,7 @@
 #pragma once
 
-// Places of a scene as notices write them: in the coordinates of its file, with as many digits as tell places of the
-// scene apart.
+// Text of scene positions for notices: in the coordinates of the scene's file, with as many digits as distinguish
+// positions in the scene.
 
 #include <string>
 
@@ -9,11 +9,11 @@
 
 namespace pertev {
 
-/// "X,Y,Z" as settings take it. `digits`: of the numbers of a scene that lies at the file's origin; one that lies
-/// elsewhere has as many behind the point as its own size leaves of these.
+/// "X,Y,Z" in the syntax of settings. `digits` applies to a scene at the file's origin; a scene elsewhere has as many
+/// decimals as its own size would have.
 std::string place_text(const Scene& scene, Vec3 p, int digits);
 
-/// The place that place_text() says, in the coordinates of the file.
+/// The position that place_text() states, in the coordinates of the file.
 DoubleVec3 told_place(const Scene& scene, Vec3 p, int digits);
 
 } // namespace pertev

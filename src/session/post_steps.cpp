@@ -24,7 +24,7 @@ std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const Render
 void PostSteps::begin(const Camera& camera, const RenderSettings& settings) {
     NoisyFrame& frame = fit_frame(pictures_.scene(), sample_, settings.width, settings.height);
     if (made_for_ != std::tuple(settings.denoise, settings.width, settings.height)) {
-        denoisers_.clear(); // before the new ones, so that both do not need to fit
+        denoisers_.clear(); // freed before the new ones, so that both need not fit
         denoisers_ = make_denoisers(pictures_.queue(), settings);
         made_for_ = {settings.denoise, settings.width, settings.height};
     }

@@ -10,13 +10,13 @@
 namespace pertev {
 namespace {
 
-/// The finished picture and its layers.
+/// Bytes of the finished picture and its layers.
 std::size_t result_bytes(const RenderSettings& settings) {
     const std::size_t channels = film_channel_count(settings.aovs) + 3 * light_layers_of(settings).size();
     return std::size_t(settings.width) * settings.height * channels * sizeof(float);
 }
 
-/// In MiB, with as many digits as tell it from 0 and from `other`.
+/// Amount in MiB, with enough digits to distinguish it from 0 and from `other`.
 std::string amount(std::size_t bytes, std::size_t other = 0) {
     std::string text;
     for (int digits = 1; digits <= 7; ++digits) { // 2^-20 MiB is a byte
@@ -34,7 +34,7 @@ std::string limit_text(std::size_t bytes, const RenderSettings& settings, const 
                        amount(machine_memory_bytes(), bytes), amount(result_bytes(settings)));
 }
 
-/// What weighs, and the settings that make it less.
+/// Names what dominates the memory, and the settings that reduce it.
 std::string advice(const RenderSettings& settings, bool is_cuda) {
     const std::vector<std::string> layer_names = light_layers_of(settings);
     const std::size_t layers = layer_names.size();

@@ -1,6 +1,7 @@
 #pragma once
 
-// A render that does not fit is refused before it begins, rather than ended by the system when its film fills.
+// Refuses a render that does not fit into memory before it begins, so that the system does not end it while its film
+// fills.
 
 #include <cstddef>
 #include <optional>
@@ -10,19 +11,19 @@
 
 namespace pertev {
 
-/// What a render may take of a device.
+/// Memory that a render may take on a device.
 struct MemoryLimit {
     std::size_t bytes;
-    bool is_asked; // by `max_memory`; else it is what the machine has beside the finished picture
-    bool is_cuda;  // the device's own memory; else the machine's
+    bool is_asked; // set by `max_memory`; otherwise the machine's free memory less the finished picture
+    bool is_cuda;  // the GPU's own memory, otherwise the machine's
 };
 
-/// Of the queue's device: `asked`, or without it, on the CPU, what the machine has but for the finished picture and its
-/// layers, and on a GPU whatever it gives when it is asked.
+/// Memory of the queue's device: `asked`, or by default on the CPU the machine's free memory less the finished
+/// picture and its layers, and on a GPU everything that it can allocate.
 MemoryLimit memory_to_render_in(const Queue& queue, const RenderSettings& settings, std::optional<std::size_t> asked);
 
-/// Throws Error(OutOfMemory) where a render takes more: `bytes`, as predicted_bytes says. It says which limit that is,
-/// and which settings would take less.
+/// Throws Error(OutOfMemory) if a render needs more: `bytes`, the result of predicted_bytes. The message names the
+/// limit and the settings that need less.
 void check_render_memory(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit);
 
 } // namespace pertev

@@ -1,12 +1,12 @@
 #pragma once
 
-// One picture from a prepared scene, and nothing kept: a session (session/session.h) that renders once.
+// Renders one picture of a prepared scene and keeps nothing: a session (session/session.h) that renders once.
 
 #include "session/session.h"
 
 namespace pertev {
 
-/// Renders `settings.samples` samples, or fewer where time is over or `keep_going` (called after each pass) returns
+/// Renders `settings.samples` samples, or fewer when time is over or `keep_going` (called after each pass) returns
 /// false; at least one sample. Throws Error(OutOfMemory, DeviceFault).
 RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
                             const RenderSettings& settings,

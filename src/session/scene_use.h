@@ -1,13 +1,13 @@
 #pragma once
 
-// What a scene is opened for. It decides what may be made up where a file lacks light.
+// Purpose for which a scene is opened. It decides which light is added if a file lacks it.
 
 namespace pertev {
 
 enum class SceneUse {
-    Picture,     // `render`, `view`: a sky where the file has too little light to see by
-    Measurement, // `measure`, `solve` and pictures of what was solved: a sky where the file has no emitter at all
-    Benchmark,   // `bench` and `lab`: as Measurement, under the sky that recorded figures were measured under
+    Picture,     // `render`, `view`: adds a sky if the file has too little light to see by
+    Measurement, // `measure`, `solve` and pictures of solutions: adds a sky if the file has no light at all
+    Benchmark,   // `bench` and `lab`: like Measurement, with the sky under which recorded figures were measured
 };
 
 } // namespace pertev

@@ -1,23 +1,22 @@
 #pragma once
 
-// Rendering that lives over time: one object for as long as there is something to render. A facade over parts that
-// stand alone: the scene on a device (device_scene.h), the film (film_render.h), frames (frame_sequence.h), the meter
-// (meter_exposure.h), which share integrators (picture_renderer.h). What does not change is not uploaded, allocated or
-// built again.
+// A session renders a scene over time. It is a facade over independent parts: the scene on a device (device_scene.h),
+// the film (film_render.h), frames (frame_sequence.h) and the meter (meter_exposure.h), which share integrators
+// (picture_renderer.h). Whatever does not change is not uploaded, allocated or built again.
 //
-// Samples gather in the film until something changes the picture: then the film begins anew. These calls do that:
-//   set_scene     always. Uploads the scene; takes memory for its trees and for parts that are larger than before, none
+// Samples accumulate in the film until the picture changes, which restarts the film. These calls do that:
+//   set_scene     always. Uploads the scene; allocates for its trees and for parts that are larger than before, nothing
 //                 for film and queues.
-//   update_scene  always. Uploads those parts alone, of trees only what has become another, and of meshes that deform
-//                 joints and weights: their vertices and trees are made on the device. Takes memory for parts that are
-//                 larger than before.
-//   set_camera    where the camera is another. Uploads and takes nothing.
-//   set_settings  where the picture is another (same_picture). Another size or other layers take a new film at the next
-//                 render, and larger queues where they must be larger; another tracer takes its structure. All else
-//                 takes nothing. Another frame_depth is a cut of the frames alone, and the film stays.
+//   update_scene  always. Uploads only the given parts, changed trees, and joints and weights of deforming meshes,
+//   whose
+//                 vertices and trees are computed on the device. Allocates for parts that are larger than before.
+//   set_camera    if the camera differs. Uploads and allocates nothing.
+//   set_settings  if the picture differs (same_picture). Another size or other layers allocate a new film at the next
+//                 render, and larger queues if needed; another tracer uploads its structure. Anything else allocates
+//                 nothing. Another frame_depth is a cut of the frames only, and the film stays.
 //   cut           always.
-// Whatever came before, the picture of n samples is what a fresh session gives, to the byte; so is one of a samples
-// with b added. One thread at a time.
+// The picture of n samples equals that of a new session, to the byte, whatever came before; so does one of a samples
+// with b added. One thread at a time may use a session.
 
 #include <algorithm>
 #include <optional>
@@ -31,61 +30,62 @@
 
 namespace pertev {
 
-/// What later frames may know of earlier ones.
+/// Relation of later frames to earlier ones.
 struct History {
-    uint32_t samples = 0; // whole samples of all pixels in the film, since it began
-    /// The camera of the last samples before the present camera's; none since the last cut.
+    uint32_t samples = 0; // whole samples of all pixels in the film since its start
+    /// The camera of the last samples before the current camera's; none since the last cut.
     std::optional<Camera> previous_camera;
-    /// Changes after which nothing that was seen before can be used: all that begin the film anew, but set_camera.
+    /// Number of changes that invalidate earlier results: all that restart the film, except set_camera.
     uint64_t cuts = 0;
 };
 
 class Session {
 public:
-    /// Uploads `scene`, which may go away afterwards, as may the Scene it was made from. `queue` outlives the session.
-    /// Throws Error(OutOfMemory, DeviceFault), and what set_settings throws.
+    /// Uploads `scene`, which need not outlive the call, nor need the Scene from which it was made. `queue` outlives
+    /// the session. Throws Error(OutOfMemory, DeviceFault), and what set_settings throws.
     Session(Queue& queue, const PreparedScene& scene, const Camera& camera, const RenderSettings& settings);
 
-    /// As the constructor. When this throws there is no scene, and the next set_scene must come before anything is
-    /// rendered or metered.
+    /// Replaces the scene and throws as the constructor. If it throws there is no scene, and set_scene must succeed
+    /// before anything is rendered or metered.
     void set_scene(const PreparedScene& scene);
-    /// The same scene after a change: only `parts` (ScenePart) are taken from `scene`, and nothing else of it may
-    /// differ from what the session has. No cut: the next samples are a later frame of the same sequence. Throws as
+    /// Updates the scene after a change: uploads only `parts` (ScenePart) of `scene`, which must not differ otherwise
+    /// from the current one. It is no cut: the next samples are a later frame of the same sequence. Throws as
     /// set_scene.
     void update_scene(const PreparedScene& scene, uint32_t parts);
     void set_camera(const Camera& camera);
-    /// Throws what check_integrator does, and Error(BadInput), and nothing is done, where the device has no such
-    /// tracer; Error(OutOfMemory, OverLimit) where the structure of another one cannot be had: the next set_settings
-    /// must then come before anything is rendered.
+    /// Throws what check_integrator does, and Error(BadInput) without any effect if the device has no such tracer;
+    /// Error(OutOfMemory, OverLimit) if another tracer's structure cannot be made: set_settings must then succeed
+    /// before anything is rendered.
     void set_settings(const RenderSettings& settings);
-    /// What was seen before tells nothing of what comes (a camera that jumps, a measurement that begins again).
+    /// Discards everything that was rendered before (for a camera that jumps, or a measurement that restarts).
     void cut();
 
-    /// Adds `samples` samples to each pixel, or fewer, as FilmRender::render says.
+    /// Adds up to `samples` samples to each pixel; see FilmRender::render.
     uint32_t render(uint32_t samples, const FilmRender::KeepGoing& keep_going = {}) {
         const uint32_t first = film_.samples().end;
         return film_.render({first, first + std::min(samples, kMaxSamplesPerPixel - first)}, keep_going);
     }
-    /// Renders likewise, tells `sink` how far it is, and ends when that is cancelled.
+    /// Adds samples in the same way, reports progress to `sink`, and stops when that is cancelled.
     uint32_t render(uint32_t samples, Sink& sink);
     void keep_samples_when_abandoned(bool keeps) { film_.keep_samples_when_abandoned(keeps); }
 
-    /// Returns the film of the present picture. It is all zero without samples.
+    /// Returns the film of the current picture. It is all zero before the first sample.
     const Film& film() { return film_.film(); }
     Image picture() { return film_.picture(); }
     std::optional<Image> denoised() { return film_.denoised(); }
     std::vector<FilmLayer> layers() { return film_.layers(); }
     RenderStats stats() { return film_.stats(); }
-    /// Brings the picture to the host as a display shows it, times 2^exposure_stops: tone_map_image of picture().
+    /// Computes the picture for a display, times 2^exposure_stops, as tone_map_image of picture(), and starts its
+    /// copy to the host.
     void display(ToneMap tone_map, float exposure_stops);
-    /// Returns what the last display() brought.
+    /// Returns the picture of the last display().
     Rgba8Image displayed() { return film_.film().displayed(); }
     /// Returns picture, denoised picture, layers, ids, motion vectors and stats together.
     RenderResult result();
-    /// Returns exposure for the present picture (Meter::stops).
+    /// Returns the exposure for the current picture (Meter::stops).
     float meter(ToneMap tone_map) { return meter_.stops(camera(), settings(), tone_map); }
 
-    /// Renders the next frame of a sequence, by FrameSequence::render. The film stays as it is.
+    /// Renders the next frame of a sequence by FrameSequence::render. The film stays as it is.
     bool render_frame(uint32_t number, const ReconstructionSettings& reconstruction,
                       const RestirSettings& restir = {}) {
         return frames_.render(number, camera(), settings(), reconstruction, restir);
@@ -93,16 +93,16 @@ public:
     FrameSequence& frames() { return frames_; }
     Reconstruction& frame() { return frames_.reconstruction(); }
     RenderResult frame_result() { return frames_.result(camera(), settings()); }
-    /// From now on motion vectors (kAovMotion) are from the scene and camera as they are now.
+    /// Makes the present scene and camera the reference of motion vectors (kAovMotion).
     void keep_as_before() { frames_.keep_as_before(camera()); }
     Image motion() { return frames_.motion(camera(), settings()); }
 
-    /// Renders another picture of the scene, by PictureRenderer::render_aside. The film stays as it is.
+    /// Renders another picture of the scene by PictureRenderer::render_aside. The film stays as it is.
     RenderResult look_aside(const Camera& camera, const RenderSettings& settings, uint32_t first = 0) {
         return pictures_.render_aside(camera, settings, first);
     }
     /// Returns the nodes and triangles that the ray through the middle of each pixel tests, by the tracer of camera
-    /// rays; nothing if that cannot be told (packets). Throws Error(OutOfMemory, DeviceFault).
+    /// rays; nothing for packets. Throws Error(OutOfMemory, DeviceFault).
     std::vector<RayWork> count_camera_work();
     void abandon_when(const std::atomic<bool>* flag) { pictures_.abandon_when(flag); }
 
@@ -120,9 +120,9 @@ private:
     uint64_t cuts_ = 0;
 };
 
-/// Bytes of the device's memory that a session asks for by the time it has rendered `settings.samples` in one call.
+/// Predicted device memory, in bytes, of a session that renders `settings.samples` in one call.
 std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda);
-/// Likewise of one that has made frames in place of the film, but for what following light in a moving scene takes.
+/// Predicted bytes for real-time frames, without the temporal-gradient buffers.
 std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettings& settings,
                                   const ReconstructionSettings& reconstruction, const RestirSettings& restir,
                                   bool on_cuda);

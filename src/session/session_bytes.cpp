@@ -1,4 +1,4 @@
-// Predicts how much of a device's memory a session takes: a dry run (Queue::make_dry_run) makes what the session makes.
+// Predicts the device memory of a session by a dry run (Queue::make_dry_run) that allocates what the session does.
 
 #include <algorithm>
 #include <optional>
@@ -16,10 +16,10 @@ namespace {
 
 bool splits_light(const PreparedScene& scene) { return materials_known(*scene.scene) == MaterialsKnown::Nothing; }
 
-/// Holds what pictures and frames need alike: the scene, its trees, and the integrator with its queues.
+/// Allocations that pictures and frames share: the scene, its trees, and the integrator with its queues.
 class Tracing {
 public:
-    /// Completes `size` with what the scene and its tracers decide.
+    /// Completes `size` with values that the scene and its tracers determine.
     Tracing(Queue& queue, const PreparedScene& scene, const RenderSettings& settings, WorkSize size)
         : queue_(queue), scene_(queue, scene), integrator_(make_integrator(queue, settings)) {
         const TracerChoice tracers = tracers_of(settings, queue.is_cuda(), !scene.poses.empty());
@@ -37,7 +37,7 @@ public:
     std::size_t bytes() const { return queue_.allocated_bytes() + beside_; }
 
 private:
-    /// Makes the trees that stay on the device for meshes whose vertices move. The top level over them is added up.
+    /// Allocates the device's trees of meshes whose vertices move. The top level over them is added separately.
     void take_deforming_trees(const PreparedScene& scene, const TracerChoice& tracers) {
         std::set<TreeLayout> layouts;
         for (const RayKind kind : kValuesOf<RayKind>) layouts.insert(layout_of(tracers[kind]));
@@ -60,7 +60,7 @@ private:
     SceneOnDevice scene_;
     std::unique_ptr<Integrator> integrator_;
     std::vector<DeformingCompressed> trees_;
-    std::size_t beside_ = 0; // is known without a run: copies of trees, memory of the host
+    std::size_t beside_ = 0; // known without a dry run: copies of trees, host memory
 };
 
 } // namespace

@@ -31,7 +31,7 @@ double luminance_of(Rgb c) {
     return luminance_of(static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b));
 }
 
-/// `colour` times what gives it this luminance; a black one becomes white.
+/// Scales `colour` to this luminance; black becomes white.
 Rgb with_luminance(const LampStrength& lamp, Rgb colour, double luminance) {
     if (is_black(colour)) colour = {1, 1, 1};
     const double factor = luminance / luminance_of(colour);
@@ -40,7 +40,7 @@ Rgb with_luminance(const LampStrength& lamp, Rgb colour, double luminance) {
     return result;
 }
 
-/// Lumens of an amount of flux.
+/// Converts an amount of flux to lumens.
 double lumens(const LampStrength& lamp) { return lamp.value * (lamp.unit == LampUnit::Watt ? kLumensPerWatt : 1); }
 
 void set_light(const LampStrength& lamp, double lumens_per_watt, Light& light) {
@@ -70,7 +70,8 @@ void set_light(const LampStrength& lamp, double lumens_per_watt, Light& light) {
                              is_far ? "lx" : "W, lm or cd"));
 }
 
-/// The material of an instance, its own. `users`: instances of each material.
+/// Returns a material that only this instance uses, copied if necessary. `users` counts the instances of each
+/// material.
 Material& own_material(Scene& scene, std::size_t index, std::vector<uint32_t>& users) {
     const uint32_t material = scene.instances[index].material;
     if (users[material] > 1) {
@@ -90,7 +91,7 @@ void set_surface(const LampStrength& lamp, double lumens_per_watt, Scene& scene,
     if (lamp.unit == LampUnit::Lux)
         refuse(lamp, "a lamp with an area has W, lm, cd or nits; lx are of directional lights");
     if (lamp.unit != LampUnit::Nit) {
-        if (instance.is_hidden) return; // sends out nothing, and has no size now
+        if (instance.is_hidden) return; // it emits nothing, and has no size now
         const LampSurface size = lamp_surface(scene, instance);
         if (before.alpha_mode != AlphaMode::Opaque) {
             refuse(lamp, "its surface has holes or lets light pass, so its area is not what shines; say nits");
@@ -101,7 +102,7 @@ void set_surface(const LampStrength& lamp, double lumens_per_watt, Scene& scene,
         }
         const double faces = before.two_sided_emission ? 2 : 1;
         nits = lamp.unit == LampUnit::Candela ? lamp.value / size.area : lumens(lamp) / (kPiDouble * size.area * faces);
-        // That is the mean over the surface: what a texture multiplies is brighter.
+        // This is the mean over the surface, so the factor of a texture is brighter.
         const Rgb unit = with_luminance(lamp, before.emission, 1);
         const double textured =
             luminance_of(static_cast<double>(unit.r) * size.texture[0], static_cast<double>(unit.g) * size.texture[1],
@@ -146,7 +147,7 @@ void set_lamps(Scene& scene, std::span<const LampStrength> lamps, double lumens_
     std::vector<uint32_t> users(scene.materials.size());
     for (const Instance& instance : scene.instances) ++users[instance.material];
     for (const LampStrength& lamp : lamps) {
-        std::vector<Names> all; // of what gives light
+        std::vector<Names> all; // names of everything that emits light
         bool is_found = false;
         const auto is_called_so = [&](const Names& names) {
             all.push_back(names);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Lamps of a scene set to stated amounts of light, in the units in which lamps are sold and measured. A lamp keeps its
-// colour.
+// Sets emitters of a scene to stated amounts of light, in the units in which lamps are sold and measured. An emitter
+// keeps its colour.
 
 #include <span>
 #include <string>
@@ -14,26 +14,26 @@ namespace pertev {
 enum class LampUnit : uint8_t {
     Watt,    // radiant flux, 683 lm each
     Lumen,   // luminous flux
-    Candela, // luminous intensity: of a spot in its middle, of a flat lamp along its normal
-    Lux,     // of a directional light: illuminance of a surface that faces it
-    Nit,     // cd/m2, luminance: of a surface, of an even environment
+    Candela, // luminous intensity: of a spot along its axis, of a flat emitter along its normal
+    Lux,     // illuminance by a directional light on a surface that faces it
+    Nit,     // cd/m2, luminance of a surface or of a uniform environment
 };
 
 struct LampStrength {
-    std::string name; // as scene/names.h has it, of lamps, lights and the environment
+    std::string name; // name of an emitter, a light or the environment (scene/names.h)
     double value = 0; // at least 0
     LampUnit unit = LampUnit::Lumen;
-    std::string text; // as it was asked for
+    std::string text; // text of the request
 };
 
-/// Of NAME=800lm; W, lm, cd, lx, nits. Throws Error(BadInput), as everything here.
+/// Parses NAME=800lm; units are W, lm, cd, lx, nits. Throws Error(BadInput), like all functions here.
 LampStrength parse_lamp(std::string_view text);
 
-/// Sets every lamp of these names, each to all of the amount. Flux of a surface goes out from its faces that emit, as
-/// cosines do: pi L A each, L the mean over the surface where the emission has a texture. A material that other objects
-/// share is copied for a lamp. Throws for a name that no lamp has, and for a unit that a lamp of this kind cannot have:
-/// flux of a lamp that has holes or whose object has no area, candela of one that is not flat, all but nits of an
-/// environment. `lumens_per_watt`: photometry.h.
+/// Sets every emitter with one of these names to the whole amount. Flux of a surface leaves its emissive faces with a
+/// cosine distribution: pi L A each, where L is the mean over the surface if the emission has a texture. A material
+/// that other objects share is copied. Throws for a name without emitter, and for a unit that this kind of emitter
+/// cannot have: flux for an emitter that has holes or no area, candela for one that is not flat, anything but nits
+/// for an environment. `lumens_per_watt`: see photometry.h.
 void set_lamps(Scene& scene, std::span<const LampStrength> lamps, double lumens_per_watt);
 
 } // namespace pertev

@@ -1,7 +1,7 @@
 #pragma once
 
-// What is said of a camera; session/opening/choose_camera.h makes a camera of it. Messages call its fields by their
-// names here.
+// Requested properties of a camera, from which session/opening/choose_camera.h makes one. Messages use the names of
+// the fields.
 
 #include <optional>
 #include <string>
@@ -13,15 +13,15 @@
 namespace pertev {
 
 struct CameraChoice {
-    std::string camera;                    // name or number, from 0, of one of the scene's; "": the first there is
+    std::string camera;                    // name or number, from 0, of a camera of the scene; "": the first
     std::optional<DoubleVec3> eye, target; // metres, in the coordinates of the file
     std::optional<Vec3> up;
-    bool is_aimed = false;         // the target is made up: aim_eye()
-    std::optional<float> fov_deg;  // full vertical angle of view, degrees
+    bool is_aimed = false;         // whether aim_eye() has set the target
+    std::optional<float> fov_deg;  // full vertical field of view, degrees
     std::optional<float> aperture; // radius of the lens, metres
-    std::optional<float> focus;    // distance in focus, metres
+    std::optional<float> focus;    // focus distance, metres
     std::optional<Projection> projection;
-    std::optional<float> view_height; // of an orthographic view: its full height, metres
+    std::optional<float> view_height; // full height of an orthographic view, metres
 };
 
 } // namespace pertev

@@ -92,7 +92,7 @@ std::string overruled_setting(const SettingConflict& conflict, const PictureOpti
 void take_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& options, Messages& messages) {
     for (const SuggestedSetting& suggested : scene.suggested) {
         if (options.is_given(suggested.name)) continue;
-        if (options.real_time && suggested.name == "spp") continue; // its frames have one sample
+        if (options.real_time && suggested.name == "spp") continue; // real-time frames have one sample
         const Setting* const setting = find_setting(suggested.name);
         try {
             if (setting == nullptr || !setting->is_kept || setting->opens_scene) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether the settings that were given go together, as the rows of the table say it.
+// Checks that the given settings are compatible, according to the rows of the table.
 
 #include <optional>
 #include <string>
@@ -16,26 +16,26 @@ std::vector<std::string> integrators_with(const Setting& setting);
 struct SettingConflict {
     enum class Kind : uint8_t {
         Integrator, // the integrator does not have the setting
-        Needs,      // none of the others holds
-        Excludes,   // the other one holds
+        Needs,      // none of the others is satisfied
+        Excludes,   // the other one is set
     };
     const Setting* setting;
     Kind kind;
-    /// Names of settings, or NAME=VALUE; of Integrator the names of those that have the setting.
+    /// Names of settings, or NAME=VALUE; for Integrator the names of those that have the setting.
     std::vector<std::string> others;
 };
 
-/// Returns the first that is found, in the order of the table; none where all go together. Settings that `verbs` do not
-/// have are not asked for.
+/// Returns the first conflict in the order of the table; nothing if there is none. Settings that `verbs` do not have
+/// are ignored.
 std::optional<SettingConflict> find_conflict(const PictureOptions& options, uint32_t verbs);
 
-/// Returns the name of the setting that yields where settings do not go together: one of a file does to what was given
-/// otherwise, and where its value is the default, which a file may hold, too. Empty: neither does.
+/// Returns the name of the setting that is dropped if settings conflict: one from a file gives way to one given
+/// otherwise, and so does one with the default value, which a file may contain too. Empty if neither does.
 std::string overruled_setting(const SettingConflict& conflict, const PictureOptions& options);
 
-/// Gives `options` the settings of `verbs` that a scene's file suggests, in its order, but for those that were given
-/// and those that do not go with what was. What is no setting, no value, or a setting by which files are opened is left
-/// out with a warning: the file has been opened already.
+/// Adds to `options` the settings of `verbs` that a scene's file suggests, in its order, except for those that were
+/// given and those in conflict with them. Unknown settings, invalid values, and settings by which files are opened
+/// are skipped with a warning, because the file is open already.
 void take_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& options, Messages& messages);
 
 } // namespace pertev

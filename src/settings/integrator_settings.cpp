@@ -1,4 +1,4 @@
-// Settings of one integrator, or of a few.
+// Settings that apply to one or a few integrators.
 
 #include <initializer_list>
 #include <limits>

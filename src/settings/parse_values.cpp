@@ -17,7 +17,7 @@ constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
 std::string named(const std::string& what, const std::string& text) { return what.empty() ? text : what + ' ' + text; }
 
-/// Each is one that a float can hold.
+/// Parses three numbers, each within the range of floats.
 std::optional<DoubleVec3> three_doubles(std::string_view text) {
     double values[3];
     for (int i = 0; i < 3; ++i) {
@@ -43,7 +43,7 @@ DoubleVec3 parse_doubles(const std::string& what, const std::string& text) {
                             kMaxFloat));
 }
 
-/// Before the exponent, other than 0.
+/// Whether there is a digit other than 0 before the exponent.
 bool has_digits(const std::string& number) { return number.find_first_of("123456789") < number.find_first_of("eE"); }
 
 } // namespace

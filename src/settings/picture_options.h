@@ -1,8 +1,8 @@
 #pragma once
 
-// All that can be asked for of a picture, of a sequence of frames, and of the scene that they show. The table of
-// settings (settings/setting_table.h) has a row for each field; an empty text and 0 mean that a setting was not given,
-// unless a comment says otherwise.
+// All options of a picture, of a sequence of frames, and of their scene. The table of settings
+// (settings/setting_table.h) has a row for each field. An empty text or 0 means that a setting was not given, unless
+// a comment says otherwise.
 
 #include <cstdint>
 #include <filesystem>
@@ -22,10 +22,10 @@
 namespace pertev {
 
 struct SceneOptions {
-    std::string scene;                 // a file, or a built-in scene's name
+    std::string scene;                 // a file, or the name of a built-in scene
     std::string file_scene, animation; // names or numbers
     std::vector<std::filesystem::path> allowed_paths;
-    std::string up_axis, unit; // of the file's coordinates
+    std::string up_axis, unit; // coordinate system of the file
     CameraChoice camera;
     std::string environment; // a file, or "r,g,b"
     float environment_rotation_deg = 0, environment_scale = 1;
@@ -35,9 +35,9 @@ struct SceneOptions {
     bool two_sided_lights = false, show_back_faces = false;
 };
 
-/// Which structures and walks rays go by; each text is for one kind of ray, or for all.
+/// Structures and traversals of rays; each text applies to one kind of ray, or to all.
 struct TracerOptions {
-    TreeBuild default_build = kDefaultBuild; // where `build` is empty; no setting
+    TreeBuild default_build = kDefaultBuild; // used if `build` is empty; not a setting
     std::string build;
     std::vector<std::string> structures, walks, rta, order, distributions;
 
@@ -52,19 +52,19 @@ struct MachineOptions {
     uint32_t threads = 0; // 0: all
 };
 
-/// How radiosity is solved, and what of it a picture shows.
+/// How radiosity is solved, and how it is shown.
 struct RadiosityOptions {
     RadiositySettings solving;
     std::string solution; // a file
     bool flat_patches = false;
-    double max_memory = 0; // MiB; of pictures by any integrator too
+    double max_memory = 0; // MiB; applies to pictures by any integrator
 };
 
-/// How frames in real time are made.
+/// How real-time frames are made.
 struct ReconstructionOptions {
     ReconstructionSettings settings;
     RestirSettings sharing;
-    bool none = false; // frames are their samples
+    bool none = false; // frames show their raw samples
 };
 
 struct PictureSize {
@@ -72,28 +72,28 @@ struct PictureSize {
     bool operator==(const PictureSize&) const = default;
 };
 
-/// What gave a setting its value. A later one overrules those before it.
+/// The source of a setting's value. Later ones override earlier ones.
 enum class SettingOrigin : uint8_t {
-    Scene, // its file
-    File,  // of settings
+    Scene, // the scene's file
+    File,  // a settings file
     Flag,
 };
 
 struct PictureOptions {
     SceneOptions scene;
-    RenderSettings render; // but for its size, aovs, light_paths, irradiance and heights, which are the fields below
+    RenderSettings render; // except for size, aovs, light_paths, irradiance and heights, which are the fields below
     std::optional<PictureSize> size;
     std::optional<ToneMap> tone_map;
     std::string exposure;                             // auto, or stops
     float iso = 0, f_number = 0, shutter_s = 0;       // a physical exposure
-    std::vector<std::string> aovs, lpe, displacement; // in words
+    std::vector<std::string> aovs, lpe, displacement; // lists of texts
     std::string false_color;                          // luminance or illuminance
     std::string false_color_range;                    // A,B
     std::optional<double> time_s;                     // none: at rest
     std::string frames, camera_path, shutter;         // A-B; a file; [OPEN,]SECONDS
     double fps = 0;
     uint32_t turntable = 0;
-    bool goes_on = false; // a sequence that was interrupted
+    bool goes_on = false; // continues a sequence that was interrupted
     bool real_time = false;
     ReconstructionOptions reconstruction;
     RadiosityOptions radiosity;
@@ -101,7 +101,7 @@ struct PictureOptions {
     TracerOptions tracer;
     bool no_cache = false, strict = false;
 
-    /// The names of the settings that were given, and by what.
+    /// Names of the settings that were given, and their sources.
     std::map<std::string, SettingOrigin, std::less<>> given;
     bool is_given(std::string_view name) const { return given.contains(name); }
 };

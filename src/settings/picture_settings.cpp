@@ -1,4 +1,4 @@
-// Settings of pictures by any integrator: what is rendered, by what, and how it is shown.
+// Settings of pictures by any integrator: what is rendered, how, and how it is shown.
 
 #include "base/limits.h"
 #include "render/film_channels.h"
@@ -10,7 +10,7 @@ namespace {
 
 #define FIELD PERTEV_SETTING_FIELD
 
-/// The integrator's name decides two fields.
+/// The integrator's name sets two fields.
 SettingField integrator_field(PictureOptions& options) {
     return NamedField{
         &options.render, [](const void* f) { return integrator_name(*static_cast<const RenderSettings*>(f)); },

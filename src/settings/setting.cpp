@@ -15,13 +15,13 @@ struct Overloaded : Cases... {
     using Cases::operator()...;
 };
 
-/// The field of any options: what kind it is of does not depend on them.
+/// The field in default options, whose kind does not depend on the options.
 SettingField some_field(const Setting& setting) {
     static PictureOptions any;
     return setting.field(any);
 }
 
-/// Nothing is written through it.
+/// The field, which must not be written.
 SettingField field_in(const PictureOptions& options, const Setting& setting) {
     return setting.field(const_cast<PictureOptions&>(options));
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// One setting: a row of the table of settings, and what can be done with any row: say what its values are, check and
-// set a value, read it. Flags, help, JSON, metadata and documents are made of these alone.
+// A setting: a row of the table of settings, and the operations on any row: list its values, check, set and read a
+// value. Flags, help, JSON, metadata and documents are made only from these.
 
 #include <cstdint>
 #include <span>
@@ -15,20 +15,20 @@
 
 namespace pertev {
 
-/// A switch whose field says the opposite.
+/// A switch whose field has the opposite meaning.
 struct InverseSwitch {
     bool* field;
 };
 
-/// A field that holds one of a few values which have names. `get` returns "" where it holds none.
+/// A field with one of several named values. `get` returns "" if it has none of them.
 struct NamedField {
     void* field;
     std::string_view (*get)(const void*);
-    bool (*set)(void*, std::string_view); // false: there is no such name
+    bool (*set)(void*, std::string_view); // returns false for an unknown name
     std::vector<std::string> (*names)();
 };
 
-/// Where a setting's value lies.
+/// Location of a setting's value.
 using SettingField =
     std::variant<bool*, InverseSwitch, uint32_t*, std::optional<uint32_t>*, float*, std::optional<float>*, double*,
                  std::optional<double>*, std::string*, std::vector<std::string>*, std::vector<std::filesystem::path>*,
@@ -81,54 +81,54 @@ enum SettingVerbs : uint32_t {
     kBenchRays = 2048,
 };
 
-/// What a picture's file says of a setting under its name.
+/// How a picture's file records a setting under its name.
 enum class Recorded : uint8_t {
     No,        // nothing, or something else (session/writing/picture_metadata.h)
     Always,    // its value
-    WhereUsed, // its value, where the integrator has it and it is not empty
-    Changed,   // its value, where it is not the default
+    WhereUsed, // its value, if the integrator has it and it is not empty
+    Changed,   // its value, if it is not the default
 };
 
 struct Setting {
-    const char* name;      // as in C++, JSON and metadata; a flag is made of it
+    const char* name;      // name in C++, JSON and metadata, from which the flag is made
     const char* group;     // a heading, one word
-    const char* form = ""; // how a value is written, as N or X,Y,Z; empty: a switch
+    const char* form = ""; // format of a value, such as N or X,Y,Z; empty: a switch
     SettingField (*field)(PictureOptions&);
-    const char* sentence;       // says what it is
-    const char* more = "";      // further sentences, for those who have the room
-    double low = 0, high = 0;   // of numbers: the range; high 0: up to what the field holds
-    bool above = false;         // `low` itself is no value
-    const char* unit = "";      // of numbers
-    const char* otherwise = ""; // in words, what holds where the setting is not given and its field is empty or 0
-    std::vector<std::string> choices = {}; // of texts: all values; of named fields these are the names
-    bool is_name = false;                  // a text that is not empty
+    const char* sentence;       // describes the setting
+    const char* more = "";      // further sentences for longer help
+    double low = 0, high = 0;   // range of numbers; high 0: the maximum of the field
+    bool above = false;         // whether `low` itself is excluded
+    const char* unit = "";      // unit of numbers
+    const char* otherwise = ""; // text of the default if the setting is not given and its field is empty or 0
+    std::vector<std::string> choices = {}; // all values of a text; for named fields their names
+    bool is_name = false;                  // a text that must not be empty
     uint32_t verbs = kRender;
-    uint32_t integrators = 0;       // bits by IntegratorKind, which alone have it; 0: all
-    std::string_view needs = "";    // names of settings, or NAME=VALUE, of which at least one must hold
-    std::string_view excludes = ""; // those that must not hold
+    uint32_t integrators = 0;       // bits by IntegratorKind of those that have it; 0: all
+    std::string_view needs = "";    // names of settings, or NAME=VALUE, at least one of which must be satisfied
+    std::string_view excludes = ""; // names of settings, or NAME=VALUE, that must not be satisfied
     Recorded recorded = Recorded::No;
-    bool is_kept = true;      // files of settings hold it: the picture depends on it
-    bool opens_scene = false; // it counts before the scene's file is read, which cannot suggest it
-    bool is_common = false;   // most people use it
+    bool is_kept = true;      // settings files contain it, because the picture depends on it
+    bool opens_scene = false; // takes effect before the scene's file is read, which thus cannot suggest it
+    bool is_common = false;   // used by most people
 };
 
 bool is_switch(const Setting& setting);
-/// Whether it takes any number of values.
+/// Whether it accepts any number of values.
 bool is_list(const Setting& setting);
-/// Returns all values that there are; empty where they are not listed.
+/// Returns all possible values; empty if they are not listed.
 std::vector<std::string> choices_of(const Setting& setting);
 /// Whether that integrator has it.
 bool has_setting(IntegratorKind integrator, const Setting& setting);
 
-/// Says why the text is no value; empty where it is one, as far as can be told by its range, its choices and its kind.
+/// Returns why the text is no value, according to its range, its choices and its kind; empty if it is one.
 std::string why_no_value(const Setting& setting, const std::string& text);
 
-/// Sets the field; a list gets all texts. Throws Error(BadInput), or Error(OverLimit) for a value that is too large for
-/// every scene; the message begins with the text.
+/// Sets the field; a list gets all texts. Throws Error(BadInput), or Error(OverLimit) for a value that is too large
+/// for every scene; the message begins with the text.
 void set_value(PictureOptions& options, const Setting& setting, std::span<const std::string> texts);
 
-/// Returns the value in words, as set_value takes it: no text where an optional or a list is empty, "" likewise, "true"
-/// or "false" of a switch.
+/// Returns the value in the syntax of set_value: no text for an empty optional or list, "" for an empty text, "true"
+/// or "false" for a switch.
 std::vector<std::string> texts_of(const PictureOptions& options, const Setting& setting);
 /// Returns the value as JSON: a number, true or false, a string, or an array of these.
 std::string json_of(const PictureOptions& options, const Setting& setting);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The table of settings: one row each, in the order of help and documents. A setting that is added here has a flag,
+// The table of settings: one row each, in the order of help and documents. A setting that is added here gets a flag,
 // help, an entry in JSON and metadata, and a line in docs/settings.md.
 
 #include <utility>
@@ -10,22 +10,22 @@
 namespace pertev {
 
 const std::vector<Setting>& all_settings();
-/// Returns null where none has this name.
+/// Returns null if no setting has this name.
 const Setting* find_setting(std::string_view name);
 
 // The parts of the table.
-std::vector<Setting> scene_settings();      // the file, the camera, light, what moves
-std::vector<Setting> picture_settings();    // what is rendered and shown, by what
-std::vector<Setting> integrator_settings(); // of one integrator, or of a few
-std::vector<Setting> frame_settings();      // of frames in real time
+std::vector<Setting> scene_settings();      // the file, the camera, light, motion
+std::vector<Setting> picture_settings();    // content, method and display of a picture
+std::vector<Setting> integrator_settings(); // settings of one or a few integrators
+std::vector<Setting> frame_settings();      // settings of real-time frames
 
 inline constexpr uint32_t kLooking = kRender | kView | kBenchNoise | kBenchFrames | kBenchSequence;
 inline constexpr uint32_t kScenes = kLooking | kMeasure | kSolve;
 
-/// A field by its place in PictureOptions.
+/// The field at a path in PictureOptions.
 #define PERTEV_SETTING_FIELD(place) [](PictureOptions& all) { return field_of(all.place); }
 
-// What a row has beside that which all have.
+// Optional parts of a row.
 struct Range {
     double low, high;
 };
@@ -76,7 +76,7 @@ inline void put(Setting& s, Mark mark) {
     if (mark == Mark::OpensScene) s.opens_scene = true;
 }
 
-/// A row; the parts stand in any order.
+/// Makes a row; the parts may be in any order.
 template <class... Parts>
 Setting row(const char* name, const char* group, const char* form, SettingField (*field)(PictureOptions&),
             const char* sentence, Parts... parts) {

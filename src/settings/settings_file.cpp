@@ -18,7 +18,7 @@ constexpr uint64_t kVersion = 1;
 
 using gltf::JsonValue;
 
-/// A value that means "not given" is none that could be given again.
+/// Whether the value can be given again, which a value that means "not given" cannot.
 bool is_written(const PictureOptions& options, const Setting& setting) {
     const bool is_recorded = setting.recorded != Recorded::No && has_setting(options.render.integrator, setting);
     if (!setting.is_kept || !(is_recorded || options.is_given(setting.name))) return false;
@@ -27,7 +27,7 @@ bool is_written(const PictureOptions& options, const Setting& setting) {
            std::ranges::all_of(texts, [&](const std::string& text) { return why_no_value(setting, text).empty(); });
 }
 
-/// Returns the value in words: a number as it is written, an array of numbers as "1,2,3".
+/// Returns the value as text: a number as it is written, an array of numbers as "1,2,3".
 std::string text_of(const JsonValue& value) {
     const std::string json = value.to_json();
     if (json.starts_with('"')) return std::string(value.to_string());

@@ -10,7 +10,8 @@
 namespace pertev {
 namespace {
 
-/// Calls set(combination, name) for each ray kind that each of `values` is for; set is false where nothing is named so.
+/// Calls set(combination, name) for each ray kind to which each of `values` applies; `set` returns false for an
+/// unknown name.
 template <class Set>
 void apply(const std::string& setting, const std::vector<std::string>& values, TracerChoice& choice,
            const std::string& known, const Set& set) {
@@ -36,8 +37,8 @@ std::string list_of() {
     return fmt::format("one of {}", fmt::join(names_of<Kind>(), ", "));
 }
 
-/// A structure that only one walk goes over brings that walk with it, without the switches of the default's own, and
-/// the other way round.
+/// A structure with only one traversal implies that traversal, without the switches of the default traversal, and
+/// vice versa.
 void complete(Combination& c, bool structure_named, bool walk_named) {
     if (structure_named && !walk_named) {
         if (const auto walk = only_walk_of(c.structure)) c = {.structure = c.structure, .walk = *walk};
@@ -68,7 +69,7 @@ std::optional<TracerChoice> tracer_choice(const TracerOptions& options, bool on_
           });
     apply("walk", options.walks, choice, list_of<WalkKind>(), [&](Combination& c, const std::string& name) {
         const auto kind = value_named<WalkKind>(name);
-        // Switches and a distribution that the default has for its own walk are none of this one's.
+        // Switches and the distribution of the default traversal do not apply to this one.
         if (kind) c = {.structure = c.structure, .walk = *kind}, walk_named.insert(&c);
         return kind.has_value();
     });

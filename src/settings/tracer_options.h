@@ -1,9 +1,9 @@
 #pragma once
 
-// How pictures find what rays meet, by the settings `build`, `structure`, `walk` and their switches. None changes the
-// picture. `build` says which tree stands behind all rays; `structure` names one for some or all of them exactly, and
-// goes before it. A text is "NAME" for all rays, or "KIND=NAME" for camera, bounce or shadow rays; the last that names
-// a ray counts.
+// The tracers of pictures, from the settings `build`, `structure`, `walk` and their switches. None changes the
+// picture. `build` selects the tree for all rays; `structure` names one for some or all of them exactly, and takes
+// precedence. A text is "NAME" for all rays, or "KIND=NAME" for camera, bounce or shadow rays; the last one that
+// applies to a ray counts.
 
 #include <optional>
 
@@ -11,11 +11,11 @@
 
 namespace pertev {
 
-/// Returns whether a better tree than `build` asks for will do: no `structure` names one.
+/// Returns whether a better tree than `build` requests is acceptable: no `structure` names one.
 inline bool may_be_better(const TracerOptions& options) { return options.structures.empty(); }
 
-/// Returns what the options ask for, and the device's default where they say nothing; none if that is its default.
-/// Throws Error(BadInput) where pictures cannot be traced so.
+/// Returns the requested tracers, with the device's default for whatever is not given; none if that is the default.
+/// Throws Error(BadInput) if pictures cannot be traced so.
 std::optional<TracerChoice> tracer_choice(const TracerOptions& options, bool on_cuda);
 
 } // namespace pertev

@@ -1,9 +1,9 @@
 #pragma once
 
-// The names of settings' values, as they stand on the command line, in metadata, and wherever else a setting is text.
-// base/value_names.h has name_of, value_named and names_of for each. The names of auxiliary layers are in
+// Names of the values of settings, on the command line, in metadata, and wherever else a setting is text.
+// base/value_names.h has name_of, value_named and names_of for each. Names of auxiliary layers are in
 // render/film_channels.h, those of tone maps in image/tone_map_image.h, those of integrators in
-// integrators/kinds/make_integrator.h, of which Path stands for each of kPathLights.
+// integrators/kinds/make_integrator.h; of these Path stands for each of kPathLights.
 
 #include <optional>
 #include <string>
@@ -36,7 +36,7 @@ inline constexpr ValueName<PixelFilter> kPixelFilters[] = {{PixelFilter::Box, "b
 inline constexpr ValueName<RestirLight> kRestirLights[] = {
     {RestirLight::Off, "off"}, {RestirLight::Direct, "di"}, {RestirLight::Indirect, "gi"}};
 inline constexpr ValueName<Denoise> kDenoisers[] = {{Denoise::None, "none"}, {Denoise::Svgf, "svgf"}};
-/// A camera that measures irradiance (Projection::Cosine) is no choice.
+/// A camera that measures irradiance (Projection::Cosine) cannot be selected.
 inline constexpr ValueName<Projection> kProjections[] = {{Projection::Perspective, "perspective"},
                                                          {Projection::Orthographic, "orthographic"}};
 
@@ -50,13 +50,14 @@ constexpr const auto& names_of_all(RestirLight) { return kRestirLights; }
 constexpr const auto& names_of_all(Denoise) { return kDenoisers; }
 constexpr const auto& names_of_all(Projection) { return kProjections; }
 
-/// Returns the integrator's name; that of "path" is the name of the part of the light that it shows.
+/// Returns the integrator's name; for the path integrator the name of the part of the light that it renders.
 std::string_view integrator_name(const RenderSettings& settings);
-/// Returns false, and does nothing, where there is no such integrator.
+/// Returns false and does nothing if there is no such integrator.
 bool set_integrator(RenderSettings& settings, std::string_view name);
 std::vector<std::string> integrator_names();
 
-/// Returns all that makes the bytes of a frame in real time, beside the picture's own settings, as a JSON object.
+/// Returns everything that determines the bytes of a real-time frame, besides the picture's own settings, as a JSON
+/// object.
 std::string json_of(const ReconstructionSettings& settings, const RestirSettings& restir);
 
 } // namespace pertev

@@ -8,11 +8,11 @@ namespace pertev {
 namespace {
 
 struct TexelRange {
-    int lo = 0, hi = 0; // both included
+    int lo = 0, hi = 0; // both inclusive
 };
 
-/// Texels that lookups between coordinates lo and hi (|lo|, |hi| <= 64) may read, and one more at each end for the
-/// rounding of coordinates. The whole axis where the range runs over an edge that does not clamp.
+/// Texels that lookups between coordinates lo and hi (|lo|, |hi| <= 64) may read, and one more at each end for
+/// rounding of coordinates. It is the whole axis if the range crosses an edge that does not clamp.
 TexelRange texels_between(float lo, float hi, Wrap wrap, uint32_t size) {
     const int n = static_cast<int>(size);
     const int first = static_cast<int>(floor(lo * static_cast<float>(size) - 0.5f)) - 1;
@@ -102,7 +102,7 @@ double BrightnessPyramid::mean_over_triangle(const TextureRef& ref, Vec2 uv0, Ve
         const Vec2 p = (1.0f - b.x - b.y) * p0 + b.x * p1 + b.y * p2;
         inside += cell(nearest_texel(p.x, ref.wrap_s, width) >> k, nearest_texel(p.y, ref.wrap_t, height) >> k);
     }
-    // Never far below what lies around: the triangle may touch it between the centroids.
+    // It is never far below the surroundings, because the triangle may touch them between the centroids.
     return std::max(inside / static_cast<double>(centroids.size()), around / static_cast<double>(16 * count));
 }
 

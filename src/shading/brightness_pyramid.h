@@ -1,8 +1,8 @@
 #pragma once
 
-// Mean brightness of a texture over squares of 1, 2, 4, ... texels, to estimate what a textured triangle emits in
-// constant time. A lamp is often a few texels of a large atlas: an estimate from a few lookups would miss it, and a
-// floor under the estimate would waste most light samples on black triangles.
+// Hierarchical mean brightness of a texture over squares of 1, 2, 4, ... texels, which estimates the emission of a
+// textured triangle in constant time. An emitter is often a few texels of a large atlas: an estimate from a few
+// lookups would miss it, and a lower bound on the estimate would waste most light samples on black triangles.
 
 #include <cstdint>
 #include <vector>
@@ -14,11 +14,11 @@ namespace pertev {
 
 class BrightnessPyramid {
 public:
-    /// Brightness is the mean of the linear red, green and blue, negative values as 0. `linear_from_srgb` [256].
+    /// Brightness is the mean of linear red, green and blue, with negative values as 0. `linear_from_srgb` [256].
     BrightnessPyramid(const TextureImageView& image, bool is_srgb, const float* linear_from_srgb);
 
-    /// About the mean over the triangle with these texture coordinates (before ref's transform). 0 only where no texel
-    /// that a lookup inside the triangle can read is bright.
+    /// Approximate mean over the triangle with these texture coordinates (before ref's transform). It is 0 only if no
+    /// texel that a lookup inside the triangle can read is bright.
     double mean_over_triangle(const TextureRef& ref, Vec2 uv0, Vec2 uv1, Vec2 uv2) const;
 
 private:

@@ -1,8 +1,8 @@
 #pragma once
 
-// A BSDF: a base with layers on it, each a lobe (lobes/passage.h), as one plain struct that a path keeps by itself.
-// Adding a lobe: a file in lobes/, a kind, a member and a case in each switch of Lobe (the compiler names the missing
-// ones), a make function, and a line in tests/statistical/bsdf_cases.h.
+// A BSDF: a base with layers on it, each a lobe (lobes/passage.h), as one plain struct without references. A new lobe
+// needs a file in lobes/, a kind, a member and a case in each switch of Lobe (the compiler names the missing ones), a
+// make function, and a line in tests/statistical/bsdf_cases.h.
 
 #include <cstdint>
 
@@ -18,7 +18,7 @@
 namespace pertev {
 
 enum class LobeKind : uint8_t {
-    None,       // base that absorbs all
+    None,       // base that absorbs everything
     Diffuse,    // base
     Conductor,  // base
     Dielectric, // base
@@ -27,10 +27,10 @@ enum class LobeKind : uint8_t {
     Sheen,      // layer on anything
 };
 
-/// One lobe of any kind.
+/// A lobe of any kind.
 struct Lobe {
     LobeKind kind;
-    float beneath; // of a layer: energy of all that it lies on, [0, 1]
+    float beneath; // for a layer: energy of everything beneath it, [0, 1]
     union {
         DiffuseLobe diffuse;
         ConductorLobe conductor;
@@ -40,7 +40,7 @@ struct Lobe {
         SheenLobe sheen;
     };
 
-    HD Lobe() : kind(LobeKind::None) {} // NOLINT(cppcoreguidelines-pro-type-member-init): nothing else is looked at
+    HD Lobe() : kind(LobeKind::None) {} // NOLINT(cppcoreguidelines-pro-type-member-init): nothing else is read
     HD Lobe(const DiffuseLobe& lobe) : kind(LobeKind::Diffuse), beneath(0), diffuse(lobe) {}
     HD Lobe(const ConductorLobe& lobe) : kind(LobeKind::Conductor), beneath(0), conductor(lobe) {}
     HD Lobe(const DielectricLobe& lobe) : kind(LobeKind::Dielectric), beneath(0), dielectric(lobe) {}
@@ -120,7 +120,7 @@ struct Lobe {
         }
         return {};
     }
-    /// What it adds under `way`, which a layer then moves to beneath itself.
+    /// Value and density that the lobe adds under `way`; a layer then moves `way` beneath itself.
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, Passage& way) const {
         switch (kind) {
         case LobeKind::None:
@@ -166,26 +166,26 @@ struct Bsdf {
 
     Lobe base;
     int layer_count = 0;
-    Lobe layers[kMaxLayers]; // the innermost first; a Schlick is the innermost
-    // There are layers that may lie on anything. The functions of these are apart (HD_CALL), so that a BSDF without
-    // them does not pay, neither time nor registers.
+    Lobe layers[kMaxLayers]; // the innermost first; a Schlick lobe is the innermost
+    // There are layers that may lie on anything. Their functions are not inlined (HD_CALL), so that a BSDF without
+    // them costs neither time nor registers.
     bool is_stacked = false;
 
     Bsdf() = default;
-    /// The lobe is made in place: a copy would wait for its own stores.
+    /// The lobe is constructed in place, because a copy would wait for its own stores.
     HD explicit Bsdf(const DiffuseLobe& lobe) : base(lobe) {}
 
-    /// Puts the reflection on the base: the innermost layer.
+    /// Adds the reflection on the base, the innermost layer.
     HD void add(const SchlickLobe& lobe) {
         layers[0] = lobe;
         layers[0].beneath = base.energy();
         layer_count = 1;
     }
-    /// Puts a layer on all that there is. There is room for kMaxLayers in all: one more is left out.
+    /// Adds a layer on top. There is room for kMaxLayers; further ones are ignored.
     HD void add(const CoatLobe& lobe) { stack(lobe); }
     HD void add(const SheenLobe& lobe) { stack(lobe); }
 
-    /// Value of the lobes of `classes`, density of all.
+    /// Value of the lobes of `classes`, and density of all lobes.
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, LobeClasses classes = kAllLobeClasses) const {
         if (is_diffuse()) return masked(LobeClass::Diffuse, base.diffuse.evaluate(wo, wi, {}), classes);
         return evaluate_lobes(wo, wi, classes);
@@ -202,36 +202,36 @@ struct Bsdf {
         return sample_lobes(wo, u_lobe, u);
     }
 
-    /// Of eval(), how much is by diffuse lobes, [0, 1].
+    /// Fraction of eval() that diffuse lobes contribute, [0, 1].
     HD Rgb diffuse_share(Vec3 wo, Vec3 wi) const {
         return is_diffuse() ? Rgb{1, 1, 1} : diffuse_share_of_lobes(*this, wo, wi);
     }
-    /// sample() looks at u_lobe.
+    /// Whether sample() uses u_lobe.
     HD bool draws_lobe() const { return !is_diffuse() && (layer_count != 0 || base.kind != LobeKind::None); }
 
-    /// What all delta lobes together send to wo: the means of what sample() draws of them.
+    /// Light from all delta lobes to wo: the expected values of what sample() draws of them.
     HD SpecularBranches specular(Vec3 wo) const {
         return is_diffuse() || wo.z == 0 ? SpecularBranches{} : specular_of_lobes(*this, wo);
     }
-    /// Reflectance of the diffuse base, [0, 1], whatever lies on it.
+    /// Reflectance of the diffuse base, [0, 1], regardless of layers.
     HD Rgb diffuse_albedo() const {
         return base.kind == LobeKind::Diffuse ? base.diffuse.share * base.diffuse.albedo : Rgb{0, 0, 0};
     }
 
-    /// Of all that is not diffuse, seen at `cos_o` >= 0.
+    /// Gloss of all non-diffuse lobes, seen at `cos_o` >= 0.
     HD Gloss gloss(float cos_o) const { return is_diffuse() ? Gloss{} : gloss_of_lobes(*this, cos_o); }
 
-    /// Whether any lobe is of this class.
+    /// Whether any lobe has this class.
     HD bool has(LobeClass lobe_class) const {
         if (base.kind != LobeKind::None && base.lobe_class() == lobe_class) return true;
         for (int i = 0; i < layer_count; ++i)
             if (layers[i].lobe_class() == lobe_class) return true;
         return false;
     }
-    /// Whether light that comes from behind may leave in front.
+    /// Whether light may be transmitted from behind.
     HD bool lets_through() const { return base.kind == LobeKind::Dielectric; }
     HD bool has_delta() const { return has(LobeClass::Specular); }
-    /// eval() is black for every pair of directions: light sampling is of no use here.
+    /// Whether eval() is black for every pair of directions, so that light sampling is useless.
     HD bool has_delta_only() const {
         if (is_stacked && !has_delta_layers_only(*this)) return false;
         if (!is_stacked && layer_count == 1 && !layers[0].schlick.is_smooth()) return false;
@@ -239,7 +239,7 @@ struct Bsdf {
     }
 
 private:
-    /// The short way of most surfaces.
+    /// The fast path of most surfaces.
     HD bool is_diffuse() const { return base.kind == LobeKind::Diffuse && layer_count == 0; }
 
     HD void stack(const Lobe& layer) {
@@ -295,7 +295,7 @@ private:
         return sample;
     }
 
-    /// The layers from `last` on inwards from the outermost; way is then that beneath them.
+    /// Evaluates the layers from `last` inwards; `way` then describes what is beneath them.
     HD BsdfValue evaluate_layers(int last, Vec3 wo, Vec3 wi, LobeClasses classes, Passage& way) const {
         BsdfValue sum;
         for (int i = layer_count - 1; i >= last; --i)
@@ -309,7 +309,7 @@ private:
     }
     HD_CALL static SpecularBranches specular_of_lobes(Bsdf bsdf, Vec3 wo) {
         SpecularBranches sum;
-        for (int i = bsdf.layer_count; i >= 0; --i) { // the base is number 0
+        for (int i = bsdf.layer_count; i >= 0; --i) { // the base has number 0
             const SpecularBranches one = i > 0 ? bsdf.layers[i - 1].specular(wo) : bsdf.base.specular(wo);
             sum.mirror += light_through(bsdf, i, wo, {-wo.x, -wo.y, wo.z}) * one.mirror;
             if (is_black(one.refraction)) continue;
@@ -318,7 +318,7 @@ private:
         }
         return sum;
     }
-    /// What the layers from `last` on leave of light along wi to wo.
+    /// Transmittance of the layers from `last` inwards for light along wi to wo.
     HD static float light_through(const Bsdf& bsdf, int last, Vec3 wo, Vec3 wi) {
         return bsdf.is_stacked ? light_through_stack(bsdf, last, wo, wi) : 1.0f;
     }
@@ -340,7 +340,7 @@ private:
         if (draw.is_beneath) {
             draw = bsdf.base.draw(wo, draw.u_lobe, u);
         } else {
-            ++i; // layers from i on lie above
+            ++i; // layers from i on are above
         }
         BsdfSample sample = bsdf.finish(draw, lobe_class, wo);
         if (!sample.is_delta()) return sample;
@@ -352,7 +352,7 @@ private:
     }
 };
 
-/// Perceptual roughness of a material, [0, 1], to GGX width.
+/// Converts a material's perceptual roughness, [0, 1], to a GGX width.
 HD inline float alpha_from_roughness(float roughness) { return square(clamp(roughness, 0.0f, 1.0f)); }
 
 HD inline Bsdf make_absorber() { return {}; }
@@ -364,14 +364,14 @@ HD inline Bsdf make_conductor(Rgb eta, Rgb k, float roughness) {
     bsdf.base = ConductorLobe{eta, k, alpha_from_roughness(roughness)};
     return bsdf;
 }
-/// `ior` > 0, inside over outside; a rough one's is moved into [1.1, 3] (or its inverse). `tint` in [0, 1].
+/// `ior` > 0, inside over outside; for a rough surface it is clamped to [1.1, 3] (or its inverse). `tint` in [0, 1].
 HD inline Bsdf make_dielectric(float ior, float roughness, Rgb tint) {
     const float alpha = alpha_from_roughness(roughness);
     Bsdf bsdf;
     bsdf.base = DielectricLobe{tint, alpha, DielectricLobe::usable_ior(ior, alpha)};
     return bsdf;
 }
-/// `base_color`, `metallic` and `roughness` in [0, 1]; `ior` >= 1 of the coat.
+/// `base_color`, `metallic` and `roughness` in [0, 1]; `ior` >= 1 is that of the coat.
 HD inline Bsdf make_metallic_roughness(Rgb base_color, float metallic, float roughness, float ior) {
     const float metal = clamp(metallic, 0.0f, 1.0f);
     Bsdf bsdf;
@@ -380,13 +380,14 @@ HD inline Bsdf make_metallic_roughness(Rgb base_color, float metallic, float rou
     return bsdf;
 }
 
-/// `bsdf`, of at most kMaxLayers - 1 layers, under a clear coat: `strength` and `roughness` in [0, 1], `ior` >= 1 (1.5
-/// in KHR_materials_clearcoat).
+/// Adds a clear coat to `bsdf`, which has at most kMaxLayers - 1 layers: `strength` and `roughness` in [0, 1], `ior`
+/// >= 1 (1.5 in KHR_materials_clearcoat).
 HD inline Bsdf make_coated(Bsdf bsdf, float strength, float roughness, float ior) {
     bsdf.add(CoatLobe{strength, alpha_from_roughness(roughness), f0_from_ior(ior)});
     return bsdf;
 }
-/// Likewise under sheen (KHR_materials_sheen): `color` and `roughness` in [0, 1].
+/// Adds sheen (KHR_materials_sheen) to `bsdf`, which has at most kMaxLayers - 1 layers: `color` and `roughness` in
+/// [0, 1].
 HD inline Bsdf make_sheen(Bsdf bsdf, Rgb color, float roughness) {
     bsdf.add(SheenLobe{color, SheenLobe::usable_alpha(roughness)});
     return bsdf;

@@ -20,7 +20,7 @@ double mean_of_channels(Rgb c) {
     return (static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b)) / 3.0;
 }
 
-/// Pyramids of the textures that lights of the scene emit by, each (image, encoding) once.
+/// Pyramids of the textures of emitters in the scene, one per (image, encoding).
 using Pyramids = std::map<std::pair<int32_t, bool>, BrightnessPyramid>;
 
 Pyramids build_pyramids(const LightSetData& data, const std::vector<TextureImageView>& images,
@@ -109,13 +109,14 @@ void add_triangles(const Scene& scene, Vec3 centre, LightSetData& data) {
 
 Vec3 middle_of(const EmissiveTriangle& triangle) { return triangle.a + (triangle.ab + triangle.ac) / 3.0f; }
 
-/// The line that points lie along, if they do.
+/// The line along which points lie, if they do.
 struct Row {
-    Vec3 middle, along; // along: not unit
+    Vec3 middle, along; // `along` is not unit
     bool is_straight = false;
 };
 
-/// From their middle to the farthest of the points; straight where they lie within a quarter of their spread from it.
+/// Finds a line from the middle of the points to the farthest one; it counts if they lie within a quarter of their
+/// spread from it.
 Row find_row(std::span<const Vec3> points) {
     Row row;
     double sum[3] = {};
@@ -138,8 +139,8 @@ Row find_row(std::span<const Vec3> points) {
     return row;
 }
 
-/// Numbers [0, n) in the order of their points, so that an even split of a table splits space: along a row, where the
-/// points lie in one, else along Hilbert's curve.
+/// Sorts indices [0, n) spatially, so that an even split of a table splits space: along a line if the points lie on
+/// one, else along Hilbert's curve.
 std::vector<uint32_t> order_in_space(std::span<const Vec3> points) {
     std::vector<uint32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -157,7 +158,7 @@ std::vector<uint32_t> order_in_space(std::span<const Vec3> points) {
     return order;
 }
 
-/// Puts emitters and the triangles in their tables into the order of space.
+/// Sorts emitters and the triangles in their tables spatially.
 void order_emitters(LightSetData& data) {
     data.triangle_order.resize(data.triangles.size());
     std::vector<Vec3> middles;
@@ -176,7 +177,7 @@ void order_emitters(LightSetData& data) {
     data.emitters = std::move(ordered);
 }
 
-/// Puts punctual lights into the order of space, those without a place last.
+/// Sorts punctual lights spatially, those without a position last.
 void order_punctual_lights(LightSetData& data) {
     const auto first_far = std::ranges::stable_partition(
         data.punctual, [](const PunctualLight& light) { return parts_of(light.kind).place; });
@@ -187,7 +188,7 @@ void order_punctual_lights(LightSetData& data) {
     std::ranges::copy(ordered, data.punctual.begin());
 }
 
-/// Tables of the emitters, in their order in space, and their powers.
+/// Builds the tables of the emitters in their order and returns their powers.
 std::vector<double> build_triangle_tables(LightSetData& data, const Pyramids& pyramids) {
     std::size_t starts = 0, guides = 0;
     for (Emitter& emitter : data.emitters) {
@@ -216,7 +217,7 @@ std::vector<double> build_triangle_tables(LightSetData& data, const Pyramids& py
     return powers;
 }
 
-/// Every triangle's probability, from the tables' whole numbers.
+/// Stores every triangle's probability, from the tables' integers.
 void store_probabilities(LightSetData& data) {
     if (data.choice.starts.empty()) return;
     for (std::size_t i = 0; i < data.emitters.size(); ++i) {

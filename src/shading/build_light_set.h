@@ -1,10 +1,10 @@
 #pragma once
 
-// Gathers a scene's lights and the table that draws them by power. Powers, in W: a triangle pi area mean emission,
-// twice that where both of its faces emit; a point light 4 pi intensity; a spot what its cone lets through; a
-// directional light pi R^2 irradiance and the environment 4 pi^2 R^2 mean radiance, R the radius of the scene. R says
-// little about what matters inside a house, so where there are both near and far lights, how they share the draws is
-// said apart (render/balance_lights.h).
+// Collects a scene's lights and builds the table that samples them by power. Powers, in W: for a triangle pi area
+// mean emission, twice that if both of its faces emit; for a point light 4 pi intensity; for a spot the part in its
+// cone; for a directional light pi R^2 irradiance, and for the environment 4 pi^2 R^2 mean radiance, with the radius
+// R of the scene. R says little about the light inside a house, so if there are both near and far lights, their
+// shares of the samples are set separately (render/balance_lights.h).
 
 #include <cstdint>
 #include <memory>
@@ -17,41 +17,41 @@
 namespace pertev {
 
 struct LightSetData {
-    OrderedTable choice; // over sources; empty: nothing gives light
+    OrderedTable choice; // over sources; empty if there is no light
     std::vector<Emitter> emitters;
     std::vector<EmissiveTriangle> triangles;
     std::vector<uint32_t> triangle_order, triangle_starts, triangle_guides;
     std::vector<PunctualLight> punctual;
     std::vector<uint32_t> first_light;
     std::vector<SurfaceEmission> emissions;
-    std::shared_ptr<const EnvironmentData> environment; // null: there is none
+    std::shared_ptr<const EnvironmentData> environment; // null if there is none
     std::vector<double> source_powers;                  // W; emitters, point and spot lights, then the far ones
-    uint32_t near_count = 0;                            // of the sources
+    uint32_t near_count = 0;                            // number of near sources
 
-    /// Light from near and from far, some of each.
+    /// Whether there are both near and far lights.
     bool has_both_kinds() const;
     std::size_t count() const {
         return choice.starts.empty() ? 0 : triangles.size() + punctual.size() + (environment ? 1 : 0);
     }
 };
 
-/// What far lights get of the draws before anybody has looked at what arrives; near ones get as much.
+/// Initial share of far lights in the samples, before balance_lights; near lights get the rest.
 inline constexpr double kEvenShare = 0.5;
 
-/// `scene` has passed validate(). `linear_from_srgb` [256]. `centre`: the origin of the world that the lights are
-/// placed in, in the scene's coordinates. `environment`: what was made of this scene's before, null where nothing was.
-/// Throws Error(OverLimit) for more than kMaxLights.
+/// Builds the lights of a `scene` that has passed validate(). `linear_from_srgb` [256]. `centre` is the origin of the
+/// world in which the lights are placed, in the scene's coordinates. `environment` is the data of this scene's
+/// environment from an earlier call, or null. Throws Error(OverLimit) for more than kMaxLights.
 LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, Messages& messages,
                              Vec3 centre = {0, 0, 0}, std::shared_ptr<const EnvironmentData> environment = nullptr);
 
-/// Makes the table that draws a source: by power within near and far ones, `far_share` (0, 1) of the draws for the far
-/// ones where there are both.
+/// Builds the table that samples a source: by power within near and far ones, with `far_share`, in (0, 1), of the
+/// samples for far ones if there are both.
 void share_draws(LightSetData& data, double far_share);
 
-/// Triangles that give light, each placed one a light of its own.
+/// Number of emissive triangles; every instance counts separately.
 uint64_t count_emissive_triangles(const Scene& scene);
 
-/// View of host memory; valid as long as the data, the images and the table are.
+/// View of host memory, valid as long as the data, the images and the table.
 LightSetView view_of(const LightSetData& data, const TextureImageView* images, const float* linear_from_srgb);
 
 } // namespace pertev

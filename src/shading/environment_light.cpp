@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kLargestHalf = 65504.0f;
 
-/// sin^2(x) for x in [0, pi / 2], by its series: the same bits whatever the C library.
+/// sin^2(x) for x in [0, pi / 2], by its series, so that the bits do not depend on the C library.
 double sin_squared(double x) {
     double term = x, sum = x;
     for (int k = 1; k <= 12; ++k) {
@@ -23,7 +23,7 @@ double sin_squared(double x) {
     return sum * sum;
 }
 
-/// Image times scale, made finite and >= 0; one white pixel where there is no image.
+/// Image times scale, made finite and >= 0; one white pixel without an image.
 std::vector<Rgb> clean_pixels(const Environment& environment, Messages& messages) {
     const Image& image = environment.image;
     const bool is_empty = image.pixels.empty();
@@ -61,7 +61,7 @@ std::vector<Rgb> clean_pixels(const Environment& environment, Messages& messages
     return pixels;
 }
 
-/// Returns the mean of what a patch is drawn by, in units of panorama_brightness.
+/// Returns the mean sampling weight of a patch, in units of panorama_brightness.
 double mean_brightness(const PanoramaCorners& corners) {
     float greatest;
     const BilinearPatch density = panorama_density(corners, greatest);
@@ -89,7 +89,7 @@ EnvironmentData build_environment_light(const Environment& environment, Messages
     const double turns = static_cast<double>(environment.rotation) / 6.283185307179586;
     data.rotation_turns = static_cast<float>(turns - std::floor(turns));
     if (data.rotation_turns >= 1.0f) data.rotation_turns = 0;
-    data.row_bounds.resize(data.height / 2 + 2); // as far as the row at the equator
+    data.row_bounds.resize(data.height / 2 + 2); // up to the row at the equator
     for (uint32_t edge = 1; edge < data.row_bounds.size(); ++edge) {
         data.row_bounds[edge] = static_cast<float>(sin_squared(1.5707963267948966 * (edge - 0.5) / data.height));
     }

@@ -1,10 +1,10 @@
 #pragma once
 
-// A place that light comes from, kept apart from whoever it shines on: a point of an emissive triangle, a punctual
-// light, a direction of the environment. 16 bytes. It moves with its instance. Densities of places are counted in
-// weights of a triangle's corners, in solid angle of the environment, and one by one of punctual lights; `measure`
-// turns them into what sampling by solid angle counts in (Bitterli et al. 2020 use areas; weights of corners stay what
-// they are when a lamp is stretched).
+// A sample point on a light, independent of the receiver: a point on an emissive triangle, a punctual light, or a
+// direction of the environment. 16 bytes. It moves with its instance. Densities of sample points are measured in
+// barycentric weights for triangles, in solid angle for the environment, and as probabilities for punctual lights;
+// `measure` converts them to the solid angles of light sampling (Bitterli et al. 2020 use areas; barycentric weights
+// do not change if an emitter is stretched).
 
 #include <cstdint>
 
@@ -15,9 +15,10 @@
 namespace pertev {
 
 struct alignas(16) LightPlace {
-    uint32_t instance = kNoLight; // of a triangle, or one of the numbers below; kNoLight: nowhere
-    uint32_t index = 0;           // primitive; of a punctual light its number; of the environment x of the direction
-    float u = 0, v = 0;           // weights of the triangle's second and third vertex; y and z of the direction
+    uint32_t instance = kNoLight; // instance of a triangle, or one of the numbers below; kNoLight: none
+    uint32_t index = 0;           // primitive; number of a punctual light; x of an environment direction
+    float u = 0, v = 0;           // weights of the triangle's second and third vertex; y and z of an environment
+                                  // direction
 
     HD bool is_there() const { return instance != kNoLight; }
     HD SourceKind kind() const;
@@ -32,16 +33,16 @@ static_assert(kMaxInstances < kPunctualPlace);
 HD inline LightPlace place_in_environment(Vec3 direction) {
     return {kInEnvironment, bits_of(direction.x), direction.y, direction.z};
 }
-/// Of what sample_light gave.
+/// Sample point of a result of sample_light.
 HD inline LightPlace place_of(const LightSample& sample) {
     if (sample.instance != kNoLight) return {sample.instance, sample.primitive, sample.b1, sample.b2};
     if (sample.is_delta) return {kPunctualPlace, sample.primitive, 0, 0};
     return place_in_environment(sample.wi);
 }
 
-/// What arrives at `context` of the light at `place`: as sample_light gives it, but for the pdf of punctual lights,
-/// which is 1. `measure` is the solid angle of the place over its own measure, 1/sr times that. False where nothing
-/// arrives; occlusion is the caller's, and so is alpha.
+/// Light that arrives at `context` from `place`, as sample_light returns it, except for the pdf of punctual lights,
+/// which is 1. `measure` is the ratio of the point's solid angle to its own measure. Returns false if nothing
+/// arrives; occlusion and alpha are up to the caller.
 HD inline bool find_light(const LightSetView& view, const LightPlace& place, const LightContext& context,
                           LightSample& sample, float& measure) {
     measure = 1;
@@ -58,7 +59,7 @@ HD inline bool find_light(const LightSetView& view, const LightPlace& place, con
         return true;
     }
     case SourceKind::Punctual: {
-        if (place.index >= view.punctual_count) return false; // another scene than it was drawn in
+        if (place.index >= view.punctual_count) return false; // from another scene
         const bool arrives = sample_punctual_light(view.punctual[place.index], 1.0f, context.point, sample);
         sample.primitive = place.index;
         return arrives;
@@ -70,7 +71,7 @@ HD inline bool find_light(const LightSetView& view, const LightPlace& place, con
     if (light == kNoLight) return false;
     const float pmf = ChosenByPower::pmf_of_triangle(view, context, light);
     if (!triangle_light_at<true>(view, light, pmf, context.point, {place.u, place.v}, sample)) return false;
-    measure = 2.0f * pmf / sample.pdf; // a triangle of weights has the area 1/2
+    measure = 2.0f * pmf / sample.pdf; // in weights, a triangle has the area 1/2
     return true;
 }
 

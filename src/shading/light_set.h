@@ -1,20 +1,21 @@
 #pragma once
 
-// All lights of a scene behind one door: emissive triangles (any number), point, spot and directional lights, and the
-// environment, drawn by power. sample_light draws a light and a direction to it for a context, the place that asks;
-// pdf_light_hit and find_environment give the density of that draw for a direction found otherwise, which multiple
-// importance sampling needs (Veach 1997, section 9.2). Which light is drawn, and how probable that was, is said by a
-// class that all three take as a parameter, ChosenByPower: a light tree is another class.
+// All lights of a scene behind one interface: emissive triangles (any number), point, spot and directional lights,
+// and the environment, sampled by power. sample_light samples a light and a direction to it for a context, the
+// receiver. pdf_light_hit and find_environment return that density for a direction found otherwise, which multiple
+// importance sampling needs (Veach 1997, section 9.2). A class that all three take as a parameter, ChosenByPower,
+// selects the light and defines its probability; a light tree is another such class.
 //
-// A pair of numbers draws all of it, and near pairs draw near places: x the source (an emissive instance, a punctual
-// light, the environment) and y the instance's triangle, both by ordered tables; what remains of x and y draws the
-// place on the triangle. In the environment y draws the row and what remains of x the column.
+// A pair of numbers determines everything, and near pairs give near points: x selects the source (an emissive
+// instance, a punctual light, the environment) and y the instance's triangle, both by cdfs with guide tables; the
+// rest of x and y selects the point on the triangle. For the environment y selects the row and the rest of x the
+// column.
 //
 // Order of sources: emissive instances, punctual lights, the environment; instances, their triangles and punctual
-// lights lie along Hilbert's curve, so that even numbers draw what is evenly spread in space. A light's number is
-// another thing: emissive triangles by instance and primitive, then punctual lights in their order, then the
-// environment. A triangle emits from its front, or from both faces where its material says so (scene/material.h); those
-// of unlit materials are no lights.
+// lights are sorted along Hilbert's curve, so that evenly spread numbers are evenly spread in space. A light's number
+// is independent of that: emissive triangles by instance and primitive, then punctual lights in their order, then the
+// environment. A triangle emits from its front, or from both faces if its material says so (scene/material.h);
+// triangles of unlit materials are no lights.
 
 #include <cstdint>
 #include <type_traits>
@@ -38,51 +39,52 @@ namespace pertev {
 inline constexpr uint32_t kNoLight = 0xffffffffu;
 
 struct EmissiveTriangle {
-    Vec3 a, ab, ac;     // first vertex and the edges from it, metres, moved world
-    Vec2 uv0, uv1, uv2; // of the set that the emission texture reads
+    Vec3 a, ab, ac;     // first vertex and the edges from it, metres, translated world
+    Vec2 uv0, uv1, uv2; // texture coordinates of the set that the emission texture uses
     uint32_t instance : 30 = 0;
-    uint32_t is_mirrored : 1 = 0; // cross(ab, ac) leads out of the back
+    uint32_t is_mirrored : 1 = 0; // cross(ab, ac) points out of the back
     uint32_t is_two_sided : 1 = 0;
     uint32_t primitive = 0, material = 0; // like `instance`, ids in the scene
-    float pmf = 0;                        // probability that sample_light draws it
+    float pmf = 0;                        // probability that sample_light selects it
 
-    /// Whether light leaves it against `wi`, a direction towards it. `normal` is cross(ab, ac).
+    /// Whether it emits against `wi`, a direction towards it. `normal` is cross(ab, ac).
     HD bool emits_against(Vec3 wi, Vec3 normal) const {
         return is_two_sided != 0 || (dot(normal, wi) < 0) == (is_mirrored == 0);
     }
 };
 
-/// An emissive instance: its triangles and the table that draws one of them.
+/// An emissive instance: its triangles and the table that selects one of them.
 struct Emitter {
     uint32_t first_triangle = 0, triangle_count = 0;
-    uint32_t first_start = 0, first_guide = 0, guide_bits = 0; // of the table in LightSetView::triangle_starts, _guides
+    uint32_t first_start = 0, first_guide = 0, guide_bits = 0; // its table in LightSetView::triangle_starts, _guides
 };
 static_assert(kMaxInstances <= 1u << 30, "EmissiveTriangle::instance has 30 bits");
 
-/// What a material emits: emission times the texture.
+/// Emission of a material: emission times the texture.
 struct SurfaceEmission {
     Rgb emission; // W/(sr m2); 0 for materials that are no lights
     TextureRef texture;
 };
 
-/// The kinds of light that draws tell apart: each is drawn, found and emitted in its own way.
+/// Kinds of light that are sampled, found and emitted in different ways.
 enum class SourceKind : uint8_t { Triangle, Punctual, Environment };
 
 struct LightSetView {
-    OrderedTableView choice; // over all sources; no starts: there are none
+    OrderedTableView choice; // over all sources; empty if there are none
     const Emitter* emitters = nullptr;
     const EmissiveTriangle* triangles = nullptr;
-    const uint32_t* triangle_order = nullptr;  // [triangles] per emitter: its primitives in the order of its table
+    const uint32_t* triangle_order = nullptr;  // [triangles] for each emitter: its primitives in the order of its
+                                               // table
     const uint32_t* triangle_starts = nullptr; // tables of the emitters: [triangles + emitters]
     const uint32_t* triangle_guides = nullptr;
     const PunctualLight* punctual = nullptr;
     uint32_t emitter_count = 0, triangle_count = 0, punctual_count = 0;
     uint32_t environment_source = kNoLight;     // index of the environment among the sources
-    const uint32_t* first_light = nullptr;      // [instances] light of primitive 0, or kNoLight
+    const uint32_t* first_light = nullptr;      // [instances] light number of primitive 0, or kNoLight
     const SurfaceEmission* emissions = nullptr; // [materials]
     const TextureImageView* images = nullptr;   // [images of the scene]
     const float* linear_from_srgb = nullptr;    // [256]
-    EnvironmentView environment;                // where there is one
+    EnvironmentView environment;                // if there is one
 
     HD bool has_environment() const { return environment_source != kNoLight; }
     HD bool has_lights() const { return choice.starts != nullptr; }
@@ -97,11 +99,11 @@ struct LightSetView {
     }
 };
 
-/// Who asks for light: a point of a surface, or of space. What the draws leave alone costs nothing.
+/// The receiver of light: a point of a surface, or of space. Members that the sampling does not use cost nothing.
 struct LightContext {
-    Vec3 point;  // metres, moved world
-    Vec3 normal; // unit, shading, on the side that the light is scattered to; zero where light may come from all sides
-    float time;  // of the ray, while the shutter is open
+    Vec3 point;  // metres, translated world
+    Vec3 normal; // unit, shading normal on the side of the scattered light; zero if light may come from all sides
+    float time;  // time of the ray while the shutter is open
 
     HD LightContext(Vec3 at, float at_time = kAtRest) : point(at), normal{0, 0, 0}, time(at_time) {}
     HD LightContext(Vec3 at, Vec3 shading_normal, bool is_translucent, float at_time)
@@ -111,23 +113,24 @@ struct LightContext {
 struct LightSample {
     Vec3 wi;               // unit, towards the light
     float distance = 0;    // metres; kInfinity for the environment and directional lights
-    Vec3 light_point;      // metres; of triangles, point and spot lights
-    Vec3 light_normal;     // unit geometric normal of a triangle, of either side, or zero
-    Rgb radiance;          // what arrives along wi: W/(sr m2); delta lights: W/m2 on a surface that faces them
-    float pdf = 0;         // 1/sr, probability of the light included; delta lights: that probability
-    bool is_delta = false; // no other way of finding a direction can hit this light
-    uint32_t instance = kNoLight, primitive = kNoLight; // of a triangle, or kNoLight and a punctual light's number
+    Vec3 light_point;      // metres; for triangles, point and spot lights
+    Vec3 light_normal;     // unit geometric normal of a triangle, on either side, or zero
+    Rgb radiance;          // arrives along wi: W/(sr m2); delta lights: W/m2 on a surface that faces them
+    float pdf = 0;         // 1/sr, including the probability of the light; delta lights: that probability
+    bool is_delta = false; // no other sampling of directions can hit this light
+    uint32_t instance = kNoLight, primitive = kNoLight; // ids of a triangle, or kNoLight and a punctual light's
+                                                        // number
     float b1 = 0, b2 = 0;                               // weights of its second and third vertex
 };
 
-/// Light index of a triangle of the scene, or kNoLight.
+/// Light number of a triangle of the scene, or kNoLight.
 HD inline uint32_t light_of(const LightSetView& view, uint32_t instance, uint32_t primitive) {
     const uint32_t first = view.triangle_count == 0 ? kNoLight : view.first_light[instance];
     return first == kNoLight ? kNoLight : first + primitive;
 }
 
-/// Radiance that material `material` emits at `uv` (of the set that its emission texture reads).
-/// Without kTextures no material that emits has any.
+/// Radiance that material `material` emits at `uv` (in the set that its emission texture uses). Without kTextures no
+/// emissive material has a texture.
 template <bool kTextures = true>
 HD inline Rgb surface_emission(const LightSetView& view, uint32_t material, Vec2 uv) {
     const SurfaceEmission& surface = view.emissions[material];
@@ -136,14 +139,15 @@ HD inline Rgb surface_emission(const LightSetView& view, uint32_t material, Vec2
     return surface.emission * Rgb{texel.x, texel.y, texel.z};
 }
 
-/// Solid-angle density of a point drawn uniformly on a triangle, 1/sr. `wi` is unit and leads from the receiver to the
-/// point, `distance_squared` away; `normal` is cross(ab, ac). Not finite where the triangle is seen edge-on.
+/// Solid-angle density of a uniformly sampled point on a triangle, 1/sr. `wi` is unit and leads from the receiver to
+/// the point, at the squared distance `distance_squared`; `normal` is cross(ab, ac). Not finite if the triangle is
+/// seen edge-on.
 HD inline float triangle_pdf(Vec3 normal, Vec3 wi, float distance_squared) {
     return 2.0f * distance_squared / abs(dot(normal, wi));
 }
 
 /// Sets `sample` to the point `b` (weights of the second and third vertex) on triangle light `light`, as sample_light
-/// draws it for `from_point` if it draws the light with probability `pmf`. Returns false where nothing arrives.
+/// does for `from_point` if it selects the light with probability `pmf`. Returns false if nothing arrives.
 template <bool kTextures>
 HD inline bool triangle_light_at(const LightSetView& view, uint32_t light, float pmf, Vec3 from_point, Vec2 b,
                                  LightSample& sample) {
@@ -177,11 +181,11 @@ HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3
     return pmf > 0;
 }
 
-/// For sample_light: every lamp is where its triangles are.
+/// Motion of emitters for sample_light: all are at rest.
 struct LampsAtRest {};
 
-/// Draws a light by its power by `u` and returns what the function of `to` for its kind returns. Each function gets the
-/// probability of the light, and what remains of `u`. Returns false if there are no lights.
+/// Selects a light by its power by `u` and returns the result of the function of `to` for its kind. Each function
+/// gets the probability of the light, and the rest of `u`. Returns false if there are no lights.
 ///   triangle(light, place, pmf)   place: weights of its second and third vertex
 ///   punctual(number, pmf)         number: in LightSetView::punctual
 ///   environment(pmf, rest)
@@ -206,10 +210,11 @@ HD INLINE_ON_DEVICE bool draw_light(const LightSetView& view, SampleBits u, cons
     return to.environment(ordered_pmf(source.owned), SampleBits{number_of_rest(source), u.y});
 }
 
-/// Chooses lights by their power, for any context. `draw` is draw_light for a context; the others return the
-/// probability that it draws a triangle light, or the environment: the very number that `draw` gives with it.
+/// Selects lights by their power, independently of the context. `draw` is draw_light for a context. The other
+/// functions return the probability that it selects a triangle light, or the environment, exactly as `draw` passes it
+/// on.
 struct ChosenByPower {
-    static constexpr bool kReadsNormal = false; // of the context
+    static constexpr bool kReadsNormal = false; // whether it uses the normal of the context
     template <class ToKind>
     HD INLINE_ON_DEVICE static bool draw(const LightSetView& view, const LightContext&, SampleBits u,
                                          const ToKind& to) {
@@ -223,7 +228,7 @@ struct ChosenByPower {
     }
 };
 
-/// What a context sees of the light that was drawn: sample_light's functions of the kinds.
+/// The functions with which sample_light computes a context's sample for each kind of light.
 template <bool kTextures, class Lamps>
 struct SampleOfKind {
     const LightSetView& view;
@@ -261,19 +266,19 @@ struct SampleOfKind {
     }
 };
 
-/// Draws a light and a direction to it by `u`. False where nothing arrives: no lights, the dark back or a dark spot of
-/// a triangle, outside a cone, edge-on; that draw counts as 0. Occlusion is the caller's, and so is alpha: where the
-/// triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives. `lamps`: the rigid
-/// motion of the lamp of an instance at the context's time (math/rigid_motion.h).
+/// Samples a light and a direction to it by `u`. Returns false if nothing arrives: no lights, the dark back or a dark
+/// spot of a triangle, outside a cone, edge-on; that sample counts as 0. Occlusion and alpha are up to the caller: if
+/// the triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives. `lamps`
+/// returns the rigid motion of an instance's emitter at the context's time (math/rigid_motion.h).
 template <bool kTextures = true, class Choice = ChosenByPower, class Lamps = LampsAtRest>
 HD inline bool sample_light(const LightSetView& view, const LightContext& context, SampleBits u, LightSample& sample,
                             const Lamps& lamps = {}) {
     return Choice::draw(view, context, u, SampleOfKind<kTextures, Lamps>{view, context, lamps, sample});
 }
 
-/// Density with which sample_light draws, for `context`, the direction to `hit_point` on triangle light `light`, 1/sr.
-/// The very number in LightSample::pdf where hit_point is the light_point drawn; 0 where that is not drawn, as from
-/// behind a triangle that emits from its front alone.
+/// Density with which sample_light samples, for `context`, the direction to `hit_point` on triangle light `light`,
+/// 1/sr. It equals LightSample::pdf exactly if hit_point is the sampled light_point, and is 0 if that cannot be
+/// sampled, for example from behind a triangle that emits only from its front.
 template <class Choice = ChosenByPower, class Lamps = LampsAtRest>
 HD inline float pdf_light_hit(const LightSetView& view, uint32_t light, const LightContext& context, Vec3 hit_point,
                               const Lamps& lamps = {}) {
@@ -293,7 +298,7 @@ HD inline float pdf_light_hit(const LightSetView& view, uint32_t light, const Li
     return is_finite(pdf) ? pdf : 0.0f;
 }
 
-/// What direction `wi` meets in the environment, with the density with which sample_light draws it for `context`, 1/sr.
+/// Environment light of direction `wi`, with the density with which sample_light samples it for `context`, 1/sr.
 template <class Choice = ChosenByPower>
 HD inline EnvironmentHit find_environment(const LightSetView& view, const LightContext& context, Vec3 wi,
                                           bool wants_pdf) {
@@ -303,7 +308,7 @@ HD inline EnvironmentHit find_environment(const LightSetView& view, const LightC
     return hit;
 }
 
-/// That density alone; 0 without an environment.
+/// Only the density of that light; 0 without an environment.
 HD inline float pdf_environment(const LightSetView& view, const LightContext& context, Vec3 wi) {
     return find_environment(view, context, wi, true).pdf;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Materials as device code sees them, and what it may know of all of a scene's.
+// Materials in device code, and the shading variants for what all materials of a scene have in common.
 
 #include <cstdint>
 #include <span>
@@ -10,11 +10,11 @@
 
 namespace pertev {
 
-/// What all materials of a scene have in common: code that knows it needs fewer registers.
+/// Shading variants. A kernel compiled for the simplest variant that covers the scene uses fewer registers.
 enum class MaterialsKnown : uint8_t {
     Nothing,
-    Diffuse,      // of that kind
-    PlainDiffuse, // and opaque, without textures
+    Diffuse,      // all materials are diffuse
+    PlainDiffuse, // all are diffuse, opaque and without textures
 };
 
 inline MaterialsKnown known_of(std::span<const MaterialParameters> materials) {
@@ -28,15 +28,15 @@ inline MaterialsKnown known_of(std::span<const MaterialParameters> materials) {
 }
 
 HD constexpr bool has_textures(MaterialsKnown known) { return known != MaterialsKnown::PlainDiffuse; }
-/// Whether a slot of a material has a texture, where the compiler may know that none has.
+/// Whether a slot of a material has a texture; constant if the variant has none.
 template <MaterialsKnown kKnown>
 HD inline bool has_texture(const TextureRef& slot) {
     return has_textures(kKnown) && slot.has_image();
 }
 
-/// Returns the least alpha that counts as equal to the cutoff or above it. Alpha is a product of a factor, bilinear
-/// texels and a vertex's, and each of these rounds by at most 2^-23 of itself, so that what equals the cutoff on paper
-/// may come out a little below it. One step of a texel of 16 bits is 32 times more than this. A cutoff above 1 hides
+/// Returns the least alpha that counts as at least the cutoff. Alpha is a product of a factor, bilinear texels and a
+/// vertex's alpha, and each of these rounds by at most 2^-23 of itself, so a value that equals the cutoff exactly may
+/// come out slightly below it. One step of a 16-bit texel is 32 times more than this. A cutoff above 1 hides
 /// everything.
 inline float alpha_that_reaches(float cutoff) { return cutoff > 1 ? cutoff : (1.0f - 0x1p-21f) * cutoff; }
 

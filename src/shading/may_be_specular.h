@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether a material may scatter light like a smooth mirror or smooth glass.
+// Whether a material may act as a smooth mirror or smooth glass.
 
 #include "base/host_device.h"
 #include "shading/bsdf.h"
@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-/// Whether some place of a surface of the material may have a delta lobe.
+/// Whether some point of a surface with this material may have a delta lobe.
 HD inline bool may_be_specular(const MaterialParameters& material) {
     switch (material.kind) {
     case MaterialKind::Diffuse:

@@ -34,7 +34,7 @@ double build_ordered_table(std::span<const double> weights, std::span<uint32_t> 
     std::ranges::fill(guide, 0u);
     if (!(total > 0)) return 0;
 
-    // One number for every weight above 0, the others by weight.
+    // One number for every weight above 0, and the rest by weight.
     const double by_weight = static_cast<double>((uint64_t(1) << kNumberBits) - positive);
     double sum = 0;
     uint64_t ones = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The weight of a sample that two techniques might have drawn.
+// The MIS weight of a sample that two techniques could have drawn.
 //
 // Source: Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, section 9.2.4.
 
@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-/// Of the technique with density `pdf` > 0, where the other has `other_pdf`.
+/// Weight of the technique with density `pdf` > 0, where the other technique has `other_pdf`.
 HD inline float power_heuristic(float pdf, float other_pdf) {
     const float ratio = other_pdf / pdf;
     return 1.0f / (1.0f + ratio * ratio);

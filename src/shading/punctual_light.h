@@ -1,6 +1,6 @@
 #pragma once
 
-// Lights without extent: how each kind sends light to a point, and how a particle leaves it. A new kind is a case in
+// Lights without extent: the light of each kind at a point, and the emission of particles. A new kind is a case in
 // each function here.
 
 #include <cstdint>
@@ -16,22 +16,23 @@
 
 namespace pertev {
 
-/// scene/light.h's Light without its name.
+/// The Light of scene/light.h without its name.
 struct PunctualLight {
     LightKind kind = LightKind::Point;
-    Vec3 position, direction; // metres; unit, the way the light travels
+    Vec3 position, direction; // metres; unit, direction in which the light travels
     Rgb intensity;            // W/sr; Directional: W/m2
     float cos_inner = 1, cos_outer = 0, range = 0;
-    uint32_t number = 0; // in Scene::lights: the table's order is another
+    uint32_t number = 0; // index in Scene::lights, whose order differs from the table's
 };
 
-/// Share of the intensity that a window of `range` metres (0: none) lets reach `distance`.
+/// Fraction of the intensity at `distance` under a window of `range` metres (0: none).
 HD inline float range_falloff(float range, float distance) {
     return range > 0 ? clamp(1.0f - square(square(distance / range)), 0.0f, 1.0f) : 1.0f;
 }
 
-/// Share of a punctual light's intensity that reaches `distance` (metres) in direction `wi` (towards the light), as
-/// KHR_lights_punctual recommends: the spot's cone is a smooth step in the cosine, squared, and the range a window.
+/// Fraction of a punctual light's intensity at `distance` (metres) in direction `wi` (towards the light), as
+/// KHR_lights_punctual recommends: the spot's cone is a smooth step in the cosine, squared, and the range is a
+/// window.
 HD inline float punctual_falloff(const PunctualLight& light, Vec3 wi, float distance) {
     switch (light.kind) {
     case LightKind::Point:
@@ -47,14 +48,14 @@ HD inline float punctual_falloff(const PunctualLight& light, Vec3 wi, float dist
     return 1;
 }
 
-/// What arrives at a point of a light without extent.
+/// Light of a punctual light at a point.
 struct PunctualArrival {
     Vec3 wi;            // unit, towards the light
-    float distance = 0; // metres; kInfinity of a directional light
-    Rgb irradiance;     // W/m2, of a surface that faces it
+    float distance = 0; // metres; kInfinity for a directional light
+    Rgb irradiance;     // W/m2, on a surface that faces it
 };
 
-/// False where nothing arrives: outside a cone or the range, or where the receiver is the light.
+/// Returns false if nothing arrives: outside a cone or the range, or if the receiver is the light.
 HD inline bool find_punctual_light(const PunctualLight& light, Vec3 from_point, PunctualArrival& arrival) {
     switch (light.kind) {
     case LightKind::Point:
@@ -75,7 +76,7 @@ HD inline bool find_punctual_light(const PunctualLight& light, Vec3 from_point, 
     return true;
 }
 
-/// 1 - cosine of the half angle that a light with a place shines into.
+/// 1 - cosine of the half angle of a light with a position.
 HD inline float depth_of_beam(const PunctualLight& light) {
     return parts_of(light.kind).cone ? 1.0f - light.cos_outer : 2.0f;
 }
@@ -85,7 +86,7 @@ HD inline float pdf_beam(const PunctualLight& light) {
     return parts_of(light.kind).cone ? pdf_uniform_cone(depth_of_beam(light)) : pdf_uniform_sphere();
 }
 
-/// A direction in which a light with a place shines.
+/// Samples a direction in which a light with a position emits.
 HD inline Vec3 draw_beam(const PunctualLight& light, Vec2 u) {
     if (!parts_of(light.kind).cone) return sample_uniform_sphere(u);
     return normalize(make_frame(light.direction).to_world(sample_uniform_cone(u, depth_of_beam(light))));

@@ -1,10 +1,10 @@
 #pragma once
 
-// The frame that a BSDF works in: interpolated normal and tangent, normal map.
-// Conventions of glTF 2.0 section 3.7.2.1 and 3.9.3: x of the map is the tangent, y = cross(normal, tangent) * w points
-// to the top of the image, so against growing v.
+// The coordinate frame of a BSDF: interpolated normal and tangent, normal map. It follows glTF 2.0 sections 3.7.2.1
+// and 3.9.3: x of the map is the tangent; y = cross(normal, tangent) * w points to the top of the image, thus against
+// growing v.
 //
-// A bent normal may mirror light into the surface, which shows as black spots. valid_normal turns it just far enough
+// A bent normal may reflect into the surface, which shows as black spots. valid_normal turns it just far enough
 // (Keller et al., "The Iray Light Transport Simulation and Rendering System", 2017, appendix A.3).
 
 #include "base/host_device.h"
@@ -25,23 +25,23 @@ HD inline Vec2 interpolate(Vec2 v0, Vec2 v1, Vec2 v2, float b1, float b2) {
     return (1.0f - b1 - b2) * v0 + b1 * v1 + b2 * v2;
 }
 
-/// `v` at unit length, or `otherwise` where it has no direction (zero, tiny or not finite).
+/// Returns `v` at unit length, or `otherwise` if it has no direction (zero, tiny or not finite).
 HD inline Vec3 normalize_or(Vec3 v, Vec3 otherwise) {
     const float squared = length_squared(v);
     return squared > 0x1p-80f && is_finite(squared) ? (1.0f / sqrt(squared)) * v : otherwise;
 }
 
 /// Unit world-space shading normal on the side of the front face. `local_normal` is the interpolated vertex normal
-/// (zero: none); `geometric_normal` is unit, world space, of the front. A normal that points behind the face is taken
-/// for a mistake of the file and replaced by the geometric one.
+/// (zero: none); `geometric_normal` is unit, world space, of the front. A normal that points behind the face is
+/// considered an error of the file and replaced by the geometric one.
 HD inline Vec3 world_normal(const Transform& local_from_world, Vec3 local_normal, Vec3 geometric_normal) {
     const Vec3 normal = normalize_or(transform_transposed(local_from_world, local_normal), geometric_normal);
     return dot(normal, geometric_normal) > 0 ? normal : geometric_normal;
 }
 
-/// Frame with z = `normal` (unit), x as near to `tangent` (xyz, any length) as can be, y by its handedness, so
-/// left-handed where w < 0. An arbitrary right-handed frame about the normal where the tangent has no direction across
-/// it.
+/// Frame with z = `normal` (unit), x as near to `tangent` (xyz, any length) as possible, and y by its handedness, so
+/// that the frame is left-handed for w < 0. If the tangent has no component perpendicular to the normal, it is an
+/// arbitrary right-handed frame.
 HD inline Frame frame_with_tangent(Vec3 normal, Vec4 tangent) {
     const Vec3 along = normalize_or({tangent.x, tangent.y, tangent.z}, {0, 0, 0});
     const Vec3 across = along - dot(along, normal) * normal;
@@ -50,29 +50,29 @@ HD inline Frame frame_with_tangent(Vec3 normal, Vec4 tangent) {
     return {x, (tangent.w < 0 ? -1.0f : 1.0f) * cross(normal, x), normal};
 }
 
-/// `frame` (orthonormal) as it is for a map that is looked up at transformed coordinates: u' grows by u_by.x with u and
-/// by u_by.y with v, v' by v_by likewise. Its x lies along growing u' where v' is constant, and a transform that
-/// mirrors turns it over. A scale alone changes nothing, and neither does a transform without an inverse.
+/// Transforms `frame` (orthonormal) for a map with transformed coordinates: u' grows by u_by.x with u and by u_by.y
+/// with v, and v' by v_by. Its x lies along growing u' at constant v', and a mirroring transform flips it. A pure
+/// scale, or a transform without inverse, changes nothing.
 HD inline Frame frame_of_transformed_map(const Frame& frame, Vec2 u_by, Vec2 v_by) {
     if (u_by.y == 0 && v_by.x == 0 && u_by.x > 0 && v_by.y > 0) return frame;
     const float det = u_by.x * v_by.y - u_by.y * v_by.x;
     if (!(abs(det) > 0) || !is_finite(det)) return frame;
     const float sign = copysign(1.0f, det);
-    const Vec3 along = sign * (v_by.y * frame.tangent + v_by.x * frame.bitangent); // y of the frame is against v
+    const Vec3 along = sign * (v_by.y * frame.tangent + v_by.x * frame.bitangent); // y of the frame points against v
     const Vec3 x = normalize_or(along, frame.tangent);
     const float handedness = sign * copysign(1.0f, dot(cross(frame.normal, frame.tangent), frame.bitangent));
     return {x, handedness * cross(frame.normal, x), frame.normal};
 }
 
-/// Unit normal that a normal map's texel asks for: `texel` is the colour in [0, 1], `scale` the map's strength.
+/// Unit normal of a normal map's texel: `texel` is the colour in [0, 1], `scale` the map's strength.
 HD inline Vec3 mapped_normal(const Frame& frame, Vec3 texel, float scale) {
     const Vec3 local = {scale * (2.0f * texel.x - 1.0f), scale * (2.0f * texel.y - 1.0f), 2.0f * texel.z - 1.0f};
     return normalize_or(frame.to_world(local), frame.normal);
 }
 
-/// `normal` (unit), turned as little as needed so that the mirror direction of `wo` about it lies above the surface.
-/// wo is unit; `geometric_normal` is unit and on wo's side; wo may lie below `normal`. The result is unit and on the
-/// side of both.
+/// Turns `normal` (unit) as little as needed so that the mirror direction of `wo` lies above the surface. wo is unit;
+/// `geometric_normal` is unit and on wo's side; wo may lie below `normal`. The result is unit and on the side of
+/// both.
 HD inline Vec3 valid_normal(Vec3 normal, Vec3 geometric_normal, Vec3 wo) {
     const float above = dot(wo, geometric_normal);
     const float least = min(0.9f * above, 0.01f);    // so that an unbent normal never changes
@@ -86,7 +86,7 @@ HD inline Vec3 valid_normal(Vec3 normal, Vec3 geometric_normal, Vec3 wo) {
     return normalize_or(wo + raised, geometric_normal);
 }
 
-/// The right-handed frame about `normal` (unit) that turns least away from `frame`'s tangent.
+/// The right-handed frame around `normal` (unit) whose tangent is closest to that of `frame`.
 HD inline Frame frame_about(Vec3 normal, const Frame& frame) {
     return frame_with_tangent(normal, {frame.tangent.x, frame.tangent.y, frame.tangent.z, 1.0f});
 }

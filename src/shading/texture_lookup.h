@@ -1,8 +1,8 @@
 #pragma once
 
-// Reads a texture: coordinate transform, wrap, nearest or bilinear filter, in our own arithmetic on both devices
-// (a texture unit filters with 8 fraction bits and differently from card to card). sRGB is decoded texel by texel,
-// before filtering, as glTF 2.0 section 3.9.2 wants it.
+// Texture lookup: coordinate transform, wrap, nearest or bilinear filter, in our own arithmetic on both devices (a
+// texture unit filters with 8 fraction bits, and differently on each card). sRGB is decoded per texel before
+// filtering, as glTF 2.0 section 3.9.2 requires.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,14 +25,14 @@ struct TextureImageView {
     const float* rgba_float = nullptr; // [height * width * 4], linear, 16-byte aligned
 };
 
-/// What a coordinate's position along one axis reads: texels i0 and i1, the second with weight t.
+/// Texels that a lookup reads along one axis: i0 and i1, the second with weight t.
 struct TexelPair {
     uint32_t i0 = 0, i1 = 0;
     float t = 0;
 };
 
-/// Coordinate `u` (1 = one image) brought into [0, 1]; 0 for NaN and infinity. Exact for u >= 0, so a texture does
-/// not get coarser the more often it repeats.
+/// Wraps coordinate `u` (1 = one image) to [0, 1]; 0 for NaN and infinity. It is exact for u >= 0, so precision does
+/// not depend on the number of repetitions.
 HD inline float wrap_coordinate(float u, Wrap wrap) {
     switch (wrap) {
     case Wrap::Repeat:
@@ -47,7 +47,7 @@ HD inline float wrap_coordinate(float u, Wrap wrap) {
     return 0;
 }
 
-/// Texel whose cell holds the coordinate.
+/// Texel whose cell contains the coordinate.
 HD inline uint32_t nearest_texel(float u, Wrap wrap, uint32_t size) {
     const int last = static_cast<int>(size) - 1;
     return static_cast<uint32_t>(to_int(wrap_coordinate(u, wrap) * static_cast<float>(size), 0, last));
@@ -59,13 +59,13 @@ HD inline TexelPair linear_texels(float u, Wrap wrap, uint32_t size) {
     const float x = wrap_coordinate(u, wrap) * static_cast<float>(size) - 0.5f;
     const float below = floor(x);
     const int i0 = to_int(below, -1, last), i1 = i0 + 1;
-    // Past an edge lies the other edge where the image repeats, the same texel where it mirrors or clamps.
+    // Beyond an edge lies the opposite edge if the image repeats, and the same texel if it mirrors or clamps.
     const bool repeats = wrap == Wrap::Repeat;
     return {static_cast<uint32_t>(i0 < 0 ? (repeats ? last : 0) : i0),
             static_cast<uint32_t>(i1 > last ? (repeats ? 0 : last) : i1), x - below};
 }
 
-/// One texel as linear RGBA. `linear_from_srgb` [256] is read for the colours of sRGB-encoded 8-bit images.
+/// One texel as linear RGBA. `linear_from_srgb` [256] is used for the colours of sRGB-encoded 8-bit images.
 HD inline Vec4 load_texel(const TextureImageView& image, uint32_t x, uint32_t y, bool is_srgb,
                           const float* linear_from_srgb) {
     const size_t texel = 4 * (size_t(y) * image.width + x);
@@ -99,12 +99,12 @@ HD inline Vec2 transform_uv(const TextureRef& ref, Vec2 uv) {
     return {ref.m00 * uv.x + ref.m01 * uv.y + ref.m02, ref.m10 * uv.x + ref.m11 * uv.y + ref.m12};
 }
 
-/// `a` at t = 0 and `b` at t = 1; equal ends give that value exactly.
+/// Interpolates from `a` at t = 0 to `b` at t = 1; exact for equal ends.
 HD inline Vec4 mix_texels(Vec4 a, Vec4 b, float t) {
     return {lerp(a.x, b.x, t), lerp(a.y, b.y, t), lerp(a.z, b.z, t), lerp(a.w, b.w, t)};
 }
 
-/// Linear RGBA at `uv` (of the set that `ref.uv_set` names); white where `ref` has no image. Any float is a valid
+/// Linear RGBA at `uv` (in the set that `ref.uv_set` names); white if `ref` has no image. Any float is a valid
 /// coordinate.
 HD inline Vec4 lookup_texture(const TextureImageView* images, const TextureRef& ref, Vec2 uv,
                               const float* linear_from_srgb) {
@@ -124,7 +124,7 @@ HD inline Vec4 lookup_texture(const TextureImageView* images, const TextureRef& 
     return mix_texels(top, bottom, y.t);
 }
 
-/// Channel `ref.channel` at `uv`, equal to that component of lookup_texture; 1 where `ref` has no image.
+/// Channel `ref.channel` at `uv`, equal to that component of lookup_texture; 1 if `ref` has no image.
 HD inline float lookup_texture_channel(const TextureImageView* images, const TextureRef& ref, Vec2 uv,
                                        const float* linear_from_srgb) {
     if (ref.image == kNoImage) return 1;
@@ -145,7 +145,7 @@ HD inline float lookup_texture_channel(const TextureImageView* images, const Tex
     return lerp(top, bottom, y.t);
 }
 
-/// View of an image in host memory; valid as long as the image is.
+/// View of an image in host memory, valid as long as the image.
 inline TextureImageView view_of(const TextureImage& image) {
     if (!image.rgba8.pixels.empty()) {
         return {image.rgba8.width, image.rgba8.height, image.rgba8.pixels.data(), nullptr};
@@ -153,7 +153,7 @@ inline TextureImageView view_of(const TextureImage& image) {
     return {image.rgba_float.width, image.rgba_float.height, nullptr, image.rgba_float.pixels.data()};
 }
 
-/// Views of all images of a scene, at the same indices.
+/// Views of all images of a scene, with the same indices.
 inline std::vector<TextureImageView> views_of_images(const Scene& scene) {
     std::vector<TextureImageView> views;
     views.reserve(scene.images.size());

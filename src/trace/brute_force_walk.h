@@ -1,9 +1,9 @@
 #pragma once
 
-// Tests every triangle of a tree's array. No node, no order, nothing skipped. A tree with spatial splits holds a
-// triangle more than once; the second time changes nothing. It is a walk as the others are, for pictures and the
-// laboratory to choose (`walk=brute-force`), with their scenes of instances, their visitors and their tests; the
-// laboratory judges all walks, this one too, by an oracle that shares none of these (lab/brute_force_rays.h).
+// Tests every triangle of a tree's array, without nodes or order. A tree with spatial splits has a triangle more than
+// once; repeated tests change nothing. It is a traversal like the others, for rendering and the laboratory
+// (`walk=brute-force`), with their scenes of instances, visitors and tests. The laboratory checks all traversals,
+// this one too, against an oracle that shares none of these (lab/brute_force_rays.h).
 
 #include "trace/intersect/test_leaf.h"
 #include "trace/traversal/walk_options.h"

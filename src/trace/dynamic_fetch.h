@@ -1,17 +1,18 @@
 #pragma once
 
-// Persistent threads with dynamic fetch: lanes whose rays are done get new ones while the others are still on their
-// way, as soon as fewer than Place::kRefillBelow of a warp's lanes are at work. The loop of the walk is the kernel, so
-// this is for walks that can be left between two turns (WhileWhileWalk, SpeculativeWalk, CompressedWalk). In a scene
-// with instances each lane goes from tree to tree by itself (trace/scene_place.h). Included by .cu files alone (see
-// device/launch_body.h).
+// Persistent threads with dynamic fetch: lanes whose rays are done get new ones while others are still in traversal,
+// as soon as fewer than Place::kRefillBelow of a warp's lanes are active. The loop of the traversal is the kernel, so
+// it works for traversals that can be suspended between two turns (WhileWhileWalk, SpeculativeWalk, CompressedWalk).
+// In a scene with instances each lane proceeds from tree to tree independently (trace/scene_place.h). Only .cu files
+// include this (device/launch_body.h).
 //
-// Such a walk has, besides what all have (trace/walk_scene.h),
-//   Place(Place::Slot[Place::kSlots])                  where a ray stands, done at first; is_done(), stop()
+// Besides the common interface (trace/walk_scene.h), such a traversal has
+//   Place(Place::Slot[Place::kSlots])                  the state of a ray, initially done; is_done(), stop()
 //   start(tree, ray, visitor, place)                   puts the ray at the root
-//   turn(tree, ray, instance, place, visitor, counter, lanes, working)    takes it further; true when the visitor
-//                                                      ended the walk. `lanes` come to this turn together, `working`
-//                                                      of them with a ray on its way; to the others it does nothing
+//   turn(tree, ray, instance, place, visitor, counter, lanes, working)    advances it; returns true if the visitor
+//   ended
+//                                                      the traversal. `lanes` make this turn together, `working` of
+//                                                      them have an active ray; the turn does nothing for the others
 //
 // Source: Aila, Laine, Karras, "Understanding the Efficiency of Ray Traversal on GPUs - Kepler and Fermi Addendum",
 // 2012.
@@ -31,7 +32,7 @@
 
 namespace pertev {
 
-/// The visitor of one kind of search, made anew for each ray, and what the search found. `accept` outlives it.
+/// The visitor of one kind of search, made for each ray, and the result. `accept` outlives it.
 template <bool kAny, class Accept>
 struct RaySearch;
 
@@ -56,15 +57,16 @@ struct RaySearch<true, Accept> {
 
 #if PERTEV_HAS_KERNELS
 
-/// Blocks that a multiprocessor is to hold: over one tree as many as fit 64 registers a thread, though some spill.
+/// Number of blocks that a multiprocessor should hold: for one tree as many as fit with 64 registers per thread,
+/// though some spill.
 template <class Scene>
 inline constexpr int kBlocksWanted = 1;
 template <class Tree>
 inline constexpr int kBlocksWanted<SingleTree<Tree>> = 8;
 
-/// The next `wanted` indices of a pool, for the warp whose lanes are all here: the first of them. They must be here:
-/// persistent.h says when ptxas 13.0 does not wait for them. In kernels of this file it does: the SASS of all
-/// 103 has no BMOV (b41ae20).
+/// Fetches the next `wanted` indices of a pool for a warp and returns the first. All lanes must be here: persistent.h
+/// explains when ptxas 13.0 does not wait for them. In kernels of this file it does, because the SASS of all 103 has
+/// no BMOV (b41ae20).
 __device__ inline uint32_t fetch_from_pool(uint32_t* pool, uint32_t wanted) {
     uint32_t first = 0;
     if (threadIdx.x % 32 == 0) first = atomicAdd(pool, wanted);
@@ -76,12 +78,12 @@ __global__ void __launch_bounds__(kWalkThreads, kBlocksWanted<Scene>)
     run_dynamic_fetch(Scene scene, Rays rays, WorkCount work, uint32_t* pool, Counter counter) {
     constexpr LaneMask kWarp = 0xffffffffu;
     constexpr uint32_t kNoRay = 0xffffffffu;
-    uint32_t count = work.value(); // 0 once the pool is empty; alike in all lanes, as is what leads out of this loop
+    uint32_t count = work.value(); // 0 once the pool is empty; equal in all lanes, like every exit of this loop
     typename Walk::Place::Slot slots[Walk::Place::kSlots];
-    ScenePlace<Walk, Scene> place(slots); // done, as it is whenever there is no ray
+    ScenePlace<Walk, Scene> place(slots); // initially done, as whenever there is no ray
     auto accept = rays.accept(kNoRay);
-    // The number of the lane's ray. Beside accept.i there is no register for it where the closest hit is looked for;
-    // with one of its own the search for any hit is 1 % faster.
+    // Number of the lane's ray. Closest-hit searches have no register for it beside accept.i; with a separate one
+    // any-hit searches are 1 % faster.
     uint32_t number = kNoRay;
     uint32_t& index = kAny ? number : accept.i;
     using Search = RaySearch<kAny, decltype(accept)>;
@@ -102,9 +104,10 @@ __global__ void __launch_bounds__(kWalkThreads, kBlocksWanted<Scene>)
                 place.start(scene, ray, search.visitor);
             }
         }
-        if (ballot(kWarp, index != kNoRay) == 0) return; // then the pool is empty too
+        if (ballot(kWarp, index != kNoRay) == 0) return; // the pool is empty too then
         const auto count_working = [&] { return count_lanes(ballot(kWarp, !place.is_done())); };
-        for (int working = count_working(); working != 0;) { // with all lanes, since votes of a whole warp cost least
+        for (int working = count_working(); working != 0;) { // by all lanes, because votes of a whole warp are
+                                                             // cheapest
             place.turn(scene, ray, search.visitor, counter, kWarp, working);
             working = count_working();
             if (count != 0 && working < Walk::Place::kRefillBelow) break;
@@ -121,10 +124,11 @@ __global__ void __launch_bounds__(kWalkThreads, kBlocksWanted<Scene>)
 
 #if defined(__CUDACC__)
 
-/// Walks a scene (SceneTrees or SingleTree) for rays [0, count), count <= kMaxPoolCount. `rays` has `Ray load(uint32_t
-/// i) const`, `accept(uint32_t i) const`, an Accept (trace/trace_closest.h) with a member `i` that names its ray, and
-/// `void store(uint32_t i, const Hit&) const`, all host-device; of an any-hit search the hit's instance alone counts:
-/// kNoHit or not. `pool` is one number in the queue's memory, 0 when the launch runs. The queue is of a GPU.
+/// Traverses a scene (SceneTrees or SingleTree) for rays [0, count), count <= kMaxPoolCount. `rays` has the
+/// host-device functions `Ray load(uint32_t i) const`, `accept(uint32_t i) const`, which returns an Accept
+/// (trace/trace_closest.h) with a member `i` that names its ray, and `void store(uint32_t i, const Hit&) const`. Of
+/// an any-hit search only the hit's instance counts: kNoHit or not. `pool` is a counter in the queue's memory, 0 when
+/// the launch runs. The queue is a GPU's.
 template <class Walk, bool kAny, class Scene, class Rays, class Counter = NoWalkCounter>
 void launch_dynamic_fetch(Queue& queue, const char* name, const Scene& scene, const Rays& rays, WorkCount count,
                           uint32_t* pool, const Counter& counter = {}) {

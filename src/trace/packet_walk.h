@@ -1,11 +1,11 @@
 #pragma once
 
-// Packets on the host: eight rays share one stack and test the same node at once (AVX2); a node is entered if any of
-// them enters it. Triangles are tested ray by ray, each by those rays alone that entered the leaf. Each ray gets the
-// hit that it would get by itself.
+// Packet traversal on the host: eight rays share one stack and test the same node at once (AVX2); a node is entered
+// if any of them enters it. Triangles are tested ray by ray, only for rays that entered the leaf. Each ray gets the
+// hit that it would get alone.
 //
 // Source: Guenther, Popov, Seidel, Slusallek, "Realtime Ray Tracing on GPU with BVH-based Packet Traversal", IEEE RT
-// 2007: where rays enter both children, the majority says which one is walked first.
+// 2007: if rays enter both children, the majority decides which one is visited first.
 
 #include <immintrin.h>
 
@@ -29,7 +29,7 @@ struct PacketBoxes { // RayBoxes of eight rays
     __m256 t_min;
 };
 
-/// `make_boxes(ray)` gives a ray's RayBoxes. Rays out of `active` are not looked at.
+/// `make_boxes(ray)` returns a ray's RayBoxes. Rays outside `active` are ignored.
 template <class MakeBoxes>
 PacketBoxes make_packet_boxes(const RayPacket& rays, unsigned active, const MakeBoxes& make_boxes) {
     alignas(32) float inv[3][kPacketRays] = {}, lo[3][kPacketRays] = {}, hi[3][kPacketRays] = {};
@@ -54,7 +54,7 @@ PacketBoxes make_packet_boxes(const RayPacket& rays, unsigned active, const Make
     return packet;
 }
 
-/// enters_child (ray_boxes.h) of eight rays; the same operations in the same order.
+/// enters_child (ray_boxes.h) for eight rays, with the same operations in the same order.
 inline unsigned packet_enters_child(const PacketBoxes& r, const BvhNode& node, int k, __m256 t_limit, __m256& entry) {
     const auto plane = [&r](float p, const __m256(&shift)[3], int axis) {
         return _mm256_fmadd_ps(_mm256_set1_ps(p), r.inv[axis], shift[axis]);
@@ -73,15 +73,15 @@ inline unsigned lanes_not_above(__m256 a, __m256 b) {
     return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ)));
 }
 
-/// Walks a tree of binary nodes. `limits` are the rays' current ones, [kPacketRays], aligned to 32 bytes.
-/// `at_leaf(link, mask)` tests a leaf for the rays in the mask and may lower limits and take rays out of `alive`.
+/// Traverses a tree of binary nodes. `limits` are the rays' current limits, [kPacketRays], aligned to 32 bytes.
+/// `at_leaf(link, mask)` tests a leaf for the rays in the mask; it may lower limits and remove rays from `alive`.
 template <bool kNearFirst, class AtLeaf, class Counter>
 void walk_packet(const BvhNode* nodes, uint32_t root, const PacketBoxes& boxes, const float* limits,
                  const unsigned& alive, const Counter& counter, const AtLeaf& at_leaf) {
     struct Waiting {
         __m256 entry;
         uint32_t link;
-        unsigned mask; // the rays that entered it
+        unsigned mask; // rays that entered it
     };
     Waiting stack[kMaxBvhDepth];
     int size = 0;
@@ -101,7 +101,7 @@ void walk_packet(const BvhNode* nodes, uint32_t root, const PacketBoxes& boxes, 
             link = pop();
             continue;
         }
-        if constexpr (requires { counter.add_packet_node(mask); }) { // a counter of each ray's own work
+        if constexpr (requires { counter.add_packet_node(mask); }) { // for a counter of each ray's own work
             counter.add_packet_node(mask);
         } else {
             counter.add_node(nodes + link);
@@ -126,7 +126,7 @@ void walk_packet(const BvhNode* nodes, uint32_t root, const PacketBoxes& boxes, 
     }
 }
 
-/// What happens to eight rays in one scene: a visitor a ray, and which of them still look for something.
+/// State of eight rays in one scene: a visitor per ray, and which rays are still searching.
 template <WalkOptions kOptions, class Visitor, class Counter>
 class PacketTracer {
     using Tests = TestsOf<kOptions>;
@@ -168,7 +168,7 @@ private:
         for_each(mask, [&](std::size_t k) { prepared[k] = Tests::make_triangles(rays[k]); });
         alignas(32) float t_max[kPacketRays] = {};
         for_each(mask, [&](std::size_t k) { t_max[k] = rays[k].t_max; });
-        unsigned here = mask; // those of the packet that came into this mesh and are not done
+        unsigned here = mask; // rays of the packet that entered this mesh and are not done
         walk_packet<kOptions.near_first>(bvh.nodes, bvh.root, boxes, kOptions.rta ? limits_ : t_max, here, counter_,
                                          [&](uint32_t link, unsigned in_leaf) {
                                              for_each(in_leaf, [&](std::size_t k) {
@@ -198,11 +198,11 @@ private:
     alignas(32) float limits_[kPacketRays] = {};
 };
 
-/// What counts for each ray of a packet.
+/// Acceptance rules of each ray of a packet.
 template <class Accept>
 using PacketAccepts = std::array<Accept, kPacketRays>;
 
-/// trace_closest of the rays in `active`; the mask of those that meet something. Other hits are left as they are.
+/// Closest hits of the rays in `active`. Returns the mask of those that hit something; other hits are not written.
 template <WalkOptions kOptions, class Accept, class Counter = NoWalkCounter>
 unsigned trace_packet_closest(const SceneBvhView& scene, const RayPacket& rays, unsigned active,
                               const PacketAccepts<Accept>& accepts, std::array<Hit, kPacketRays>& hits,
@@ -221,7 +221,7 @@ unsigned trace_packet_closest(const SceneBvhView& scene, const RayPacket& rays, 
     return found;
 }
 
-/// trace_any of the rays in `active`: the mask of those that meet something.
+/// Occlusion of the rays in `active`. Returns the mask of those that hit something.
 template <WalkOptions kOptions, class Accept, class Counter = NoWalkCounter>
 unsigned trace_packet_any(const SceneBvhView& scene, const RayPacket& rays, unsigned active,
                           const PacketAccepts<Accept>& accepts, const Counter& counter = {}) {

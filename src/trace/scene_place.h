@@ -1,8 +1,8 @@
 #pragma once
 
-// Where a ray stands in the walk of a whole scene between two turns, for walks that can be left there
-// (trace/dynamic_fetch.h): in one tree, or on its way through the trees of a scene with instances. The walk from
-// tree to tree is that of trace/walk_scene.h.
+// State of a ray between two turns of the traversal of a whole scene, for traversals that can be suspended
+// (trace/dynamic_fetch.h): in one tree, or between the trees of a scene with instances. Trees are visited in the
+// order of trace/walk_scene.h.
 
 #include <cstdint>
 
@@ -12,7 +12,7 @@
 
 namespace pertev {
 
-/// `Scene` is SceneTrees or SingleTree of what the walk walks.
+/// `Scene` is SceneTrees or SingleTree of the structure that is traversed.
 template <class Walk, class Scene>
 struct ScenePlace;
 
@@ -28,7 +28,7 @@ struct ScenePlace<Walk, SingleTree<typename Walk::Tree>> {
     HD void start(const Scene& scene, const Ray& ray, const Visitor& visitor) {
         Walk::start(scene.baked, ray, visitor, place);
     }
-    /// All of `lanes` come here together; to those that are done it does nothing.
+    /// All of `lanes` must call it together; it does nothing for those that are done.
     template <class Visitor, class Counter>
     HD void turn(const Scene& scene, const Ray& ray, Visitor& visitor, const Counter& counter, LaneMask lanes,
                  int working) {
@@ -43,7 +43,7 @@ struct ScenePlace<Walk, SceneTrees<typename Walk::Tree>> {
     typename Walk::Tree tree = {};
     Ray local; // the ray in the tree's space
     uint32_t instance = kNoHit;
-    TreeWalk top = {kNoLink}; // of the tree over instances; kNoLink: at its end
+    TreeWalk top = {kNoLink}; // state in the tree over instances; kNoLink at its end
     TreeStack::Slot top_stack[kMaxTopLevelDepth];
 
     HD explicit ScenePlace(typename Walk::Place::Slot* slots) : place(slots) {}
@@ -57,7 +57,7 @@ struct ScenePlace<Walk, SceneTrees<typename Walk::Tree>> {
         top = {scene.top_root};
         Walk::start(tree, local, visitor, place);
     }
-    /// As above.
+    /// All of `lanes` must call it together; it does nothing for those that are done.
     template <class Visitor, class Counter>
     HD void turn(const Scene& scene, const Ray& ray, Visitor& visitor, const Counter& counter, LaneMask lanes,
                  int working) {

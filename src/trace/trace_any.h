@@ -1,13 +1,14 @@
 #pragma once
 
-// Whether a ray meets anything between t_min and t_max: true when a candidate exists (see trace_closest.h).
+// Any-hit search: whether a ray hits anything between t_min and t_max, that is, whether a candidate exists
+// (trace_closest.h).
 //
-// Which candidate is met first is nobody's concern, so a walk may begin where one is likely to be met soon. Of a ray
-// that has no end (to a sky or a sun) that is its far end: what stands there is large and plain (the walls of a room,
-// the ground), while at its origin many boxes are entered in vain. Rays to the sky from Sponza's surfaces visit half of
-// the nodes that they visit near children first, in the open (a forest) four fifths. So some walks of trees begin there
-// (walk_scene.h; not that over instances). Of a ray that ends in the scene the better order is the scene's affair:
-// docs/performance.md, "Rays to the sky".
+// The order of candidates does not matter, so a traversal may start where a hit is likely. For a ray without an end
+// (to a sky or a sun) that is its far end: surfaces there are large and simple (the walls of a room, the ground),
+// while near its origin many boxes are entered without a hit. Rays to the sky from Sponza's surfaces visit half of
+// the nodes that they visit with near children first, and four fifths in the open (a forest). So some tree traversals
+// start there (walk_scene.h; not the one over instances). For a ray that ends in the scene the best order depends on
+// the scene: docs/performance.md, "Rays to the sky".
 
 #include <cstdint>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// The first thing a ray meets. The result is a function of the scene, not of the walk: the least (t, instance,
-// primitive) of all candidates, which are the triangles hit with t_min < t < t_max that `accept` lets count.
+// Closest-hit search. The result depends on the scene, not on the traversal: the least (t, instance, primitive) of
+// all candidates, which are the triangles hit with t_min < t < t_max that `accept` lets count.
 
 #include <cstdint>
 
@@ -24,7 +24,7 @@ struct ClosestVisitor {
     HD bool is_done() const { return false; }
     HD static constexpr bool goes_far_first() { return false; }
     HD bool visit(uint32_t instance, uint32_t primitive, const TriangleHit& hit) {
-        // Bits in place of branches: lanes of a warp that differ here would otherwise take turns.
+        // Bit operations in place of branches, because lanes of a warp that differ here would be serialized.
         const bool lower = (instance < best.instance) | ((instance == best.instance) & (primitive < best.primitive));
         const bool first = (hit.t < best.t) | ((hit.t == best.t) & lower);
         if (first && accept(instance, primitive, hit.u, hit.v)) best = {hit.t, hit.u, hit.v, instance, primitive};
@@ -32,9 +32,9 @@ struct ClosestVisitor {
     }
 };
 
-/// True and `hit` when there is a candidate; else false and hit.instance is kNoHit. `accept(instance, primitive, u, v)`
-/// is a pure function: a walk may ask it in any order, and about any subset that decides the result. `scene` is
-/// SceneTrees or SingleTree of what the walk walks.
+/// Returns true and sets `hit` if there is a candidate; otherwise returns false and sets hit.instance to kNoHit.
+/// `accept(instance, primitive, u, v)` is a pure function: a traversal may call it in any order, for any subset of
+/// candidates that determines the result. `scene` is SceneTrees or SingleTree of the traversal's structure.
 template <class Walk = PlainWalk, class Scene, class Accept, class Counter = NoWalkCounter>
 HD inline bool trace_closest(const Scene& scene, const Ray& ray, const Accept& accept, Hit& hit,
                              const Counter& counter = {}) {

@@ -1,12 +1,12 @@
 #pragma once
 
-// The walk of a whole scene: the baked tree first, then each instance that the top level leads to. Closest and any hit
-// differ only in the visitor:
-//   float limit() const                              a box whose entry is greater holds nothing of interest
-//   bool visit(instance, primitive, TriangleHit)     sees each candidate; true ends the walk
-//   bool goes_far_first() const                      whether far children had better come first (trace_any.h):
-//                                                    CompressedWalk, walk_wide.h and walk_in_flight.h ask it
-// The set of triangles that a visitor sees may differ between structures; what it makes of them may not.
+// Traversal of a whole scene: the baked tree first, then each instance that the top level leads to. Closest-hit and
+// any-hit searches differ only in the visitor:
+//   float limit() const                              boxes with a greater entry parameter are skipped
+//   bool visit(instance, primitive, TriangleHit)     receives each candidate; returns true to end the traversal
+//   bool goes_far_first() const                      whether far children should come first (trace_any.h); used by
+//                                                    CompressedWalk, walk_wide.h and walk_in_flight.h
+// The set of triangles that a visitor receives may differ between structures; its result must not.
 
 #include <cstdint>
 
@@ -18,12 +18,12 @@
 
 namespace pertev {
 
-// A "walk" is how one tree over triangles is walked; the walk of the scene is the same for all:
-//   using Tree                                                  what it walks, a view
-//   static bool walk(tree, ray, instance, visitor, counter)     `instance` is kNoHit where the triangles carry their
-//                                                               own; true when the visitor ended it
+// A `Walk` defines the traversal of one tree over triangles; that of the scene is common to all:
+//   using Tree                                                  the structure, a view
+//   static bool walk(tree, ray, instance, visitor, counter)     `instance` is kNoHit if the triangles carry their own;
+//                                                               returns true if the visitor ended it
 
-/// Where a caller names no walk: of binary trees, near child first.
+/// The default traversal: binary trees, near child first.
 using PlainWalk = WhileWhileWalk<WalkOptions{}>;
 
 template <class Walk, class Visitor, class Counter>
@@ -40,11 +40,11 @@ HD inline void walk_scene(const SceneTrees<typename Walk::Tree>& scene, const Ra
     typename Walk::Tree tree = scene.baked;
     Ray local = ray;
     uint32_t instance = kNoHit;
-    for (;;) { // one mesh a turn, so that the device has one copy of the inner walk and a warp meets again here
+    for (;;) { // one mesh per turn, so that a kernel has one copy of the inner traversal, and a warp reconverges here
         if (Walk::walk(tree, local, instance, visitor, counter)) return;
         if (instance != kNoHit) leave_leaf(top, top_stack, visitor.limit());
         if (top.link == kNoLink) return;
-        // Made anew at each turn: cheaper than keeping it in registers through the inner walk.
+        // Recomputed in each turn, which is cheaper than keeping it in registers through the inner traversal.
         const RayBoxes boxes = make_ray_boxes(ray.origin, ray.direction, scene.top_reach, scene.top_growth);
         const uint32_t leaf = next_leaf(top, scene.top_nodes, boxes, ray.t_min, visitor.limit(), top_stack, counter);
         if (leaf == kNoLink) return;

@@ -1,7 +1,7 @@
 #pragma once
 
-// A scene's binary trees: what most layouts of structures are made of. Each part's tree is shared by all versions of a
-// scene in which its triangles are the same.
+// The binary trees of a scene, from which most structure layouts are made. Versions of a scene in which a part has
+// the same triangles share that part's tree.
 
 #include <memory>
 #include <vector>
@@ -13,12 +13,12 @@
 namespace pertev {
 
 struct BinaryTrees {
-    // [0] over the baked instances; then those of the meshes that keep a tree of their own, in local space.
+    // parts[0] is the tree over the baked instances. The rest are local-space trees of the meshes that are not baked.
     std::vector<std::shared_ptr<const Bvh>> parts;
     double build_s = 0;
-    std::vector<BvhBuilder> builders;   // [part] whose tree it is
-    std::vector<float> built_cost;      // [part] sah_cost when it was built, before any refit
-    std::vector<std::size_t> triangles; // [part] each once, though a tree may hold one in several leaves
+    std::vector<BvhBuilder> builders;   // [part] the builder that made its tree
+    std::vector<float> built_cost;      // [part] sah_cost after the build, before any refit
+    std::vector<std::size_t> triangles; // [part] triangle count; a triangle that several leaves hold counts once
 
     void add(BvhBuilder builder, Bvh bvh, std::size_t triangle_count) {
         builders.push_back(builder);
@@ -28,30 +28,30 @@ struct BinaryTrees {
     }
     const Bvh& baked() const { return *parts.front(); }
     uint64_t triangle_count() const;
-    /// Of the meshes' own trees.
+    /// Bounds of the trees of meshes that are not baked.
     std::vector<Bounds3> mesh_bounds() const;
 };
 
-/// Throws Error(OverLimit), std::bad_alloc.
+/// Builds all parts. Throws Error(OverLimit), std::bad_alloc.
 BinaryTrees build_binary_trees(const SceneTriangles& triangles, BvhBuilder builder);
 
-/// What has become of a part's triangles.
+/// How a part's triangles differ from the previous version of the scene.
 enum class PartChange {
     None,
-    Deformed, // the same with other corners
-    Replaced, // others
+    Deformed, // with other vertex positions
+    Replaced, // other triangles
 };
 
-/// How much dearer a ray may become by refits before a tree is built anew.
+/// A refitted tree is rebuilt once its SAH cost is more than this multiple of its cost after the build.
 inline constexpr float kMaxRefitCost = 1.5f;
 
-/// Whose tree a part gets at its first deformation where its own cannot be refitted.
+/// Builder of a part's new tree at its first deformation if its present tree cannot be refitted.
 inline constexpr BvhBuilder kRefittedBuilder = BvhBuilder::Binned;
 
-/// The trees after a change. Those of parts without one are shared. Replaced parts are built by `builder`. Deformed
-/// ones are refitted, or built by whom they were before where refits have made them too dear; a tree that cannot be
-/// refitted (why_no_refit) gives way to one that can, since what is deformed once mostly is again. Of `triangles` only
-/// parts that change are looked at. Throws as build_binary_trees.
+/// Returns the trees after a change. Unchanged parts are shared, and replaced parts are built by `builder`. Deformed
+/// parts are refitted, or rebuilt by their own builder if refits have made them too costly. A tree that cannot be
+/// refitted (why_no_refit) is replaced by one that can, because a part that deforms once usually deforms again. Only
+/// `triangles` of parts that change are read. Throws as build_binary_trees.
 BinaryTrees update_binary_trees(const BinaryTrees& before, BvhBuilder builder, const std::vector<PartChange>& changes,
                                 const SceneTriangles& triangles);
 

@@ -13,7 +13,7 @@
 namespace pertev {
 namespace {
 
-/// These follow a structure's name where its layout is not the one that its builder makes.
+/// Suffixes of a structure's name for layouts other than its builder's usual one.
 constexpr ValueName<TreeLayout> kSuffixes[] = {{TreeLayout::Woop, " woop"},
                                                {TreeLayout::Skip, " skip links"},
                                                {TreeLayout::Wide4, " wide4"},
@@ -76,7 +76,7 @@ template <class Tree, class ViewOf>
 void BuiltStructure::take(const TopLevelBvh& top_level, const std::vector<std::shared_ptr<const Tree>>& parts,
                           const ViewOf& view_of_part) {
     using View = decltype(view_of_part(*parts.front()));
-    std::size_t largest = 0; // the tree whose cost and depth stand for all
+    std::size_t largest = 0; // the tree whose cost and depth are reported
     const auto meshes = std::make_shared<std::vector<View>>();
     SceneTrees<View> scene;
     for (std::size_t part = 0; part < parts.size(); ++part) {
@@ -122,7 +122,7 @@ void BuiltStructure::take(const TopLevelBvh& top_level, const std::vector<std::s
     memory_ = {meshes, top};
 }
 
-/// Makes each part's tree, timed, but for those that are the same as before.
+/// Builds and times each part's tree, except for parts that did not change.
 template <class Make>
 void BuiltStructure::build(const TopLevelBvh& top_level, std::size_t count, const Before* before, const Make& make) {
     using Tree = std::remove_cvref_t<decltype(make(std::size_t(0)))>;
@@ -153,7 +153,7 @@ BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind,
     switch (layout) {
     case TreeLayout::Triangles:
         take<Bvh>(top_level, parts, triangle_array_of);
-        figures_.sah_cost.reset(), figures_.depth.reset(); // are the tree's, which is not walked
+        figures_.sah_cost.reset(), figures_.depth.reset(); // these belong to the tree, which is not traversed
         break;
     case TreeLayout::Binary:
         take<Bvh>(top_level, parts, [](const Bvh& bvh) { return view_of(bvh); });
@@ -168,7 +168,8 @@ BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind,
         convert([](const Bvh& bvh) { return make_skip_bvh(bvh); });
         const Bvh& largest =
             **std::ranges::max_element(parts, {}, [](const auto& bvh) { return bvh->triangles.size(); });
-        figures_.sah_cost = static_cast<double>(largest.sah_cost), figures_.depth = largest.depth; // the same tree
+        figures_.sah_cost = static_cast<double>(largest.sah_cost),
+        figures_.depth = largest.depth; // both from the same tree
         break;
     }
     case TreeLayout::Woop:
@@ -189,7 +190,8 @@ BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind,
         });
         break;
     case TreeLayout::Compressed:
-        if (kind == StructureKind::Hploc) { // by the builder itself, as on a GPU, and not of its binary tree
+        if (kind == StructureKind::Hploc) { // H-PLOC builds the compressed tree directly, as on a GPU, not from its
+                                            // binary tree
             Queue queue = Queue::make_cpu();
             figures_.build_s = 0;
             convert([&](const Bvh& bvh) { return build_compressed_bvh(queue, bvh.triangles); });
@@ -199,7 +201,7 @@ BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind,
         break;
     case TreeLayout::Kd:
     case TreeLayout::Octree:
-        PERTEV_CHECK(false); // are not made of binary trees
+        PERTEV_CHECK(false); // these kinds are not made from binary trees
     }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// One structure over a scene's triangles in the layout that a walk reads: built on the host, and placed in the memory
-// of the device that it will be walked on.
+// One structure over a scene's triangles, in the layout that a traversal reads. It is built on the host and then
+// copied to the memory of the device that traverses it.
 
 #include <cstddef>
 #include <memory>
@@ -30,7 +30,7 @@ using AnyTrees = std::variant<SceneTrees<BvhView>, SceneTrees<SkipBvhView>, Scen
                               SceneTrees<WideBvhView<8>>, SceneTrees<CompressedBvhView>, SceneTrees<KdTreeView>,
                               SceneTrees<OctreeView>, SceneTrees<TriangleArrayView>, SceneTrees<WoopBvhView>>;
 
-/// What a binary tree is turned into for a walk, or what stands in its place.
+/// The layout that a binary tree is converted to for traversal, or the structure that takes its place.
 enum class TreeLayout {
     Triangles,
     Binary,
@@ -39,7 +39,7 @@ enum class TreeLayout {
     Skip,
     Wide4,
     Wide8,
-    Wide8Simd, // the same nodes, with leaves for four triangles at once
+    Wide8Simd, // Wide8 nodes, with leaves for four triangles at once
     Compressed,
     Kd,
     Octree
@@ -47,46 +47,48 @@ enum class TreeLayout {
 TreeLayout layout_of(const Combination& combination);
 
 struct StructureFigures {
-    std::string name;                  // "sbvh", "sbvh wide4": the tree and what it was turned into
-    std::string failed;                // why it is not there; empty: it is
-    double build_s = 0;                // from triangles to what the walk reads, conversion included
-    uint64_t nodes = 0, triangles = 0; // triangles: in leaves, so duplicates count
-    std::size_t bytes = 0;             // nodes, triangles, and what the layout has beside them
-    std::optional<double> sah_cost;    // in its builder's own unit: binary trees compare with binary trees alone
-    std::optional<int> depth;          // inner nodes on the longest way down; neither of a bare array of triangles
+    std::string name;                  // "sbvh", "sbvh wide4": the builder and the layout
+    std::string failed;                // why there is no structure; empty if there is one
+    double build_s = 0;                // seconds from triangles to the finished layout, conversion included
+    uint64_t nodes = 0, triangles = 0; // triangles in leaves, so duplicates count
+    std::size_t bytes = 0;             // bytes of nodes, triangles and the layout's other arrays
+    std::optional<double> sah_cost;    // in the builder's own unit, so that only binary trees compare with each other
+    std::optional<int> depth;          // inner nodes on the longest path; a plain array of triangles has neither cost
+                                       // nor depth
 };
 
-/// In the host's memory.
+/// A structure in host memory.
 class BuiltStructure {
 public:
-    /// The same structure before a change of the scene, in the same layout: parts without a change are taken from it.
+    /// The structure of the previous version of the scene, in the same layout. Unchanged parts are taken from it.
     struct Before {
         const BuiltStructure& structure;
         std::vector<PartChange> changes;
     };
 
-    /// Of binary trees, which `kind` names. `trees` may go away afterwards. Throws Error(OverLimit), std::bad_alloc.
+    /// Makes a structure of the given layout from binary trees of the builder that `kind` names. `trees` need not
+    /// outlive the call. Throws Error(OverLimit), std::bad_alloc.
     BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, TreeLayout layout, const BinaryTrees& trees,
                    const Before* before = nullptr);
-    /// A kd-tree or an octree. Planes of space do not move with triangles: deformed parts are built anew. Throws the
-    /// same.
+    /// Builds a kd-tree or an octree. Their planes are fixed in space, so deformed parts are rebuilt. Throws
+    /// Error(OverLimit), std::bad_alloc.
     BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, const SceneTriangles& triangles,
                    const Before* before = nullptr);
 
-    /// As a walk on the host reads it.
+    /// The structure as a traversal on the host reads it.
     const AnyTrees& trees() const { return trees_; }
     const StructureFigures& figures() const { return figures_; }
     bool has_instances() const { return has_instances_; }
-    /// Which keep a tree of their own.
+    /// Number of meshes that keep a tree of their own.
     std::size_t mesh_count() const { return parts_.size() - 1; }
 
-    /// Every array that the views point to, in the order in which they lie on a device.
+    /// Every array that the views point to, in device order.
     struct Array {
         std::span<const std::byte> bytes;
-        std::size_t offset = 0; // on the device
+        std::size_t offset = 0; // byte offset in the device's copy
     };
     const std::vector<Array>& arrays() const { return arrays_; }
-    /// Of the array that begins there; nothing of one without elements.
+    /// Device offset of the array that begins at this host address; nothing for an array without elements.
     std::optional<std::size_t> offset_of(const void* on_host) const;
     std::size_t device_bytes() const { return device_bytes_; }
 
@@ -103,8 +105,8 @@ private:
     AnyTrees trees_;
     StructureFigures figures_;
     bool has_instances_ = false;
-    std::vector<std::shared_ptr<const void>> parts_;  // the trees, of a type that the layout says
-    std::vector<std::shared_ptr<const void>> memory_; // what else the views point to
+    std::vector<std::shared_ptr<const void>> parts_;  // the trees; the layout determines their type
+    std::vector<std::shared_ptr<const void>> memory_; // other memory that the views point to
     std::vector<Array> arrays_;
     std::unordered_map<const void*, std::size_t> offsets_;
     std::size_t device_bytes_ = 0;

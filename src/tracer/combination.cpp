@@ -9,7 +9,7 @@ namespace {
 
 bool is_kd(StructureKind kind) { return kind == StructureKind::KdMedian || kind == StructureKind::KdSah; }
 
-/// Whether the walk knows nearer children from farther ones.
+/// Whether the traversal can visit the nearer child first.
 bool has_order(WalkKind walk) { return walk != WalkKind::BruteForce && walk != WalkKind::SkipLinks; }
 
 } // namespace
@@ -32,7 +32,8 @@ std::optional<WalkOptions> rta_named(const std::string& name, WalkOptions option
 std::string name_of(const Combination& c) {
     std::string name = fmt::format("{} {}", name_of(c.structure), name_of(c.walk));
     name += !c.options.rta ? " no-rta" : c.options.rta_at_pops ? " rta" : " rta-at-nodes";
-    // A walk without an order is named without; switched off there it is refused, and that has a name of its own.
+    // A traversal without an order is named without one. If its switch is off, "unordered" is part of the name,
+    // because that combination is refused and its message needs a name.
     if (has_order(c.walk) || !c.options.near_first) name += c.options.near_first ? " near" : " unordered";
     if (!c.options.is_exact()) name += fmt::format(" {}-tests", name_of(c.options.tests));
     if (c.distribution != Distribution::OneAThread) name += fmt::format(" {}", name_of(c.distribution));

@@ -1,8 +1,8 @@
 #pragma once
 
-// How rays find what they meet: a structure, a walk of it, the switches of both, and how rays come to threads. What
-// pictures choose from and the laboratory compares. Names are those of the command line. A combination that makes no
-// sense says why.
+// How rays find what they hit: a structure, its traversal, the switches of both, and how rays are distributed to
+// threads. Rendering chooses from these combinations, and the laboratory compares them. Names are those of the
+// command line. An invalid combination is refused with a reason.
 
 #include <cstdint>
 #include <optional>
@@ -15,16 +15,16 @@
 namespace pertev {
 
 enum class StructureKind {
-    Binned,             // binary trees: SAH over bins,
-    Sweep,              // SAH over every cut,
-    Median,             // halves of space,
-    EqualCounts,        // halves of the triangles,
+    Binned,             // binary trees: SAH with bins,
+    Sweep,              // SAH over every split position,
+    Median,             // spatial median,
+    EqualCounts,        // object median,
     SpatialSplits,      // SBVH,
-    Ploc,               // bottom-up,
-    Hploc,              // bottom-up, as a GPU builds it,
-    Insertion,          // one triangle after the other,
-    Reinsertion,        // binned, then improved by moving subtrees,
-    SpatialReinsertion, // SBVH, then the same
+    Ploc,               // PLOC, bottom-up,
+    Hploc,              // H-PLOC, bottom-up, as a GPU builds it,
+    Insertion,          // incremental insertion, one triangle after the other,
+    Reinsertion,        // binned SAH, then optimized by reinsertion of subtrees,
+    SpatialReinsertion, // SBVH, then optimized by reinsertion
     KdMedian,
     KdSah,
     Octree,
@@ -49,14 +49,14 @@ enum class WalkKind {
     Octree,
 };
 
-/// How rays come to threads. Only the first exists on the CPU.
+/// How rays are distributed to threads. The CPU has only the first.
 enum class Distribution {
     OneAThread,
-    Persistent,   // as many warps as the GPU holds, each fetching rays from a pool
-    DynamicFetch, // the same, and lanes that are done get new rays while the others go on
+    Persistent,   // enough warps to fill the GPU, each fetching rays from a pool
+    DynamicFetch, // persistent warps in which finished lanes fetch new rays while the others go on
 };
 
-// Names are those of the command line. Structures that are binary hierarchies are called as their builders.
+// Names are those of the command line. Binary hierarchies have the names of their builders.
 inline constexpr ValueName<StructureKind> kStructureNames[] = {
     {StructureKind::Binned, name_of(BvhBuilder::Binned)},
     {StructureKind::Sweep, name_of(BvhBuilder::Sweep)},
@@ -105,22 +105,22 @@ struct Combination {
     bool operator==(const Combination&) const = default;
 };
 
-/// None for kd-trees and the octree: the others are binary hierarchies.
+/// The builder of a binary hierarchy; nothing for kd-trees and octrees.
 std::optional<BvhBuilder> builder_of(StructureKind kind);
 
 /// "on", "nodes" (at nodes alone) or "off".
 const char* name_of_rta(const WalkOptions& options);
-/// `options` with RTA as that names it; nothing where nothing is named so.
+/// `options` with RTA set as `name` says; nothing if the name is unknown.
 std::optional<WalkOptions> rta_named(const std::string& name, WalkOptions options);
-/// "sbvh while-while rta near persistent"
+/// The full name, for example "sbvh while-while rta near persistent".
 std::string name_of(const Combination& combination);
 
-/// The walk that goes over structures of this kind; nothing where there are several.
+/// The only traversal for structures of this kind; nothing if there are several.
 std::optional<WalkKind> only_walk_of(StructureKind structure);
 
-/// Whether the walk goes over trees of this kind at all; else why not.
+/// Why the traversal cannot handle structures of this kind; nothing if it can.
 std::optional<std::string> why_not(StructureKind structure, WalkKind walk);
-/// Why the combination makes no sense on this kind of device; nothing when it does.
+/// Why the combination is invalid on this kind of device; nothing if it is valid.
 std::optional<std::string> why_not(const Combination& combination, bool on_cuda);
 
 } // namespace pertev

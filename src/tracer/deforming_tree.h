@@ -1,8 +1,8 @@
 #pragma once
 
-// The tree of a mesh whose vertices move on the device, there: built once, then fitted to where they are, and built
-// anew when fits have made it kMaxRefitCost times as dear as it was. Compressed nodes are built on the device too
-// (hploc/device_builder.h); those that a CPU walks by its builders, on all threads.
+// Trees of meshes whose vertices move on the device. Each is built once, then refitted, and rebuilt once refits have
+// raised its SAH cost to kMaxRefitCost times that of the build. Compressed nodes are built on the device
+// (hploc/device_builder.h); the wide nodes of the CPU are built by the host's builders on all threads.
 
 #include <cstdint>
 #include <vector>
@@ -16,24 +16,24 @@
 
 namespace pertev {
 
-/// Whether trees of this layout are kept so; others are built on the host when vertices move.
+/// Whether trees of this layout are refitted on the device. Others are rebuilt on the host when vertices move.
 bool can_deform(TreeLayout layout, bool on_cuda);
 
-/// The triangles as they are now, on the host.
+/// Copies the mesh's current triangles to the host.
 std::vector<BvhTriangle> read_triangles(Queue& queue, const DeformedMesh& mesh);
 
-/// Of compressed nodes.
+/// A tree of compressed nodes.
 class DeformingCompressed {
 public:
     using View = CompressedBvhView;
     DeformingCompressed(Queue& queue, uint32_t triangles);
 
-    /// Gives the work to the queue.
+    /// Queues a build or a refit.
     void start(const DeformedMesh& mesh);
-    /// Waits for it; returns the bounds of all triangles.
+    /// Waits for the queue and returns the bounds of all triangles.
     Bounds3 finish();
     View view() const { return builder_.view(); }
-    uint32_t builds() const { return builds_; } // so far
+    uint32_t builds() const { return builds_; } // builds so far
 
 private:
     void build();
@@ -45,7 +45,7 @@ private:
     uint32_t builds_ = 0;
 };
 
-/// Of eight boxes a node, with leaves for four triangles at once; on a CPU, in the host's memory as all its trees.
+/// A tree of eight-wide nodes with leaves for four triangles at once. It is for the CPU, thus in host memory.
 class DeformingWide {
 public:
     using View = WideBvhView<8>;
@@ -62,7 +62,7 @@ private:
 
     Queue& queue_;
     WideBvh<8> tree_;
-    std::vector<uint32_t> parents_, children_, arrived_; // of each node
+    std::vector<uint32_t> parents_, children_, arrived_; // [node]
     std::vector<NodeBox> boxes_;
     float built_cost_ = 0;
     uint32_t builds_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Fits a tree of eight boxes a node to a mesh whose vertices have moved: nodes and leaves stay what they are.
+// Refits an eight-wide tree to a mesh whose vertices have moved. Its topology does not change.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@
 
 namespace pertev {
 
-/// Triangle `primitive` of the mesh, as builders take it.
+/// Writes triangle `primitive` of the mesh in the form that builders read.
 HD inline void take_corners(const DeformedMesh& mesh, BvhTriangle& triangle) {
     const uint32_t* v = mesh.indices + 3 * static_cast<uint64_t>(triangle.primitive);
     triangle.a = mesh.positions[v[0]];
@@ -18,7 +18,7 @@ HD inline void take_corners(const DeformedMesh& mesh, BvhTriangle& triangle) {
     triangle.c = mesh.positions[v[2]];
 }
 
-/// One triangle each, in the mesh's order.
+/// One call per triangle, in the mesh's order.
 struct ListTriangles {
     DeformedMesh mesh;
     BvhTriangle* triangles;
@@ -31,7 +31,7 @@ struct ListTriangles {
     }
 };
 
-/// One node each: counts its inner children and tells them where it is.
+/// One call per node: counts its inner children and stores their links to it.
 struct LinkWideParents {
     const WideBvhNode<8>* nodes;
     uint32_t *parents, *children;
@@ -48,7 +48,7 @@ struct LinkWideParents {
     }
 };
 
-/// One node each.
+/// One call per node.
 struct RefitWide {
     DeformedMesh mesh;
     WideBvhNode<8>* nodes;

@@ -13,7 +13,7 @@ namespace pertev {
 
 namespace {
 
-/// In the order of the scene, as whoever prepared it gave them to the builder; each once, though it may be cut.
+/// Returns the triangles in scene order, as the builder got them. Each appears once even if the tree splits it.
 SceneTriangles triangles_of(const BinaryTrees& trees) {
     SceneTriangles triangles;
     for (std::size_t part = 0; part < trees.parts.size(); ++part) {

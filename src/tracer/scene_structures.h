@@ -1,7 +1,6 @@
 #pragma once
 
-// A scene's structures in the host's memory, each built when it is first asked for: whatever tracers are chosen, and
-// however many devices they run on, no structure is built twice.
+// A scene's structures in host memory. Each is built at the first request and shared by all tracers and devices.
 
 #include <cstddef>
 #include <map>
@@ -17,33 +16,34 @@
 
 namespace pertev {
 
-/// The top level over instances, where these trees have other bounds than `placed` says. Throws Error(OverLimit) that
-/// names an instance that lies further out than kMaxCoordinate.
+/// Builds the top level over instances, with bounds in place of those in `placed` for the meshes that `bounds` lists.
+/// Throws Error(OverLimit) that names an instance farther out than kMaxCoordinate.
 TopLevelBvh top_level_over(std::span<const PlacedBvh> placed, const std::map<uint32_t, Bounds3>& bounds_of_trees);
 
 class SceneStructures {
 public:
-    /// `trees` are by `builder`; others are made from their triangles.
+    /// `trees` are those of `builder`. Trees of other builders are made from their triangles.
     SceneStructures(BvhBuilder builder, BinaryTrees trees, TopLevelBvh top_level);
 
-    /// The scene after a change. `trees`: those given before, updated. Whatever else has been built is brought up to
-    /// date too, parts without a change as they are. Of `triangles` only parts that change are looked at. Throws as
-    /// get.
+    /// Returns the scene after a change. `trees` are the original ones, updated. Every other structure that has been
+    /// built is updated too, and shares its unchanged parts. Only `triangles` of parts that change are read. Throws
+    /// as get().
     std::shared_ptr<SceneStructures> updated(BinaryTrees trees, TopLevelBvh top_level,
                                              const std::vector<PartChange>& changes, const SceneTriangles& triangles);
 
-    /// The scene with these vertices of some of its meshes: as updated(), on the host, for layouts whose trees are not
-    /// kept on the device (can_deform). `placed`: what the top level is built of.
+    /// Returns the scene with new vertices for some meshes. It works like updated(), on the host, for layouts whose
+    /// trees are not kept on the device (can_deform). `placed` lists what the top level contains.
     std::shared_ptr<SceneStructures> fitted(Queue& queue, std::span<const DeformedMesh> meshes,
                                             std::span<const PlacedBvh> placed);
 
-    /// For the walk of `combination`. May be called from several threads. Throws Error(OverLimit), std::bad_alloc.
+    /// Returns the structure that `combination` traverses; builds it at the first request. Thread-safe. Throws
+    /// Error(OverLimit), std::bad_alloc.
     std::shared_ptr<const BuiltStructure> get(const Combination& combination);
 
-    /// Of the trees given at first.
+    /// Builder of the trees given to the constructor.
     BvhBuilder builder() const { return builder_; }
-    uint64_t triangle_count() const { return triangle_count_; } // in them
-    /// In the moved world: of what is baked into it, and of all that rays can meet.
+    uint64_t triangle_count() const { return triangle_count_; } // triangles in the binary trees
+    /// Bounds in the translated world: of the baked instances, and of everything that rays can hit.
     const Bounds3& baked_bounds() const { return baked_bounds_; }
     Bounds3 bounds() const {
         Bounds3 all = baked_bounds_;
@@ -51,7 +51,7 @@ public:
         return all;
     }
 
-    /// Bytes of a device's memory that the structures of a choice take; those not there yet are built.
+    /// Device memory, in bytes, of the structures of a choice. Missing ones are built.
     std::size_t device_bytes(const TracerChoice& choice);
 
 private:

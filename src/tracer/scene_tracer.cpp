@@ -12,7 +12,7 @@
 namespace pertev {
 namespace {
 
-/// Throws Error(OverLimit).
+/// Returns the structure for a combination. Throws Error(OverLimit).
 std::shared_ptr<const BuiltStructure> structure_for(const Combination& c, SceneStructures& structures) {
     const uint64_t triangles = structures.triangle_count();
     if (c.walk != WalkKind::BruteForce || triangles <= kMaxBruteForceTriangles) return structures.get(c);

@@ -1,8 +1,8 @@
 #pragma once
 
-// The one host door to "find these hits" and "find these occlusions": a tracer for each kind of ray, over the
-// structures that they need, with the scene's rules of what counts as a hit. Integrators hand queues of rays to it and
-// know neither trees nor walks.
+// The host interface for ray queries: a tracer for each kind of ray, over the structures that these need, with the
+// scene's rules about which candidates count. Integrators pass queues of rays to it and know neither trees nor
+// traversals.
 
 #include <cstdint>
 #include <memory>
@@ -20,40 +20,43 @@ namespace pertev {
 
 class SceneTracer {
 public:
-    /// `queue` outlives it. Throws Error(BadInput) as check_choice does, Error(OutOfMemory), Error(OverLimit).
+    /// `queue` outlives the tracer. Throws Error(BadInput) as check_choice does, Error(OutOfMemory),
+    /// Error(OverLimit).
     SceneTracer(Queue& queue, SceneStructures& structures, const TracerChoice& choice);
 
-    /// The scene after a change, or another: memory of trees that is large enough stays, and only what has become
-    /// another is copied. Throws Error(OutOfMemory), Error(OverLimit); the tracer is then of no more use.
+    /// Switches to the structures of a changed or another scene. Tree memory is reused if it is large enough, and
+    /// only changed arrays are copied. Throws Error(OutOfMemory), Error(OverLimit); the tracer is unusable
+    /// afterwards.
     void set_structures(SceneStructures& structures);
 
-    /// Whether the trees of meshes whose vertices move are kept on the device, in the layouts of all kinds of rays.
+    /// Whether the trees of meshes whose vertices move are refitted on the device, for the layouts of all ray kinds.
     bool can_deform() const;
-    /// Where it can: fits them to these meshes, and makes the top level anew. `placed`: what that is built of, with the
-    /// bounds of the other trees. Throws Error(OverLimit) as top_level_over, Error(OutOfMemory, DeviceFault).
+    /// Refits the trees of these meshes and rebuilds the top level; can_deform() must hold. `placed` lists what the
+    /// top level contains, with the bounds of the other trees. Throws Error(OverLimit) as top_level_over,
+    /// Error(OutOfMemory, DeviceFault).
     void deform(std::span<const DeformedMesh> meshes, std::span<const PlacedBvh> placed);
 
-    /// What the rays meet is part of this scene: its surfaces say which candidates count. Its arrays stay where they
-    /// are as long as rays are traced.
+    /// Sets the surfaces of the scene, which decide which candidates count. Their arrays must stay where they are
+    /// while rays are traced.
     void set_surfaces(const SceneView& scene);
 
-    /// What rays [0, count) meet first. Queued: the work may still be under way. `pool`: Tracer::find_hits. Throws
-    /// Error(DeviceFault).
+    /// Finds the closest hits of rays [0, count). The work is queued and may still run on return. `pool`: see
+    /// Tracer::find_hits. Throws Error(DeviceFault).
     void find_hits(RayKind kind, const RayQueueView& rays, WorkCount count, const HitQueueView& hits,
                    uint32_t* pool = nullptr);
-    /// Whether shadow rays meet anything.
+    /// Finds whether shadow rays hit anything.
     void find_occlusions(const RayQueueView& rays, WorkCount count, const HitQueueView& hits, uint32_t* pool = nullptr);
 
-    /// What a loop over rays on the host may walk by itself, by device_scene/find_hits.h. Null unless rays of all kinds
-    /// are traced so.
+    /// The trees that a ray loop on the host may traverse directly (device_scene/find_hits.h). Null unless rays of
+    /// all kinds use them.
     const HostTrees* host_trees() const { return host_trees_; }
     const TracerChoice& choice() const { return choice_; }
-    /// Of all that rays can meet, the scene's moved world.
+    /// Bounds of everything that rays can hit, in the translated world.
     const Bounds3& bounds() const { return bounds_; }
     const Tracer& tracer(RayKind kind) const { return *tracers_[static_cast<std::size_t>(kind)]; }
 
-    /// Whether rays of each kind are timed from now on, by waiting before and after, which is slower. Seconds since
-    /// then.
+    /// Switches timing of each ray kind on or off. Timed traces wait before and after, which is slower. The seconds
+    /// start at 0.
     struct Seconds {
         double camera = 0, bounce = 0, shadow = 0;
         double total() const { return camera + bounce + shadow; }
@@ -63,7 +66,7 @@ public:
         seconds_ = {};
     }
     bool times_kinds() const { return is_timed_; }
-    /// Runs `trace`, which finds by itself what rays of this kind meet, and times it with those that are traced here.
+    /// Runs `trace`, which traces rays of this kind by itself, and adds its time to that kind.
     template <class Trace>
     void timed(RayKind kind, const Trace& trace) {
         if (!is_timed_) return trace();
@@ -84,12 +87,12 @@ private:
 
     Queue& queue_;
     TracerChoice choice_;
-    std::vector<std::shared_ptr<StructureOnDevice>> structures_; // [RayKind], one and the same for kinds that share it
+    std::vector<std::shared_ptr<StructureOnDevice>> structures_; // [RayKind]; kinds with the same structure share it
     std::vector<std::unique_ptr<Tracer>> tracers_;               // [RayKind]
     const HostTrees* host_trees_ = nullptr;
     SceneView scene_{};
     Buffer<SceneView> scene_on_device_;
-    Bounds3 bounds_, baked_bounds_; // SceneStructures'
+    Bounds3 bounds_, baked_bounds_; // the bounds of SceneStructures
     bool is_timed_ = false;
     Seconds seconds_;
 };

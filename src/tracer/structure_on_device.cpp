@@ -10,7 +10,7 @@
 
 namespace pertev {
 
-/// Where an array of the host's lies on the device; null of one without elements.
+/// Device address of a host array; null for an array without elements.
 template <class T>
 const T* StructureOnDevice::moved(const T* on_host) const {
     const auto offset = structure_->offset_of(on_host);
@@ -30,7 +30,7 @@ SceneTrees<View> StructureOnDevice::moved_scene(SceneTrees<View> scene, const Bu
     move(scene.baked);
     for (const BuiltStructure::Array& array : structure_->arrays()) {
         std::span<const std::byte> bytes = array.bytes;
-        // Both structures are alive, so one address is one array.
+        // Both structures are alive, so equal addresses mean the same array.
         if (before != nullptr && before->offset_of(bytes.data()) == array.offset) continue;
         std::vector<View> meshes;
         if (static_cast<const void*>(bytes.data()) == static_cast<const void*>(scene.meshes)) {
@@ -49,13 +49,13 @@ SceneTrees<View> StructureOnDevice::moved_scene(SceneTrees<View> scene, const Bu
 void StructureOnDevice::copy(const BuiltStructure* before) {
     if (memory_.size() < structure_->device_bytes()) {
         before = nullptr;
-        memory_ = Buffer<std::byte>(); // before the new one, so that both need not fit
+        memory_ = Buffer<std::byte>(); // freed before the new allocation, so that both need not fit
         memory_ = Buffer<std::byte>(queue_, structure_->device_bytes(), structure_->figures().name);
     }
     try {
         std::visit([&](const auto& scene) { trees_ = moved_scene(scene, before); }, structure_->trees());
     } catch (...) {
-        memory_ = Buffer<std::byte>(); // holds neither structure
+        memory_ = Buffer<std::byte>(); // now holds neither structure
         throw;
     }
 }
@@ -89,11 +89,11 @@ std::vector<Bounds3> StructureOnDevice::deform(std::span<const DeformedMesh> mes
         }
         fitted.push_back(&at->second);
         if (at->second.version == mesh.version) continue;
-        at->second.version = 0; // until it is done
+        at->second.version = 0; // until the refit is done
         std::visit([&](auto& tree) { tree.start(mesh); }, at->second.tree);
     }
     std::vector<Bounds3> bounds;
-    for (std::size_t i = 0; i < meshes.size(); ++i) { // the work of all is under way
+    for (std::size_t i = 0; i < meshes.size(); ++i) { // the work of all meshes is queued by now
         Deforming& mesh = *fitted[i];
         if (mesh.version != meshes[i].version) {
             mesh.bounds = std::visit([](auto& tree) { return tree.finish(); }, mesh.tree);

@@ -1,7 +1,7 @@
 #pragma once
 
-// A structure where a walk of it runs. This is the one place that knows how a structure comes to a device, and the
-// owner of the trees that are made there of meshes whose vertices move.
+// A structure in the memory of the device that traverses it. This is the only place that copies structures to a
+// device, and it owns the trees that are built there for meshes whose vertices move.
 
 #include <map>
 #include <memory>
@@ -15,26 +15,27 @@
 
 namespace pertev {
 
-/// On the host where that is the device, else a copy in one piece.
+/// On the CPU it refers to the host's structure; on a GPU it is a copy in one allocation.
 class StructureOnDevice {
 public:
     /// `queue` outlives it. Throws Error(OutOfMemory).
     StructureOnDevice(Queue& queue, std::shared_ptr<const BuiltStructure> structure)
         : StructureOnDevice(queue, std::move(structure), queue.is_cuda()) {}
-    /// `is_copied`: also where the host's memory is the device's, as tests want it.
+    /// `is_copied` makes a copy even where the device uses host memory, for tests.
     StructureOnDevice(Queue& queue, std::shared_ptr<const BuiltStructure> structure, bool is_copied);
 
-    /// Puts `structure`, which is in the same layout, in the place of the one before. The memory stays where it is
-    /// large enough; an array that the one before has too, at the same place, is not copied again. trees() stays where
-    /// it is. Work that was queued before still sees the structure before. Throws Error(OutOfMemory), after which
-    /// nothing may be traced until the next update.
+    /// Replaces the structure by another one of the same layout. The allocation is reused if it is large enough, and
+    /// an array that both have at the same offset is not copied again. trees() keeps its address. Work that is
+    /// already queued still sees the old structure. Throws Error(OutOfMemory); nothing may be traced then until the
+    /// next update.
     void update(std::shared_ptr<const BuiltStructure> structure);
 
-    /// Fits trees to these meshes as they are now, each made here at first; nothing is done for a version that has been
-    /// seen. The layout is one that can_deform. Returns the bounds of each. Throws Error(OutOfMemory, DeviceFault).
+    /// Refits the trees of these meshes to their present vertices; each is built here the first time. A version that
+    /// was already seen is skipped. The layout must satisfy can_deform. Returns the bounds of each mesh. Throws
+    /// Error(OutOfMemory, DeviceFault).
     std::vector<Bounds3> deform(std::span<const DeformedMesh> meshes);
-    /// After deform(): puts the trees of these meshes, and of no others, and this top level over all instances in the
-    /// place of the structure's own, until the next update with another structure.
+    /// After deform(): uses the trees of exactly these meshes, and this top level over all instances, in place of the
+    /// structure's own until the next update with another structure.
     void place(std::span<const DeformedMesh> meshes, const TopLevelBvh& top_level);
 
     const AnyTrees& trees() const { return trees_; }
@@ -51,7 +52,7 @@ private:
 
     Queue& queue_;
     bool is_copied_;
-    std::shared_ptr<const BuiltStructure> structure_; // kept, so that its arrays' addresses go to no other array
+    std::shared_ptr<const BuiltStructure> structure_; // kept alive so that no other array can get its addresses
     AnyTrees trees_;
     Buffer<std::byte> memory_;
 
@@ -61,7 +62,7 @@ private:
         Bounds3 bounds;
     };
     std::map<uint32_t, Deforming> deforming_; // by mesh
-    Buffer<std::byte> placed_;                // views of trees, and the top level
+    Buffer<std::byte> placed_;                // views of the trees, and the top level
 };
 
 } // namespace pertev

@@ -11,7 +11,7 @@ Tracer::Tracer(Queue& queue, const Combination& combination, std::shared_ptr<con
     PERTEV_CHECK(closest_ != nullptr && any_ != nullptr);
 }
 
-/// The current stream's, 0 for what it is given next; null where rays come from no pool.
+/// Returns the ray pool of the current stream, set to 0 by queued work. Null if rays do not come from a pool.
 uint32_t* Tracer::empty_pool() const {
     if (combination_.distribution == Distribution::OneAThread) return nullptr;
     uint32_t* const pool = pool_.data() + queue_.stream_index();
@@ -27,7 +27,7 @@ void Tracer::trace(const WalkKernel& kernel, const TraceQuery& query, WorkCount 
 
 bool Tracer::count_work(bool any_hit, const TraceQuery& query, uint32_t count, RayWork* work) const {
     const WalkKernel* counting = &kernel(any_hit);
-    // What a ray tests does not depend on how it came to its thread, unless its warp has a say in it.
+    // The tests of a ray do not depend on its thread, except in traversals where a warp decides together.
     const bool company = combination_.walk == WalkKind::Speculative || combination_.walk == WalkKind::Packet;
     if (counting->count == nullptr && !company) {
         Combination plain = combination_;
@@ -35,14 +35,16 @@ bool Tracer::count_work(bool any_hit, const TraceQuery& query, uint32_t count, R
         counting = find_kernel(plain, any_hit, queue_.is_cuda());
     }
     if (counting == nullptr || counting->count == nullptr) return false;
-    counting->count(queue_, structure_->trees(), {query, count}, work); // one ray a thread
+    counting->count(queue_, structure_->trees(), {query, count}, work); // one ray per thread
     return true;
 }
 
 std::optional<LaneCounts> Tracer::count_lanes(bool any_hit, const TraceQuery& query, uint32_t count) const {
     const auto counting = kernel(any_hit).count_lanes;
     if (!queue_.is_cuda() || counting == nullptr) return std::nullopt;
-    if (structure_->built().has_instances()) return std::nullopt; // it is compiled for scenes of one tree
+    if (structure_->built().has_instances())
+        return std::nullopt; // lane counting is compiled only for scenes with
+                             // one tree
     Buffer<LaneCounts> counts(queue_, 1, "lane counts");
     counts.zero();
     counting(queue_, structure_->trees(), {query, count, empty_pool()}, counts.data());
@@ -51,7 +53,7 @@ std::optional<LaneCounts> Tracer::count_lanes(bool any_hit, const TraceQuery& qu
 
 std::optional<KernelLimits> Tracer::limits() const {
     if (!queue_.is_cuda() || closest_->limits == nullptr) return std::nullopt;
-    const Queue::Scope scope(queue_, "limits of a kernel"); // CUDA tells those of the thread's current device
+    const Queue::Scope scope(queue_, "limits of a kernel"); // CUDA reports limits for the thread's current device
     return closest_->limits(structure_->built().has_instances());
 }
 

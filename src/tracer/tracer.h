@@ -1,8 +1,8 @@
 #pragma once
 
-// One way to find what rays meet: a structure, the walk of it and how rays are handed out, as one Combination names
-// them. All that are exact give the same hits to the bit. The laboratory measures these; pictures take one for each
-// kind of ray (tracer/scene_tracer.h).
+// One way to trace rays: a structure, its traversal and the distribution of rays, as a Combination names them. All
+// exact tracers find bit-identical hits. The laboratory measures tracers; rendering uses one per ray kind
+// (tracer/scene_tracer.h).
 
 #include <cstdint>
 #include <memory>
@@ -18,20 +18,21 @@ namespace pertev {
 
 class Tracer {
 public:
-    /// `structure` is in the layout of the combination (layout_of), which why_no_tracer has nothing against. `queue`
+    /// `structure` has the layout of the combination (layout_of), and why_no_tracer accepts the combination. `queue`
     /// outlives the tracer.
     Tracer(Queue& queue, const Combination& combination, std::shared_ptr<const StructureOnDevice> structure);
-    /// Places the structure on the queue's device first, for this tracer alone. Throws Error(OutOfMemory).
+    /// Copies the structure to the queue's device for this tracer only. Throws Error(OutOfMemory).
     Tracer(Queue& queue, const Combination& combination, std::shared_ptr<const BuiltStructure> structure)
         : Tracer(queue, combination, std::make_shared<const StructureOnDevice>(queue, std::move(structure))) {}
 
-    /// What rays [0, count) meet first. Queued: the work may still be under way. At most kMaxPoolCount of them.
-    /// `pool`: a number in the queue's memory that is 0 by then, which spares a launch that sets one of the tracer's
-    /// own to 0, as it does for null; it is changed where rays come from a pool. Throws Error(DeviceFault).
+    /// Finds the closest hits of rays [0, count), at most kMaxPoolCount. The work is queued and may still run on
+    /// return. `pool` is a counter in the queue's memory that is 0 when the work begins and is changed if rays come
+    /// from a pool. If it is null, the tracer launches a stage that clears a counter of its own. Throws
+    /// Error(DeviceFault).
     void find_hits(const TraceQuery& query, WorkCount count, const HitQueueView& hits, uint32_t* pool = nullptr) const {
         trace(*closest_, query, count, hits, pool);
     }
-    /// Whether they meet anything.
+    /// Finds whether the rays hit anything.
     void find_occlusions(const TraceQuery& query, WorkCount count, const HitQueueView& hits,
                          uint32_t* pool = nullptr) const {
         trace(*any_, query, count, hits, pool);
@@ -39,11 +40,12 @@ public:
 
     // For measurements.
 
-    /// Nodes and triangles that each ray tests. False where nothing can tell: the ray's company has a say in it.
+    /// Counts the nodes and triangles that each ray tests. Returns false if the counts depend on the other rays of
+    /// its warp.
     bool count_work(bool any_hit, const TraceQuery& query, uint32_t count, RayWork* work) const;
-    /// What warps make of it; nothing where there are none to look at.
+    /// Lane utilization of the traversal; nothing if it is not counted.
     std::optional<LaneCounts> count_lanes(bool any_hit, const TraceQuery& query, uint32_t count) const;
-    /// Of the kernel of closest hits; nothing on a CPU.
+    /// Limits of the closest-hit kernel; nothing on a CPU.
     std::optional<KernelLimits> limits() const;
 
     const Combination& combination() const { return combination_; }
@@ -60,7 +62,7 @@ private:
     std::shared_ptr<const StructureOnDevice> structure_;
     const WalkKernel* closest_;
     const WalkKernel* any_;
-    Buffer<uint32_t> pool_; // one for each stream
+    Buffer<uint32_t> pool_; // [stream]
 };
 
 } // namespace pertev

@@ -23,7 +23,8 @@ StructureKind structure_of(TreeBuild build) {
 
 TracerChoice default_tracers(bool on_cuda, TreeBuild build) {
     const StructureKind structure = structure_of(build);
-    if (on_cuda) { // rays from the camera go together, by binary nodes; scattered ones go alone, by compressed ones
+    if (on_cuda) { // camera rays are coherent: packets over binary nodes; other rays: single rays over compressed
+                   // nodes
         const Combination together = {.structure = structure, .walk = WalkKind::Octants};
         const Combination alone = {.structure = structure,
                                    .walk = WalkKind::Compressed,
@@ -32,7 +33,7 @@ TracerChoice default_tracers(bool on_cuda, TreeBuild build) {
         return {together, alone, alone};
     }
     TracerChoice choice = same_for_all({.structure = structure, .walk = WalkKind::Wide8Simd});
-    // Of several children, the first is where any-hit searches end sooner (of rays without an end: trace/trace_any.h).
+    // Any-hit searches end sooner if they visit the first child first (for rays without an end: trace/trace_any.h).
     choice.shadow.options.near_first = false;
     return choice;
 }
@@ -48,7 +49,7 @@ bool can_walk_on_host(const TracerChoice& choice, bool on_cuda) {
     if (on_cuda) return false;
     for (const RayKind kind : kValuesOf<RayKind>) {
         Combination c = choice[kind];
-        if (kind == RayKind::Shadow) c.options.near_first = true; // either way it finds the same
+        if (kind == RayKind::Shadow) c.options.near_first = true; // the order does not change the result
         if (!(c == Combination{.structure = choice.camera.structure, .walk = WalkKind::Wide8Simd})) return false;
     }
     return true;

@@ -4,7 +4,7 @@
 
 namespace pertev {
 
-// In kernels/.
+// Each is defined in a file in kernels/ or kernels/lab/.
 void add_picture_kernels(std::vector<WalkKernel>& rows);
 void add_host_kernels(std::vector<WalkKernel>& rows);
 #if defined(PERTEV_LAB_KERNELS)

@@ -1,7 +1,7 @@
 #pragma once
 
-// Every walk compiled for every set of switches, closest and any hit, on both devices: a table of functions over queues
-// of rays. Each walk has one file in kernels/ that makes its rows.
+// The table of compiled traversal kernels: every traversal with every set of switches, closest and any hit, on both
+// devices. A file in kernels/ adds the rows of each traversal.
 
 #include <cstdint>
 #include <optional>
@@ -18,8 +18,8 @@
 
 namespace pertev {
 
-/// One launch's arguments: device pointers. `pool` is one number, 0 when the launch runs, where rays come from
-/// a pool.
+/// Arguments of one launch, as device pointers. `pool` is a counter that is 0 when the launch runs, for rays that
+/// come from a pool.
 struct RayBatch {
     TraceQuery query;
     WorkCount count = 0;
@@ -31,21 +31,22 @@ struct WalkKernel {
     WalkOptions options;
     Distribution distribution{};
     bool any_hit = false;
-    bool on_cuda = false, on_cpu = false; // a walk whose code differs between devices has rows of its own for each
+    bool on_cuda = false, on_cpu = false; // a traversal whose code differs between devices has a row for each
     void (*trace)(Queue&, const AnyTrees&, const RayBatch&, const HitQueueView&) = nullptr;
-    /// Nodes and triangles of each ray; null: the row of one ray a thread tells them.
+    /// Counts nodes and triangles per ray. If null, the row with one ray per thread counts them.
     void (*count)(Queue&, const AnyTrees&, const RayBatch&, RayWork*) = nullptr;
-    /// Null where there are no warps to look at.
+    /// Counts active lanes; null if there are no warps.
     void (*count_lanes)(Queue&, const AnyTrees&, const RayBatch&, LaneCounts*) = nullptr;
-    /// Of the kernel for scenes of one tree, or of that for scenes with instances. Null where there is no kernel.
+    /// Limits of the kernel for scenes with one tree, or of the one for scenes with instances. Null if there is no
+    /// kernel.
     KernelLimits (*limits)(bool has_instances) = nullptr;
 };
 
-/// Why rays cannot be traced so on this kind of device: the combination makes no sense, or nobody compiled it. Nothing
-/// when they can.
+/// Why rays cannot be traced by this combination on this kind of device: it is invalid, or no kernel was compiled.
+/// Nothing if they can.
 std::optional<std::string> why_no_tracer(const Combination& combination, bool on_cuda);
 
-/// Null where there is none: the combination makes no sense, or nobody compiled it.
+/// Returns null if the combination is invalid or no kernel was compiled for it.
 const WalkKernel* find_kernel(const Combination& combination, bool any_hit, bool on_cuda);
 
 } // namespace pertev

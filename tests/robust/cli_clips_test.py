@@ -6,6 +6,7 @@ import json
 import os
 import struct
 
+from cli_lab_run import rows_of
 from cli_run import CliTest, main, write
 
 TINY = ["--size", "24x16", "--spp", "2", "--device", "cpu", "--exposure", "0"]
@@ -197,7 +198,7 @@ class FileScenes(CliTest):
         self.assertNotIn("file_scenes", self.info("alone-0.gltf"))
         lab = ["lab", "second.gltf", "--structures", "binned", "--walks", "if-if", "--runs", "1", "--device", "cpu", "--size",
                "16x12", "--rays", "primary", "--json"]
-        shares = [self.succeed(*lab, *words).events("lab")[0]["sets"][0]["hit_share"] for words in [[], ["--file-scene", "one"]]]
+        shares = [rows_of(self.succeed(*lab, *words).events("lab")[0], "sets")[0]["hit_share"] for words in [[], ["--file-scene", "one"]]]
         self.assertLess(*shares)
         self.refuse(2, "lab", "forest", "--file-scene", "one", "--device", "cpu", says=["--file-scene"])
 

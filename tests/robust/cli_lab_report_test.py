@@ -13,7 +13,7 @@ import time
 import xml.etree.ElementTree as ElementTree
 import zlib
 
-from cli_lab_run import BOX, INSIDE, SMALL, LabTest
+from cli_lab_run import BOX, INSIDE, SMALL, LabTest, lab_report, rows_of
 from cli_run import PATIENCE_S, PROGRAM, SANITIZED, main, write
 
 
@@ -37,16 +37,24 @@ def write_grid(path, side):
 
 class WhatIsWritten(LabTest):
     def check_html(self, path):
-        """Opens without the network and is not cut short."""
-        html = re.sub(r"data:image/png;base64,[A-Za-z0-9+/=]+", "data:", read_text(path))
-        self.assertNotIn("http", html.replace('"http://www.w3.org/2000/svg"', ""))
-        self.assertNotRegex(html, r"@import|url\(|<link|<script[^>]*src")
-        self.assertEqual(set(re.findall(r'\b(?:src|href)="([^"]*)"', html)) - {"data:"}, set())
-        self.assertTrue(html.lstrip().lower().startswith("<!doctype html"))
+        """Opens without the network and is not cut short. Gives the measurement in it."""
+        html = read_text(path)
+        self.assertTrue(html.startswith("<!DOCTYPE html>"))
         self.assertTrue(html.rstrip().endswith("</html>"))
-        for tag in ["html", "body", "table", "tr", "td", "th", "svg"]:
-            self.assertEqual(len(re.findall(rf"<{tag}[ >]", html)), html.count(f"</{tag}>"), tag)
-        return html
+        self.assertNotRegex(html, r"<link|<script[^>]*src=|@import")
+        self.assertEqual(html.count("http"), html.count("http://www.w3.org/2000/svg"))  # a namespace's name
+        (data,) = re.findall(r'<script type="application/json" class="measurement">(.*?)</script>', html)
+        self.assertNotIn("<", data)
+        return json.loads(data)
+
+    def read_report(self, path):
+        measurement = json.loads(read_text(path))
+        self.assertEqual((measurement["format"], measurement["version"]), ("pertev-measurement", 1))
+        self.assertIn("pertev lab ", measurement["command"])
+        self.assertTrue(measurement["processor"])
+        self.assertIsNone(measurement["driver"])
+        self.assertRegex(measurement["date"], r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+        return measurement
 
     def read_csv(self, path):
         rows = list(csv.DictReader(read_text(path).splitlines(), restkey="too many", restval=None))
@@ -58,17 +66,18 @@ class WhatIsWritten(LabTest):
     def test_tables_report_and_heat_maps_are_written_and_agree(self):
         for _ in range(2):  # into a new folder, then over what is there
             report = self.report("cornell-box", *SMALL, "-o", "new/out")
-        with open(self.path("new/out/report.json"), encoding="utf-8") as file:
-            self.assertEqual({**json.load(file), "made_up": [], "left_out": []}, report)
+        measurement = self.read_report(self.path("new/out/report.json"))
+        self.assertEqual(lab_report({**measurement, "event": "lab"}), report)
         rows = self.read_csv(self.path("new/out/report.csv"))
         self.assertEqual([(row["combination"], row["set"]) for row in rows],
                          [(of["name"], run["set"]) for of in report["combinations"] for run in of["runs"]])
         for row in rows:
             self.assertEqual((row["scene"], row["scene_triangles"], row["refused"]), ("cornell-box", "38", ""))
             self.assertGreater(float(row["rays_per_second"]), 0)
-        html = self.check_html(self.path("new/out/report.html"))
-        for of in report["combinations"]:
-            self.assertIn(of["name"], html)
+        page = self.check_html(self.path("new/out/report.html"))
+        self.assertEqual(page["tables"], measurement["tables"])
+        self.assertTrue(all(picture["image"].startswith("data:image/png;base64,") for picture in page["pictures"]))
+        self.assertEqual(len(page["pictures"]), 2 * 2)
         pictures = glob.glob(self.path("new/out/*.png"))
         for kind in ["nodes", "triangles"]:
             for walk in ["if-if", "wide8"]:
@@ -90,15 +99,14 @@ class WhatIsWritten(LabTest):
             with self.subTest(flags=flags):
                 report = self.report("cornell-box", "--structures", "binned", "--walks", "if-if", *flags.split(), "-o",
                                      "out")
-                self.assertEqual(report["notes"], [])
+                self.assertFalse([note for note in report["notes"] if "no heat maps" in note])
                 self.assertEqual(sorted(name for name in os.listdir(self.path("out")) if name.endswith(".png")),
                                  [f"nodes-binned-if-if-{switches}.png", f"triangles-binned-if-if-{switches}.png"])
         for flags in ["--rays shadow", "--rays record --count 500"]:
             with self.subTest(flags=flags):
                 report = self.report("cornell-box", *SMALL, *flags.split(), "-o", "none")
-                self.assertEqual(len(report["notes"]), 1)
                 self.assertIn("no heat maps", report["notes"][0])
-                self.assertIn("no heat maps", self.check_html(self.path("none/report.html")))
+                self.assertIn("no heat maps", self.check_html(self.path("none/report.html"))["notes"][0])
 
     def test_a_report_removes_the_heat_maps_of_the_one_before_it_and_nothing_else(self):
         self.report("cornell-box", *SMALL, "-o", "out")
@@ -116,12 +124,12 @@ class WhatIsWritten(LabTest):
         with open(os.path.join(self.folder.encode(), odd + b".obj"), "w", encoding="utf-8") as file:
             file.write(BOX)
         name = os.fsdecode(odd + b".obj")
-        report = json.loads(subprocess.run([PROGRAM, *self.lab(name, *INSIDE, *SMALL, "-o", "out", "--json")],
-                                           cwd=self.folder, env=self.environment, stdout=subprocess.PIPE,
-                                           check=True).stdout.splitlines()[-1])
+        report = lab_report(json.loads(subprocess.run([PROGRAM, *self.lab(name, *INSIDE, *SMALL, "-o", "out", "--json")],
+                                                      cwd=self.folder, env=self.environment, stdout=subprocess.PIPE,
+                                                      check=True).stdout.splitlines()[-1]))
         self.assertEqual(report["scene"], "odd\ufffd\ufffd")
         self.assertEqual({row["scene"] for row in self.read_csv(self.path("out/report.csv"))}, {report["scene"]})
-        self.assertIn(report["scene"], self.check_html(self.path("out/report.html")))
+        self.assertIn(report["scene"], self.check_html(self.path("out/report.html"))["title"])
 
     def test_a_thesis_without_pictures_gives_no_light_and_names_its_tree(self):
         outcome = self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1"))
@@ -134,9 +142,7 @@ class WhatIsWritten(LabTest):
         report = self.report(name + ".obj", *INSIDE, *SMALL, "-o", "out")
         self.assertEqual(report["scene"], name)
         self.assertEqual({row["scene"] for row in self.read_csv(self.path("out/report.csv"))}, {name})
-        html = self.check_html(self.path("out/report.html"))
-        self.assertNotIn("<i>", html)
-        self.assertIn("&lt;i&gt;&amp;amp;", html)
+        self.assertEqual(rows_of(self.check_html(self.path("out/report.html")), "scene")[0]["scene"], name)
 
     def test_the_thesis_writes_a_report_and_a_table_for_each_scene_even_of_one_name_in_place_of_earlier_ones(self):
         os.mkdir(self.path("mine"))
@@ -144,31 +150,32 @@ class WhatIsWritten(LabTest):
         for scene in ["mine/cornell-box.obj", "box.obj"]:
             with self.subTest(scene=scene):
                 outcome = self.succeed(*self.lab("--thesis", scene, *INSIDE, "--depths", "1-2", "-o", "out", "--json"))
-                self.assertEqual([event["triangles"] for event in outcome.events("lab")], [38, 12])
-                for report in outcome.events("lab"):
+                reports = [lab_report(event) for event in outcome.events("lab")]
+                self.assertEqual([report["triangles"] for report in reports], [38, 12])
+                for report in reports:
                     for of in report["combinations"]:
                         self.assertIsNone(of["refused"])
                         self.assertEqual(len(of["frame_seconds"]), 2)
-                html = self.check_html(self.path("out/thesis.html"))
-                self.assertIn("the same tree: binned", html)
-                pictures = self.check_thesis_pictures(outcome, html)
-                self.assertEqual(html.count("<img"), 4 + sum(name.endswith(".png") for name in pictures))
-                figures = glob.glob(self.path("out/figure-6.*.svg"))
-                self.assertEqual(len(figures), 2)
-                for figure in figures:
-                    ElementTree.parse(figure)
+                page = self.check_html(self.path("out/thesis.html"))
+                self.assertIn("the same tree: binned", page["notes"][-1])
+                self.assertEqual(page["tables"], self.read_report(self.path("out/thesis.json"))["tables"])
+                pictures = self.check_thesis_pictures(outcome, page)
+                self.assertEqual(sum(picture["image"] is not None for picture in page["pictures"]),
+                                 4 + sum(name.endswith(".png") for name in pictures))
+                frames = rows_of(page, "frames")  # figures 6.9 to 6.11
+                self.assertEqual({row["variant"] for row in frames}, {"SWW", "SWW-R", "Packet", "Packet-R", "A"})
+                self.assertEqual(sorted({row["depth"] for row in frames}), [1, 2])
+                self.assertEqual(rows_of(page, "table-6.6")[0]["A_seconds"],
+                                 [row["seconds"] for row in frames if row["variant"] == "A"][0])
                 self.assertEqual(len(glob.glob(self.path("out/figure-6.[78]-*al.png"))), 4)
                 tables = glob.glob(self.path("out/thesis-[12].csv"))
                 counts = [{row["scene_triangles"] for row in self.read_csv(table)} for table in tables]
                 self.assertCountEqual(counts, [{"38"}, {"12"}])
-                self.assertTrue(os.path.exists(self.path("out/figure-6.10.svg")))
                 if scene != "box.obj":
                     for file in glob.glob(self.path("out/*")):
                         os.remove(file)
-        # A thesis of fewer figures removes those of the one before it.
         outcome = self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "-o", "out"))
         self.assertIn("no light in the scene", outcome.stderr)
-        self.assertFalse(os.path.exists(self.path("out/figure-6.10.svg")))
         self.assertTrue(os.path.exists(self.path("out/thesis-2.csv")))
         # One that is interrupted before it has measured anything leaves all as it is.
         self.check_interrupt_leaves_all("--thesis", "box.obj", *INSIDE)
@@ -176,14 +183,14 @@ class WhatIsWritten(LabTest):
     def test_the_thesis_without_its_second_scene_makes_what_it_can_and_names_the_rest(self):
         line = self.lab("--thesis", "--depths", "1-2", "-o", "out", "--json")
         outcome = self.succeed(*line, env=dict(self.environment, PERTEV_SCENES=self.path("nowhere")))
-        (lacking,) = outcome.events("thesis")[-1]["lacking"]
+        (lacking,) = (row["what"] for row in rows_of(outcome.events("thesis")[-1], "lacking"))
         for text in ["6.4", "6.8", "sibenik/sibenik.obj", "PERTEV_SCENES", "SCENE"]:
             self.assertIn(text, lacking)
-        self.assertEqual([event["scene"] for event in outcome.events("lab")], ["cornell-box"])
+        self.assertEqual([lab_report(event)["scene"] for event in outcome.events("lab")], ["cornell-box"])
         self.assertIn(lacking, "".join(event["text"] for event in outcome.events("warning")))
-        html = self.check_html(self.path("out/thesis.html"))
-        self.assertIn("Not made: " + lacking, html)
-        self.check_thesis_pictures(outcome, html)
+        page = self.check_html(self.path("out/thesis.html"))
+        self.assertIn("Not made: " + lacking, page["notes"])
+        self.check_thesis_pictures(outcome, page)
         self.assertTrue(os.path.exists(self.path("out/figure-6.7-local.png")))
         self.assertFalse(os.path.exists(self.path("out/figure-6.8-local.png")))
         self.assertFalse(os.path.exists(self.path("out/thesis-2.csv")))
@@ -198,20 +205,21 @@ class WhatIsWritten(LabTest):
         outcome = self.refuse(6, *self.lab("--thesis", name + ".obj", *INSIDE, "--depths", "1", "-o", "out", "--json"),
                               says=["figure-3.6.png"])
         thesis = outcome.events("thesis")[-1]
-        (lacking,) = thesis["lacking"]
+        (lacking,) = (row["what"] for row in rows_of(thesis, "lacking"))
         self.assertTrue(lacking.startswith("figure-3.6: "), lacking)
         self.assertEqual({row["scene"] for row in self.read_csv(self.path("out/thesis-2.csv"))}, {name})
-        for picture in thesis["pictures"]:
+        pictures = rows_of(thesis, "pictures")
+        for picture in pictures:
             self.assertTrue(os.path.isfile(self.path("out/" + picture["file"])), picture["file"])
-        names = [picture["file"] for picture in thesis["pictures"]]
+        names = [picture["file"] for picture in pictures]
         self.assertIn("chapter-4-octree.png", names)
         self.assertNotIn("figure-3.6.png", names)
-        self.assertIn("Not made: figure-3.6: ", self.check_html(self.path("out/thesis.html")))
+        self.assertIn("Not made: figure-3.6: ", self.check_html(self.path("out/thesis.html"))["notes"][0])
 
-    def check_thesis_pictures(self, outcome, html):
-        """That page, files, CSV, JSON and the last event have the same pictures of chapters 2 to 4; their files."""
-        pictures = outcome.events("thesis")[-1]["pictures"]
-        self.assertEqual(json.loads(read_text(self.path("out/thesis-pictures.json"))), pictures)
+    def check_thesis_pictures(self, outcome, page):
+        """That page, files, CSV and the last event have the same pictures of chapters 2 to 4; their files."""
+        pictures = rows_of(outcome.events("thesis")[-1], "pictures")
+        self.assertEqual(rows_of(page, "pictures"), pictures)
         rows = self.read_csv(self.path("out/thesis-pictures.csv"))
         self.assertEqual([row["file"] for row in rows], [picture["file"] for picture in pictures])
         files = [picture["file"] for picture in pictures]
@@ -219,11 +227,11 @@ class WhatIsWritten(LabTest):
             self.assertIn(f"figure-{name}.png", files)
         written = glob.glob(self.path("out/*-[234]*.png")) + glob.glob(self.path("out/*-[234]*.svg"))
         self.assertCountEqual([os.path.basename(name) for name in written], files)
-        text = re.sub(r"&(lt|gt|amp|quot);", lambda found: {"lt": "<", "gt": ">", "amp": "&", "quot": '"'}[found[1]], html)
+        shown = {picture["file"]: picture for picture in page["pictures"]}
         for row, picture in zip(rows, pictures):
-            self.assertIn(picture["shows"], text)
-            self.assertIn(f"{picture['place']}: {picture['title']}", text)
-            self.assertIn(picture["command"] or "Made by the laboratory alone.", text)
+            self.assertIn(picture["shows"], shown[picture["file"]]["caption"])
+            self.assertEqual(shown[picture["file"]]["group"], f"{picture['place']}: {picture['title']}")
+            self.assertIn(picture["command"] or "Made by the laboratory alone.", shown[picture["file"]]["caption"])
             self.assertEqual((row["shows"], row["command"]), (picture["shows"], picture["command"] or ""))
             if picture["file"].endswith(".svg"):
                 ElementTree.parse(self.path("out/" + picture["file"]))
@@ -240,7 +248,7 @@ class WhatIsWritten(LabTest):
     def test_the_command_beneath_a_picture_of_the_thesis_makes_its_very_bytes(self):
         outcome = self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "--size", "48x36", "-o", "out",
                                          "--json"))
-        commands = {picture["file"]: picture["command"] for picture in outcome.events("thesis")[-1]["pictures"]
+        commands = {picture["file"]: picture["command"] for picture in rows_of(outcome.events("thesis")[-1], "pictures")
                     if picture["command"]}
         self.assertGreater(len(commands), 8)
         for file, command in commands.items():
@@ -286,8 +294,8 @@ class WhatIsWritten(LabTest):
         self.assertTrue(said[-1]["interrupted"], said[-1])
         if "--thesis" in line:
             self.assertEqual(said.pop()["event"], "thesis")
-        report = said[-1]
-        self.assertEqual((report["event"], report["interrupted"]), ("lab", True))
+        self.assertEqual((said[-1]["event"], said[-1]["interrupted"]), ("lab", True))
+        report = lab_report(said[-1])
         for of in report["combinations"]:
             self.assertTrue(of["runs"] or of["refused"], of)
         self.assertIn("interrupt", report["combinations"][-1]["refused"])
@@ -298,8 +306,7 @@ class WhatIsWritten(LabTest):
         report = self.interrupt(self.lab("cornell-box", *SMALL, "--depths", "2", "--size", "256x192", "--threads", "1",
                                          "-o", "out", "--json", runs=100), "^binned .*: shadow")
         self.assertEqual([run["set"] for of in report["combinations"] for run in of["runs"]][:1], ["primary"])
-        with open(self.path("out/report.json"), encoding="utf-8") as file:
-            self.assertEqual({**json.load(file), "made_up": [], "left_out": []}, report)
+        self.assertEqual(lab_report({**self.read_report(self.path("out/report.json")), "event": "lab"}), report)
         self.read_csv(self.path("out/report.csv"))
         self.check_html(self.path("out/report.html"))
 
@@ -320,11 +327,11 @@ class WhatIsWritten(LabTest):
         self.assertEqual(program.returncode, 75, stderr)
         report = json.loads(stdout.splitlines()[-1])
         self.assertEqual((report["event"], report["interrupted"]), ("thesis", True))
-        files = [picture["file"] for picture in report["pictures"]]
+        files = [picture["file"] for picture in rows_of(report, "pictures")]
         self.assertEqual(files[-1], "figure-3.6.png")  # nothing to show of a solution that has just begun
         for file in files:
             self.assertTrue(os.path.exists(self.path("out/" + file)))
-        self.assertEqual(self.check_html(self.path("out/thesis.html")).count("<img"), 4 + len(files))
+        self.assertEqual(len(self.check_html(self.path("out/thesis.html"))["pictures"]), 4 + len(files))
 
     def check_interrupt_leaves_all(self, *scene):
         before = self.contents("out")

@@ -20,6 +20,29 @@ FRAME_SETS = ["primary", "shadow", "diffuse1", "diffuse2"]
 SMALL = ["--structures", "binned", "--walks", "if-if,wide8"]
 
 
+def rows_of(measurement, name):
+    """The rows of a table of a measurement (src/lab/measurement.h), as dictionaries."""
+    (table,) = [table for table in measurement["tables"] if table["name"] == name]
+    keys = [column["key"] for column in table["columns"]]
+    return [dict(zip(keys, row)) for row in table["rows"]]
+
+
+def lab_report(measurement):
+    """A report by combinations: rows of one combination together, its runs among them."""
+    (scene,) = rows_of(measurement, "scene")
+    combinations = {}
+    for row in rows_of(measurement, "runs"):
+        of = combinations.setdefault(row["combination"], {**row, "name": row["combination"], "runs": []})
+        if row["set"]:
+            of["runs"].append({**row, "different": row["different_rays"]})
+    for of in combinations.values():
+        seconds = {run["frame_depth"]: run["seconds_per_frame"] for run in of["runs"] if run["frame_depth"]}
+        of["frame_seconds"] = [seconds.get(depth) for depth in range(scene["first_depth"], scene["last_depth"] + 1)]
+    return {**scene, "event": measurement["event"], "triangles": scene["scene_triangles"], "notes": measurement["notes"],
+            "interrupted": measurement["interrupted"], "sets": rows_of(measurement, "sets"),
+            "structures": rows_of(measurement, "structures"), "combinations": list(combinations.values())}
+
+
 class LabTest(CliTest):
     def setUp(self):
         super().setUp()
@@ -37,8 +60,8 @@ class LabTest(CliTest):
     def report(self, *arguments):
         """The last JSON line of a run that succeeds."""
         last = self.succeed(*self.lab(*arguments, "--json")).events()[-1]
-        self.assertEqual((last["event"], last["interrupted"]), ("lab", False))
-        return last
+        self.assertEqual((last["event"], last["format"], last["interrupted"]), ("lab", "pertev-measurement", False))
+        return lab_report(last)
 
     def refuse_unmeasured(self, status, *arguments, says=(), **options):
         """Refused as `refuse` has it, and before any work began."""

@@ -50,7 +50,8 @@ private:
         const Vec3 to_node = triangle.a + 0.5f * (triangle.ab + triangle.ac) - context.point;
         const float size = length_squared(triangle.ab) + length_squared(triangle.ac);
         const float squared = max(length_squared(to_node), size);
-        const float cosine = context.normal == Vec3{0, 0, 0} ? 1.0f : max(dot(to_node, context.normal) / sqrt(squared), 0.0f);
+        const float cosine =
+            context.normal == Vec3{0, 0, 0} ? 1.0f : max(dot(to_node, context.normal) / sqrt(squared), 0.0f);
         return ordered_pmf(view.choice, node) * (cosine + 0.05f) / squared; // lights are larger than a point
     }
     HD static float share_of_first(const LightSetView& view, const LightContext& context) {

@@ -66,7 +66,8 @@ struct Case {
     bool light_finds_all = true;
     bool light_is_even = true; // else few particles bring much, and Student's t does not hold
     PixelFilter filter = PixelFilter::BlackmanHarris;
-    uint32_t pixels = 12; // across
+    float filter_radius = 0; // the filter's default
+    uint32_t pixels = 12;    // across
 
     /// `samples` of each pixel of a picture of 12x12, of fewer pixels so many more.
     uint32_t samples_for(uint32_t samples) const { return samples * (144 / (pixels * pixels)); }
@@ -115,6 +116,7 @@ std::vector<Case> cases() {
     environment.camera.projection = Projection::Orthographic;
     environment.camera.ortho_height = 2.4f;
     environment.filter = PixelFilter::Box;
+    environment.filter_radius = 0.8f;
     all.push_back(environment);
 
     Case lens = {.name = "depth of field", .scene = make_room(test::white(0.8f))};
@@ -131,6 +133,7 @@ RenderSettings settings_of(const Case& c) {
     RenderSettings settings;
     settings.width = settings.height = c.pixels;
     settings.filter = c.filter;
+    settings.filter_radius = c.filter_radius;
     settings.path.max_depth = 5;
     return settings;
 }

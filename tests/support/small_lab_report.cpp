@@ -51,12 +51,4 @@ std::string line_with(const std::string& text, const std::string& part) {
     return text.substr(begin, text.find('\n', at) - begin);
 }
 
-void check_tags(const std::string& html) {
-    for (const char* tag : {"table", "svg", "figure", "tr", "td", "th", "text", "h1", "h2", "h3", "p", "ul", "li"}) {
-        CAPTURE(tag);
-        CHECK(count(html, std::string("<") + tag + ">") + count(html, std::string("<") + tag + " ") ==
-              count(html, std::string("</") + tag + ">"));
-    }
-}
-
 } // namespace pertev::test

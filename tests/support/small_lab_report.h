@@ -25,7 +25,5 @@ bool has(const std::string& text, const std::string& part);
 std::size_t count(const std::string& text, const std::string& part);
 /// The first line with `part` in it; fails the test where there is none.
 std::string line_with(const std::string& text, const std::string& part);
-/// Every tag that is opened is closed.
-void check_tags(const std::string& html);
 
 } // namespace pertev::test

@@ -203,7 +203,7 @@ TEST_CASE("spacing eight times as many records takes about eight times as long, 
     set_thread_count(0);
     CAPTURE(few);
     CAPTURE(many);
-    CHECK(many < 24 * few); // 64 where each looks at all
+    CHECK(many < 32 * few); // 64 where each looks at all
 }
 
 TEST_CASE("light between records is their weighted mean, and none beyond their reach") {

@@ -12,7 +12,6 @@
 #include "lab/thesis_pictures.h"
 #include "lab/thesis_recipes.h"
 #include "lab/thesis_scenes.h"
-#include "lab/write_thesis_pictures.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 

@@ -9,7 +9,7 @@
 #include "lab/run_transport.h"
 #include "lab/transport_light.h"
 #include "lab/transport_presets.h"
-#include "lab/write_transport.h"
+#include "lab/transport_tables.h"
 #include "tests/support/small_lab_report.h"
 
 using namespace pertev;
@@ -146,11 +146,14 @@ TEST_CASE("of solutions the last that is there by a time counts, whole, and none
     CHECK(at_time(scene.rows.back(), 100)->rel_mse.mean == doctest::Approx(0.02));
     CHECK_FALSE(at_time(scene.rows.back(), 0.3)); // the second's first takes longer
     CHECK_FALSE(at_samples(scene.rows.back(), 16));
-    const TransportTable by_time = equal_time_table(scene), by_samples = equal_samples_table(scene);
-    CHECK(by_time[1][0] == "radiosity");
-    CHECK(by_time[1][3] == "16; 100 patches");
-    CHECK(by_time[1][6] == "3.0 + 2.0"); // MiB of the device, and of the host
-    REQUIRE(by_samples.size() == 4);
+    const ResultTable by_time = equal_time_table(scene), by_samples = equal_samples_table(scene);
+    CHECK(by_time.at(0, "integrator") == "radiosity");
+    CHECK(by_time.at(0, "samples") == 16.0);
+    CHECK(by_time.at(0, "patches") == 100.0);
+    CHECK(by_time.at(0, "device_mebibytes") == 3.0);
+    CHECK(by_time.at(0, "host_mebibytes") == 2.0);
+    CHECK(!by_time.at(1, "host_mebibytes").is_there());
+    REQUIRE(by_samples.rows.size() == 3);
     TransportScene quick = scene; // which does not hold up the others
     quick.rows.back().repetitions = {{{4, 0.1, 0.1, 0.05, 100}}, {{4, 0.1, 0.1, 0.05, 100}}};
     CHECK(equal_seconds(quick) == doctest::Approx(0.8));
@@ -158,17 +161,20 @@ TEST_CASE("of solutions the last that is there by a time counts, whole, and none
     CHECK(at_time(quick.rows.back(), 0.8));
     TransportScene late = scene;
     for (Repetition& repetition : late.rows.back().repetitions) repetition.erase(repetition.begin());
-    CHECK(equal_time_table(late)[3][1] == "its first solution takes 5.5 s");
-    CHECK(by_samples[3] == std::vector<std::string>{"radiosity", "no samples: it is solved"});
+    CHECK(equal_time_table(late).at(2, "first_seconds") == 5.5);
+    CHECK(!equal_time_table(late).at(2, "rel_mse").is_there());
+    CHECK(by_samples.at(2, "integrator") == "radiosity");
+    CHECK(by_samples.at(2, "note") == "no samples: it is solved");
+    CHECK(!by_samples.at(2, "rel_mse").is_there());
     scene.rows.erase(scene.rows.begin(), scene.rows.end() - 1);
     CHECK(equal_seconds(scene) == doctest::Approx(5)); // there is nothing else
     TransportReport report = {.device = "CPU"};
     report.scenes.push_back(scene);
-    CHECK(test::has(csv_of(report), ",400,0.000000000\n"));
-    CHECK(test::has(json_of(report), R"("is_solved":true,"device_bytes":3145728,"host_bytes":2097152)"));
-    const std::string html = html_of(report);
-    test::check_tags(html);
-    CHECK(test::count(html, "<svg") == 2); // over time alone
+    CHECK(test::has(csv_of(report), ",400,0\n"));
+    const ResultTable repetitions = measurement_of(report).table("repetitions");
+    CHECK(repetitions.at(0, "is_solved") == true);
+    CHECK(repetitions.at(0, "device_bytes") == 3145728);
+    CHECK(repetitions.at(0, "host_bytes") == 2097152);
 }
 
 TEST_CASE("efficiency is one over error times time, and its ratio to path's stands in the tables") {
@@ -177,16 +183,14 @@ TEST_CASE("efficiency is one over error times time, and its ratio to path's stan
     REQUIRE(path);
     CHECK(*efficiency(*path) == doctest::Approx(1 / (0.25 * 0.8)));
     CHECK_FALSE(at_samples(scene.rows[0], 3));
-    const TransportTable by_samples = equal_samples_table(scene);
-    REQUIRE(by_samples.size() == 3);
-    CHECK(by_samples[1][0] == "bidirectional"); // the least error first
-    CHECK(by_samples[1][5] == "0.667");         // half the error in thrice the time
-    CHECK(by_samples[2][5] == "1");
-    const TransportTable by_time = equal_time_table(scene);
-    REQUIRE(by_time.size() == 3);
-    CHECK(by_time[1][0] == "path");
-    CHECK(by_time[2][5] == "0.667");
-    CHECK(by_time[2][6] == "3.0"); // MiB
+    const ResultTable by_samples = equal_samples_table(scene), by_time = equal_time_table(scene);
+    REQUIRE(by_samples.rows.size() == 2);
+    CHECK(by_samples.at(0, "integrator") == "bidirectional");     // the least error first
+    CHECK(by_samples.at(0, "of_path").text("{:.3g}") == "0.667"); // half the error in thrice the time
+    CHECK(by_samples.at(1, "of_path") == 1.0);
+    REQUIRE(by_time.rows.size() == 2);
+    CHECK(by_time.at(0, "integrator") == "path");
+    CHECK(by_time.at(1, "of_path").text("{:.3g}") == "0.667");
 }
 
 TEST_CASE("a repetition that an interrupt cut short counts where it has figures") {
@@ -233,21 +237,24 @@ TEST_CASE("each preset is a scene of the program, and all light is what three in
     CHECK(default_reference_integrator(lamps) == "path");
 }
 
-TEST_CASE("the report's texts have what was measured, and what was not with its reason") {
+TEST_CASE("the report on light transport has what was measured, and what was not with its reason") {
     TransportReport report = {.device = "CPU", .width = 4, .height = 4, .max_depth = 8, .repetitions = 2};
     report.scenes.push_back(small_transport_scene());
-    const std::string csv = csv_of(report), json = json_of(report), text = text_of(report), html = html_of(report);
+    const std::string csv = csv_of(report), text = text_of(report);
+    const Measurement m = measurement_of(report);
     CHECK(test::count(csv, "\n") == 1 + 2 * 8 + 1);
     CHECK(test::has(csv, "\"lamps alone, and \"\"more\"\"\""));
-    CHECK(test::has(json, R"("equal_samples":8)"));
-    CHECK(test::has(json, R"("efficiency":5})")); // of path after 8 samples
-    CHECK(test::has(json, R"("refused":"lamps alone, and \"more\"","is_solved":false,"device_bytes":null)"));
+    CHECK(m.table("scenes").at(0, "equal_samples") == 8);
+    CHECK(m.table("scenes").at(0, "reference_rel_mse") == 0.001);
+    const ResultTable& points = m.table("points");
+    REQUIRE(points.rows.size() == 8);
+    CHECK(points.at(3, "samples") == 8.0);
+    CHECK(points.at(3, "efficiency").text("{:.3g}") == "5"); // of path
+    CHECK(points.at(3, "rel_mse").text("{:.3g}") == "0.25");
+    CHECK(points.at(3, "rel_mse_high").text("{:.4f}") == "1.8383"); // 0.25 + 12.7062 * 0.125
+    CHECK(m.table("repetitions").at(16, "refused") == "lamps alone, and \"more\"");
+    CHECK(!m.table("repetitions").at(16, "device_bytes").is_there());
+    CHECK(m.notes == std::vector<std::string>{"a <b>: cast: lamps alone, and \"more\""});
     CHECK(test::has(text, "cast: lamps alone"));
     CHECK(test::has(text, "its own noise: relMSE 0.001"));
-    test::check_tags(html);
-    CHECK(test::count(html, "<svg") == 4);
-    CHECK(test::count(html, "<polygon") == 8); // bands of two curves in each
-    CHECK(test::count(html, ">reference's noise<") == 2);
-    CHECK(test::has(html, "a &lt;b&gt;"));
-    CHECK_FALSE(test::has(html, "a <b>"));
 }

@@ -12,7 +12,7 @@
 namespace pertev {
 namespace {
 
-/// Links `leaves` by equal cuts along the longest side, taking inner nodes from `free` as they come.
+/// Links `leaves` by object medians along the longest side, with inner nodes from `free` in their order.
 class EqualCuts {
 public:
     EqualCuts(BinaryTree& tree, std::vector<uint32_t>& leaves, const std::vector<uint32_t>& free)
@@ -51,7 +51,7 @@ void rebuild_by_counts(BinaryTree& tree, uint32_t root) {
     EqualCuts(tree, leaves, inner).link(0, leaves.size()); // the root comes first in `inner`, so it stays the root
 }
 
-/// The triangles beneath a node, each once, in their own order.
+/// Collects the triangles below a node, each once, in ascending order.
 void collect_references(const BinaryTree& tree, uint32_t root, std::vector<uint32_t>& held) {
     held.clear();
     std::vector<uint32_t> pending = {root};
@@ -70,15 +70,15 @@ void collect_references(const BinaryTree& tree, uint32_t root, std::vector<uint3
 }
 
 struct NodeSummary {
-    float cost = 0;     // times the root's area
-    uint32_t size = 0;  // triangles that leaves beneath hold
-    uint32_t inner = 0; // nodes beneath, with itself, that do not become leaves: 0 where it becomes one
-    int depth = 0;      // of those, on the longest way down
+    float cost = 0;     // SAH cost times the half area of the root
+    uint32_t size = 0;  // triangles in the leaves below
+    uint32_t inner = 0; // inner nodes of the subtree, itself included; 0 if it becomes a leaf
+    int depth = 0;      // inner nodes on the longest path down
 
     bool is_leaf() const { return inner == 0; }
 };
 
-/// Decides from the bottom up which subtrees become leaves: those where that costs no more.
+/// Decides from the bottom up which subtrees become leaves: those for which a leaf costs no more.
 std::vector<NodeSummary> choose_leaves(const BinaryTree& tree, const BvhBuildSettings& settings) {
     const auto max_leaf = static_cast<std::size_t>(settings.max_leaf);
     std::vector<NodeSummary> summaries(tree.nodes.size());
@@ -91,7 +91,7 @@ std::vector<NodeSummary> choose_leaves(const BinaryTree& tree, const BvhBuildSet
             const NodeSummary &left = summaries[node.child[0]], &right = summaries[node.child[1]];
             summary = {settings.node_cost * area + left.cost + right.cost, left.size + right.size,
                        left.inner + right.inner + 1, 1 + std::max(left.depth, right.depth)};
-            // A triangle twice is common in trees by spatial splits, not thrice.
+            // Spatial splits often give a subtree a triangle twice, but seldom three times.
             if (summary.size > 2 * max_leaf) return;
         }
         collect_references(tree, at, held);
@@ -102,8 +102,8 @@ std::vector<NodeSummary> choose_leaves(const BinaryTree& tree, const BvhBuildSet
     return summaries;
 }
 
-/// Copies nodes and triangles to depth-first order, each node before its first child. How many there are beneath each
-/// says where everything comes to lie, so subtrees are copied at once.
+/// Copies nodes and triangles to depth-first order, each node before its first child. The sizes of subtrees determine
+/// all positions, so subtrees are copied in parallel.
 class Flattener {
 public:
     Flattener(const BinaryTree& tree, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings)
@@ -118,7 +118,7 @@ public:
         bvh_.root = link_of({tree_.root, 0, 0});
         bvh_.depth = summary.depth;
         bvh_.sah_cost = summary.cost / max(root.box.half_area(), 0x1p-126f);
-        // Breadth first until there is enough to share out.
+        // Breadth first until there are enough subtrees to share among threads.
         constexpr std::size_t kSubtrees = 2048;
         std::vector<Place> level = {{tree_.root, 0, 0}};
         while (!level.empty() && level.size() < kSubtrees) {
@@ -139,7 +139,7 @@ public:
 
 private:
     struct Place {
-        uint32_t from, node, triangle; // where its first node and its first triangle go
+        uint32_t from, node, triangle; // positions of its first node and first triangle
     };
 
     uint32_t link_of(const Place& at) const { return summaries_[at.from].is_leaf() ? kLeafBit | at.triangle : at.node; }
@@ -148,11 +148,11 @@ private:
         return tree_.nodes[node.child[k]].box.half_area() * static_cast<float>(summaries_[node.child[other]].size);
     }
 
-    /// Copies a leaf, or an inner node, whose children are then put into `pending`.
+    /// Copies a leaf, or an inner node whose children are then appended to `pending`.
     void copy(const Place& at, std::vector<Place>& pending) {
         if (summaries_[at.from].is_leaf()) return copy_leaf(at);
         const BinaryNode& node = tree_.nodes[at.from];
-        // Child 0 is the one where a ray finds something sooner: more surface a triangle, as in build_tree.
+        // Child 0 is the one where a ray finds a hit sooner: more surface per triangle, as in build_tree.
         const int first = surface_by_size(node, 0, 1) >= surface_by_size(node, 1, 0) ? 0 : 1;
         const NodeSummary& of_first = summaries_[node.child[first]];
         const Place places[2] = {{node.child[first], at.node + 1, at.triangle},
@@ -179,7 +179,7 @@ private:
     Bvh bvh_;
 };
 
-/// Inner nodes on the longest way down.
+/// Number of inner nodes on the longest path down.
 int depth_of(const BinaryTree& tree) {
     std::vector<int> depth(tree.nodes.size());
     visit_upwards(tree, [&](uint32_t at) {
@@ -221,7 +221,7 @@ void limit_depth(BinaryTree& tree, int max_depth) {
         if (height[at.node] <= static_cast<uint32_t>(at.levels_left)) continue;
         if (levels_needed(leaves[at.node]) >= at.levels_left) {
             rebuild_by_counts(tree, at.node);
-        } else { // its children have levels enough for equal cuts
+        } else { // its children have enough levels for object medians
             for (const uint32_t child : tree.nodes[at.node].child) pending.push_back({child, at.levels_left - 1});
         }
     }

@@ -1,11 +1,11 @@
 #pragma once
 
-// A binary tree as builders of every kind make it, nodes in any order, and its way into a Bvh: no walk too deep, leaves
-// chosen by cost, nodes depth first.
+// The binary tree that all builders make, with nodes in any order, and its conversion to a Bvh: limits the depth,
+// chooses leaves by cost and orders nodes depth first.
 //
-// Source of the choice of leaves: Meister, Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy
-// Construction", TVCG 2018 (subtrees collapse where a leaf costs less). All of it is a function of the
-// tree's shape: in which order the nodes lie does not matter, nor on how many threads it runs.
+// Source of the choice of leaves: Meister, Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume
+// Hierarchy Construction", TVCG 2018 (subtrees collapse if a leaf costs less). The result depends only on the shape
+// of the tree, not on the order of nodes or the number of threads.
 
 #include <bit>
 #include <cstdint>
@@ -18,22 +18,22 @@ namespace pertev {
 
 struct BinaryNode {
     Bounds3 box;
-    uint32_t child[2]; // inner: nodes; leaf: {position of its first reference, kLeafBit | how many}
+    uint32_t child[2]; // inner: nodes; leaf: {position of its first reference, kLeafBit | count}
 
     bool is_leaf() const { return (child[1] & kLeafBit) != 0; }
     uint32_t leaf_size() const { return child[1] & ~kLeafBit; }
 };
 
 struct BinaryTree {
-    std::vector<BinaryNode> nodes;    // may hold some that nothing links to
-    std::vector<uint32_t> references; // positions of triangles, leaf after leaf
-    uint32_t root = kNoLink;          // a node; kNoLink: no triangle
+    std::vector<BinaryNode> nodes;    // may contain unlinked nodes
+    std::vector<uint32_t> references; // positions of triangles, ordered by leaf
+    uint32_t root = kNoLink;          // kNoLink if there is no triangle
 };
 
-/// Levels of inner nodes that equal cuts take to bring n references down to single ones.
+/// Number of levels that object medians need to separate n references.
 inline int levels_needed(uint64_t n) { return n < 2 ? 0 : std::bit_width(n - 1); }
 
-/// Puts `child` where `old_child` is; above it is `parent`, or nothing (kNoLink). `parents`: [node] the node above.
+/// Replaces `old_child` by `child` in `parent`, which is kNoLink at the root. `parents`: [node] its parent.
 inline void replace_child(BinaryTree& tree, std::vector<uint32_t>& parents, uint32_t parent, uint32_t old_child,
                           uint32_t child) {
     parents[child] = parent;
@@ -55,25 +55,26 @@ inline BinaryNode make_inner(const BinaryTree& tree, uint32_t left, uint32_t rig
     return {box, {left, right}};
 }
 
-/// The longest side of a box: 0, 1, 2; of equal ones the first.
+/// Axis of the longest side of a box: 0, 1 or 2; the first of equal ones.
 inline int longest_axis(const Bounds3& box) {
     const Vec3 size = box.size();
     return size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
 }
 
-/// Throws Error(OverLimit) where one tree cannot hold that many.
+/// Throws Error(OverLimit) if one tree cannot hold so many references.
 void check_reference_count(uint64_t count);
 
-/// Cuts into equal counts whatever part of the tree would lie too deep: afterwards no way down passes more than
-/// max_depth inner nodes. Leaves that are moved keep their boxes. max_depth >= levels_needed(number of leaves).
+/// Rebuilds by object medians every part of the tree that is too deep, so that no path has more than max_depth inner
+/// nodes. Leaves keep their boxes. max_depth >= levels_needed(number of leaves).
 void limit_depth(BinaryTree& tree, int max_depth);
 
-/// What make_bvh's tree would cost a ray, in units of the root's area; how much limiting the depth adds is left out.
+/// SAH cost of the tree that make_bvh would make, times the half area of its root, without the effect of limiting the
+/// depth.
 float cost_with_leaves(const BinaryTree& tree, const BvhBuildSettings& settings);
 
-/// The tree over `triangles`, which its references name. Subtrees of up to settings.max_leaf triangles become leaves
-/// where that costs no more; a triangle that a leaf would hold twice, it holds once. Of the settings, `bins` and
-/// `max_depth` do not count: the depth is at most kMaxBvhDepth.
+/// Makes the tree over `triangles`, which its references index. Subtrees of up to settings.max_leaf triangles become
+/// leaves if that costs no more, and a leaf holds each triangle once. The depth is at most kMaxBvhDepth;
+/// settings.bins and settings.max_depth are ignored.
 Bvh make_bvh(BinaryTree tree, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings);
 
 } // namespace pertev

@@ -13,7 +13,7 @@ std::vector<BuildReference> references_of(const std::vector<BvhTriangle>& triang
     std::vector<BuildReference> references(triangles.size());
     parallel_for(triangles.size(), kGrain, [&](uint64_t i) {
         const BvhTriangle& t = triangles[i];
-        // Adding 0 turns -0 into +0: of two zeros, a minimum would keep whichever comes first.
+        // Adding 0 turns -0 into +0; otherwise a minimum of two zeros would depend on their order.
         const Vec3 zero;
         references[i] = {min(min(t.a, t.b), t.c) + zero, static_cast<uint32_t>(i), max(max(t.a, t.b), t.c) + zero};
     });

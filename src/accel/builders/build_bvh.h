@@ -1,6 +1,6 @@
 #pragma once
 
-// Builds the tree over a set of triangles: a mesh in its local space, or the baked ones of a scene in world space.
+// Builds the tree over a set of triangles: a mesh in its local space, or a scene's baked triangles in world space.
 
 #include <vector>
 
@@ -9,16 +9,16 @@
 
 namespace pertev {
 
-/// The tree over `triangles`, reordered, kLastInLeaf set and cleared in their flags. Vertices are finite,
-/// |coordinate| <= kMaxCoordinate. The same for any number of threads.
+/// Builds the tree over `triangles`, which it reorders and whose kLastInLeaf flags it sets. Vertices are finite,
+/// |coordinate| <= kMaxCoordinate. The result does not depend on the number of threads.
 Bvh build_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 
-/// The two halves of build_bvh, which the cache steps between.
+/// First half of build_bvh; the cache stores its result.
 BuiltTree build_triangle_tree(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings);
-/// tree.order has each of the triangles' positions, that of one that is cut more than once.
+/// Second half of build_bvh. tree.order lists the position of each triangle, more than once if it is split.
 Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles);
 
-/// The box of each triangle, ids by position. No coordinate is -0.
+/// Box of each triangle, with its position as id. No coordinate is -0.
 std::vector<BuildReference> references_of(const std::vector<BvhTriangle>& triangles);
 
 } // namespace pertev

@@ -1,4 +1,4 @@
-// Top down, half of the triangles to each side: the flattest tree there is, blind to where the empty space lies.
+// Top-down build by object medians: the flattest possible tree, which does not adapt to empty space.
 //
 // Source: Kay, Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986, section 3 (sorted by centre, cut in the middle).
 

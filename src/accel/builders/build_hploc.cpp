@@ -1,5 +1,5 @@
-// H-PLOC on the host, for layouts other than the one that tracer/hploc/device_builder.h makes: the same binary
-// tree, by the same pieces (accel/hploc), its leaves then chosen as for every builder.
+// H-PLOC on the host, for layouts other than the compressed one of tracer/hploc/device_builder.h. It makes the same
+// binary tree from the same parts (accel/hploc); leaves are then chosen as for every builder.
 
 #include <algorithm>
 #include <cstring>
@@ -18,7 +18,7 @@ void run(uint32_t count, const Stage& stage) {
     parallel_for(count, 256, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
 }
 
-/// The triangles' places along the curve, and their codes in that order.
+/// Positions of the triangles along the curve, and their codes in that order.
 struct Curve {
     std::vector<uint32_t> order;
     std::vector<uint64_t> codes;
@@ -39,7 +39,7 @@ struct Curve {
 } // namespace
 
 Bvh build_hploc_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
-    check_reference_count(2 * static_cast<uint64_t>(triangles.size())); // nodes of clusters
+    check_reference_count(2 * static_cast<uint64_t>(triangles.size())); // clusters are nodes
     if (triangles.empty()) return {};
     const auto count = static_cast<uint32_t>(triangles.size());
     Curve curve(triangles);
@@ -59,7 +59,7 @@ Bvh build_hploc_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSet
     tree.nodes.resize(nodes.size());
     tree.root = root;
     for (uint32_t i = 0; i < nodes.size(); ++i) {
-        if (i == count) continue; // is not used
+        if (i == count) continue; // this index is unused
         const hploc::ClusterNode& node = nodes[i];
         tree.nodes[i] = node.is_leaf() ? make_leaf(node.box(), i) : BinaryNode{node.box(), {node.left, node.right}};
     }

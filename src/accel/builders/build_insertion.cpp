@@ -1,5 +1,5 @@
-// One triangle after the other goes where it makes the boxes grow least. The order is scrambled: in the order of the
-// file, neighbours come one after the other, and the first of them shape the top of the tree.
+// Incremental build: each triangle goes where it makes the boxes grow least. The order is scrambled, because in the
+// order of the file neighbours follow each other and the first of them would shape the top of the tree.
 //
 // Source: Goldsmith, Salmon, "Automatic Creation of Object Hierarchies for Ray Tracing", IEEE CG&A 1987; branch and
 // bound: Bittner, Hapala, Havran, "Incremental BVH Construction for Ray Tracing", Computers & Graphics 2015.
@@ -13,15 +13,15 @@
 namespace pertev {
 namespace {
 
-constexpr int kMaxVisits = 2000; // nodes looked at for one triangle; the best place so far is taken then
+constexpr int kMaxVisits = 2000; // nodes visited for one triangle; after that the best position so far is taken
 
-uint32_t scramble_bits(uint32_t x) { // Wellons, "lowbias32", 2018: one to one
+uint32_t scramble_bits(uint32_t x) { // Wellons, "lowbias32", 2018: a bijection
     x = (x ^ (x >> 16)) * 0x7feb352du;
     x = (x ^ (x >> 15)) * 0x846ca68bu;
     return x ^ (x >> 16);
 }
 
-/// Positions in an order that is a function of their number alone.
+/// Permutation of positions that depends only on their number.
 std::vector<uint32_t> scramble(uint32_t count) {
     std::vector<uint64_t> keys(count);
     for (uint32_t i = 0; i < count; ++i) keys[i] = static_cast<uint64_t>(scramble_bits(i)) << 32 | i;
@@ -35,7 +35,8 @@ class PlaceFinder {
 public:
     explicit PlaceFinder(const LinkedTree& tree) : tree_(tree) {}
 
-    /// The node beside which a leaf of this box adds least area, the growth of all above it included.
+    /// Returns the node beside which a leaf with this box adds the least area, including the growth of all boxes
+    /// above.
     uint32_t find(const Bounds3& box) {
         const float own = box.half_area();
         uint32_t best = tree_.root();
@@ -46,7 +47,7 @@ public:
             std::pop_heap(pending_.begin(), pending_.end());
             const Pending at = pending_.back();
             pending_.pop_back();
-            if (at.growth + own >= best_cost) break; // so are all the others: nothing better is left
+            if (at.growth + own >= best_cost) break; // so have all others: no better position is left
             const BinaryNode& node = tree_.node(at.node);
             const float cost = at.growth + area_of_union(node.box, box);
             if (cost < best_cost) best_cost = cost, best_growth = at.growth, best = at.node;
@@ -59,8 +60,8 @@ public:
     }
 
 private:
-    /// Goes down from a node as long as a child would be as good a place, by chance to either side: without that,
-    /// coincident triangles would make a chain.
+    /// Descends from a node while a child is an equally good position, to a pseudorandom side. Otherwise coincident
+    /// triangles would form a chain.
     uint32_t descend_equals(const Bounds3& box, uint32_t at, float cost, float growth) {
         while (!tree_.node(at).is_leaf()) {
             const BinaryNode& node = tree_.node(at);
@@ -81,10 +82,11 @@ private:
     }
 
     struct Pending {
-        float growth; // of the nodes above
+        float growth; // growth of the boxes above
         uint32_t number, node;
-        bool operator<(const Pending& b) const {                               // the heap's top is the greatest
-            return growth != b.growth ? growth > b.growth : number < b.number; // the deeper, which came later
+        bool operator<(const Pending& b) const {                               // the top of the heap is the greatest
+            return growth != b.growth ? growth > b.growth : number < b.number; // for equal growth the deeper node,
+                                                                               // which was added later
         }
     };
 
@@ -94,7 +96,7 @@ private:
     }
 
     const LinkedTree& tree_;
-    std::vector<Pending> pending_; // a heap, least growth first
+    std::vector<Pending> pending_; // a heap with the least growth on top
     uint32_t number_ = 0;
 };
 
@@ -105,7 +107,7 @@ Bvh build_insertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuil
     if (triangles.empty()) return {};
     const auto count = static_cast<uint32_t>(triangles.size());
     const std::vector<BuildReference> references = references_of(triangles);
-    BinaryTree leaves; // the first `count` nodes; inner ones follow
+    BinaryTree leaves; // the first `count` nodes; inner nodes follow
     leaves.nodes.resize(2 * static_cast<std::size_t>(count) - 1);
     for (const uint32_t id : scramble(count)) {
         const auto position = static_cast<uint32_t>(leaves.references.size());

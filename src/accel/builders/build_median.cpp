@@ -1,8 +1,8 @@
-// Top down by the spatial median: a node is cut in the middle of the longest side of the box of its triangles' centres.
-// That box, and not the triangles' own, so that neither side is ever empty.
+// Top-down build by spatial median: a node is split in the middle of the longest side of the box around its
+// triangles' centres. With the box around the triangles themselves a side could be empty.
 //
 // Source: Wald, Boulos, Shirley, "Ray Tracing Deformable Scenes using Dynamic Bounding Volume Hierarchies", ACM TOG
-// 2007, section 4 (as what the surface area heuristic is held against).
+// 2007, section 4 (as the baseline for the surface area heuristic).
 
 #include <algorithm>
 

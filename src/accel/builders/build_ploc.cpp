@@ -1,8 +1,9 @@
-// Bottom up: along a Morton curve, each cluster looks for the neighbour with which it would share the smallest box;
-// two that choose each other become one; and again, until one is left.
+// Bottom-up build: each cluster finds the neighbour along a Morton curve with which it would share the smallest box.
+// Two clusters that choose each other merge, and rounds repeat until one cluster is left.
 //
 // Source: Meister, Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction", TVCG
-// 2018. Ours are the ties, which there may leave clusters waiting in line: see Choice and kFewMerges.
+// 2018. Ties are resolved differently, because there they may leave clusters waiting in a chain: see Choice and
+// kFewMerges.
 
 #include <algorithm>
 
@@ -15,8 +16,9 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kRadius = 16;      // neighbours looked at to either side
-constexpr uint32_t kFewMerges = 16;   // fewer merges than clusters / this: a chain, which one merge a round would take
+constexpr uint32_t kRadius = 16;      // neighbours searched on either side
+constexpr uint32_t kFewMerges = 16;   // a round with fewer merges than clusters / this is a chain, which would take
+                                      // one round per merge
 constexpr uint32_t kChunk = 1u << 13; // fixed, so that nothing depends on the number of threads
 
 struct Place {
@@ -24,7 +26,7 @@ struct Place {
     uint32_t id;
 };
 
-/// Triangles along the Morton curve through their centres; equal codes by id.
+/// Sorts triangles along the Morton curve through their centres; equal codes are sorted by id.
 std::vector<Place> sort_along_curve(const std::vector<BuildReference>& references) {
     Bounds3 centres;
     for (const BuildReference& r : references) centres.extend(r.lo + r.hi);
@@ -81,9 +83,9 @@ private:
         uint32_t node;
     };
 
-    /// The order in which a cluster prefers its neighbours: by area, then by the difference of positions in binary. The
-    /// latter is the same from both sides and different for all neighbours, so at least one pair always agrees, and
-    /// where all boxes are one, each pair of positions 2 k and 2 k + 1 does.
+    /// A cluster's preference among its neighbours: by area, then by the bitwise difference of positions. That
+    /// difference is the same from both sides and unique among the neighbours, so at least one pair always agrees. If
+    /// all boxes are equal, each pair of positions 2 k and 2 k + 1 agrees.
     struct Choice {
         uint32_t area_bits, difference;
         bool operator<(const Choice& b) const {
@@ -91,8 +93,9 @@ private:
         }
     };
 
-    /// Fills choice_. The `blur` lowest bits of areas do not count: in a line where each gap is wider than the last all
-    /// choose the one before them, and only the first two agree. Fewer bits, more ties, more pairs.
+    /// Fills choice_, ignoring the `blur` lowest bits of areas. In a chain where each gap is wider than the last,
+    /// every cluster chooses the one before it and only the first two agree. Fewer bits give more ties and thus more
+    /// pairs.
     void choose(uint32_t blur) {
         const auto count = static_cast<uint32_t>(clusters_.size());
         choice_.resize(count);
@@ -112,7 +115,7 @@ private:
         });
     }
 
-    /// Makes one cluster of each pair that agrees, in the place of the first; the order stays.
+    /// Merges each pair that agrees at the position of the first; the order stays.
     void merge() {
         const std::size_t count = clusters_.size();
         struct Part {
@@ -159,8 +162,8 @@ private:
     }
 
     BinaryTree tree_;
-    std::vector<Cluster> clusters_, next_; // along the curve
-    std::vector<uint32_t> choice_;         // [cluster] the neighbour that it prefers
+    std::vector<Cluster> clusters_, next_; // in order along the curve
+    std::vector<uint32_t> choice_;         // [cluster] the neighbour that it chose
     uint32_t used_ = 0;                    // nodes
 };
 

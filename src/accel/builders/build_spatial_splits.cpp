@@ -1,9 +1,10 @@
-// Top down, and where halves would overlap, triangles are cut: each half gets a reference to them, with the box of its
-// part. Both ways are tried between bins.
+// Top-down build with spatial splits: where halves would overlap, triangles are split, and each half gets a reference
+// with the box of its part. Object and spatial splits are both tried between bins.
 //
-// Source: Stich, Friedrich, Dietrich, "Spatial Splits in Bounding Volume Hierarchies", HPG 2009. Ours: every subtree
-// has an allowance of references to add, which its parent shares out, so that the sum is bounded and threads do not
-// matter. Large sets lie in chunks that threads share; where these end decides nothing.
+// Source: Stich, Friedrich, Dietrich, "Spatial Splits in Bounding Volume Hierarchies", HPG 2009. Differences: every
+// subtree has an allowance of added references, which its parent distributes, so that the total is bounded and
+// independent of threads. Large sets are processed in chunks by several threads; chunk boundaries do not affect the
+// result.
 
 #include "accel/builders/build_spatial_splits.h"
 
@@ -24,8 +25,8 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kParallelSubtree = 1u << 12; // references from which the two halves are built at once
-constexpr std::size_t kChunk = 1u << 12;        // references of a large set that one thread sees to at a time
+constexpr uint32_t kParallelSubtree = 1u << 12; // from this many references on, both halves are built in parallel
+constexpr std::size_t kChunk = 1u << 12;        // references of a large set that one thread processes at a time
 constexpr int kBins = 16;
 
 using References = std::vector<BuildReference>;
@@ -33,27 +34,27 @@ using Chunks = std::span<const std::span<const BuildReference>>;
 
 Bounds3 box_of(const BuildReference& r) { return {r.lo, r.hi}; }
 
-/// Twice the middles of boxes lie in `centres`.
+/// The box of a set, and the box `centres` around the doubled centres of its boxes.
 struct Extent {
     Box4 box, centres;
 };
 
-/// A way to cut a set between its references.
+/// An object split of a set.
 struct ObjectCut {
-    float cost = kInfinity, uncut = 0; // sums of half area times count, cut and not
+    float cost = kInfinity, uncut = 0; // sums of half area times count, with and without the split
     Bounds3 left, right;
-    int axis = -1, bin = 0; // references of bins below go left; -1: none can be cut
+    int axis = -1, bin = 0; // references in bins below go left; axis -1: no split is possible
 
-    /// Where all boxes are one, costs differ by their rounding alone; a chain is what following them would give.
+    /// If all boxes are equal, costs differ only by rounding, and following that would give a chain.
     bool gains() const { return cost < uncut * (1 - 0x1p-20f); }
 };
 
-/// What a chunk falls into.
+/// The two halves of a chunk.
 struct Halves {
     References left, right;
 };
 
-/// Body(i) for each chunk, at once where there are several.
+/// Calls body(i) for each chunk, in parallel if there are several.
 template <class Body>
 void for_each_chunk(std::size_t chunks, const Body& body) {
     if (chunks == 1) return body(0);
@@ -66,14 +67,14 @@ std::size_t size_of(Chunks chunks) {
     return size;
 }
 
-/// Cuts sets in two, large ones on all threads.
+/// Splits sets in two; large ones on all threads.
 class Cutter {
 public:
     Cutter(const std::vector<BvhTriangle>& triangles, uint32_t max_leaf, float min_overlap, float min_own_overlap)
         : triangles_(triangles), max_leaf_(max_leaf), min_overlap_(min_overlap), min_own_overlap_(min_own_overlap) {}
 
-    /// Fills halves[i], which are empty, from chunk i; both sides get some. At most `allowance` references more than
-    /// there were.
+    /// Splits chunk i into halves[i], which are empty before. Both sides are non-empty, and at most `allowance`
+    /// references are added.
     void cut(Chunks chunks, uint64_t allowance, int levels_left, std::span<Halves> halves) const {
         const std::size_t count = size_of(chunks);
         if (levels_needed(count) >= levels_left) return halve(chunks, halves);
@@ -90,7 +91,7 @@ public:
                 for_each_chunk(chunks.size(), [&](uint64_t i) { cut_triangles(chunks[i], spatial, halves[i]); });
                 uint64_t left = 0, right = 0;
                 for (const Halves& h : halves) left += h.left.size(), right += h.right.size();
-                // What bins foresee and cutting gives may differ by rounding.
+                // The split may differ from the bins' prediction by rounding.
                 if (left > 0 && right > 0 && left + right - count <= allowance) return;
                 for (Halves& h : halves) h.left.clear(), h.right.clear();
             }
@@ -145,7 +146,7 @@ private:
         halves[0].right.assign(middle, all.end());
     }
 
-    /// A triangle that the plane cuts goes to both sides, or to one where that costs less ("reference unsplitting").
+    /// A triangle that the plane cuts goes to both sides, or to one if that costs less ("reference unsplitting").
     void cut_triangles(std::span<const BuildReference> references, const SpatialCut& cut, Halves& halves) const {
         const float left = cut.left.half_area(), right = cut.right.half_area();
         const auto nl = static_cast<float>(cut.left_size), nr = static_cast<float>(cut.right_size);
@@ -174,17 +175,17 @@ private:
             if (!parts.left.is_empty()) halves.left.push_back({parts.left.lo, r.id, parts.left.hi});
             if (!parts.right.is_empty()) halves.right.push_back({parts.right.lo, r.id, parts.right.hi});
             if (parts.left.is_empty() && parts.right.is_empty())
-                halves.left.push_back(r); // never: it has a point there
+                halves.left.push_back(r); // unreachable: the triangle has a point there
         }
     }
 
     const std::vector<BvhTriangle>& triangles_;
     std::size_t max_leaf_;
-    float min_overlap_, min_own_overlap_; // half areas: this, and this part of the set's own
+    float min_overlap_, min_own_overlap_; // half areas: absolute, and as a fraction of the set's own
 };
 
-/// How a parent shares out what it leaves of its allowance. By count, small triangles would get what large ones can
-/// use: in Sponza the tree then costs 3 % more.
+/// Distributes a parent's remaining allowance between its halves. By count, small triangles would get the allowance
+/// that large ones can use, which makes the tree of Sponza 3 % costlier.
 uint64_t left_allowance(uint64_t left_over, double left_need, double right_need) {
     const double both = left_need + right_need;
     return static_cast<uint64_t>((both > 0 ? left_need / both : 0.5) * static_cast<double>(left_over));
@@ -196,12 +197,12 @@ double need_of(std::span<const BuildReference> references) {
     return sum;
 }
 
-/// Builds a small subtree on one thread.
+/// Builds a small subtree in one thread.
 class SubtreeBuilder {
 public:
     SubtreeBuilder(const Cutter& cutter, References references) : cutter_(cutter), pending_(std::move(references)) {}
 
-    /// Depth first: its root is node 0.
+    /// Builds in depth-first order; node 0 is the root.
     BinaryTree build(uint64_t allowance, int depth) {
         tree_.nodes.reserve(3 * pending_.size());
         tree_.references.reserve(3 * pending_.size() / 2);
@@ -210,7 +211,7 @@ public:
     }
 
 private:
-    /// Of all that is pending from `begin` on, which it takes away.
+    /// Builds a node from the pending references from `begin` on and removes them.
     uint32_t build_node(std::size_t begin, uint64_t allowance, int depth) {
         const auto index = static_cast<uint32_t>(tree_.nodes.size());
         tree_.nodes.emplace_back();
@@ -223,7 +224,7 @@ private:
         }
         std::size_t right_size = 1;
         uint64_t of_left = 0, of_right = 0;
-        if (references.size() > 2) { // of two, each is a half
+        if (references.size() > 2) { // two references are one per half
             halves_.left.clear(), halves_.right.clear();
             cutter_.cut({&references, 1}, allowance, kMaxBvhDepth - depth, {&halves_, 1});
             right_size = halves_.right.size();
@@ -243,12 +244,12 @@ private:
     }
 
     const Cutter& cutter_;
-    References pending_; // what is still to be built, the next at the end
+    References pending_; // references still to be built; the next subtree's are at the end
     Halves halves_;
     BinaryTree tree_;
 };
 
-/// A subtree as it was built: whole, or of two.
+/// A subtree as it was built: in one piece or as two parts.
 struct Part {
     BinaryTree whole;
     std::unique_ptr<Part> left, right;
@@ -287,7 +288,7 @@ private:
         }
         std::vector<Halves> halves(chunks.size());
         cutter_.cut(views, allowance, kMaxBvhDepth - depth, halves);
-        std::vector<References>().swap(chunks); // both halves' and all parents' copies would add up
+        std::vector<References>().swap(chunks); // frees it, because copies at all levels would add up
         std::vector<References> left = gather(halves, &Halves::left), right = gather(halves, &Halves::right);
         std::vector<Halves>().swap(halves);
         std::size_t both = 0;
@@ -303,9 +304,9 @@ private:
         return part;
     }
 
-    /// One side of all, small neighbours joined into chunks again.
+    /// Gathers one side of all halves; small neighbours are joined into chunks.
     static std::vector<References> gather(std::span<const Halves> halves, References Halves::*side) {
-        std::vector<std::pair<std::size_t, std::size_t>> runs; // of halves, first and past the last
+        std::vector<std::pair<std::size_t, std::size_t>> runs; // ranges of halves: first, and one past the last
         for (std::size_t i = 0, size = kChunk; i < halves.size(); ++i) {
             if (size >= kChunk) runs.emplace_back(i, i), size = 0;
             runs.back().second = i + 1;
@@ -324,7 +325,7 @@ private:
         return chunks;
     }
 
-    /// Copies a part's nodes and references to where they belong, depth first.
+    /// Copies a part's nodes and references to their final positions, depth first.
     void place(const Part& part, uint32_t node, uint32_t reference) {
         if (part.left == nullptr) {
             for (std::size_t i = 0; i < part.nodes; ++i) {

@@ -1,4 +1,4 @@
-// Top down by the surface area heuristic, exactly: every cut between neighbours along every axis is tried.
+// Top-down build by the exact surface area heuristic: every split between neighbours along every axis is tried.
 //
 // Source: Wald, Boulos, Shirley, "Ray Tracing Deformable Scenes using Dynamic Bounding Volume Hierarchies", ACM TOG
 // 2007, algorithm 1; sorted once, and kept sorted by stable partitions, as in Wald, Havran, "On building fast kd-Trees
@@ -15,7 +15,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kParallelAxes = 1u << 14; // references from which the three axes are seen to at once
+constexpr uint32_t kParallelAxes = 1u << 14; // from this many references on, the three axes are processed in parallel
 
 template <class Body>
 void for_each_axis(uint32_t size, const Body& body) {
@@ -62,7 +62,8 @@ public:
     const BuildReference& at(uint32_t position) const { return sorted_[0][position]; }
 
 private:
-    /// Brings what lies before `middle` along `axis` to the front in the two other orders, which both halves keep.
+    /// Moves the references before `middle` along `axis` to the front in the two other orders, which stay sorted in
+    /// both halves.
     void split(uint32_t begin, uint32_t end, int axis, uint32_t middle) {
         const BuildReference first_right = sorted_[axis][middle];
         for_each_axis(end - begin, [&](int other) {
@@ -82,8 +83,8 @@ private:
         });
     }
 
-    std::vector<BuildReference> sorted_[3]; // [axis] along it, within each range not yet cut
-    std::vector<float> right_area_[3];      // room for find_sweep_cut
+    std::vector<BuildReference> sorted_[3]; // [axis] sorted along it within each range that is not split yet
+    std::vector<float> right_area_[3];      // scratch memory for find_sweep_cut
 };
 
 } // namespace

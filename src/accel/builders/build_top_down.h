@@ -1,7 +1,7 @@
 #pragma once
 
-// The frame of builders that cut a set of boxes in two, and the halves again, until each is alone. How to cut is
-// theirs.
+// The recursion of top-down builders: splits a set of boxes in two until each box is alone. Each builder defines how
+// to split.
 
 #include <cstdint>
 
@@ -11,12 +11,12 @@
 
 namespace pertev {
 
-/// `Cuts` holds references by position:
-///   uint32_t cut(begin, end)              reorders positions [begin, end), at least two, and returns where the second
-///                                         half begins: begin < middle < end
-///   uint32_t halve(begin, end)            the same, in the middle of the range
-///   const BuildReference& at(position)    what lies there, once cut from all others
-/// Disjoint ranges are cut at the same time. Where cuts could run out of levels, the range is halved.
+/// Builds a tree with the splits of `Cuts`, which holds references by position:
+///   uint32_t cut(begin, end)              reorders positions [begin, end), at least two, and returns the start of the
+///                                         second half: begin < middle < end
+///   uint32_t halve(begin, end)            like cut(), but in the middle of the range
+///   const BuildReference& at(position)    the reference there, once it is alone
+/// Disjoint ranges are split in parallel. A range that could run out of levels is halved.
 template <class Cuts>
 class TopDownBuilder {
 public:
@@ -32,9 +32,10 @@ public:
     }
 
 private:
-    static constexpr uint32_t kParallelSubtree = 1u << 12; // references from which the two halves are built at once
+    static constexpr uint32_t kParallelSubtree = 1u << 12; // from this many references on, both halves are built in
+                                                           // parallel
 
-    /// Fills nodes [slot, slot + 2 (end - begin) - 1): threads need not agree on a counter.
+    /// Fills nodes [slot, slot + 2 (end - begin) - 1), so that threads need no common counter.
     void build_range(uint32_t begin, uint32_t end, uint32_t slot, int depth) {
         const uint32_t size = end - begin;
         if (size == 1) {

@@ -1,10 +1,9 @@
 #pragma once
 
-// Every builder of the binary hierarchy, by name: what `pertev lab` chooses from. tracer/tracer_choice.h says
-// which pictures are made with. All give trees that are functions of the triangles alone, whatever the number of
-// threads, at most kMaxBvhDepth deep. Vertices are finite, |coordinate| <= kMaxCoordinate. Of the settings, max_leaf
-// and the two costs count for all; `bins` and max_depth for Binned alone. Throw Error(OverLimit) for too many
-// triangles.
+// All builders of the binary hierarchy by name. `pertev lab` chooses among them, and tracer/tracer_choice.h says
+// which of them rendering uses. Each tree depends only on the triangles, not on the number of threads, and is at most
+// kMaxBvhDepth deep. Vertices are finite, |coordinate| <= kMaxCoordinate. All builders use max_leaf and the two costs
+// of the settings; only Binned uses `bins` and max_depth. Too many triangles throw Error(OverLimit).
 
 #include <vector>
 
@@ -15,18 +14,18 @@
 namespace pertev {
 
 enum class BvhBuilder {
-    Binned,             // top down, surface area heuristic at the edges of bins: build_bvh.h
-    Sweep,              // top down, surface area heuristic at every place
-    Median,             // top down, middle of the longest side
-    EqualCounts,        // top down, half of the triangles to each side
-    SpatialSplits,      // top down, triangles may be cut too: a tree may hold one more than once
-    Ploc,               // bottom up, clusters along a Morton curve
-    Hploc,              // the same, in the parts that the curve has: what is built on a GPU (accel/hploc)
-    Insertion,          // one triangle after the other, each where it adds least
-    Reinsertion,        // Binned, then subtrees are moved to where they add least
-    SpatialReinsertion, // SpatialSplits, then the same
+    Binned,             // top-down, binned surface area heuristic: build_bvh.h
+    Sweep,              // top-down, surface area heuristic at every position
+    Median,             // top-down, spatial median of the longest side
+    EqualCounts,        // top-down, object median
+    SpatialSplits,      // top-down with split triangles: a tree may hold a triangle more than once
+    Ploc,               // bottom-up clustering along a Morton curve
+    Hploc,              // PLOC within the ranges of the curve's radix tree, as a GPU builds it (accel/hploc)
+    Insertion,          // incremental: each triangle goes where it adds the least area
+    Reinsertion,        // Binned, then optimized by reinsertion of subtrees
+    SpatialReinsertion, // SpatialSplits, then optimized by reinsertion
 };
-/// These are the names that people type.
+/// Names on the command line.
 inline constexpr ValueName<BvhBuilder> kBvhBuilders[] = {{BvhBuilder::Binned, "binned"},
                                                          {BvhBuilder::Sweep, "sweep"},
                                                          {BvhBuilder::Median, "median"},
@@ -39,8 +38,8 @@ inline constexpr ValueName<BvhBuilder> kBvhBuilders[] = {{BvhBuilder::Binned, "b
                                                          {BvhBuilder::SpatialReinsertion, "sbvh-reinsertion"}};
 constexpr const auto& names_of_all(BvhBuilder) { return kBvhBuilders; }
 
-/// Whether the builder cuts triangles: a tree may then hold one more than once, in boxes that hold but a part of it.
-/// find_split_fault checks such a tree, find_fault all others.
+/// Whether the builder splits triangles. Its trees may hold a triangle more than once, in boxes that hold only a part
+/// of it; they are checked by find_split_fault, all others by find_fault.
 bool cuts_triangles(BvhBuilder builder);
 
 Bvh build_bvh(BvhBuilder builder, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
@@ -54,21 +53,23 @@ Bvh build_hploc_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSet
 Bvh build_insertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 
 struct SpatialSplitSettings {
-    float min_overlap = 1e-5f; // triangles are cut where the halves of the best cut between triangles share more than
-                               // this part of the root's area
-    float min_own_overlap = 0.2f; // and more than this part of their parent's: less is seldom worth a look
-    float max_growth = 1.0f;      // >= 0; at most (1 + this) references a triangle
+    float min_overlap = 1e-5f; // triangles are split if the halves of the best object split overlap by more than this
+                               // fraction of the root's area
+    float min_own_overlap = 0.2f; // and by more than this fraction of their parent's; a smaller overlap is seldom
+                                  // worth a split
+    float max_growth = 1.0f;      // >= 0; at most (1 + this) references per triangle
 };
 Bvh build_spatial_split_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {},
                             const SpatialSplitSettings& splits = {});
 
 struct ReinsertionSettings {
     int passes = 8;         // >= 0
-    float part = 0.25f;     // (0, 1] of the nodes, those with the largest boxes, are tried in a pass
-    float min_gain = 1e-3f; // a pass that lowers the sum of areas by less than this part of it is the last
+    float part = 0.25f;     // (0, 1]; fraction of the nodes, those with the largest boxes, that a pass tries
+    float min_gain = 1e-3f; // the last pass is one that reduces the sum of areas by less than this fraction
 };
-/// Any sound tree, made better by moving subtrees; its cost does not rise, unless leaves held more than
-/// settings.max_leaf or its depth has to be limited. A triangle that it holds more than once stays in as many boxes.
+/// Optimizes any valid tree by reinsertion of subtrees. Its cost does not rise, unless leaves held more than
+/// settings.max_leaf triangles or its depth must be limited. A triangle that it holds several times keeps as many
+/// boxes.
 Bvh optimise_bvh(const Bvh& bvh, const BvhBuildSettings& settings = {}, const ReinsertionSettings& reinsertion = {});
 
 Bvh build_spatial_reinsertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});

@@ -19,22 +19,22 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kMagic[8] = {'P', 'e', 'r', 't', 'e', 'v', 'B', '2'};
-constexpr uint32_t kVersion = 3; // of the file's layout and of the builders: raised when one changes
+constexpr uint32_t kVersion = 3; // version of the file's layout and of the builders; raised when one of them changes
 constexpr uint32_t kByteOrder = 0x01020304;
-constexpr uint64_t kMaxCopies = 8;           // of a triangle that is cut, on average
-constexpr uint32_t kEndOfLeaf = 0x80000000u; // in the order's words
+constexpr uint64_t kMaxCopies = 8;           // average number of copies of a split triangle
+constexpr uint32_t kEndOfLeaf = 0x80000000u; // flag in the words of the order
 
 struct Header {
     char magic[8];
     uint32_t byte_order, version;
     Hash128 key;
-    Hash128 checksum; // of the header with 0 here, and of all that follows it
+    Hash128 checksum; // over the header, with 0 in this field, and everything after it
     uint64_t node_count, triangle_count;
     Bounds3 bounds;
     uint32_t root;
     int32_t depth;
     float sah_cost;
-    uint32_t order_count; // triangles in leaves: more than there are where some are cut
+    uint32_t order_count; // triangles in leaves; split triangles count more than once
 };
 static_assert(sizeof(Header) == 104, "no padding: its bytes are hashed");
 
@@ -78,7 +78,7 @@ void read_values(std::ifstream& file, std::span<T> values) {
     if (!file) throw Unusable{"it cannot be read to its end"};
 }
 
-/// Every number of the file is checked before it is used.
+/// Reads a tree and validates every number of the file before it is used.
 BuiltTree read_tree(const fs::path& path, const Hash128& key, std::size_t triangle_count) {
     const uint64_t size = fs::file_size(path);
     std::ifstream file(path, std::ios::binary);
@@ -118,8 +118,8 @@ BuiltTree read_tree(const fs::path& path, const Hash128& key, std::size_t triang
     return tree;
 }
 
-/// What write_file_atomically leaves behind when its process is killed: ".NAME.bvh.XXXXXX", old enough that nobody
-/// writes it any more.
+/// Whether the file is a leftover of write_file_atomically from a killed process: ".NAME.bvh.XXXXXX", old enough that
+/// no process still writes it.
 bool is_abandoned(const fs::directory_entry& entry) {
     std::error_code error;
     const bool is_temporary = entry.path().stem().extension() == ".bvh" && entry.path().filename().string()[0] == '.';
@@ -127,8 +127,8 @@ bool is_abandoned(const fs::directory_entry& entry) {
     return is_temporary && !error && written < fs::file_time_type::clock::now() - std::chrono::hours(1);
 }
 
-/// Removes the files used longest ago, and those of processes that were killed. Another process may do the same at the
-/// same time: what is gone is gone.
+/// Removes the least recently used files and leftovers of killed processes. Another process may do so concurrently;
+/// files that are already gone are ignored.
 void remove_oldest(const fs::path& folder, uint64_t max_bytes) {
     struct Entry {
         fs::path path;
@@ -154,11 +154,12 @@ void remove_oldest(const fs::path& folder, uint64_t max_bytes) {
     }
 }
 
-/// Any builder's tree as a file holds it: which triangle lies where in its leaves.
+/// Builds a tree in the form that files hold: positions of triangles by leaf.
 BuiltTree build_by_position(BvhBuilder builder, const std::vector<BvhTriangle>& triangles,
                             const BvhBuildSettings& settings) {
     if (builder == BvhBuilder::Binned) return build_triangle_tree(triangles, settings);
-    std::vector<BvhTriangle> numbered = triangles; // the tree then says which is which
+    std::vector<BvhTriangle> numbered = triangles; // each triangle carries its number, so that the tree's order can
+                                                   // be read from it
     for (std::size_t i = 0; i < numbered.size(); ++i) numbered[i].primitive = static_cast<uint32_t>(i);
     Bvh bvh = build_bvh(builder, numbered, settings);
     BuiltTree tree = {.nodes = std::move(bvh.nodes),
@@ -200,7 +201,7 @@ std::optional<Bvh> load_cached_bvh(const Hash128& key, const fs::path& folder,
         if (!fs::is_regular_file(path)) throw Unusable{"it is not a regular file"};
         Bvh bvh = make_bvh(read_tree(path, key, triangles.size()), triangles);
         if (const auto fault = find_broken_link(bvh)) throw Unusable{*fault};
-        std::error_code ignored; // a read-only cache still serves
+        std::error_code ignored; // a read-only cache can still be read
         fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
         return bvh;
     } catch (const Unusable& unusable) {

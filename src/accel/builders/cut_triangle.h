@@ -1,10 +1,10 @@
 #pragma once
 
-// Bounds of the two parts into which a plane across an axis cuts a triangle, rounded outwards: whatever is cut how
-// often, the boxes of a triangle's parts together hold every one of its points, so no ray slips between them.
+// Bounds of the two parts into which an axis-aligned plane cuts a triangle, rounded outwards. However often a
+// triangle is cut, the boxes of its parts together hold every point of it, so no ray slips between them.
 //
-// Source: Stich, Friedrich, Dietrich, "Spatial Splits in Bounding Volume Hierarchies", HPG 2009, section 4.1 (edges are
-// cut, and the bounds so far are intersected with what comes out).
+// Source: Stich, Friedrich, Dietrich, "Spatial Splits in Bounding Volume Hierarchies", HPG 2009, section 4.1 (edges
+// are cut, and the results are intersected with the previous bounds).
 
 #include "accel/bvh/bvh.h"
 #include "math/bounds3.h"
@@ -12,15 +12,16 @@
 namespace pertev {
 
 struct ClippedBoxes {
-    Bounds3 left, right; // left: where the coordinate is at most the plane's; empty where nothing of it lies
+    Bounds3 left, right; // left: where the coordinate is at most the plane's; empty if the triangle has no part there
 };
 
 inline Bounds3 intersection(const Bounds3& a, const Bounds3& b) { return {max(a.lo, b.lo), min(a.hi, b.hi)}; }
 
 inline double magnitude(double x) { return x < 0 ? -x : x; }
 
-/// Where the edge from a to b meets the plane. In double, (b - a) t is off by at most 5 units of 2^-53 of |a| + |b|,
-/// the sum by one more; becoming a float moves it by 2^-24 of itself at most, or by 2^-150 near 0.
+/// Bounds of the point where the edge from a to b meets the plane. In double, (b - a) t is off by at most 5 units of
+/// 2^-53 of |a| + |b|, and the sum by one more; rounding to float moves it by at most 2^-24 of itself, or by 2^-150
+/// near 0.
 inline Bounds3 box_of_crossing(Vec3 a, Vec3 b, int axis, float plane) {
     float lo[3], hi[3];
     const double pa = static_cast<double>(component(a, axis)), pb = static_cast<double>(component(b, axis));
@@ -38,7 +39,7 @@ inline Bounds3 box_of_crossing(Vec3 a, Vec3 b, int axis, float plane) {
     return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
 }
 
-/// Boxes of what lies on either side of the plane and in `box`, which they never leave.
+/// Returns the boxes of the triangle's parts on either side of the plane, clipped to `box`.
 inline ClippedBoxes cut_triangle(const BvhTriangle& triangle, const Bounds3& box, int axis, float plane) {
     ClippedBoxes boxes;
     const Vec3 corners[3] = {triangle.a, triangle.b, triangle.c};

@@ -12,7 +12,7 @@ bool has_points(const Box4& b) { return (_mm_movemask_ps(_mm_cmple_ps(b.lo, b.hi
 
 __m128 load(Vec3 p) { return _mm_setr_ps(p.x, p.y, p.z, 0); }
 
-/// Bins along one axis. Where there is no room for planes, there are none.
+/// Bins along one axis. There are no planes if there is no room for them.
 struct Row {
     int axis = 0, bins = 0;
     float lo = 0, scale = 0;
@@ -33,10 +33,10 @@ struct Row {
 
 struct RowBins {
     Box4 box[kMaxPlanes];
-    uint32_t begins[kMaxPlanes] = {}, ends[kMaxPlanes] = {}; // references whose first and whose last part is here
+    uint32_t begins[kMaxPlanes] = {}, ends[kMaxPlanes] = {}; // references whose first and whose last part lies here
 };
 
-/// The boxes of what a triangle has in bins [first, last], at most as large as the reference's.
+/// Adds the boxes of a triangle's parts in bins [first, last], each at most as large as the reference's.
 void add_parts(const Row& row, const Box4& whole, float lo, float hi, const BvhTriangle& triangle, int first, int last,
                RowBins& bins) {
     Box4 parts[kMaxPlanes];
@@ -84,9 +84,9 @@ void fill_row(std::span<const BuildReference> references, const std::vector<BvhT
     }
 }
 
-/// Replaces `best` where a plane of the row is cheaper.
+/// Replaces `best` if a plane of the row is cheaper.
 void find_plane(const Row& row, const RowBins& bins, uint64_t count, uint64_t allowance, SpatialCut& best) {
-    Box4 right[kMaxPlanes]; // of bins from here on
+    Box4 right[kMaxPlanes]; // boxes of the bins from this one on
     Box4 sum;
     for (int k = row.bins - 1; k > 0; --k) {
         sum.extend(bins.box[k]);
@@ -113,7 +113,8 @@ SpatialCut find_spatial_cut(std::span<const std::span<const BuildReference>> chu
                             const std::vector<BvhTriangle>& triangles, const Bounds3& box, uint64_t allowance) {
     uint64_t count = 0;
     for (const auto& chunk : chunks) count += chunk.size();
-    // As many as references: most nodes are small, and in those a triangle reaches through most bins.
+    // The number of planes is the number of references, because in small nodes, which are most, a triangle reaches
+    // through most bins.
     const int planes = to_int(static_cast<float>(count), kMinPlanes, kMaxPlanes);
     SpatialCut best;
     for (int axis = 0; axis < 3; ++axis) {

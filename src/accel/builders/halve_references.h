@@ -1,6 +1,6 @@
 #pragma once
 
-// Cuts references in two at the middle of their number, along the axis where their centres spread most.
+// Splits references at the object median along the axis with the largest extent of centres.
 
 #include <algorithm>
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace pertev {
 
-/// Twice the centre: nothing here needs the half.
+/// Doubled centre of the box; the factor does not matter here.
 inline Vec3 centre_of(const BuildReference& r) { return r.lo + r.hi; }
 
 inline Bounds3 centres_of(std::span<const BuildReference> references) {
@@ -18,13 +18,13 @@ inline Bounds3 centres_of(std::span<const BuildReference> references) {
     return centres;
 }
 
-/// The order along an axis; the id decides between equal centres, so that it is one.
+/// Strict order along an axis; ids break ties between equal centres.
 inline bool lies_before(const BuildReference& a, const BuildReference& b, int axis) {
     const float ca = component(a.lo, axis) + component(a.hi, axis), cb = component(b.lo, axis) + component(b.hi, axis);
     return ca != cb ? ca < cb : a.id < b.id;
 }
 
-/// Brings those before the middle to the front; returns how many those are.
+/// Moves the references before the median to the front and returns their number.
 inline uint32_t halve_references(std::span<BuildReference> references, const Bounds3& centres) {
     const int axis = longest_axis(centres);
     const std::size_t middle = references.size() / 2;

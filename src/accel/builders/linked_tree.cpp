@@ -28,7 +28,7 @@ void LinkedTree::refit_upwards(uint32_t index) {
     for (; index != kNoLink; index = parent_[index]) {
         BinaryNode& node = tree_.nodes[index];
         const BinaryNode refitted = make_inner(tree_, node.child[0], node.child[1]);
-        if (refitted.box == node.box) return; // nor does anything above change
+        if (refitted.box == node.box) return; // boxes above do not change either
         node.box = refitted.box;
     }
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// A binary tree that subtrees are put into, with every box kept exact. Any way of putting them in ends in the same
-// boxes.
+// A binary tree with insertion of subtrees that keeps every box exact. Boxes do not depend on the order of
+// insertions.
 
 #include <vector>
 
@@ -15,10 +15,10 @@ public:
 
     const BinaryNode& node(uint32_t index) const { return tree_.nodes[index]; }
     uint32_t root() const { return tree_.root; }
-    uint32_t parent(uint32_t index) const { return parent_[index]; } // kNoLink: the root's, and of what is not linked
+    uint32_t parent(uint32_t index) const { return parent_[index]; } // kNoLink for the root and for unlinked nodes
     BinaryTree take() { return std::move(tree_); }
 
-    /// Puts `index`, which is not linked, beside `target`: the free node `parent` takes the target's place and both
+    /// Inserts the unlinked node `index` beside `target`: the free node `parent` takes the target's position and both
     /// become its children.
     void insert(uint32_t index, uint32_t target, uint32_t parent);
 

@@ -1,4 +1,4 @@
-// A finished tree of any builder's, taken apart into single triangles and put together again by
+// Optimizes a finished tree of any builder: it is unfolded to one triangle per leaf and improved by
 // reinsert_subtrees.h.
 
 #include <algorithm>
@@ -15,15 +15,16 @@
 namespace pertev {
 namespace {
 
-/// The tree with one triangle a leaf, references by position. A triangle in a box that holds but a part of it stays in
-/// it. Leaves come first, by their triangle, then nodes as they were, then those that join what a leaf held.
+/// Returns the tree with one triangle per leaf and references by position. A box that holds only a part of its
+/// triangle is kept. Leaves come first, ordered by triangle, then the old nodes, then those that join the triangles
+/// of an old leaf.
 BinaryTree unfold(const Bvh& bvh) {
     BinaryTree tree;
     const auto triangles = static_cast<uint32_t>(bvh.triangles.size()), inner = static_cast<uint32_t>(bvh.nodes.size());
     const std::vector<BuildReference> boxes = references_of(bvh.triangles);
     tree.nodes.resize(2 * std::size_t(triangles) - 1);
     tree.references.resize(triangles);
-    std::vector<uint32_t> leaves_before(triangles); // that end before a triangle
+    std::vector<uint32_t> leaves_before(triangles); // [triangle] leaves that end before it
     for (uint32_t i = 1; i < triangles; ++i) {
         leaves_before[i] = leaves_before[i - 1] + (bvh.triangles[i - 1].flags & kLastInLeaf);
     }
@@ -68,7 +69,7 @@ Bvh optimise_bvh(const Bvh& bvh, const BvhBuildSettings& settings, const Reinser
     BinaryTree tree = unfold(bvh);
     const float cost_before = cost_with_leaves(tree, settings);
     reinsert_subtrees(tree, reinsertion);
-    // The sum of all areas is not quite what leaves of several triangles cost.
+    // The sum of areas is not exactly the cost with leaves of several triangles.
     const bool better = cost_with_leaves(tree, settings) < cost_before;
     return make_bvh(better ? std::move(tree) : unfold(bvh), bvh.triangles, settings);
 }

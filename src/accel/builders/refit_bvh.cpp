@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint64_t kGrain = 1 << 12;
 
-/// Where each instance's first triangle lies.
+/// Position of each instance's first triangle.
 std::unordered_map<uint32_t, std::size_t> firsts_of(const std::vector<BvhTriangle>& triangles) {
     std::unordered_map<uint32_t, std::size_t> firsts;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -59,7 +59,7 @@ Bvh refit_bvh(const Bvh& bvh, const std::vector<BvhTriangle>& triangles, const B
         return refitted;
     }
     std::vector<BvhNode>& nodes = refitted.nodes;
-    std::vector<float> leaf_cost(nodes.size()); // of the leaves of each node
+    std::vector<float> leaf_cost(nodes.size()); // [node] cost of its leaves
     parallel_for(nodes.size(), kGrain, [&](uint64_t i) {
         for (int k = 0; k < 2; ++k) {
             if ((nodes[i].child[k] & kLeafBit) == 0) continue;
@@ -70,7 +70,7 @@ Bvh refit_bvh(const Bvh& bvh, const std::vector<BvhTriangle>& triangles, const B
         }
     });
     double cost = 0;
-    for (std::size_t i = nodes.size(); i-- > 0;) { // depth first: children come after their parents
+    for (std::size_t i = nodes.size(); i-- > 0;) { // reverse depth-first order: children come before their parents
         for (int k = 0; k < 2; ++k) {
             const uint32_t link = nodes[i].child[k];
             if (link & kLeafBit) continue;

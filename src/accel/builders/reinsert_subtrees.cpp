@@ -9,8 +9,9 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kWorthAnother = 64; // a round is the last that makes less than one in so many moves
-constexpr std::size_t kFewChanges = 64;   // less than one in so many nodes: their boxes are seen to one by one
+constexpr std::size_t kWorthAnother = 64; // no further round if fewer than one in this many moves was made
+constexpr std::size_t kFewChanges = 64;   // if fewer than one in this many nodes changed, their boxes are refitted
+                                          // one by one
 constexpr uint64_t kChunk = 1 << 12;      // nodes; fixed, so that no sum depends on the number of threads
 
 float area_of_both(const Bounds3& a, const Bounds3& b) {
@@ -20,8 +21,8 @@ float area_of_both(const Bounds3& a, const Bounds3& b) {
 
 struct Move {
     uint32_t node = kNoLink, target = kNoLink; // the node becomes the target's sibling; kNoLink: it stays
-    uint32_t pivot = kNoLink;                  // the last node above both
-    float gain = 0;                            // by how much areas shrink, other moves aside
+    uint32_t pivot = kNoLink;                  // the lowest common ancestor of both
+    float gain = 0;                            // reduction of the sum of areas if no other move is made
 };
 
 class Reinserter {
@@ -47,8 +48,9 @@ public:
         return sum;
     }
 
-    /// Moves of about that part of the nodes, those with the largest boxes: there is most to gain. Nodes that would
-    /// move, but for others that gain more, are tried again, as often as enough of them get their turn.
+    /// Tries to move about this fraction of the nodes, those with the largest boxes, because they have the most to
+    /// gain. Nodes whose move is blocked by moves with a higher gain are tried again as long as enough of them
+    /// succeed.
     void pass(float part) {
         std::vector<uint32_t> nodes = largest_nodes(part);
         while (!nodes.empty()) {
@@ -73,8 +75,8 @@ private:
         return parent.child[parent.child[0] == at ? 1 : 0];
     }
 
-    /// Makes the moves of `nodes` that no better one stands against; leaves those in `nodes` that wait for a turn.
-    /// Returns how many moves were made.
+    /// Makes the moves of `nodes` that no better move conflicts with, and leaves the blocked ones in `nodes`. Returns
+    /// the number of moves made.
     std::size_t round(std::vector<uint32_t>& nodes) {
         std::vector<Move> moves(nodes.size());
         parallel_for(nodes.size(), 64, [&](uint64_t i) {
@@ -92,7 +94,7 @@ private:
             for_each_link(moves[i], [&](uint32_t at) { lock_[at].store(0, std::memory_order_relaxed); });
         });
         nodes.clear();
-        std::vector<uint32_t> changed; // nodes with other children than before
+        std::vector<uint32_t> changed; // nodes whose children changed
         for (std::size_t i = 0; i < moves.size(); ++i) {
             if (is_first[i] == 0) {
                 nodes.push_back(moves[i].node);
@@ -108,7 +110,7 @@ private:
 
     void refit_node(uint32_t at) { nodes_[at] = make_inner(tree_, nodes_[at].child[0], nodes_[at].child[1]); }
 
-    /// `changed`: all nodes with other children, and kNoLink.
+    /// `changed` lists all nodes whose children changed, and kNoLink.
     void refit(const std::vector<uint32_t>& changed) {
         if (changed.size() > nodes_.size() / kFewChanges) {
             return visit_upwards(tree_, [&](uint32_t at) {
@@ -119,13 +121,13 @@ private:
             for (; at != kNoLink; at = parent_[at]) {
                 const Bounds3 before = nodes_[at].box;
                 refit_node(at);
-                if (nodes_[at].box == before) break; // whatever else changes above is on the way of another
+                if (nodes_[at].box == before) break; // further changes above are refitted from another node
             }
         }
     }
 
     std::vector<uint32_t> largest_nodes(float part) const {
-        // Bits of an area that is not negative sort like it: the upper half of them tells areas apart well enough.
+        // The bits of a non-negative float sort like its value; the upper half suffices to rank areas.
         std::vector<std::atomic<uint32_t>> counts(1 << 16);
         parallel_for(chunk_count(), 1, [&](uint64_t chunk) {
             for_chunk(chunk, [&](uint32_t at) {
@@ -146,14 +148,14 @@ private:
         return nodes;
     }
 
-    /// Where a node had better be: branch and bound, from its own place upwards.
+    /// Finds the best position for a node by branch and bound, from its present position upwards.
     Move find_move(uint32_t node) const {
         Move best = {.node = node};
         const Bounds3 box = nodes_[node].box;
-        // Taken out, its parent goes, and boxes above shrink up to the pivot, the last that still holds both places.
+        // Removing the node removes its parent, and boxes shrink up to the pivot, which holds both positions.
         const uint32_t parent = parent_[node];
         float freed = area(parent);
-        Bounds3 shrunk = nodes_[sibling(node)].box; // of what remains beneath the pivot
+        Bounds3 shrunk = nodes_[sibling(node)].box; // box of the rest below the pivot
         search(sibling(node), parent, freed, box, true, best);
         for (uint32_t below = parent; parent_[below] != kNoLink; below = parent_[below]) {
             const uint32_t beside = sibling(below), pivot = parent_[below];
@@ -169,8 +171,8 @@ private:
         if (gain > best.gain) best.gain = gain, best.target = target, best.pivot = pivot;
     }
 
-    /// Tries every node of a subtree, but for its root where that is where the node comes from. `freed`: less the
-    /// growth of what is above the node and below the pivot.
+    /// Tries every node of a subtree, except its root if the node comes from there. `freed` is the area saved so far,
+    /// minus the growth of boxes above the node and below the pivot.
     void search(uint32_t root, uint32_t pivot, float freed, const Bounds3& box, bool is_own_place, Move& best) const {
         struct Pending {
             uint32_t node;
@@ -193,7 +195,7 @@ private:
         }
     }
 
-    /// Greater for greater gains, never the same twice.
+    /// Sort key of a move: unique, and greater for greater gains.
     static uint64_t key_of(const Move& move) { return static_cast<uint64_t>(bits_of(move.gain)) << 32 | ~move.node; }
 
     static void raise(std::atomic<uint64_t>& lock, uint64_t key) {
@@ -202,7 +204,7 @@ private:
         }
     }
 
-    /// Nodes whose links or parents a move changes.
+    /// Calls body for the nodes whose links or parents a move changes.
     template <class Body>
     void for_each_link(const Move& move, const Body& body) const {
         const uint32_t parent = parent_[move.node];
@@ -210,8 +212,8 @@ private:
         if (parent_[move.target] != kNoLink) body(parent_[move.target]);
     }
 
-    /// Whether it gains most of all moves that change the same links, and of all that move what its target is beneath:
-    /// without the second, a could go beneath b while b goes beneath a.
+    /// Whether the move has the highest gain among moves that change the same links and among moves of an ancestor of
+    /// its target. Without the second condition a could move below b while b moves below a.
     bool is_made(const Move& move) const {
         const uint64_t key = key_of(move);
         bool is_first = true;
@@ -236,8 +238,8 @@ private:
     std::vector<BinaryNode>& nodes_;
     BinaryTree& tree_;
     std::vector<uint32_t> parent_;
-    std::vector<uint64_t> own_;               // [node] key of its own move in this round; else 0
-    std::vector<std::atomic<uint64_t>> lock_; // [node] the greatest key of moves that change its links; else 0
+    std::vector<uint64_t> own_;               // [node] key of its own move in this round, else 0
+    std::vector<std::atomic<uint64_t>> lock_; // [node] highest key of the moves that change its links, else 0
 };
 
 } // namespace

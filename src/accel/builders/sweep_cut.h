@@ -1,6 +1,6 @@
 #pragma once
 
-// The cheapest cut of a row of boxes in two by the surface area heuristic, every place tried.
+// Finds the cheapest split of a row of boxes by the surface area heuristic, with every position tried.
 
 #include <cstdint>
 
@@ -10,14 +10,15 @@ namespace pertev {
 
 struct SweepCut {
     float cost = kInfinity; // sum of half area times count over both sides
-    float uncut = 0;        // the same of all
-    uint32_t left = 0;      // how many come before the cut
+    float uncut = 0;        // cost without a split, in the same unit
+    uint32_t left = 0;      // number of boxes before the split
 
-    /// Where all boxes are one, costs differ by their rounding alone; a chain is what following them would give.
+    /// If all boxes are equal, costs differ only by rounding, and following that would give a chain.
     bool gains() const { return cost < uncut * (1 - 0x1p-20f); }
 };
 
-/// `box_at(i)` is the i-th of `count` boxes, at least two. `right_area` has room for as many. Of equal cuts the first.
+/// Returns the first of the cheapest splits. `box_at(i)` is the i-th of `count` boxes, at least two. `right_area` has
+/// room for `count` floats.
 template <class BoxAt>
 SweepCut find_sweep_cut(uint32_t count, const BoxAt& box_at, float* right_area) {
     Bounds3 box;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Visits every node of a binary tree after its children, on all threads: subtrees beneath a fixed cut at once, then
-// what is above it. What a visit reads of its children is there; nothing depends on the number of threads.
+// Visits every node of a binary tree after its children, on all threads: first the subtrees below a fixed cut in
+// parallel, then the nodes above it. The result does not depend on the number of threads.
 
 #include <cstdint>
 #include <ranges>
@@ -12,12 +12,12 @@
 
 namespace pertev {
 
-/// A tree cut across: nodes above the cut, each before its children, and the roots of all subtrees beneath.
+/// A cut through a tree: the nodes above it, each before its children, and the roots of the subtrees below.
 struct CrossCut {
     std::vector<uint32_t> above, roots;
 };
 
-/// Breadth first, until there are enough subtrees to share out, which small trees are not worth.
+/// Descends breadth first until there are enough subtrees to distribute; small trees have none.
 inline CrossCut cut_across(const BinaryTree& tree) {
     constexpr std::size_t kSubtrees = 2048, kMinNodes = 1 << 14;
     CrossCut cut;
@@ -37,7 +37,7 @@ inline CrossCut cut_across(const BinaryTree& tree) {
     return cut;
 }
 
-/// The nodes of a subtree, each before its children.
+/// Returns the nodes of a subtree, each before its children.
 inline std::vector<uint32_t> nodes_downwards(const BinaryTree& tree, uint32_t root) {
     std::vector<uint32_t> order, pending = {root};
     while (!pending.empty()) {
@@ -50,7 +50,7 @@ inline std::vector<uint32_t> nodes_downwards(const BinaryTree& tree, uint32_t ro
     return order;
 }
 
-/// Calls visit(node) for every node that can be reached, children first.
+/// Calls visit(node) for every reachable node, children first.
 template <class Visit>
 void visit_upwards(const BinaryTree& tree, const Visit& visit) {
     const CrossCut cut = cut_across(tree);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Boxes in bins along three axes, four lanes at a time, and the cheapest cut between bins.
+// Bins boxes along three axes with four SIMD lanes and finds the cheapest split between bins.
 //
 // Source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", IEEE RT 2007, section 3.
 
@@ -16,7 +16,7 @@ namespace pertev {
 
 inline constexpr int kMaxBins = 64;
 
-/// x, y, z; the fourth lane is 0 or ignored.
+/// Box with x, y, z in three lanes; the fourth lane is 0 or ignored.
 struct Box4 {
     __m128 lo = _mm_set1_ps(kInfinity), hi = _mm_set1_ps(-kInfinity);
 
@@ -44,12 +44,12 @@ inline Bounds3 to_bounds(const Box4& b) {
 }
 
 inline Box4 simd_box_of(const BuildReference& r) {
-    const __m128 xyz = _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0)); // the id, read as a float, would be denormal
+    const __m128 xyz = _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0)); // the id may be denormal when read as a float
     return {_mm_and_ps(xyz, _mm_load_ps(&r.lo.x)), _mm_load_ps(&r.hi.x)};
 }
 inline __m128 centre_of(const Box4& b) {
     return _mm_add_ps(b.lo, b.hi);
-} // twice the centre: nothing here needs the half
+} // doubled centre; the factor does not matter here
 
 struct Bins {
     Box4 box[3][kMaxBins];
@@ -63,7 +63,7 @@ struct Bins {
     }
 };
 
-/// Which bin a box falls into, along all axes at once. Axes along which the centres do not differ give bin 0.
+/// Maps a box to its bin along all axes at once. An axis along which the centres do not differ has only bin 0.
 struct BinMap {
     __m128 first, scale;
     __m128i last;
@@ -71,7 +71,7 @@ struct BinMap {
     BinMap(const Box4& centres, int bins) : first(centres.lo), last(_mm_set1_epi32(bins - 1)) {
         const __m128 extent = _mm_sub_ps(centres.hi, centres.lo);
         const __m128 s = _mm_div_ps(_mm_set1_ps(static_cast<float>(bins) * 0.9999f), extent);
-        // An extent of 0 or so small that the quotient overflows cannot be cut.
+        // An extent that is 0, or so small that the quotient overflows, cannot be split.
         const __m128 usable =
             _mm_and_ps(_mm_cmpgt_ps(extent, _mm_setzero_ps()), _mm_cmplt_ps(s, _mm_set1_ps(0x1p126f)));
         scale = _mm_and_ps(s, usable);
@@ -89,7 +89,7 @@ inline int lane(__m128i v, int axis) {
 }
 
 struct BinnedCut {
-    int axis = -1;          // -1: none
+    int axis = -1;          // -1 if there is none
     int bin = 0;            // boxes of a bin below go left
     float cost = kInfinity; // sum of half area times count over both sides
     Box4 left, right;
@@ -123,7 +123,7 @@ inline BinnedCut find_cheapest_cut(const Bins& bins, int count) {
     return best;
 }
 
-/// Puts references [first, last) into bins; those there already stay.
+/// Adds references [first, last) to the bins.
 inline void fill_bins(const BuildReference* first, const BuildReference* last, const BinMap& map, Bins& bins) {
     for (; first != last; ++first) {
         const Box4 b = simd_box_of(*first);
@@ -136,7 +136,7 @@ inline void fill_bins(const BuildReference* first, const BuildReference* last, c
     }
 }
 
-/// Adds `count` bins an axis of another set.
+/// Adds the bins of another set, `count` per axis.
 inline void add_bins(const Bins& part, int count, Bins& sum) {
     for (int axis = 0; axis < 3; ++axis) {
         for (int k = 0; k < count; ++k) {

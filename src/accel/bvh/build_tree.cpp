@@ -12,8 +12,8 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kParallelNode = 1u << 16;    // boxes from which one node's own work is shared among threads
-constexpr uint32_t kParallelSubtree = 1u << 12; // boxes from which the two halves are built at once
+constexpr uint32_t kParallelNode = 1u << 16;    // from this many boxes on, several threads process one node
+constexpr uint32_t kParallelSubtree = 1u << 12; // from this many boxes on, both halves are built in parallel
 constexpr uint32_t kChunk = 1u << 15;           // fixed, so that no sum depends on the number of threads
 
 struct Range {
@@ -47,7 +47,7 @@ public:
     }
 
 private:
-    /// Levels of inner nodes that equal cuts take to bring n boxes down to leaves.
+    /// Number of levels of inner nodes that object medians need to separate n boxes into leaves.
     int levels_needed(uint32_t n) const {
         const uint32_t leaves = (n - 1) / static_cast<uint32_t>(settings_.max_leaf) + 1;
         return std::bit_width(leaves - 1);
@@ -70,8 +70,8 @@ private:
         }
     }
 
-    /// Link of the subtree over `range`; a leaf's number of boxes goes to `leaf_count`. An inner node's index is the
-    /// place where it cuts, which no other node shares: threads need not agree on a counter.
+    /// Builds the subtree over `range` and returns its link. A leaf's number of boxes is written to `leaf_count`. An
+    /// inner node's index is the position of its split, which is unique, so threads need no common counter.
     uint32_t build_range(const Range& range, int depth, uint32_t& leaf_count) {
         const int levels_left = settings_.max_depth - depth;
         const bool may_be_leaf = range.size() <= static_cast<uint32_t>(settings_.max_leaf);
@@ -106,8 +106,9 @@ private:
             build_left();
             build_right();
         }
-        // Child 0 is the one where a ray finds something sooner: more surface a triangle (large walls before small
-        // ornaments). A CPU's search for any hit of a ray that ends goes there first: half the way in Sponza.
+        // Child 0 is the one where a ray finds a hit sooner: more surface per triangle (large walls before small
+        // ornaments). The CPU's any-hit search for rays of finite length visits it first, which halves the steps in
+        // Sponza.
         const float left_size = static_cast<float>(left.size()), right_size = static_cast<float>(right.size());
         const int first = half_area(left.box) * right_size >= half_area(right.box) * left_size ? 0 : 1;
         set_child(node, first, to_bounds(left.box), links[0]);
@@ -116,7 +117,7 @@ private:
         return index;
     }
 
-    /// Boxes of child k where that is a leaf; the words are set to 0 again when the nodes are put in order.
+    /// Number of boxes of child k if it is a leaf. The words are reset to 0 when the nodes are reordered.
     static uint32_t& leaf_size(BvhNode& node, int k) { return k == 0 ? node.parent : node.split; }
 
     static uint32_t leaf(const Range& range, uint32_t& leaf_count) {
@@ -273,7 +274,7 @@ private:
 
     std::vector<BuildReference>& references_;
     const BvhBuildSettings& settings_;
-    std::vector<BvhNode> sparse_; // [where the node cuts the references]
+    std::vector<BvhNode> sparse_; // [position of the node's split among the references]
 };
 
 } // namespace

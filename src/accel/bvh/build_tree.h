@@ -1,10 +1,11 @@
 #pragma once
 
-// The builder's core: a binary tree over boxes by the binned surface area heuristic, for triangles and instances alike.
+// The core of the default builder: a binary tree over boxes by the binned surface area heuristic, for triangles and
+// instances.
 //
 // Source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", IEEE RT 2007, section 3.
-// The tree is a function of the boxes and the settings: neither the number of threads nor their timing enters. It is
-// never deeper than asked for: where a cut by cost could run out of levels, the boxes are cut into equal counts.
+// The tree depends only on the boxes and the settings, not on threads. Its depth is limited: where SAH splits could
+// run out of levels, boxes are split at the object median.
 
 #include <cstdint>
 #include <vector>
@@ -15,11 +16,12 @@
 namespace pertev {
 
 struct BvhBuildSettings {
-    int bins = 16;                // [2, 64] an axis
-    int max_leaf = 4;             // >= 1, boxes a leaf may hold
-    int max_depth = kMaxBvhDepth; // inner nodes on any way down; a tree of n needs ceil(log2(n / max_leaf)) at least
-    float node_cost = 1.0f;       // of testing the two boxes of a node
-    float leaf_cost = 1.0f;       // of testing one triangle
+    int bins = 16;                // [2, 64], per axis
+    int max_leaf = 4;             // >= 1, boxes per leaf
+    int max_depth = kMaxBvhDepth; // inner nodes on any path; a tree of n boxes needs at least ceil(log2(n /
+                                  // max_leaf))
+    float node_cost = 1.0f;       // cost of testing a node's two boxes
+    float leaf_cost = 1.0f;       // cost of testing one triangle
     bool operator==(const BvhBuildSettings&) const = default;
 };
 
@@ -32,15 +34,16 @@ struct alignas(16) BuildReference {
 
 struct BuiltTree {
     std::vector<BvhNode> nodes;  // leaf links name positions in `order`
-    std::vector<uint32_t> order; // ids of the references, leaf after leaf
-    std::vector<bool> is_last;   // [order] the leaf ends here
+    std::vector<uint32_t> order; // ids of the references, ordered by leaf
+    std::vector<bool> is_last;   // [order] whether a leaf ends here
     uint32_t root = kNoLink;
     Bounds3 bounds;
     int depth = 0;
     float sah_cost = 0;
 };
 
-/// Throws Error(OverLimit) for more than kMaxBvhTriangles references, or more than max_depth levels can hold.
+/// Builds the tree. Throws Error(OverLimit) for more than kMaxBvhTriangles references, or more than max_depth levels
+/// can hold.
 BuiltTree build_tree(std::vector<BuildReference> references, const BvhBuildSettings& settings);
 
 } // namespace pertev

@@ -1,8 +1,8 @@
 #pragma once
 
-// The binary bounding volume hierarchy: what builders make, the cache stores and both devices walk. A node holds the
-// boxes of its two children, so that one fetch of 64 bytes decides both. A leaf is a run of triangles; the last one of
-// a run carries kLastInLeaf.
+// The binary bounding volume hierarchy that builders make, the cache stores and both devices traverse. A node holds
+// the boxes of its two children, so that one fetch of 64 bytes decides about both. A leaf is a run of triangles whose
+// last one has kLastInLeaf set.
 
 #include <cstdint>
 #include <vector>
@@ -12,30 +12,31 @@
 
 namespace pertev {
 
-// A link names what a walk goes to next: an inner node's index, or kLeafBit | index of a leaf's first triangle (of a
-// top-level tree: kLeafBit | position of the instance's record), or kNoLink (nothing; it counts as a leaf).
+// A link names the next node of a traversal: an inner node's index; kLeafBit | index of a leaf's first triangle (in a
+// top-level tree: kLeafBit | position of the instance's record); or kNoLink for nothing, which counts as a leaf.
 inline constexpr uint32_t kLeafBit = 0x80000000u;
 inline constexpr uint32_t kNoLink = 0xffffffffu;
 inline constexpr uint32_t kMaxBvhTriangles = kLeafBit - 1;
 
-inline constexpr uint32_t kLastInLeaf = 1; // BvhTriangle::flags; the other bits are the caller's
+inline constexpr uint32_t kLastInLeaf = 1; // in BvhTriangle::flags; the other bits belong to the caller
 
-/// One triangle, 48 bytes: three loads of 16.
+/// A triangle of 48 bytes, loaded as three times 16.
 struct alignas(16) BvhTriangle {
     Vec3 a;
     uint32_t primitive = 0; // index within its mesh
     Vec3 b;
-    uint32_t instance = 0; // scene order, in a baked tree; unused in a mesh's own
+    uint32_t instance = 0; // scene order, in a baked tree; unused in a mesh's own tree
     Vec3 c;
     uint32_t flags = 0;
 };
 static_assert(sizeof(BvhTriangle) == 48);
 
-/// Inner node, 64 bytes: four loads of 16. Along each axis {lower of child 0, lower of 1, upper of 0, upper of 1}.
+/// Inner node of 64 bytes, loaded as four times 16. Each axis has {lower of child 0, lower of 1, upper of 0, upper of
+/// 1}.
 struct alignas(64) BvhNode {
     float x[4], y[4], z[4];
     uint32_t child[2];   // links
-    uint32_t parent = 0; // this and `split` are what add_parent_links (parent_links.h) makes of them; else 0
+    uint32_t parent = 0; // `parent` and `split` are set by add_parent_links (parent_links.h), else 0
     uint32_t split = 0;
 };
 static_assert(sizeof(BvhNode) == 64);
@@ -50,15 +51,15 @@ inline Bounds3 child_bounds(const BvhNode& node, int k) {
 }
 
 struct Bvh {
-    std::vector<BvhNode> nodes; // depth first; of two children, the first is where any-hit searches end sooner
+    std::vector<BvhNode> nodes; // depth first; any-hit searches usually end sooner in the first child
     std::vector<BvhTriangle> triangles;
-    uint32_t root = kNoLink; // kNoLink: no triangle; a leaf link: no inner node
+    uint32_t root = kNoLink; // kNoLink if there is no triangle; a leaf link if there is no inner node
     Bounds3 bounds;
-    int depth = 0;      // inner nodes on the longest way down; at most kMaxBvhDepth
-    float sah_cost = 0; // expected cost of a ray that meets the bounds, in the builder's unit
+    int depth = 0;      // inner nodes on the longest path; at most kMaxBvhDepth
+    float sah_cost = 0; // expected cost of a ray that hits the bounds, in the builder's unit
 };
 
-/// What a walk needs; plain pointers, host's or device's.
+/// Arrays of a Bvh for traversal, as plain pointers of host or device.
 struct BvhView {
     const BvhNode* nodes = nullptr;
     const BvhTriangle* triangles = nullptr;

@@ -20,9 +20,9 @@ bool holds(const Bounds3& box, const Bounds3& inner) {
 }
 
 enum class Boxes {
-    Any,     // not looked at
-    Nested,  // each in its parent's
-    Holding, // and triangles in their leaf's
+    Any,     // not checked
+    Nested,  // each lies within its parent's box
+    Holding, // nested, and triangles lie within their leaf's box
 };
 
 /// A triangle in a leaf.
@@ -72,7 +72,7 @@ public:
         return std::nullopt;
     }
 
-    /// Every triangle of every leaf, once the tree has been found sound.
+    /// Returns every triangle of every leaf, after the tree has passed.
     std::vector<Piece> take_pieces() { return std::move(pieces_); }
 
 private:
@@ -111,12 +111,12 @@ private:
     std::string fault_;
 };
 
-/// Orders triangles so that copies, whose flags may differ, are neighbours.
+/// Sort key that makes copies of a triangle neighbours, whatever their flags.
 auto identity_of(const BvhTriangle& t) {
     return std::tuple(t.instance, t.primitive, t.a.x, t.a.y, t.a.z, t.b.x, t.b.y, t.b.z, t.c.x, t.c.y, t.c.z);
 }
 
-/// Whether the point with weights (i, k, n - i - k) / n of the corners lies in one of the pieces' boxes.
+/// Whether the point with barycentric weights (i, k, n - i - k) / n lies in one of the pieces' boxes.
 bool covers(std::span<const Piece> pieces, const BvhTriangle& t, int i, int k, int n, double slack) {
     const double wa = static_cast<double>(i) / n, wb = static_cast<double>(k) / n,
                  wc = static_cast<double>(n - i - k) / n;
@@ -167,7 +167,7 @@ std::optional<std::string> find_split_fault(const Bvh& bvh, const std::vector<Bv
     auto first = pieces.cbegin();
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         const auto identity = identity_of(*wanted[i]);
-        if (i > 0 && identity == identity_of(*wanted[i - 1])) continue; // the mesh holds it twice
+        if (i > 0 && identity == identity_of(*wanted[i - 1])) continue; // the mesh contains the triangle twice
         const auto last = std::find_if(first, pieces.cend(),
                                        [&](const Piece& piece) { return identity_of(*piece.triangle) != identity; });
         const BvhTriangle& t = *wanted[i];

@@ -1,6 +1,6 @@
 #pragma once
 
-// Checks a tree: what every walk relies on. Used by tests, and on every tree that comes from a file.
+// Validates trees for traversal. Tests use it, and so does everything that reads a tree from a file.
 
 #include <optional>
 #include <string>
@@ -10,17 +10,16 @@
 
 namespace pertev {
 
-/// Whether walking the tree stays within its arrays and within a stack of kMaxBvhDepth: every link in range, every node
-/// and triangle reached exactly once, the depth as stated. Nothing when it is sound; else what is wrong.
+/// Checks that traversal stays within the arrays and within a stack of kMaxBvhDepth: every link in range, every node
+/// and triangle reached exactly once, the depth correct. Returns what is wrong, or nothing.
 std::optional<std::string> find_broken_link(const Bvh& bvh);
 
-/// The same, and that every box holds what is beneath it.
+/// Checks links as find_broken_link does, and that every box holds its contents.
 std::optional<std::string> find_fault(const Bvh& bvh);
 
-/// For a tree over `mesh` that may hold a triangle more than once, in boxes that hold but a part of it: links and depth
-/// as above, boxes within their parents', no triangle that is not the mesh's, none of the mesh's left out, and each
-/// covered by the boxes of the leaves that hold it. That is tried at its corners and on a lattice of points that is
-/// finer where the triangle is in more leaves; in exact arithmetic but for rounding in double.
+/// Checks a tree over `mesh` with split triangles: links and depth as find_broken_link does, boxes within their
+/// parents', no foreign triangle, none missing, and each covered by the boxes of the leaves that hold it. Coverage is
+/// tested at the corners and on a lattice that is finer if more leaves hold the triangle, up to rounding in double.
 std::optional<std::string> find_split_fault(const Bvh& bvh, const std::vector<BvhTriangle>& mesh);
 
 } // namespace pertev

@@ -15,7 +15,7 @@ uint32_t run_length(const std::vector<BvhTriangle>& triangles, uint32_t first) {
     return count;
 }
 
-/// The box of a piece of a leaf: of its triangles, within the leaf's, which may be clipped.
+/// Box of a piece of a leaf: the bounds of its triangles within the leaf's box, which may be clipped.
 Bounds3 piece_box(const std::vector<BvhTriangle>& triangles, uint32_t first, uint32_t count, const Bounds3& leaf) {
     Bounds3 box;
     for (uint32_t i = first; i < first + count; ++i) {
@@ -40,10 +40,10 @@ CollapsedTree::CollapsedTree(const Bvh& bvh, const CollapseSettings& settings, i
     plan();
 }
 
-/// Parents first, each left child right after its parent.
+/// Adds subtrees in depth-first order, each left child right after its parent.
 void CollapsedTree::add_subtrees(const Bvh& bvh) {
     struct Pending {
-        uint32_t link, count, parent; // kNoLink for a parent: it is a left child, or the root
+        uint32_t link, count, parent; // parent is kNoLink for a left child and for the root
         Bounds3 box;
     };
     subtrees_.reserve(2 * bvh.nodes.size() + 1);
@@ -71,7 +71,7 @@ void CollapsedTree::add_subtrees(const Bvh& bvh) {
     }
 }
 
-/// Which subtrees could be one leaf: few triangles, all in one run. The builder may have swapped children.
+/// Finds the subtrees that could be one leaf: few triangles that form one run. The builder may have swapped children.
 void CollapsedTree::join_runs() {
     const auto most = static_cast<uint32_t>(settings_.max_leaf);
     for (std::size_t i = subtrees_.size(); i-- > 0;) {
@@ -93,7 +93,7 @@ float CollapsedTree::leaf_cost(const CollapseSettings& settings, uint32_t count)
 
 void CollapsedTree::plan() {
     plans_.resize(subtrees_.size());
-    std::vector<Costs> stack; // of subtrees whose parent is still to come; the left one of two on top
+    std::vector<Costs> stack; // costs of subtrees whose parent comes later; a left child is on top of its sibling
     for (std::size_t i = subtrees_.size(); i-- > 0;) {
         const auto index = static_cast<uint32_t>(i);
         if (subtrees_[i].right == 0) {
@@ -109,7 +109,7 @@ void CollapsedTree::plan() {
 CollapsedTree::Costs CollapsedTree::plan_subtree(uint32_t index, const Costs* left, const Costs* right) {
     const Subtree& subtree = subtrees_[index];
     Plan& plan = plans_[index];
-    // Areas reach 2^84 and counts 2^31: no sum of their products overflows.
+    // Areas are at most 2^84 and counts at most 2^31, so no sum of their products overflows.
     const float area = subtree.box.half_area();
     const float as_leaf = subtree.count != 0 ? area * leaf_cost(settings_, subtree.count) : kInfinity;
     Costs costs;
@@ -118,7 +118,7 @@ CollapsedTree::Costs CollapsedTree::plan_subtree(uint32_t index, const Costs* le
         std::fill_n(costs.roots, kMaxWidth, as_leaf);
         return costs;
     }
-    // The least cost of exactly so many roots below this one, or of fewer on a side that has no more.
+    // Returns the least cost of exactly `roots` roots below this one, or fewer on a side that cannot have more.
     const auto distribute = [&](int roots) {
         float least = kInfinity;
         for (int k = 1; k < roots; ++k) {
@@ -134,7 +134,7 @@ CollapsedTree::Costs CollapsedTree::plan_subtree(uint32_t index, const Costs* le
     costs.roots[1] = min(as_leaf, as_node);
     for (int i = 2; i < width_; ++i) {
         const float cost = distribute(i);
-        if (cost > costs.roots[i - 1]) plan.splits[i] = kFewer; // of equals the shallower
+        if (cost > costs.roots[i - 1]) plan.splits[i] = kFewer; // if both cost the same, the shallower tree
         costs.roots[i] = min(cost, costs.roots[i - 1]);
     }
     return costs;
@@ -154,7 +154,7 @@ void CollapsedTree::expand(uint32_t subtree, int roots, uint32_t (&children)[kMa
 
 int CollapsedTree::children_of(uint32_t subtree, uint32_t (&children)[kMaxWidth]) const {
     int count = 0;
-    if (subtrees_[subtree].right == 0) { // only of a tree that is one leaf; a root is a node even where that costs more
+    if (subtrees_[subtree].right == 0) { // only if the tree is one leaf, because the root is always a node
         children[count++] = subtree;
         return count;
     }

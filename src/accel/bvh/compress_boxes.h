@@ -1,7 +1,7 @@
 #pragma once
 
-// Boxes in 8 bits a plane, rounded outwards, on either device: what compressed nodes are filled with. All of it is
-// exact: double holds what floats' differences leave.
+// Quantizes boxes to 8 bits per plane, rounded outwards, on host and device, for compressed nodes. All of it is
+// exact, because double holds the rounding errors of float differences.
 
 #include <cstdint>
 
@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-/// a - b without error: value + rest.
+/// The difference a - b without rounding error, as value + rest.
 struct Difference {
     double value, rest;
 };
@@ -22,24 +22,25 @@ HD inline Difference difference(float a, float b) {
     return {value, (x - (value - back)) - (y + back)};
 }
 
-inline constexpr double kCorner = 0x1p15; // quanta from a grid's origin to where its bytes count from
+inline constexpr double kCorner = 0x1p15; // quanta from a grid's origin to the plane that byte 0 stands for
 
-// Of the quantum's inverse, which is exact: quanta are powers of two.
+// The following functions take the inverse of the quantum, which is exact because quanta are powers of two.
 
-/// How many quanta x lies above the corner of a grid, without error where that is in [-2^14, 2^14].
+/// Distance of x from the corner of a grid in quanta, exact if it is in [-2^14, 2^14].
 HD inline Difference quanta_from_corner(float x, float origin, double quanta_a_metre) {
     const Difference d = difference(x, origin);
-    return {d.value * quanta_a_metre - kCorner, d.rest}; // a product by a power of two, a difference of neighbours
+    return {d.value * quanta_a_metre - kCorner, d.rest}; // exact: a product with a power of two, and a difference of
+                                                         // neighbours
 }
 
-/// Largest whole number of quanta from the corner that does not pass x, which lies above it.
+/// Largest whole number of quanta from the corner that does not exceed x, which lies above the corner.
 HD inline int quanta_below(float x, float origin, double quanta_a_metre) {
     const Difference d = quanta_from_corner(x, origin, quanta_a_metre);
     const int q = static_cast<int>(d.value);
     return static_cast<double>(q) == d.value && d.rest < 0 ? q - 1 : q;
 }
 
-/// Least whole number that is not short of it.
+/// Least whole number of quanta from the corner that is not below x.
 HD inline int quanta_above(float x, float origin, double quanta_a_metre) {
     const Difference d = quanta_from_corner(x, origin, quanta_a_metre);
     const int q = static_cast<int>(d.value);
@@ -48,26 +49,26 @@ HD inline int quanta_above(float x, float origin, double quanta_a_metre) {
 
 HD inline double quanta_a_metre(uint32_t exponent) { return static_cast<double>(float_of((254 - exponent) << 23)); }
 
-/// The float before x, which is finite.
+/// Next smaller float than x, which is finite.
 HD inline float float_before(float x) {
     if (x == 0) return float_of(0x80000001u);
     return float_of(x > 0 ? bits_of(x) - 1 : bits_of(x) + 1);
 }
 
-/// The greatest float that puts the corner of a grid of this quantum at lo or below.
+/// Greatest origin whose grid corner, with this quantum, is at most lo.
 HD inline float origin_below(float lo, uint32_t exponent) {
-    const Difference d = difference(lo, 32768.0f * float_of(exponent << 23)); // the product is a power of two
+    const Difference d = difference(lo, 32768.0f * float_of(exponent << 23)); // exact: the product is a power of two
     const float origin = static_cast<float>(d.value);
     const double rounded = static_cast<double>(origin);
     return rounded > d.value || (rounded == d.value && d.rest < 0) ? float_before(origin) : origin;
 }
 
-/// The least exponent whose grid of 255 quanta, laid from lo, reaches to hi.
+/// Least exponent whose grid of 255 quanta from lo reaches hi.
 HD inline uint32_t choose_exponent(float lo, float hi) {
-    const uint32_t of_extent = bits_of(hi - lo) >> 23; // 255 quanta of 2^-8 of this reach, or those of twice that do
+    const uint32_t of_extent = bits_of(hi - lo) >> 23; // 255 quanta of 2^-8 of this suffice, or twice as large ones
     uint32_t exponent = max(of_extent, kMinQuantumExponent + 9) - 9;
-    // lo is far from 0 where 2^15 quanta are less than half its last place: then the corner is a whole such place
-    // below.
+    // Far from 0, where 2^15 quanta are less than half of the last digit of lo, the corner lies a whole last digit
+    // below lo.
     exponent = max(exponent, max(bits_of(abs(lo)) >> 23, 40u) - 40u);
     while (true) {
         const Difference d = quanta_from_corner(hi, origin_below(lo, exponent), quanta_a_metre(exponent));
@@ -76,7 +77,7 @@ HD inline uint32_t choose_exponent(float lo, float hi) {
     }
 }
 
-/// Lays a node's grid over the box of all its children. Coordinates are at most kMaxCoordinate.
+/// Sets a node's grid for the box of all its children. Coordinates are at most kMaxCoordinate.
 HD inline void lay_grid(CompressedBvhNode& node, const Bounds3& all) {
     node.exponents_and_inner &= 0xff000000u;
     for (int axis = 0; axis < 3; ++axis) {
@@ -88,7 +89,7 @@ HD inline void lay_grid(CompressedBvhNode& node, const Bounds3& all) {
 
 inline constexpr uint32_t kEmptyPlanes[2] = {255, 0}; // lower, upper
 
-/// The bytes of planes[2 axis] and planes[2 axis + 1] of one child, on a grid that reaches around it.
+/// Quantizes the planes of one child along an axis, on a grid that encloses the child.
 HD inline void compress_extent(const CompressedBvhNode& node, int axis, const Bounds3& box, uint32_t& lower,
                                uint32_t& upper) {
     const double scale = quanta_a_metre(node.exponents_and_inner >> (8 * axis) & 0xff);
@@ -96,7 +97,7 @@ HD inline void compress_extent(const CompressedBvhNode& node, int axis, const Bo
     upper = static_cast<uint32_t>(quanta_above(component(box.hi, axis), node.origin[axis], scale));
 }
 
-/// Lays the grid and rounds boxes outwards; empty ones are left out.
+/// Sets the grid and quantizes the boxes; empty ones are skipped.
 HD inline void compress_boxes(CompressedBvhNode& node, const Bounds3& all, const Bounds3 (&slots)[8]) {
     lay_grid(node, all);
     for (int axis = 0; axis < 3; ++axis) {

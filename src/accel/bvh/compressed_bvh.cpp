@@ -17,7 +17,7 @@ Bounds3 child_box(const WideBvhNode<8>& node, int k) {
             {node.planes[1][k], node.planes[3][k], node.planes[5][k]}};
 }
 
-constexpr uint64_t kNodesAtOnce = 256; // of one thread
+constexpr uint64_t kNodesAtOnce = 256; // nodes per task
 
 int byte_of(const uint32_t (&words)[2], int slot) { return static_cast<int>(words[slot / 4] >> 8 * (slot % 4) & 0xff); }
 
@@ -48,14 +48,14 @@ void assign_slots(const WideBvhNode<8>& node, int (&child_of_slot)[8]) {
     Bounds3 all;
     int count = 0;
     for (; count < 8 && node.child[count] != kNoLink; ++count) all.extend(child_box(node, count));
-    float costs[8][8] = {}; // child, slot
+    float costs[8][8] = {}; // [child][slot]
     for (int k = 0; k < count; ++k) {
         const Vec3 from = child_box(node, k).centre() - all.centre();
         for (int s = 0; s < 8; ++s) {
             costs[k][s] = (s & 1 ? -from.x : from.x) + (s & 2 ? -from.y : from.y) + (s & 4 ? -from.z : from.z);
         }
     }
-    // Of all assignments the one of least cost: least[set] is that of the first |set| children in these slots.
+    // Finds the cheapest assignment: least[set] is the cost of the first |set| children in these slots.
     float least[256];
     uint8_t last[256] = {};
     std::fill(least, least + 256, kInfinity);
@@ -97,12 +97,12 @@ CompressedBvh compress(const WideBvh<8>& wide) {
     std::vector<Slots> slots(wide.nodes.size());
     parallel_for(slots.size(), kNodesAtOnce, [&](uint64_t i) { assign_slots(wide.nodes[i], slots[i].child); });
 
-    // Where each node, and each node's triangles, lie.
+    // Assigns positions to nodes and their triangles.
     std::vector<uint32_t> wide_of = {0};
     wide_of.reserve(wide.nodes.size());
     result.nodes.resize(wide.nodes.size());
     uint32_t triangles = 0;
-    std::vector<uint32_t> pending = {0}; // of the result
+    std::vector<uint32_t> pending = {0}; // nodes of the result
     while (!pending.empty()) {
         const uint32_t at = pending.back();
         pending.pop_back();
@@ -177,7 +177,7 @@ public:
     }
 
 private:
-    /// A node, and the way down to it: entry `parent` of these, and its slot there.
+    /// A node and its path from the root: the index of its parent's entry, and its slot there.
     struct Way {
         uint32_t node;
         int parent, slot, depth;
@@ -231,7 +231,7 @@ private:
         return {};
     }
 
-    /// In double, which is enough to tell a box that lies elsewhere.
+    /// Tests in double, which suffices to detect a box in the wrong place.
     static bool may_meet(const CompressedBvhNode& node, int slot, const Bounds3& box) {
         for (int axis = 0; axis < 3; ++axis) {
             const double step = static_cast<double>(quantum(node, axis));

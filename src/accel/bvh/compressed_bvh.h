@@ -1,14 +1,14 @@
 #pragma once
 
-// The 8-wide tree in 80 bytes a node: boxes in 8 bits a plane, rounded outwards, on a grid that each node lays over its
-// children. Five loads of 16 bytes fetch eight boxes.
+// The compressed 8-wide tree with 80 bytes per node: boxes in 8 bits per plane, rounded outwards, on a grid that each
+// node sets for its children. Five loads of 16 bytes fetch eight boxes.
 //
 // Source: Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017,
-// sections 3 and 4. Unlike theirs, a node says which triangles its leaves have in one word of three masks of children,
-// so that a walk turns a mask of children into one of triangles by a multiplication. A child's place (slot)
-// tells where it lies: the one in slot s comes early for rays that travel into octant s (bit 0: x decreases, bit 1: y,
-// bit 2: z), so a ray of octant r takes slots in ascending order of s ^ r, or the far ones first in descending order,
-// and sorts nothing.
+// sections 3 and 4. Unlike theirs, a node describes the triangles of its leaves in one word with three masks of
+// children, so that a multiplication turns a mask of children into one of triangles. The slot of a child encodes its
+// position: the child in slot s comes early for rays that travel into octant s (bit 0: x decreases, bit 1: y, bit 2:
+// z). A ray of octant r visits slots in ascending order of s ^ r, or in descending order for far children first, and
+// needs no sorting.
 
 #include <cstdint>
 #include <optional>
@@ -21,34 +21,35 @@
 
 namespace pertev {
 
-inline constexpr int kCompressedLeaf = 3; // triangles of a leaf at most
+inline constexpr int kCompressedLeaf = 3; // maximum number of triangles per leaf
 
-/// Leaves of two: Sponza's rays test 6 % fewer triangles and 1 % more nodes than with three, and are 1 to 2 % faster;
-/// the bunny's are as fast.
+/// With leaves of two, rays in Sponza test 6 % fewer triangles and 1 % more nodes than with three, and are 1 to 2 %
+/// faster; there is no difference in the bunny.
 inline constexpr CollapseSettings kCompressedCollapse = {.max_leaf = 2};
 
-// 2^-80: then the quantum divided by what a ray moves is a normal float. 2^34: 255 of them span [-2^40, 2^40].
+// From 2^-80 on, the quantum divided by a ray's direction is a normal float. At 2^34, 255 quanta span [-2^40, 2^40].
 inline constexpr uint32_t kMinQuantumExponent = 127 - 80, kMaxQuantumExponent = 127 + 34;
 
-inline constexpr uint32_t kByteBase = 0x47000000u; // as a float 2^15; with a byte q in bits 8 to 15, 2^15 + q
+inline constexpr uint32_t kByteBase = 0x47000000u; // 2^15 as a float; with a byte q in bits 8 to 15 it is 2^15 + q
 
 struct alignas(16) CompressedBvhNode {
-    float origin[3];              // of its grid, 2^15 quanta below the corner of what it holds: with kByteBase, a plane
-                                  // is origin + (2^15 + q) quanta
-    uint32_t exponents_and_inner; // bits 8 a .. 8 a + 7: exponent of axis a's quantum, as in a float; 24 + s: slot s is
-                                  // an inner node
-    uint32_t triangle_base = 0;   // the leaves' triangles, in the order of the bits of `triangles`; one load takes both
-    uint32_t triangles = 0;       // bit 8 k + s: slot s is a leaf of more than k triangles
-    uint32_t child_base = 0;      // the inner children's nodes, in the order of slots
-    uint32_t byte_base = kByteBase; // read from here, it is in a register where a walk's byte permutations need it;
-                                    // written in the code, each of them would first have its pattern moved to one
-    uint32_t planes[6][2]; // lower x, upper x, lower y, ... in quanta from the origin; byte s % 4 of word s / 4 is slot
-                           // s. Empty slots: 255 to 0; what a test says of them is masked out
+    float origin[3];                // origin of the grid, 2^15 quanta below the corner of its contents; with kByteBase,
+                                    // a plane is origin + (2^15 + q) quanta
+    uint32_t exponents_and_inner;   // bits 8 a .. 8 a + 7: exponent of axis a's quantum, as in a float; bit 24 + s:
+                                    // slot s is an inner node
+    uint32_t triangle_base = 0;     // first triangle of the leaves, ordered as the bits of `triangles`; one load reads
+                                    // both
+    uint32_t triangles = 0;         // bit 8 k + s: slot s is a leaf of more than k triangles
+    uint32_t child_base = 0;        // first of the inner children's nodes, ordered by slot
+    uint32_t byte_base = kByteBase; // kByteBase is read from here so that it is in a register for a traversal's byte
+                                    // permutations; as a constant it would be moved to a register for each of them
+    uint32_t planes[6][2]; // lower x, upper x, lower y, ... in quanta from the origin; byte s % 4 of word s / 4
+                           // belongs to slot s. Empty slots have 255 to 0, and their test results are masked out
 };
 static_assert(sizeof(CompressedBvhNode) == 80);
 
 HD inline uint32_t inner_slots(const CompressedBvhNode& node) { return node.exponents_and_inner >> 24; }
-/// The bits in `triangles` of all triangles of these slots.
+/// Bits in `triangles` of all triangles of these slots.
 HD inline uint32_t triangles_of_slots(const CompressedBvhNode& node, uint32_t slots) {
     return node.triangles & slots * 0x010101u;
 }
@@ -57,40 +58,42 @@ HD inline float quantum(const CompressedBvhNode& node, int axis) {
 }
 
 struct CompressedBvh {
-    std::vector<CompressedBvhNode> nodes; // [0] the root; the inner children of a node lie together
+    std::vector<CompressedBvhNode> nodes; // [0] is the root; the inner children of a node are contiguous
     std::vector<BvhTriangle> triangles;
     Bounds3 bounds;
-    int depth = 0;      // nodes on the longest way down; at most kMaxBvhDepth, and what a walk's stack needs
-    float sah_cost = 0; // of the wide tree that it was made from
+    int depth = 0;      // nodes on the longest path, and thus the stack size of a traversal; at most kMaxBvhDepth
+    float sah_cost = 0; // SAH cost of the wide tree from which it was made
 };
 
-/// What a walk needs; plain pointers, host's or device's.
+/// Arrays of a CompressedBvh for traversal, as plain pointers of host or device.
 struct CompressedBvhView {
-    const CompressedBvhNode* nodes = nullptr; // null where there is no triangle
+    const CompressedBvhNode* nodes = nullptr; // null if there is no triangle
     const BvhTriangle* triangles = nullptr;
     float bounds_max_abs = 0; // largest |coordinate| of the bounds
 };
 
 CompressedBvhView view_of(const CompressedBvh& bvh);
 
-/// Leaves of `wide` hold at most kCompressedLeaf triangles. The same for any number of threads.
+/// Compresses a wide tree whose leaves hold at most kCompressedLeaf triangles. The result does not depend on the
+/// number of threads.
 CompressedBvh compress(const WideBvh<8>& wide);
 
-/// The collapse of least cost, compressed. max_leaf is at most kCompressedLeaf.
+/// Collapses a binary tree with the least cost and compresses it. max_leaf is at most kCompressedLeaf.
 CompressedBvh make_compressed_bvh(const Bvh& bvh, const CollapseSettings& settings = kCompressedCollapse);
 
-/// Whether links are sound, each node and triangle is reached once, the depth is as stated, and every decoded box, as
-/// the exact numbers that it stands for, holds every triangle beneath it. Nothing when it is sound, else what is wrong.
-/// `clipped`: the tree has spatial splits, so a box need only meet the triangles beneath it.
+/// Checks that links are valid, each node and triangle is reached once, the depth is correct, and every decoded box,
+/// in exact arithmetic, holds every triangle below it. Returns what is wrong, or nothing. `clipped` means a tree with
+/// spatial splits, whose boxes need only overlap the triangles below.
 std::optional<std::string> find_fault(const CompressedBvh& bvh, bool clipped = false);
 
-/// Lays the grid over `slots` (empty ones are left out; one is not) and rounds them outwards.
+/// Sets the grid for `slots`, of which at least one is not empty, and quantizes them outwards.
 void set_boxes(CompressedBvhNode& node, const Bounds3 (&slots)[8]);
 
-/// Whether the decoded box of a slot holds a box, decided exactly.
+/// Whether the decoded box of a slot holds a box, in exact arithmetic.
 bool holds(const CompressedBvhNode& node, int slot, const Bounds3& box);
 
-/// The slots of up to 8 children by least sum of their distances along the slots' octants; kNoLink's stay empty.
+/// Assigns up to 8 children to slots with the least sum of distances along the slots' octants. Slots of kNoLink stay
+/// empty.
 void assign_slots(const WideBvhNode<8>& node, int (&child_of_slot)[8]); // -1: empty
 
 } // namespace pertev

@@ -24,7 +24,7 @@ void add_parent_links(Bvh& bvh) {
     parallel_for(bvh.nodes.size(), kGrain, [&](uint64_t i) {
         BvhNode& node = bvh.nodes[i];
         node.split = split_of(node);
-        for (uint32_t k = 0; k < 2; ++k) { // each node is written to by its one parent
+        for (uint32_t k = 0; k < 2; ++k) { // only the one parent of a node writes to it
             if (node.child[k] & kLeafBit) continue;
             bvh.nodes[node.child[k]].parent = static_cast<uint32_t>(i) | (k == 1 ? kSecondChildBit : 0u);
         }

@@ -12,7 +12,7 @@ bool holds(const SkipNode& node, Vec3 lo, Vec3 hi) {
            hi.z <= node.hi.z;
 }
 
-/// What is wrong with the leaf at node i; marks its triangles as seen.
+/// Checks the leaf at node i and marks its triangles as seen. Returns what is wrong, or nothing.
 std::optional<std::string> find_leaf_fault(const SkipBvh& bvh, std::size_t i, bool boxes_hold_triangles,
                                            std::vector<bool>& seen) {
     const SkipNode& node = bvh.nodes[i];
@@ -35,7 +35,7 @@ std::optional<std::string> find_leaf_fault(const SkipBvh& bvh, std::size_t i, bo
 SkipBvh make_skip_bvh(const Bvh& bvh) {
     SkipBvh skip = {{}, bvh.triangles, bvh.bounds};
     if (bvh.root == kNoLink) return skip;
-    // Inner nodes and one leaf more; `next` must be able to name the end.
+    // inner nodes, and one leaf more than these; `next` must be able to name the end
     const uint64_t count = 2 * static_cast<uint64_t>(bvh.nodes.size()) + 1;
     if (count >= kNoLink) {
         throw Error(ErrorCode::OverLimit, fmt::format("{} nodes with skip links; the limit is {}", count, kNoLink - 1));
@@ -44,7 +44,7 @@ SkipBvh make_skip_bvh(const Bvh& bvh) {
     struct Pending {
         uint32_t link;
         Bounds3 box;
-        uint32_t opened; // kNoLink: not yet; else the node in the list whose subtree is complete now
+        uint32_t opened; // kNoLink before it is opened; then its node in the list, whose subtree is now complete
     };
     std::vector<Pending> pending = {{bvh.root, bvh.bounds, kNoLink}};
     while (!pending.empty()) {
@@ -72,7 +72,7 @@ SkipBvhView view_of(const SkipBvh& bvh) {
 
 std::optional<std::string> find_fault(const SkipBvh& bvh, bool boxes_hold_triangles) {
     std::vector<bool> seen(bvh.triangles.size());
-    std::vector<std::size_t> open; // inner nodes whose subtrees hold the current one
+    std::vector<std::size_t> open; // inner nodes whose subtrees contain the current node
     for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {
         while (!open.empty() && bvh.nodes[open.back()].next == i) open.pop_back();
         const SkipNode& node = bvh.nodes[i];

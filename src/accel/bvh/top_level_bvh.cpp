@@ -12,7 +12,7 @@ struct WorldBox {
     float reach;
 };
 
-/// Box of the eight moved corners, rounded outwards, by centre and half size along each axis.
+/// Box around the eight transformed corners, rounded outwards, computed from centre and half size.
 WorldBox move_box(const Transform& m, const Bounds3& local) {
     WorldBox world{{}, 0};
     const auto axis = [&](Vec3 row, float translation, float& lo, float& hi) {
@@ -35,13 +35,13 @@ WorldBox move_box(const Transform& m, const Bounds3& local) {
     return world;
 }
 
-/// All that instance `placed` takes up of the world while it moves from `rest`.
+/// Box of everything that instance `placed` covers while it moves from `rest`.
 WorldBox swept(const WorldBox& rest, const PlacedBvh& placed) {
     const MotionKeys& motions = *placed.motions;
     WorldBox all = {swept_bounds(motions, placed.motion, rest.bounds), 0};
-    all.bounds.extend(rest.bounds); // rays may ask for it there (kAtRest)
+    all.bounds.extend(rest.bounds); // rays may query it at rest (kAtRest)
     const float lengths = max_component(abs(motions.pivots[placed.motion])) + all.bounds.max_abs() + rest.reach;
-    all.reach = 1.01f * lengths; // the pivot's places lie within the bounds
+    all.reach = 1.01f * lengths; // all positions of the pivot lie within the bounds
     return all;
 }
 
@@ -65,7 +65,7 @@ TopLevelBvh build_top_level_bvh(std::span<const PlacedBvh> instances) {
     top.bounds = tree.bounds;
     top.root = tree.root;
     top.depth = tree.depth;
-    // In the tree's order: one instance a leaf, so a leaf link is a position.
+    // Records in the tree's order: one instance per leaf, so a leaf link is a position.
     std::vector<InstanceRecord> ordered;
     for (const uint32_t id : tree.order) ordered.push_back(top.instances[id]);
     top.instances = std::move(ordered);

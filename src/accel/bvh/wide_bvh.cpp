@@ -24,7 +24,7 @@ Bounds3 child_bounds(const WideBvhNode<kWidth>& node, int k) {
             {node.planes[1][k], node.planes[3][k], node.planes[5][k]}};
 }
 
-/// Inner children still name subtrees.
+/// Makes the node of a subtree. Inner children still name subtrees.
 template <int kWidth>
 WideBvhNode<kWidth> make_node(const CollapsedTree& tree, uint32_t subtree) {
     uint32_t children[kMaxWidth];
@@ -42,7 +42,7 @@ WideBvhNode<kWidth> make_node(const CollapsedTree& tree, uint32_t subtree) {
     return node;
 }
 
-/// Nodes, depth and cost; no triangles yet.
+/// Assembles nodes, depth and cost, without triangles.
 template <int kWidth>
 WideBvh<kWidth> assemble(const Bvh& bvh, const CollapseSettings& settings) {
     const CollapsedTree tree(bvh, settings, kWidth);

@@ -1,7 +1,7 @@
 #pragma once
 
-// The same tree with up to N children a node: fewer and longer steps, for walks that test N boxes at once. Made from a
-// binary tree by the collapse of least expected cost (collapse_tree.h).
+// The N-wide tree: fewer but larger steps for traversals that test N boxes at once. It is made from a binary tree by
+// the collapse with the least SAH cost (collapse_tree.h).
 //
 // Source of the idea: Wald, Benthin, Boulos, "Getting Rid of Packets", IEEE RT 2008; Dammertz, Hanika, Keller, "Shallow
 // Bounding Volume Hierarchies for Fast SIMD Ray Tracing of Incoherent Rays", EGSR 2008.
@@ -19,30 +19,31 @@ namespace pertev {
 
 template <int kWidth>
 struct alignas(64) WideBvhNode {
-    float planes[6][kWidth]; // lower x, upper x, lower y, upper y, lower z, upper z; a place left empty: +-inf
-    uint32_t child[kWidth];  // index of a node, or kLeafBit | first triangle; kNoLink: empty. No place after it is used
-    uint32_t count[kWidth];  // triangles of a leaf; 0: an inner node, or empty
+    float planes[6][kWidth]; // lower x, upper x, lower y, upper y, lower z, upper z; +-inf in an empty slot
+    uint32_t child[kWidth];  // index of a node, or kLeafBit | first triangle; kNoLink in an empty slot, which only
+                             // empty slots follow
+    uint32_t count[kWidth];  // triangles of a leaf; 0 for an inner node or an empty slot
 };
 static_assert(sizeof(WideBvhNode<4>) == 128 && sizeof(WideBvhNode<8>) == 256);
 
 template <int kWidth>
 struct WideBvh {
-    std::vector<WideBvhNode<kWidth>> nodes; // depth first, [0] the root; none where there is no triangle
-    std::vector<BvhTriangle> triangles;     // the binary tree's, with the ends of these leaves in their flags
+    std::vector<WideBvhNode<kWidth>> nodes; // depth first, [0] is the root; empty if there is no triangle
+    std::vector<BvhTriangle> triangles;     // the binary tree's, with kLastInLeaf set for these leaves
     Bounds3 bounds;
-    int depth = 0;      // nodes on the longest way down; at most kMaxBvhDepth
-    float sah_cost = 0; // expected cost of a ray that meets the bounds, by the collapse's settings
+    int depth = 0;      // nodes on the longest path; at most kMaxBvhDepth
+    float sah_cost = 0; // expected cost of a ray that hits the bounds, by the costs of the collapse
 };
 
-/// What a walk needs; plain pointers, host's or device's.
+/// Arrays of a WideBvh for traversal, as plain pointers of host or device.
 template <int kWidth>
 struct WideBvhView {
-    const WideBvhNode<kWidth>* nodes = nullptr; // null where there is no triangle
+    const WideBvhNode<kWidth>* nodes = nullptr; // null if there is no triangle
     const BvhTriangle* triangles = nullptr;
     float bounds_max_abs = 0; // largest |coordinate| of the bounds
 };
 
-/// Entries that a walk's stack needs: at each level all children but the one it goes on to.
+/// Size of a traversal stack: at each level all children but the one that is visited.
 template <int kWidth>
 inline constexpr int kWideStackSize = kMaxBvhDepth * (kWidth - 1) + 1;
 
@@ -52,18 +53,18 @@ WideBvhView<kWidth> view_of(const WideBvh<kWidth>& bvh) {
     return {bvh.nodes.data(), bvh.triangles.data(), bvh.bounds.max_abs()};
 }
 
-/// kWidth is 4 or 8. Throws Error(OverLimit) where leaves longer than max_leaf, cut up, make it deeper than a walk's
-/// stack allows.
+/// Makes the wide tree; kWidth is 4 or 8. Throws Error(OverLimit) if splitting leaves longer than max_leaf makes it
+/// deeper than the traversal stack allows.
 template <int kWidth>
 WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings = {});
 
-/// For the CPU's vector unit (trace/wide/walk_wide.h): eight boxes at a time, and four triangles, for about twice what
-/// the boxes of a node cost.
+/// Parameters for the CPU's SIMD unit (trace/wide/walk_wide.h): eight boxes at a time, and four triangles for about
+/// twice the cost of a node's boxes.
 inline constexpr int kWideChildren = 8;
 inline constexpr CollapseSettings kSimdCollapse = {.max_leaf = 4, .triangles_at_once = 4, .triangle_cost = 2};
 
-/// Whether links and counts are sound, each node and triangle is reached once, the depth is as stated and every box
-/// holds what is beneath it. Nothing when it is sound, else what is wrong. `clipped`: the tree has spatial splits, so a
+/// Checks that links and counts are valid, each node and triangle is reached once, the depth is correct and every box
+/// holds its contents. Returns what is wrong, or nothing. `clipped` means a tree with spatial splits, in which a
 /// leaf's box holds only a part of each of its triangles.
 template <int kWidth>
 std::optional<std::string> find_fault(const WideBvh<kWidth>& bvh, bool clipped = false);

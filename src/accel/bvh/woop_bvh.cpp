@@ -16,7 +16,7 @@ struct Row {
     float shift;
 };
 
-/// direction / size, 0 at `origin`.
+/// Returns the row direction / size that is 0 at `origin`.
 Row make_row(DoubleVec3 direction, double size, DoubleVec3 origin) {
     const DoubleVec3 d = direction / size;
     return {to_float(d), static_cast<float>(-dot(d, origin))};
@@ -36,7 +36,7 @@ WoopTriangle make_woop_triangle(Vec3 a, Vec3 b, Vec3 c, bool last) {
         v = make_row(cross(n, ab), n2, origin);
     if (!is_finite(height) || !is_finite(u) || !is_finite(v)) {
         height = v = {{0, 0, 0}, 0};
-        u = {{0, 0, 0}, -1}; // outside, whatever t the height gives, which holds a flag
+        u = {{0, 0, 0}, -1}; // outside, whatever t the height gives; the height still holds a flag
     }
     height.row.x = float_of((bits_of(height.row.x) & ~1u) | (last ? kLastInLeaf : 0u));
     return {height.row, height.shift, u.row, u.shift, v.row, v.shift};

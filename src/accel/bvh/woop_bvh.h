@@ -1,8 +1,8 @@
 #pragma once
 
-// A binary tree whose triangles are stored a second time, as the affine transforms that take each to the unit triangle
-// (0,0,0) (1,0,0) (0,1,0): in its space a ray is tested by three dot products. For the laboratory, since that is what
-// the kernels of Aila and Laine do; far from the origin it loses rays, more than a test of the corners does.
+// A binary tree that also stores each triangle as the affine transform to the unit triangle (0,0,0) (1,0,0) (0,1,0),
+// in whose space three dot products test a ray. It is for the laboratory, because the kernels of Aila and Laine use
+// it. Far from the origin it loses more rays than a test of the vertices.
 //
 // Source: Woop, "A Ray Tracing Hardware Architecture for Dynamic Scenes", M.Sc. thesis, Saarland University, 2004,
 // section 4.2. It is not the watertight test of Woop, Benthin and Wald.
@@ -16,9 +16,9 @@
 
 namespace pertev {
 
-/// Three rows of the transform: at point p the height over the plane, u and v are `row . p + shift`. 48 bytes, three
-/// loads of 16. The height's row has the length 1. Triangles without area, or too small or large for it, have u = -1
-/// everywhere: they are never hit.
+/// Three rows of the transform: at point p the height over the plane, u and v are `row . p + shift`. It has 48 bytes,
+/// loaded as three times 16. The height's row has length 1. Triangles without area, or too small or too large, have u
+/// = -1 everywhere and are never hit.
 struct alignas(16) WoopTriangle {
     Vec3 normal; // the lowest bit of its x is kLastInLeaf
     float height = 0;
@@ -29,19 +29,19 @@ struct alignas(16) WoopTriangle {
 };
 static_assert(sizeof(WoopTriangle) == 48);
 
-/// `last`: kLastInLeaf. u belongs to corner b, v to c.
+/// Makes the transform; u belongs to vertex b and v to vertex c. `last` sets kLastInLeaf.
 WoopTriangle make_woop_triangle(Vec3 a, Vec3 b, Vec3 c, bool last);
 
 struct WoopBvh : Bvh {
-    std::vector<WoopTriangle> transforms; // [triangles.size()], in their order
+    std::vector<WoopTriangle> transforms; // [triangles.size()], in the order of the triangles
 };
 
-/// What a walk needs. Of `triangles` it reads which they are, of those alone that are hit.
+/// Arrays of a WoopBvh for traversal. Of `triangles` it reads only the ids of those that are hit.
 struct WoopBvhView : BvhView {
     const WoopTriangle* transforms = nullptr;
 };
 
-/// The same for any number of threads.
+/// Adds the transforms. The result does not depend on the number of threads.
 WoopBvh make_woop_bvh(const Bvh& bvh);
 
 WoopBvhView view_of(const WoopBvh& bvh);

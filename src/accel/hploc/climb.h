@@ -1,15 +1,16 @@
 #pragma once
 
-// The bottom-up build: threads climb the radix tree of the Morton codes from its leaves; whoever comes second to a node
-// joins the clusters of its two children by nearest neighbours until few are left, and the root's become one.
+// The bottom-up H-PLOC build: threads climb the radix tree of the Morton codes from its leaves. The second thread to
+// reach a node merges the clusters of its two children by nearest neighbours until few are left; at the root one is
+// left.
 //
 // Source: Benthin, Meister, Barczak, Mehalwal, Tsakok, Kensler, "H-PLOC: Hierarchical Parallel Locally-Ordered
-// Clustering for Bounding Volume Hierarchy Construction", HPG 2024, sections 3 and 4; the climb is Apetrei's, "Fast and
-// Simple Agglomerative LBVH Construction", CGVC 2014. What a node of the radix tree is left with is a function of what
-// its children were left with, so the tree does not depend on who comes when. Ties as in accel/builders/build_ploc.cpp.
+// Clustering for Bounding Volume Hierarchy Construction", HPG 2024, sections 3 and 4; the climb is from Apetrei,
+// "Fast and Simple Agglomerative LBVH Construction", CGVC 2014. The clusters that a radix node leaves depend only on
+// those that its children leave, so the tree does not depend on the order of threads. Ties are resolved as in
+// accel/builders/build_ploc.cpp.
 //
-// Here is the form of one thread a leaf, for the CPU; tracer/hploc/warp_kernels.h has
-// the same with a warp a node.
+// This is the CPU's form with one thread per leaf; tracer/hploc/warp_kernels.h has the form with one warp per node.
 
 #include <cstdint>
 
@@ -19,34 +20,35 @@
 
 namespace pertev::hploc {
 
-inline constexpr uint32_t kKept = 16;        // clusters that a node of the radix tree leaves to its parent, at most
-inline constexpr uint32_t kMost = 2 * kKept; // it begins with
-inline constexpr uint32_t kSearchRadius = 8; // neighbours looked at to either side
+inline constexpr uint32_t kKept = 16;        // maximum number of clusters that a radix node leaves to its parent
+inline constexpr uint32_t kMost = 2 * kKept; // maximum number of clusters before merging
+inline constexpr uint32_t kSearchRadius = 8; // neighbours searched on either side
 
 struct Climb {
     ClusterTree tree;
-    const uint64_t* codes; // [n], ascending; null: halves of equal counts, and one cluster a node
-    Cluster* clusters;     // [n]: what the node with leaves [first, last], more than kKept, was left with stands from
-                           // `first` on; fewer than kKept end with kNone
-    uint32_t* ends;        // [n], kNone at first: for the gap after leaf i, the far end of the range that came there
-    uint32_t* root;        // the tree's, when all is done
+    const uint64_t* codes; // [n], ascending; null: halves of equal counts, and one cluster per node
+    Cluster* clusters;     // [n]: the clusters left by a node with leaves [first, last], more than kKept, start at
+                           // `first`; fewer than kKept end with kNone
+    uint32_t* ends;        // [n], kNone at first: for the gap after leaf i, the far end of the range that arrived
+                           // there
+    uint32_t* root;        // root of the tree, set at the end
 
     HD uint32_t kept() const { return codes != nullptr ? kKept : 1; }
 };
 
-/// A node of the radix tree: leaves [first, middle) and [middle, last].
+/// A radix node with leaves [first, middle) and [middle, last].
 struct LeafRange {
     uint32_t first, middle, last;
 
     HD uint32_t size() const { return last - first + 1; }
 };
 
-/// Whether the gap after leaf i lies deeper in the radix tree than that after leaf k.
+/// Whether the gap after leaf i is deeper in the radix tree than the gap after leaf k.
 HD inline bool is_deeper(const uint64_t* codes, uint32_t i, uint32_t k) {
     if (codes == nullptr) return (i ^ (i + 1)) < (k ^ (k + 1));
     const uint64_t of_i = codes[i] ^ codes[i + 1], of_k = codes[k] ^ codes[k + 1];
     if (of_i != of_k) return of_i < of_k;
-    return (i ^ (i + 1)) < (k ^ (k + 1)); // only of equal codes: 0
+    return (i ^ (i + 1)) < (k ^ (k + 1)); // equal codes only: 0
 }
 
 HD inline uint32_t exchange(uint32_t* target, uint32_t value) {
@@ -57,7 +59,8 @@ HD inline uint32_t exchange(uint32_t* target, uint32_t value) {
 #endif
 }
 
-/// Goes from a node (leaves [first, last], not all) to its parent. False where the other child is still to come.
+/// Moves from a node (leaves [first, last], not all) to its parent. Returns false if the other child has not arrived
+/// yet.
 HD inline bool go_up(const Climb& climb, LeafRange& range) {
     const uint32_t n = climb.tree.count;
     const bool is_left =
@@ -75,28 +78,28 @@ HD inline bool go_up(const Climb& climb, LeafRange& range) {
     return true;
 }
 
-/// Whether what a node holds must be joined: else its clusters are its leaves.
+/// Whether the node's clusters must be merged; otherwise its clusters are its leaves.
 HD inline bool needs_joining(const Climb& climb, const LeafRange& range) {
     return range.size() > climb.kept() || range.size() == climb.tree.count;
 }
 
-/// How many are left when a node is done.
+/// Number of clusters that are left when a node is done.
 HD inline uint32_t clusters_to_leave(const Climb& climb, const LeafRange& range) {
     return range.size() == climb.tree.count ? 1 : climb.kept();
 }
 
-/// How much two neighbours at positions i and k would like to be one: the less, the more. Areas are not negative.
+/// Sort key of merging the neighbours at positions i and k; the smallest is preferred. Areas are not negative.
 HD inline uint64_t preference(float area, uint32_t i, uint32_t k) {
     return static_cast<uint64_t>(bits_of(area)) << 32 | (i ^ k);
 }
 
-/// Cluster number `place` of those that the node with leaves [first, end) was left with; kNone: there are no more.
+/// Cluster `place` of those that the node with leaves [first, end) left; kNone past the last.
 HD inline Cluster cluster_left(const Climb& climb, uint32_t first, uint32_t end, uint32_t place) {
     if (end - first <= climb.kept()) return {first + place, first + place}; // its leaves
     return load_fresh(climb.clusters + first + place);
 }
 
-/// The clusters of a node, by one thread.
+/// Merges the clusters of a node in one thread.
 HD inline void join_range(const Climb& climb, const LeafRange& range) {
     Cluster clusters[kMost];
     Bounds3 boxes[kMost];
@@ -146,7 +149,7 @@ HD inline void join_range(const Climb& climb, const LeafRange& range) {
     if (range.size() == climb.tree.count) *climb.root = clusters[0].node;
 }
 
-/// One leaf each: climbs as far as it is the second to come.
+/// One call per leaf: climbs while it is the second to arrive.
 struct ClimbFromLeaves {
     Climb climb;
 

@@ -1,13 +1,13 @@
 #pragma once
 
-// The binary tree that H-PLOC makes, and what each of its nodes knows of the wide tree that it may become. Every node
-// has a number that follows from the triangles alone: leaf i is triangle i along the Morton curve; a cluster is named
-// for the first leaf of its first part, so of two that merge the second's name is never used again, and the node that
-// joins them takes it. No counter is shared, so any number of threads make the same bytes.
+// The binary tree that H-PLOC makes, with each node's plan for the conversion to a wide tree. A node's number depends
+// only on the triangles: leaf i is triangle i along the Morton curve. A cluster is named by the first leaf of its
+// first part, so when two merge, the second's name is never used again, and the new node takes it. There is no shared
+// counter, so any number of threads produces the same bytes.
 //
-// Source of the plan: Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
-// HPG 2017, section 3.1, as in accel/bvh/collapse_tree.h, but made on the way up, with the sizes of what each choice
-// leads to, so that on the way down every wide node finds its place by itself.
+// Source of the plan: Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
+// BVHs", HPG 2017, section 3.1, as in accel/bvh/collapse_tree.h, but made on the way up, with the size of each
+// choice, so that on the way down every wide node finds its position independently.
 
 #include <cstdint>
 
@@ -20,42 +20,42 @@ namespace pertev::hploc {
 
 inline constexpr uint32_t kNone = 0xffffffffu;
 
-/// Nodes [0, n) are the leaves, n + q for q in [1, n) what was joined when the cluster named q ended.
+/// Nodes [0, n) are leaves. Node n + q, for q in [1, n), was made when the cluster named q ended.
 struct alignas(32) ClusterNode {
     Vec3 lo;
-    uint32_t left; // a node; of a leaf, its triangle's place in the input
+    uint32_t left; // a node; in a leaf the triangle's index in the input
     Vec3 hi;
-    uint32_t right; // a node; kNone: a leaf
+    uint32_t right; // a node; kNone in a leaf
 
     HD Bounds3 box() const { return {lo, hi}; }
     HD bool is_leaf() const { return right == kNone; }
 };
 
-/// The least costs of a subtree as at most 1 to 7 roots, and how they come about.
+/// The least costs of a subtree with at most 1 to 7 roots, and the choices that give them.
 struct alignas(32) CollapsePlan {
-    float cost[kMaxWidth - 1]; // [j - 1]: as at most j roots
-    uint32_t splits; // bits 3 j .. 3 j + 2, j in [2, 8]: how many of j roots the left child has; 0: j - 1 roots
-                     // are as good. Bit 0: as one root it is a leaf
+    float cost[kMaxWidth - 1]; // [j - 1]: with at most j roots
+    uint32_t splits; // bits 3 j .. 3 j + 2, j in [2, 8]: how many of j roots the left child has; 0: j - 1 roots are
+                     // as good. Bit 0: with one root it is a leaf
 
     HD bool is_leaf() const { return (splits & 1u) != 0; }
     HD uint32_t left_roots(uint32_t roots) const { return splits >> (3 * roots) & 7u; }
 };
 
-/// What these plans lead to.
+/// The sizes that these plans lead to.
 struct alignas(32) CollapseSize {
-    uint32_t nodes[kMaxWidth - 1]; // [j - 1]: wide nodes of the subtree as at most j roots
+    uint32_t nodes[kMaxWidth - 1]; // [j - 1]: wide nodes of the subtree with at most j roots
     uint32_t triangles;
 };
 
 struct ClusterTree {
-    ClusterNode* nodes;  // [2 n]; [n] is not used
+    ClusterNode* nodes;  // [2 n]; [n] is unused
     CollapsePlan* plans; // [n], of node n + q
-    CollapseSize* sizes; // [n], likewise
+    CollapseSize* sizes; // [n], of node n + q
     uint32_t count;      // n, at least 1
     CollapseSettings costs;
 };
 
-/// A value that another thread of this launch may have written: past the caches that do not hear of that.
+/// Loads a value that another thread of this launch may have written, bypassing caches that are not coherent.
 template <class T>
 HD inline T load_fresh(const T* at) {
 #if defined(__CUDA_ARCH__)
@@ -74,7 +74,7 @@ HD inline T load_fresh(const T* at) {
 #endif
 }
 
-/// Of a leaf or an inner node.
+/// Plan and size of a leaf or an inner node.
 struct Plans {
     CollapsePlan plan;
     CollapseSize size;
@@ -91,17 +91,17 @@ HD inline Plans leaf_plans(const ClusterTree& tree, float area) {
     return plans;
 }
 
-/// `area`: of the node's box.
+/// Plans of any node; `area` belongs to its box.
 HD inline Plans plans_of(const ClusterTree& tree, uint32_t node, float area) {
     if (node < tree.count) return leaf_plans(tree, area);
     return {load_fresh(tree.plans + (node - tree.count)), load_fresh(tree.sizes + (node - tree.count))};
 }
 
-/// The same decisions as CollapsedTree's, but that any triangles of a subtree may share a leaf.
+/// Makes the same decisions as CollapsedTree, except that any triangles of a subtree may share a leaf.
 HD inline Plans plan_inner(const CollapseSettings& costs, float area, const Plans& left, const Plans& right) {
     Plans plans;
     plans.size.triangles = left.size.triangles + right.size.triangles;
-    float least[kMaxWidth + 1]; // [j]: as exactly j roots, or fewer on a side that has no more
+    float least[kMaxWidth + 1]; // [j]: with exactly j roots, or fewer on a side that cannot have more
     uint32_t nodes[kMaxWidth + 1], splits[kMaxWidth + 1];
 #if defined(__CUDA_ARCH__)
 #pragma unroll
@@ -123,7 +123,7 @@ HD inline Plans plan_inner(const CollapseSettings& costs, float area, const Plan
     }
     const float as_node = least[kMaxWidth] + area * costs.node_cost;
     const bool may_be_leaf = plans.size.triangles <= static_cast<uint32_t>(costs.max_leaf);
-    // One triangle at a step, as the walk of compressed nodes takes them.
+    // One triangle per step, as in the traversal of compressed nodes.
     const float as_leaf = area * (costs.triangle_cost * static_cast<float>(plans.size.triangles));
     const bool leaf = may_be_leaf && as_leaf <= as_node;
     plans.plan.splits = splits[kMaxWidth] << (3 * kMaxWidth) | (leaf ? 1u : 0u);
@@ -133,7 +133,7 @@ HD inline Plans plan_inner(const CollapseSettings& costs, float area, const Plan
 #pragma unroll
 #endif
     for (int j = 2; j < kMaxWidth; ++j) {
-        const bool fewer = least[j] > plans.plan.cost[j - 2]; // of equals the shallower
+        const bool fewer = least[j] > plans.plan.cost[j - 2]; // if both cost the same, the shallower tree
         plans.plan.cost[j - 1] = fewer ? plans.plan.cost[j - 2] : least[j];
         plans.size.nodes[j - 1] = fewer ? plans.size.nodes[j - 2] : nodes[j];
         plans.plan.splits |= (fewer ? 0u : splits[j]) << (3 * j);
@@ -143,11 +143,11 @@ HD inline Plans plan_inner(const CollapseSettings& costs, float area, const Plan
 
 /// A part of the tree that has no parent yet.
 struct alignas(8) Cluster {
-    uint32_t node; // kNone: none
-    uint32_t name; // a leaf that no other cluster is named for
+    uint32_t node; // kNone if there is none
+    uint32_t name; // a leaf that names no other cluster
 };
 
-/// Joins two clusters whose boxes are given; returns what they are now. The node's number is the second's name.
+/// Merges two clusters with the given boxes and returns the new one. The node's number is the second's name.
 HD inline Cluster join(const ClusterTree& tree, Cluster left, const Bounds3& left_box, Cluster right,
                        const Bounds3& right_box) {
     Bounds3 both = left_box;

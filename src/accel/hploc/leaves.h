@@ -1,7 +1,7 @@
 #pragma once
 
-// From triangles to leaves along a Morton curve: bounds of all centres, a code for each, and, after the sort, a box for
-// each. The curve's cells are cubes: boxes of neighbours are then as thick as they are long.
+// Makes leaves along a Morton curve from triangles: bounds of all centres, a code for each triangle and, after the
+// sort, a box for each. The curve's cells are cubes, so that boxes of neighbours are as thick as they are long.
 
 #include <algorithm>
 #include <cstdint>
@@ -15,24 +15,24 @@
 
 namespace pertev::hploc {
 
-/// Sorts leaves by their codes, those of equal codes by their numbers, which `order` has first. On the host.
+/// Sorts leaves by code on the host; equal codes are sorted by number. `order` holds 0, 1, 2, ... before.
 inline void sort_along_curve(const uint64_t* codes, uint32_t* order, uint32_t count) {
     std::sort(order, order + count,
               [&](uint32_t a, uint32_t b) { return codes[a] != codes[b] ? codes[a] < codes[b] : a < b; });
 }
 
-/// Floats as integers of the same order, so that bounds are found by atomic minima: -0 lies before 0.
+/// Maps floats to integers of the same order, so that atomic minima find bounds; -0 comes before 0.
 HD inline int32_t ordered(float x) {
     const auto bits = static_cast<int32_t>(bits_of(x));
     return bits ^ (bits >> 31 & 0x7fffffff);
 }
 HD inline float unordered(int32_t x) { return float_of(static_cast<uint32_t>(x ^ (x >> 31 & 0x7fffffff))); }
 
-inline constexpr unsigned char kNothing = 0x7f; // every byte of OrderedBounds that hold nothing
+inline constexpr unsigned char kNothing = 0x7f; // every byte of empty OrderedBounds
 
-/// Bounds that many threads extend; of nothing all bytes are kNothing.
+/// Bounds that many threads extend; all bytes are kNothing while they are empty.
 struct OrderedBounds {
-    int32_t least[6]; // of x, y, z, -x, -y, -z
+    int32_t least[6]; // least x, y, z, -x, -y, -z
 
     HD Vec3 lo() const { return {unordered(least[0]), unordered(least[1]), unordered(least[2])}; }
     HD Vec3 hi() const { return {-unordered(least[3]), -unordered(least[4]), -unordered(least[5])}; }
@@ -40,7 +40,7 @@ struct OrderedBounds {
 
 HD inline void lower(int32_t* target, int32_t value) {
 #if defined(__CUDA_ARCH__)
-    if (value < *target) atomicMin(target, value); // one read too old costs an atomic operation, no more
+    if (value < *target) atomicMin(target, value); // an outdated read only costs an extra atomic operation
 #else
     int32_t seen = __atomic_load_n(target, __ATOMIC_RELAXED);
     while (value < seen &&
@@ -57,7 +57,7 @@ HD inline Bounds3 bounds_of(const BvhTriangle& t) {
     return box;
 }
 
-/// Twice the centre of a box.
+/// Doubled centre of a box.
 HD inline Vec3 centre_of(const Bounds3& box) { return box.lo + box.hi; }
 
 HD inline BvhTriangle load_triangle(const BvhTriangle* at) {
@@ -72,9 +72,9 @@ HD inline BvhTriangle load_triangle(const BvhTriangle* at) {
 #endif
 }
 
-inline constexpr uint32_t kTrianglesAtOnce = 8; // of a thread that looks for bounds
+inline constexpr uint32_t kTrianglesAtOnce = 8; // triangles per thread in the search for bounds
 
-/// The bounds of all centres; each thread takes every stride-th triangle.
+/// Finds the bounds of all centres; each thread reads every stride-th triangle.
 struct FindBounds {
     const BvhTriangle* triangles;
     uint32_t count, stride;
@@ -122,7 +122,7 @@ struct MakeCodes {
     }
 };
 
-/// Leaf i is triangle order[i].
+/// One call per leaf; leaf i is triangle order[i].
 struct PlaceLeaves {
     const BvhTriangle* triangles;
     const uint32_t* order;
@@ -133,7 +133,7 @@ struct PlaceLeaves {
         const Bounds3 box = hploc::bounds_of(load_triangle(triangles + triangle));
         climb.tree.nodes[i] = {box.lo, triangle, box.hi, kNone};
         climb.ends[i] = kNone;
-        if (i == 0) climb.tree.nodes[climb.tree.count] = {{}, kNone, {}, kNone}; // is not used
+        if (i == 0) climb.tree.nodes[climb.tree.count] = {{}, kNone, {}, kNone}; // this node is unused
     }
 };
 

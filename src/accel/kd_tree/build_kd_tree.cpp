@@ -10,12 +10,12 @@
 namespace pertev {
 namespace {
 
-/// Halves the longest side of the cell.
+/// Splits the longest side of the cell in the middle.
 class MedianKdSplitter {
 public:
     struct Part {
         uint32_t triangle;
-        Bounds3 box; // of what lies in the cell
+        Bounds3 box; // bounds of its part in the cell
     };
     struct Node : KdBuildNode {
         std::vector<Part> parts;
@@ -36,7 +36,7 @@ public:
         const Vec3 size = node.cell.size();
         const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
         const float lo = component(node.cell.lo, axis), hi = component(node.cell.hi, axis), at = 0.5f * (lo + hi);
-        // Planes nearer to each other than a walk moves them out tell no ray from another.
+        // Closer planes than the margin of a traversal would not separate any rays.
         if (!(hi - lo > 0x1p-19f * max_abs_ && at > lo && at < hi)) return std::nullopt;
         for (const Part& part : node.parts) add_part(part, node.cell, {axis, at}, below, above);
         below.count = static_cast<uint32_t>(below.parts.size());

@@ -1,11 +1,11 @@
 #pragma once
 
 // Builds the kd-tree over a set of triangles, by spatial median or by the surface area heuristic (sah_kd_splitter.h).
-// The tree is a function of the triangles and the settings: neither the number of threads nor their timing enters.
+// The tree depends only on the triangles and the settings, not on threads.
 //
-// Bounds: depth at most 8 + 1.3 log2(n) (Havran 2000), never over kMaxKdTreeDepth; references at most
-// max_references * n: each node has a share of them, which its children divide by what they hold, and a node whose
-// children would hold more than its share is a leaf.
+// Limits: the depth is at most 8 + 1.3 log2(n) (Havran 2000) and never over kMaxKdTreeDepth. There are at most
+// max_references * n references: each node has a budget, which its children share by their contents, and a node whose
+// children would exceed it becomes a leaf.
 
 #include <cstdint>
 #include <vector>
@@ -15,29 +15,29 @@
 namespace pertev {
 
 enum class KdSplit {
-    SpatialMedian, // halves the longest side until few triangles are left
+    SpatialMedian, // splits the longest side in the middle until few triangles are left
     Sah,
 };
 
 struct KdTreeSettings {
     KdSplit split = KdSplit::Sah;
-    int max_depth = kMaxKdTreeDepth; // [0, kMaxKdTreeDepth]; 8 + 1.3 log2(n) holds beside it
-    uint32_t max_leaf = 4;           // spatial median: a cell with no more triangles is a leaf
-    uint32_t max_references = 16;    // a triangle, on average; >= 1
-    float node_cost = 0.5f;          // of a step over one plane
-    float triangle_cost = 1.0f;      // of testing one triangle
-    float empty_bonus = 0.2f;        // [0, 1): by how much a cut that leaves a side empty is cheaper
+    int max_depth = kMaxKdTreeDepth; // [0, kMaxKdTreeDepth]; 8 + 1.3 log2(n) is a limit too
+    uint32_t max_leaf = 4;           // spatial median: a cell with at most this many triangles is a leaf
+    uint32_t max_references = 16;    // per triangle, on average; >= 1
+    float node_cost = 0.5f;          // cost of a traversal step
+    float triangle_cost = 1.0f;      // cost of testing one triangle
+    float empty_bonus = 0.2f;        // [0, 1): relative bonus of a split that leaves a side empty
 };
 
-/// Vertices are finite, |coordinate| <= kMaxCoordinate. Throws Error(OverLimit) for more than kMaxKdTreeTriangles
-/// triangles or kMaxKdTreeNodes nodes.
+/// Builds the tree. Vertices are finite, |coordinate| <= kMaxCoordinate. Throws Error(OverLimit) for more than
+/// kMaxKdTreeTriangles triangles or kMaxKdTreeNodes nodes.
 KdTree build_kd_tree(const std::vector<BvhTriangle>& triangles, const KdTreeSettings& settings = {});
 
-/// Half the area that rays see of a cell: its planes are moved out by what a walk from within the bounds moves them, so
-/// that a flat cell has some too.
+/// Half the area of a cell after its planes have moved out by the margin that a traversal uses within the bounds.
+/// Thus a flat cell has an area too.
 double kd_cell_area(const Bounds3& cell, float max_abs);
 
-/// The expected cost of a ray that meets the bounds.
+/// Expected cost of a ray that hits the bounds.
 float kd_tree_sah_cost(const KdTree& tree, float node_cost, float triangle_cost);
 
 } // namespace pertev

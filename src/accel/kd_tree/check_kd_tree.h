@@ -1,6 +1,6 @@
 #pragma once
 
-// Checks a kd-tree: what its walk relies on. Used by tests, and by the laboratory before it times anything.
+// Validates a kd-tree for traversal. Tests use it, and the laboratory before it measures.
 
 #include <optional>
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace pertev {
 
-/// Nothing when the tree is sound; else what is wrong. Sound: every node is reached exactly once and no deeper than
-/// stated; planes lie within their cells, so that the cells tile the bounds; each leaf has its own references, of
-/// triangles that reach into its cell, none twice; and each of 28 points of every triangle, corners among them, lies in
+/// Returns what is wrong, or nothing. In a valid tree every node is reached exactly once and no deeper than the
+/// stated depth. Planes lie within their cells, so that the cells tile the bounds. Each leaf has its own references,
+/// to triangles that reach into its cell, none twice. Each of 28 points of every triangle, corners included, lies in
 /// the cell of a leaf that lists the triangle.
 std::optional<std::string> find_fault(const KdTree& tree);
 

@@ -1,10 +1,11 @@
 #pragma once
 
-// The recursion that all builders of kd-trees share. A splitter decides where a node is cut and what its halves hold:
+// The recursion that all builders of kd-trees share. A splitter decides where a node is split and what its halves
+// hold:
 //   using Node                            derived from KdBuildNode
 //   optional<KdPlane> split(node, below, above)    fills count and contents of the halves; nothing: a leaf
 //   vector<uint32_t> triangles_of(node)   ascending
-// Two halves that are large are built at once, into arrays of their own that are joined in a fixed order.
+// Two large halves are built in parallel into arrays of their own, which are joined in a fixed order.
 
 #include <algorithm>
 #include <cstdint>
@@ -20,14 +21,14 @@ namespace pertev {
 
 struct KdPlane {
     int axis;
-    float at; // within the cell, on none of its sides
+    float at; // inside the cell, not on its sides
 };
 
 struct KdBuildNode {
     Bounds3 cell;
     uint32_t count = 0;  // triangles that reach into the cell
-    int levels = 0;      // that may still be cut
-    uint64_t budget = 0; // references that the leaves beneath may hold together; >= count
+    int levels = 0;      // number of splits that are still allowed below
+    uint64_t budget = 0; // maximum number of references of all leaves below; >= count
 };
 
 struct KdSubtree {
@@ -52,7 +53,7 @@ struct KdSubtree {
     }
 };
 
-/// What is left of the parent's budget is shared by what the halves hold.
+/// Shares the rest of the parent's budget in proportion to the contents of the halves.
 inline void share_budget(const KdBuildNode& parent, KdBuildNode& below, KdBuildNode& above) {
     const uint64_t held = uint64_t(below.count) + above.count, spare = parent.budget - held;
     const uint64_t share = held == 0 ? 0 : spare / held * below.count + spare % held * below.count / held;
@@ -62,7 +63,7 @@ inline void share_budget(const KdBuildNode& parent, KdBuildNode& below, KdBuildN
 
 template <class Splitter>
 void build_kd_subtree(const Splitter& splitter, typename Splitter::Node&& node, int depth, KdSubtree& out) {
-    constexpr uint32_t kParallelSubtree = 1u << 12; // triangles from which the two halves are built at once
+    constexpr uint32_t kParallelSubtree = 1u << 12; // from this many triangles on, both halves are built in parallel
     typename Splitter::Node below, above;
     const std::optional<KdPlane> plane = node.levels > 0 ? splitter.split(node, below, above) : std::nullopt;
     if (!plane) {
@@ -78,7 +79,7 @@ void build_kd_subtree(const Splitter& splitter, typename Splitter::Node&& node, 
     above.cell = cell_above(node.cell, plane->axis, plane->at);
     below.levels = above.levels = node.levels - 1;
     share_budget(node, below, above);
-    node = {}; // its memory is needed below
+    node = {}; // frees memory for the levels below
 
     const std::size_t at = out.nodes.size();
     out.nodes.push_back({});

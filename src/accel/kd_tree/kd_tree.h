@@ -1,7 +1,7 @@
 #pragma once
 
-// The kd-tree over triangles: cells that tile the bounds, cut by planes along an axis. A leaf lists the triangles that
-// reach into its cell, so one triangle may stand in several leaves; what is in each leaf is said by references.
+// The kd-tree over triangles: cells that tile the bounds, split by planes along an axis. A leaf references the
+// triangles that reach into its cell, so several leaves may reference one triangle.
 //
 // Source of the layout: Wald, "Realtime Ray Tracing and Interactive Global Illumination", 2004, section 7.2; Pharr,
 // Humphreys, "Physically Based Rendering", 4.4: 8 bytes a node, the child below the plane follows its parent.
@@ -15,13 +15,14 @@
 
 namespace pertev {
 
-inline constexpr int kMaxKdTreeDepth = 48;            // inner nodes on any way down; a walk's stack holds as many
+inline constexpr int kMaxKdTreeDepth = 48;            // inner nodes on any path, and the size of a traversal stack
 inline constexpr uint32_t kMaxKdTreeNodes = 1u << 30; // an index has 30 bits
-inline constexpr uint32_t kMaxKdTreeTriangles = (1u << 30) - 1; // as has a leaf's count
+inline constexpr uint32_t kMaxKdTreeTriangles = (1u << 30) - 1; // a leaf's count has 30 bits
 
 struct alignas(8) KdTreeNode {
-    uint32_t data; // inner node: the bits of the plane's position; leaf: its first reference
-    uint32_t link; // low 2 bits: axis, 3 for a leaf; above: index of the child above the plane, or count of references
+    uint32_t data; // inner node: bits of the plane's position; leaf: its first reference
+    uint32_t link; // low 2 bits: axis, or 3 for a leaf; above: index of the child above the plane, or count of
+                   // references
 
     HD bool is_leaf() const { return (link & 3) == 3; }
     HD int axis() const { return static_cast<int>(link & 3); }
@@ -38,17 +39,17 @@ inline KdTreeNode make_kd_inner(int axis, float plane, uint32_t above) {
 inline KdTreeNode make_kd_leaf(uint32_t first, uint32_t count) { return {first, count << 2 | 3}; }
 
 struct KdTree {
-    std::vector<KdTreeNode> nodes;      // depth first, [0] the root; none: no triangle
+    std::vector<KdTreeNode> nodes;      // depth first, [0] is the root; empty if there is no triangle
     std::vector<uint32_t> references;   // positions in `triangles`, ascending within a leaf
-    std::vector<BvhTriangle> triangles; // as the builder was given them
-    Bounds3 bounds;                     // of the triangles: the root's cell
-    int depth = 0;                      // inner nodes on the longest way down
-    float sah_cost = 0;                 // expected cost of a ray that meets the bounds, in the builder's unit
+    std::vector<BvhTriangle> triangles; // the builder's input
+    Bounds3 bounds;                     // bounds of the triangles, and the root's cell
+    int depth = 0;                      // inner nodes on the longest path
+    float sah_cost = 0;                 // expected cost of a ray that hits the bounds, in the builder's unit
 };
 
-/// What a walk needs; plain pointers, host's or device's.
+/// Arrays of a KdTree for traversal, as plain pointers of host or device.
 struct KdTreeView {
-    const KdTreeNode* nodes = nullptr; // nullptr: no triangle
+    const KdTreeNode* nodes = nullptr; // null if there is no triangle
     const uint32_t* references = nullptr;
     const BvhTriangle* triangles = nullptr;
     Bounds3 bounds;
@@ -59,7 +60,7 @@ inline KdTreeView view_of(const KdTree& tree) {
     return {tree.nodes.data(), tree.references.data(), tree.triangles.data(), tree.bounds};
 }
 
-/// The cells that a plane makes of one.
+/// Part of a cell below a plane.
 HD inline Bounds3 cell_below(Bounds3 cell, int axis, float plane) {
     (axis == 0 ? cell.hi.x : (axis == 1 ? cell.hi.y : cell.hi.z)) = plane;
     return cell;

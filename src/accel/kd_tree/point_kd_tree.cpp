@@ -10,12 +10,12 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kParallelSubtree = 1 << 12; // points from which the two halves are built at once
+constexpr std::size_t kParallelSubtree = 1 << 12; // from this many points on, both halves are built in parallel
 
-/// How many of n points are below the root of a left-balanced tree.
+/// Number of points in the left subtree of a left-balanced tree of n points.
 std::size_t count_of_left(std::size_t n) {
     if (n <= 1) return 0;
-    const std::size_t half_row = std::size_t(1) << (std::bit_width(n) - 2); // of the last row, left half
+    const std::size_t half_row = std::size_t(1) << (std::bit_width(n) - 2); // left half of the last row
     const std::size_t in_last_row = n - (2 * half_row - 1);
     return half_row - 1 + std::min(in_last_row, half_row);
 }
@@ -24,7 +24,7 @@ class PointKdBuilder {
 public:
     PointKdBuilder(std::span<const Vec3> points, std::vector<PointKdNode>& nodes) : points_(points), nodes_(nodes) {}
 
-    /// Puts the points `ids` below the node `at`.
+    /// Builds the subtree at node `at` from the points `ids`.
     void build(std::span<uint32_t> ids, std::size_t at) const {
         if (ids.empty()) return;
         Bounds3 bounds;
@@ -32,7 +32,7 @@ public:
         const Vec3 size = bounds.size();
         const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
         const std::size_t left = count_of_left(ids.size());
-        // A total order, so that it does not matter how nth_element goes about it.
+        // A total order makes the result independent of the implementation of nth_element.
         const auto is_before = [&](uint32_t a, uint32_t b) {
             const float x = component(points_[a], axis), y = component(points_[b], axis);
             return x < y || (x == y && a < b);

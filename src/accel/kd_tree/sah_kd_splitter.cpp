@@ -8,10 +8,10 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kParallelNode = 1u << 14; // triangles from which the three axes are swept at once
+constexpr uint32_t kParallelNode = 1u << 14; // from this many triangles on, the three axes are swept in parallel
 
-// An event is one number, so that sorting is cheap: position, then kind, then the triangle's place in the node. At one
-// position ends come before triangles that lie in the plane, and these before beginnings.
+// An event is one number, which makes sorting cheap: position, then kind, then the triangle's index in the node. At
+// equal positions ends come before triangles in the plane, and these before beginnings.
 enum Kind : uint32_t { kEnd = 0, kPlanar = 1, kBegin = 2 };
 enum Side : uint8_t { kBoth = 0, kBelow = 1, kAbove = 2 };
 
@@ -48,7 +48,7 @@ void for_each_axis(bool parallel, const Body& body) {
     parallel_invoke([&] { body(0); }, [&] { parallel_invoke([&] { body(1); }, [&] { body(2); }); });
 }
 
-/// On which side of the plane each triangle lies.
+/// Finds the side of the plane on which each triangle lies.
 std::vector<Side> find_sides(const SahKdSplitter::Node& node, const KdPlane& plane, bool planar_below) {
     std::vector<Side> sides(node.count, kBoth);
     for (const uint64_t event : node.events[plane.axis]) {
@@ -97,7 +97,7 @@ SahKdSplitter::Choice SahKdSplitter::find_cheapest(const Node& node, int axis) c
     const double kInfinite = static_cast<double>(kInfinity);
     Choice best = {kInfinite, {axis, 0}, true};
     const float lo = component(node.cell.lo, axis), hi = component(node.cell.hi, axis);
-    // The area of a half is linear in the plane's position.
+    // The area of a half is a linear function of the plane's position.
     const double whole = kd_cell_area(node.cell, max_abs_),
                  flat = kd_cell_area(cell_below(node.cell, axis, lo), max_abs_);
     if (!(hi > lo && whole > 0)) return best;
@@ -143,7 +143,7 @@ std::optional<KdPlane> SahKdSplitter::split(const Node& node, Node& below, Node&
     const std::vector<Side> sides = find_sides(node, plane, best.planar_below);
     const Bounds3 low = cell_below(node.cell, plane.axis, plane.at), high = cell_above(node.cell, plane.axis, plane.at);
     const double slack = clip_slack(max_abs_);
-    std::vector<uint32_t> places(node.count); // in the half, of a triangle that is in one alone
+    std::vector<uint32_t> places(node.count); // new index, in its half, of a triangle that is in only one
     std::vector<uint64_t> fresh_below[3], fresh_above[3];
     const auto add = [&](Node& half, uint32_t place) {
         half.triangles.push_back(node.triangles[place]);
@@ -172,7 +172,7 @@ std::optional<KdPlane> SahKdSplitter::split(const Node& node, Node& below, Node&
         }
         std::sort(fresh_below[axis].begin(), fresh_below[axis].end());
         std::sort(fresh_above[axis].begin(), fresh_above[axis].end());
-        // Renumbering keeps the order of places, so what was kept is still sorted.
+        // Renumbering keeps the order of indices, so the events that stay are still sorted.
         below.events[axis] = merge(kept_below, fresh_below[axis]);
         above.events[axis] = merge(kept_above, fresh_above[axis]);
     });

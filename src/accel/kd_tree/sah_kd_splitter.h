@@ -1,12 +1,12 @@
 #pragma once
 
-// Cuts a cell of a kd-tree where the surface area heuristic is least, among all planes at which the number of triangles
-// on a side changes.
+// Splits a cell of a kd-tree by the surface area heuristic, at the best of all planes at which the number of
+// triangles on a side changes.
 //
 // Source: Wald, Havran, "On building fast kd-trees for Ray Tracing, and on doing that in O(N log N)", IEEE RT 2006,
-// sections 3 and 4.3: planes come from triangles clipped to the cell (perfect splits); triangles in the plane go to the
-// cheaper side; a cut that leaves a side empty has a bonus; the ends of all triangles along the axes are sorted once
-// and stay sorted while they are handed down, but for those of triangles on both sides, which are made anew and merged.
+// sections 3 and 4.3: planes come from triangles clipped to the cell (perfect splits); triangles in the plane go to
+// the cheaper side; a split that leaves a side empty gets a bonus; events are sorted once and stay sorted on the way
+// down, except those of triangles on both sides, which are recomputed and merged.
 
 #include <cstdint>
 #include <optional>
@@ -19,15 +19,15 @@ namespace pertev {
 
 class SahKdSplitter {
 public:
-    // NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): of the compiler's own making
+    // NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): the compiler generates the name
     struct Node : KdBuildNode {
-        std::vector<uint32_t> triangles; // [count] their positions in the input
-        std::vector<uint64_t> events[3]; // where one begins or ends along an axis, sorted; see make_event
+        std::vector<uint32_t> triangles; // [count] positions in the input
+        std::vector<uint64_t> events[3]; // ends of triangles along each axis, sorted; see make_event
     };
 
     SahKdSplitter(const std::vector<BvhTriangle>& triangles, const KdTreeSettings& settings, float max_abs);
 
-    /// All triangles; cell, levels and budget are the caller's.
+    /// The root with all triangles. The caller sets cell, levels and budget.
     Node make_root() const;
     std::optional<KdPlane> split(const Node& node, Node& below, Node& above) const;
     static std::vector<uint32_t> triangles_of(const Node& node);

@@ -11,21 +11,22 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kParallelNode = 1u << 13; // triangles from which the children of a node are built at once
+constexpr uint32_t kParallelNode = 1u << 13; // from this many triangles on, the children of a node are built in
+                                             // parallel
 
 struct Part {
     uint32_t triangle;
-    Bounds3 box; // of what lies in the cell
+    Bounds3 box; // bounds of its part in the cell
 };
 
 struct BuildNode {
     OctreeCell cell;
-    int levels = 0;      // that may still be cut
-    uint64_t budget = 0; // references that the leaves beneath may hold together
+    int levels = 0;      // number of splits that are still allowed below
+    uint64_t budget = 0; // maximum number of references of all leaves below
     std::vector<Part> parts;
 };
 
-/// A part of the tree; its root is nodes[0], and links count from there.
+/// A part of the tree with its root at nodes[0]; links are relative to it.
 struct Subtree {
     std::vector<OctreeNode> nodes;
     std::vector<uint32_t> references;
@@ -37,7 +38,7 @@ public:
     OctreeBuilder(const std::vector<BvhTriangle>& triangles, const OctreeSettings& settings, const Octree& tree)
         : triangles_(triangles), settings_(settings), corner_(tree.corner), slack_(clip_slack(tree.bounds.max_abs())) {}
 
-    /// Fills out.nodes[slot] and puts what is beneath it at the end.
+    /// Builds a node in out.nodes[slot] and appends its subtree.
     void build(BuildNode&& node, uint32_t slot, int depth, Subtree& out) const {
         std::array<BuildNode, 8> children;
         if (!split(node, children)) {
@@ -48,7 +49,7 @@ public:
             return check_size(out);
         }
         const bool parallel = node.parts.size() >= kParallelNode;
-        node = {}; // its memory is needed below
+        node = {}; // frees memory for the levels below
         const auto first = static_cast<uint32_t>(out.nodes.size());
         uint32_t mask = 0, count = 0;
         for (uint32_t k = 0; k < 8; ++k) {
@@ -75,7 +76,7 @@ private:
         });
         for (const Subtree& part : built) {
             if (part.nodes.empty()) continue;
-            const auto offset = static_cast<uint32_t>(out.nodes.size()) - 1; // where its nodes[1] goes is nodes.size()
+            const auto offset = static_cast<uint32_t>(out.nodes.size()) - 1; // its nodes[1] goes to nodes.size()
             const auto references = static_cast<uint32_t>(out.references.size());
             for (std::size_t i = 0; i < part.nodes.size(); ++i) {
                 OctreeNode n = part.nodes[i];
@@ -92,7 +93,7 @@ private:
         }
     }
 
-    /// False: the node is a leaf.
+    /// Splits a node. Returns false if it becomes a leaf.
     bool split(const BuildNode& node, std::array<BuildNode, 8>& children) const {
         if (node.levels == 0 || node.parts.size() <= settings_.max_leaf) return false;
         const Vec3 centre = node.cell.centre(corner_);
@@ -110,7 +111,8 @@ private:
         return held > 0;
     }
 
-    /// Cuts the part at the three planes; one that lies in a plane goes below it. Returns to how many octants it went.
+    /// Cuts a part at the three planes and returns the number of octants that it reaches. A part that lies in a plane
+    /// goes below it.
     uint64_t add_part(const Part& part, const Bounds3& cell, Vec3 centre, std::array<BuildNode, 8>& children) const {
         struct Piece {
             uint32_t octant;
@@ -158,20 +160,20 @@ private:
     const double slack_;
 };
 
-/// The least power of two that is not less than x; x > 0 and normal.
+/// Least power of two that is not less than x; x > 0 and normal.
 float power_of_two_above(float x) {
     const float below = float_of(bits_of(x) & 0x7f800000u);
     return below < x ? 2 * below : below;
 }
 
-/// Sets the root's cell; returns how many times it can be halved.
+/// Sets the root's cell and returns the number of times that it can be halved.
 int place_root(Octree& tree) {
-    // Cells no smaller than what planes move out by; their multiples up to the bounds are floats.
+    // Cells are no smaller than the margin by which planes move out, and their multiples up to the bounds are floats.
     const float least = power_of_two_above(max(0x1p-19f * tree.bounds.max_abs(), 0x1p-100f));
     const auto down = [&](float x) { return floor(x / least) * least; };
     tree.corner = {down(tree.bounds.lo.x), down(tree.bounds.lo.y), down(tree.bounds.lo.z)};
     tree.side = power_of_two_above(max(max_component(tree.bounds.size()) + least, least));
-    // Where that sum was rounded down, or the corner moved, a power of two may be short by a little.
+    // If that sum was rounded down, or the corner moved, the power of two may be slightly too small.
     for (int axis = 0; axis < 3; ++axis) {
         while (component(tree.corner, axis) + tree.side < component(tree.bounds.hi, axis)) tree.side *= 2;
     }

@@ -1,10 +1,9 @@
 #pragma once
 
-// Builds the octree over a set of triangles. The tree is a function of the triangles and the settings: neither the
-// number of threads nor their timing enters.
+// Builds the octree over a set of triangles. The tree depends only on the triangles and the settings, not on threads.
 //
-// Bounds: depth at most max_depth; references at most max_references * n: each node has a share of them, which its
-// children divide by what they hold, and a node whose children would hold more than its share is a leaf.
+// Limits: the depth is at most max_depth. There are at most max_references * n references: each node has a budget,
+// which its children share by their contents, and a node whose children would exceed it becomes a leaf.
 
 #include <vector>
 
@@ -14,17 +13,17 @@ namespace pertev {
 
 struct OctreeSettings {
     int max_depth = 16;           // [0, kMaxOctreeDepth]
-    uint32_t max_leaf = 8;        // a cell with no more triangles is a leaf
-    uint32_t max_references = 16; // a triangle, on average; >= 1
-    float node_cost = 1.5f;       // of a step over the three planes of a node
-    float triangle_cost = 1.0f;   // of testing one triangle
+    uint32_t max_leaf = 8;        // a cell with at most this many triangles is a leaf
+    uint32_t max_references = 16; // per triangle, on average; >= 1
+    float node_cost = 1.5f;       // cost of a step over a node's three planes
+    float triangle_cost = 1.0f;   // cost of testing one triangle
 };
 
-/// Vertices are finite, |coordinate| <= kMaxCoordinate. Throws Error(OverLimit) for more than kMaxOctreeTriangles
-/// triangles or kMaxOctreeNodes nodes.
+/// Builds the tree. Vertices are finite, |coordinate| <= kMaxCoordinate. Throws Error(OverLimit) for more than
+/// kMaxOctreeTriangles triangles or kMaxOctreeNodes nodes.
 Octree build_octree(const std::vector<BvhTriangle>& triangles, const OctreeSettings& settings = {});
 
-/// The expected cost of a ray that meets the bounds; only the part of a cell within the bounds counts.
+/// Expected cost of a ray that hits the bounds; only the part of a cell within the bounds counts.
 float octree_sah_cost(const Octree& tree, float node_cost, float triangle_cost);
 
 /// The cell's box.

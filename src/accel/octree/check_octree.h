@@ -1,6 +1,6 @@
 #pragma once
 
-// Checks an octree: what its walk relies on. Used by tests, and by the laboratory before it times anything.
+// Validates an octree for traversal. Tests use it, and the laboratory before it measures.
 
 #include <optional>
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace pertev {
 
-/// Nothing when the tree is sound; else what is wrong. Sound: every node is reached exactly once and no deeper than
-/// stated; cells are exact in floats and the root's holds the bounds; each leaf has its own references, of triangles
-/// that reach into its cell, none twice; and each of 28 points of every triangle, corners among them, lies in the cell
-/// of a leaf that lists the triangle.
+/// Returns what is wrong, or nothing. In a valid tree every node is reached exactly once and no deeper than the
+/// stated depth. Cells are exact in floats and the root's holds the bounds. Each leaf has its own references, to
+/// triangles that reach into its cell, none twice. Each of 28 points of every triangle, corners included, lies in the
+/// cell of a leaf that lists the triangle.
 std::optional<std::string> find_fault(const Octree& tree);
 
 } // namespace pertev

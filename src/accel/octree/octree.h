@@ -1,11 +1,12 @@
 #pragma once
 
-// The octree over triangles: cubes cut in eight at their centres. A leaf lists the triangles that reach into its cell,
-// so one triangle may stand in several leaves. Only cells with a triangle in them have a node; it holds no coordinates.
+// The octree over triangles: cubes split in eight at their centres. A leaf references the triangles that reach into
+// its cell, so several leaves may reference one triangle. Only cells that contain triangles have a node; it stores no
+// coordinates.
 //
-// Source: Glassner, "Space Subdivision for Fast Ray Tracing", IEEE CG&A 4(10), 1984.
-// Cells are exact: the root's side is a power of two and its corner a multiple of the smallest side a cell may have,
-// which is no less than what a walk moves planes out by. So every plane is a float, computed without rounding.
+// Source: Glassner, "Space Subdivision for Fast Ray Tracing", IEEE CG&A 4(10), 1984. Cells are exact: the root's side
+// is a power of two and its corner a multiple of the smallest possible side, which is no less than the margin by
+// which a traversal moves planes. Thus every plane is a float that is computed without rounding.
 
 #include <cstdint>
 #include <vector>
@@ -16,21 +17,22 @@
 
 namespace pertev {
 
-inline constexpr int kMaxOctreeDepth = 20;                // inner nodes on any way down; a walk's stack holds as many
+inline constexpr int kMaxOctreeDepth = 20;                // inner nodes on any path, and the size of a traversal
+                                                          // stack
 inline constexpr uint32_t kMaxOctreeNodes = 1u << 31;     // an index has 32 bits, the sum of two must not overflow
 inline constexpr uint32_t kMaxOctreeTriangles = 1u << 30; // a leaf's count has 31 bits
 
-/// Child k is the octant above the centre along x, y, z where bit 0, 1, 2 of k is set.
+/// Child k is the octant above the centre along x, y, z if bit 0, 1, 2 of k is set.
 struct alignas(8) OctreeNode {
-    uint32_t first; // inner node: its first child, of those that are there, one after the other; leaf: first reference
-    uint32_t link;  // kLeafBit | count of references; or a bit for each child that is there
+    uint32_t first; // inner node: its first existing child, which the others follow; leaf: its first reference
+    uint32_t link;  // kLeafBit | count of references; or a bit for each existing child
 
     HD bool is_leaf() const { return (link & kLeafBit) != 0; }
     HD uint32_t count() const { return link & ~kLeafBit; }
     HD bool has_child(uint32_t k) const { return (link >> k & 1) != 0; }
     HD uint32_t child(uint32_t k) const { return first + count_bits(link & ((1u << k) - 1)); }
 
-    /// Of the low 8 bits.
+    /// Number of bits set in the low 8 bits.
     HD static uint32_t count_bits(uint32_t x) {
         x = (x & 0x55) + (x >> 1 & 0x55);
         x = (x & 0x33) + (x >> 2 & 0x33);
@@ -40,19 +42,20 @@ struct alignas(8) OctreeNode {
 static_assert(sizeof(OctreeNode) == 8);
 
 struct Octree {
-    std::vector<OctreeNode> nodes;      // [0] the root; children lie behind their parent; none: no triangle
+    std::vector<OctreeNode> nodes;      // [0] is the root, and children come after their parent; empty if there is no
+                                        // triangle
     std::vector<uint32_t> references;   // positions in `triangles`, ascending within a leaf
-    std::vector<BvhTriangle> triangles; // as the builder was given them
-    Bounds3 bounds;                     // of the triangles; within the root's cell
-    Vec3 corner;                        // lower one of the root's cell
-    float side = 0;                     // of the root's cell
-    int depth = 0;                      // inner nodes on the longest way down
-    float sah_cost = 0;                 // expected cost of a ray that meets the bounds, in the builder's unit
+    std::vector<BvhTriangle> triangles; // the builder's input
+    Bounds3 bounds;                     // bounds of the triangles, within the root's cell
+    Vec3 corner;                        // lower corner of the root's cell
+    float side = 0;                     // side of the root's cell
+    int depth = 0;                      // inner nodes on the longest path
+    float sah_cost = 0;                 // expected cost of a ray that hits the bounds, in the builder's unit
 };
 
-/// What a walk needs; plain pointers, host's or device's.
+/// Arrays of an Octree for traversal, as plain pointers of host or device.
 struct OctreeView {
-    const OctreeNode* nodes = nullptr; // nullptr: no triangle
+    const OctreeNode* nodes = nullptr; // null if there is no triangle
     const uint32_t* references = nullptr;
     const BvhTriangle* triangles = nullptr;
     Bounds3 bounds;
@@ -65,16 +68,16 @@ inline OctreeView view_of(const Octree& tree) {
     return {tree.nodes.data(), tree.references.data(), tree.triangles.data(), tree.bounds, tree.corner, tree.side};
 }
 
-/// A cell: counted from the root's corner in cells of its own level.
+/// A cell; its position counts cells of its own level from the root's corner.
 struct OctreeCell {
     uint32_t x = 0, y = 0, z = 0;
-    float half; // of its side
+    float half; // half of its side
 
     HD OctreeCell child(uint32_t k) const {
         return {2 * x + (k & 1), 2 * y + (k >> 1 & 1), 2 * z + (k >> 2 & 1), 0.5f * half};
     }
     HD OctreeCell parent() const { return {x >> 1, y >> 1, z >> 1, 2 * half}; }
-    /// Its corners are half a side from it, along each axis.
+    /// Centre of the cell; its faces are half a side away.
     HD Vec3 centre(Vec3 corner) const {
         return {corner.x + static_cast<float>(2 * x + 1) * half, corner.y + static_cast<float>(2 * y + 1) * half,
                 corner.z + static_cast<float>(2 * z + 1) * half};

@@ -8,24 +8,24 @@
 namespace pertev {
 namespace {
 
-constexpr int kMaxLevels = 64; // after as many halvings a cell is a leaf whatever it holds
+constexpr int kMaxLevels = 64; // after this many halvings a cell is a leaf whatever it holds
 
 class PointOctreeBuilder {
 public:
     PointOctreeBuilder(std::span<const Sphere> spheres, uint32_t max_leaf, PointOctree& tree)
         : spheres_(spheres), max_leaf_(max_leaf), tree_(tree) {}
 
-    /// `ids` ascend and lie in the cube of `side` at `corner`. `spare` is room for as many.
+    /// Builds from `ids`, which ascend and lie in the cube of `side` at `corner`. `spare` has the same size.
     void build(std::span<uint32_t> ids, std::span<uint32_t> spare, Vec3 corner, float side, int levels) {
         for (; ids.size() > max_leaf_ && levels > 0; --levels) {
             const float half = 0.5f * side;
             const Vec3 centre = corner + Vec3{half, half, half};
-            std::array<std::size_t, 9> sizes = {}; // of the spheres that stay, and of the octants
+            std::array<std::size_t, 9> sizes = {}; // spheres that stay at the node, and of each octant
             for (const uint32_t id : ids) ++sizes[part_of(id, centre, half)];
             unsigned only = 1;
             while (only < 8 && sizes[only] != ids.size()) ++only;
             if (sizes[only] != ids.size()) return add_inner(ids, spare, sizes, corner, half, levels - 1);
-            corner = corner_of(only - 1, corner, half); // all in one octant: no node for this cell
+            corner = corner_of(only - 1, corner, half); // if all are in one octant, this cell needs no node
             side = half;
         }
         add_node(ids, ids);
@@ -37,7 +37,7 @@ private:
         return corner +
                half * Vec3{static_cast<float>(k & 1), static_cast<float>(k >> 1 & 1), static_cast<float>(k >> 2)};
     }
-    /// 0: too large for an octant; else one more than the octant.
+    /// Returns 0 if the sphere is too large for an octant, else one more than the octant.
     unsigned part_of(uint32_t id, Vec3 centre, float half) const {
         const Sphere& s = spheres_[id];
         if (s.radius > half) return 0;
@@ -60,7 +60,7 @@ private:
         tree_.nodes[at].skip = static_cast<uint32_t>(tree_.nodes.size());
     }
 
-    /// A node over `ids`, of which `own` stay at it.
+    /// Appends a node over `ids`; the spheres `own` stay at it.
     void add_node(std::span<const uint32_t> ids, std::span<const uint32_t> own) {
         Bounds3 bounds;
         float max_radius = 0;

@@ -1,12 +1,13 @@
 #pragma once
 
-// The octree over spheres of influence, and over points, which are spheres of radius 0. For irradiance caches: all
-// records whose sphere covers a place, and all whose centre is within a radius of it.
+// The octree over spheres of influence, and over points as spheres of radius 0, for irradiance caches: all records
+// whose sphere covers a point, and all whose centre is within a radius of it.
 //
 // Source: Ward, Rubinstein, Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988, section 4: a
-// sphere stays at the level where cells are about its size, so that a large one does not make small cells reach far.
-// Nodes lie depth first, each with a link to what follows its subtree, so that a search needs no stack. A node knows
-// the bounds of the centres beneath it and their largest radius; it is left out only if it is farther than that.
+// sphere stays at the level whose cells have about its size, so that a large sphere does not enlarge small cells.
+// Nodes are in depth-first order, each with a link to the node after its subtree, so that a search needs no stack. A
+// node holds the bounds of the centres below it and their largest radius, and is skipped only if it is farther than
+// that.
 
 #include <cstdint>
 #include <span>
@@ -26,23 +27,23 @@ struct alignas(16) Sphere {
 };
 
 struct alignas(16) PointOctreeNode {
-    Vec3 lo;        // of the centres in the subtree
-    uint32_t first; // of the spheres that stay at this node
+    Vec3 lo;        // bounds of the centres in the subtree
+    uint32_t first; // first of the spheres that stay at this node
     Vec3 hi;
     uint32_t count;
-    float max_radius; // in the subtree
-    uint32_t skip;    // the node that follows the subtree
+    float max_radius; // largest radius in the subtree
+    uint32_t skip;    // the node after the subtree
     uint32_t unused[2] = {0, 0};
 };
 static_assert(sizeof(PointOctreeNode) == 48);
 
 struct PointOctree {
-    std::vector<PointOctreeNode> nodes; // none: no sphere
-    std::vector<Sphere> spheres;        // node after node
-    std::vector<uint32_t> indices;      // [spheres] in the builder's input; ascending within a node
+    std::vector<PointOctreeNode> nodes; // empty if there is no sphere
+    std::vector<Sphere> spheres;        // ordered by node
+    std::vector<uint32_t> indices;      // [spheres] index in the builder's input; ascending within a node
 };
 
-/// Plain pointers, host's or device's.
+/// Plain pointers of host or device.
 struct PointOctreeView {
     const PointOctreeNode* nodes = nullptr;
     const Sphere* spheres = nullptr;
@@ -54,17 +55,18 @@ inline PointOctreeView view_of(const PointOctree& tree) {
     return {tree.nodes.data(), tree.spheres.data(), tree.indices.data(), static_cast<uint32_t>(tree.nodes.size())};
 }
 
-/// Cells with more than max_leaf spheres are cut, those kept aside that are larger than half a cell. Spheres are
-/// finite, |coordinate| and radius <= kMaxCoordinate. Throws Error(OverLimit) for more than kMaxOctreeSpheres.
+/// Builds the tree. Cells with more than max_leaf spheres are split; spheres larger than half a cell stay at its
+/// node. Spheres are finite, |coordinate| and radius <= kMaxCoordinate. Throws Error(OverLimit) for more than
+/// kMaxOctreeSpheres.
 PointOctree build_point_octree(std::span<const Sphere> spheres, uint32_t max_leaf = 4);
 
-/// Of the distance from `at` to the box, 0 within; no more than squared_distance to a point of it.
+/// Squared distance from `at` to the box, 0 inside; no more than squared_distance to a point of it.
 HD inline float squared_distance_to_box(Vec3 lo, Vec3 hi, Vec3 at) {
     const Vec3 d = max(max(lo - at, at - hi), Vec3{0, 0, 0});
     return d.x * d.x + d.y * d.y + d.z * d.z;
 }
 
-/// Calls visit(NearPoint) for each sphere that covers `at`, its surface included, in the order of the tree.
+/// Calls visit(NearPoint) for each sphere that covers `at`, surface included, in the order of the tree.
 template <class Visit>
 HD inline void visit_covering(const PointOctreeView& tree, Vec3 at, Visit&& visit) {
     for (uint32_t i = 0; i < tree.node_count;) {
@@ -98,8 +100,8 @@ HD inline void search_points(const PointOctreeView& tree, Vec3 at, Found& found)
     }
 }
 
-/// Bytes of the host's memory that build_point_octree takes for so many spheres at most: the tree, and while it is
-/// built two lists of numbers.
+/// Maximum host memory, in bytes, that build_point_octree needs for `spheres` spheres: the tree, and two index lists
+/// during the build.
 inline std::size_t most_octree_bytes(uint64_t spheres) {
     return spheres * (2 * sizeof(PointOctreeNode) + sizeof(Sphere) + 3 * sizeof(uint32_t));
 }

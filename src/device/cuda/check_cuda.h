@@ -1,6 +1,6 @@
 #pragma once
 
-// What CUDA's calls return, as an Error.
+// Converts the results of CUDA calls to errors.
 
 #include <cuda_runtime.h>
 

@@ -20,7 +20,7 @@ namespace {
 
 class CudaTimeMark final : public TimeMark {
 public:
-    /// Device `index` is the current one.
+    /// Device `index` must be the current one.
     CudaTimeMark(cudaStream_t stream, int index) : stream_(stream), index_(index) {
         check_cuda(cudaEventCreate(&event_), "cudaEventCreate");
     }
@@ -37,7 +37,8 @@ public:
     }
     double seconds_since(const TimeMark& earlier) const override {
         check_cuda(cudaSetDevice(index_), "cudaSetDevice");
-        check_cuda(cudaEventSynchronize(event_), "the work before a time mark"); // where a fault of that work shows
+        check_cuda(cudaEventSynchronize(event_),
+                   "the work before a time mark"); // faults of that work are reported here
         float milliseconds = 0;
         check_cuda(cudaEventElapsedTime(&milliseconds, static_cast<const CudaTimeMark&>(earlier).event_, event_),
                    "cudaEventElapsedTime");
@@ -52,10 +53,10 @@ private:
 
 class CudaBackend;
 
-/// Pinned memory, and an event behind what writes it.
+/// Pinned memory, and an event after the work that writes it.
 class CudaHostCopy final : public HostCopy {
 public:
-    /// Device `index` is the current one. `backend` outlives it.
+    /// Device `index` must be the current one. `backend` outlives it.
     CudaHostCopy(const CudaBackend& backend, int index, std::size_t bytes);
     ~CudaHostCopy() override {
         cudaSetDevice(index_);
@@ -67,7 +68,7 @@ public:
     CudaHostCopy& operator=(const CudaHostCopy&) = delete;
 
     void take(const void* device) override;
-    void* place() override { return memory_; } // pinned memory has one address on both sides
+    void* place() override { return memory_; } // pinned memory has the same address on both sides
     void mark() override;
     const void* wait(const char* stage) override {
         check_cuda(cudaSetDevice(index_), "cudaSetDevice");
@@ -129,7 +130,7 @@ public:
         void* memory = nullptr;
         const cudaError_t error = cudaMalloc(&memory, bytes);
         if (error == cudaErrorMemoryAllocation) {
-            cudaGetLastError(); // clears it: the context is still good
+            cudaGetLastError(); // clears it; the context is still valid
             return nullptr;
         }
         check_cuda(error, "cudaMalloc");
@@ -143,11 +144,11 @@ public:
         make_current();
         if (staging().is_there()) return staging().copy_to_device(device, host, bytes);
         check_cuda(cudaMemcpyAsync(device, host, bytes, cudaMemcpyHostToDevice, current()), "copy to device");
-        wait("copy to device"); // the host memory may go away after the call
+        wait("copy to device"); // the host memory may be freed after the call
     }
     void copy_to_host(void* host, const void* device, std::size_t bytes) override {
         make_current();
-        constexpr std::size_t kMany = std::size_t(1) << 20; // fewer are there sooner without a stop on the way
+        constexpr std::size_t kMany = std::size_t(1) << 20; // smaller copies are faster without staging
         if (bytes >= kMany && staging().is_there()) return staging().copy_to_host(host, device, bytes);
         check_cuda(cudaMemcpyAsync(host, device, bytes, cudaMemcpyDeviceToHost, current()), "copy to host");
         wait("copy to host");
@@ -164,7 +165,9 @@ public:
         make_current();
         check_cuda(cudaStreamSynchronize(current()), stage);
     }
-    void check_launch(const char* stage) override { check_cuda(cudaGetLastError(), stage); } // of the calling thread
+    void check_launch(const char* stage) override {
+        check_cuda(cudaGetLastError(), stage);
+    } // error of the calling thread
     std::unique_ptr<TimeMark> make_time_mark() override {
         make_current();
         return std::make_unique<CudaTimeMark>(current(), index_);
@@ -177,7 +180,7 @@ public:
 private:
     struct Stream {
         cudaStream_t stream = nullptr;
-        cudaEvent_t reached = nullptr; // that another one waits for
+        cudaEvent_t reached = nullptr; // for which another stream waits
     };
 
     static Stream make_stream() {
@@ -187,13 +190,13 @@ private:
         return made;
     }
     cudaStream_t current() const { return streams_[current_].stream; }
-    PinnedStaging& staging() { // of stream 0, as all large copies are
+    PinnedStaging& staging() { // for stream 0, which makes all large copies
         if (!staging_) staging_.emplace(streams_[0].stream);
         return *staging_;
     }
 
     int index_;
-    std::optional<PinnedStaging> staging_; // from the first copy that needs it
+    std::optional<PinnedStaging> staging_; // made by the first copy that needs it
     std::string name_;
     std::vector<Stream> streams_;
     std::size_t current_ = 0;
@@ -226,7 +229,7 @@ int cuda_device_count() {
 }
 
 bool may_have_cuda() {
-    // The one that CUDA's runtime would load. It stays.
+    // The library that CUDA's runtime would load; it stays loaded.
     return ::dlopen("libcuda.so.1", RTLD_LAZY | RTLD_LOCAL | RTLD_NODELETE) != nullptr;
 }
 
@@ -246,8 +249,8 @@ std::string why_no_cuda(int index) {
     }
     cudaDeviceProp properties{};
     if (cudaGetDeviceProperties(&properties, index) != cudaSuccess) return "the device does not answer";
-    // The current device belongs to a thread. Asked on another one, the caller's stays as it was, and no context is
-    // made on the device that this would go back to.
+    // The current device belongs to a thread. Another thread queries it, so that the caller's does not change, and no
+    // context is created on the device to which it would be restored.
     bool has_code = false;
     std::thread([&] { has_code = cudaSetDevice(index) == cudaSuccess && has_code_for_current_device(); }).join();
     if (!has_code) {

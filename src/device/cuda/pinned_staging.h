@@ -1,8 +1,8 @@
 #pragma once
 
-// Two pieces of pinned memory that copies between the host's own memory and a device go through. The device reads
-// pinned memory by itself, so one piece is filled (or emptied) while the other is on its way, and what the host copied
-// from may change as soon as the call returns.
+// Two pieces of pinned memory for copies between ordinary host memory and a device. The device reads pinned memory
+// itself, so one piece is filled (or emptied) while the other is being transferred, and the host's source may change
+// as soon as the call returns.
 
 #include <cuda_runtime.h>
 
@@ -16,7 +16,7 @@ namespace pertev {
 
 class PinnedStaging {
 public:
-    /// Copies are queued in `stream`, which is of the current device and outlives this.
+    /// Copies are queued on `stream`, which belongs to the current device and outlives this.
     explicit PinnedStaging(cudaStream_t stream) : stream_(stream) {
         for (Piece& piece : pieces_) {
             const cudaError_t error = cudaHostAlloc(&piece.memory, kBytes, cudaHostAllocDefault);
@@ -24,10 +24,10 @@ public:
                 error == cudaSuccess && cudaEventCreateWithFlags(&piece.sent, cudaEventDisableTiming) == cudaSuccess;
             is_there_ = is_there_ && has_event;
         }
-        if (!is_there_) cudaGetLastError(); // clears it: copies go without
+        if (!is_there_) cudaGetLastError(); // clears it; copies work without staging
     }
     ~PinnedStaging() {
-        cudaStreamSynchronize(stream_); // copies under way read the pieces
+        cudaStreamSynchronize(stream_); // pending copies use the pieces
         for (const Piece& piece : pieces_) {
             if (piece.sent != nullptr) cudaEventDestroy(piece.sent);
             cudaFreeHost(piece.memory);
@@ -36,10 +36,10 @@ public:
     PinnedStaging(const PinnedStaging&) = delete;
     PinnedStaging& operator=(const PinnedStaging&) = delete;
 
-    /// False where the system has no memory to pin; then nothing else may be called.
+    /// False if the system has no memory to pin; then nothing else may be called.
     bool is_there() const { return is_there_; }
 
-    /// Returns when all of `host` has been read, which may be before it has arrived.
+    /// Returns when all of `host` has been read, possibly before it has arrived.
     void copy_to_device(void* device, const void* host, std::size_t bytes) {
         auto* to = static_cast<std::byte*>(device);
         const auto* from = static_cast<const std::byte*>(host);
@@ -56,7 +56,7 @@ public:
         }
     }
 
-    /// Returns when `host` holds all of it.
+    /// Returns when `host` is complete.
     void copy_to_host(void* host, const void* device, std::size_t bytes) {
         check_cuda(cudaStreamSynchronize(stream_), "copy to host"); // both pieces are free
         used_ = 0;
@@ -78,18 +78,18 @@ public:
     }
 
 private:
-    static constexpr std::size_t kBytes = std::size_t(8) << 20; // of a piece
+    static constexpr std::size_t kBytes = std::size_t(8) << 20; // per piece
     static constexpr std::size_t kAlignment = 256;
 
     struct Piece {
         void* memory = nullptr;
-        cudaEvent_t sent = nullptr; // all that was copied from or to it
+        cudaEvent_t sent = nullptr; // after all copies from or to it
     };
 
     void take_other_piece() {
         check_cuda(cudaEventRecord(pieces_[current_].sent, stream_), "copy to device");
         current_ = 1 - current_;
-        check_cuda(cudaEventSynchronize(pieces_[current_].sent), "copy to device"); // at once where never recorded
+        check_cuda(cudaEventSynchronize(pieces_[current_].sent), "copy to device"); // immediate if never recorded
         used_ = 0;
     }
 
@@ -97,7 +97,7 @@ private:
     Piece pieces_[2];
     bool is_there_ = true;
     int current_ = 0;
-    std::size_t used_ = 0; // bytes of the current piece that uploads have taken
+    std::size_t used_ = 0; // bytes of the current piece used by uploads
 };
 
 } // namespace pertev

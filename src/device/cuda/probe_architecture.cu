@@ -10,7 +10,7 @@ __global__ void probe() {}
 bool has_code_for_current_device() {
     cudaFuncAttributes attributes{};
     const cudaError_t error = cudaFuncGetAttributes(&attributes, probe);
-    cudaGetLastError(); // clears it: another device may do
+    cudaGetLastError(); // clears it, because another device may work
     return error == cudaSuccess;
 }
 

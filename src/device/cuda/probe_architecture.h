@@ -1,6 +1,6 @@
 #pragma once
 
-// A kernel that is never launched: whether CUDA finds code of it for the GPU that is here says whether this binary can
+// A kernel that is never launched: whether CUDA finds code of it for the present GPU tells whether this binary can
 // run there.
 
 namespace pertev {

@@ -66,7 +66,7 @@ fs::path FileAccess::resolve(const Place& from, const std::string& reference) co
     std::error_code ec;
     const fs::path path = fs::weakly_canonical(folder_of(from) / portable(reference), ec);
     if (ec) throw refusal(from, reference, fmt::format("which cannot be opened: {}", ec.message()));
-    // What is left of a symbolic link after resolving leads nowhere yet; where it will lead is not known.
+    // A symbolic link that remains after resolving is dangling; its future target is unknown.
     if (fs::is_symlink(fs::symlink_status(path, ec))) {
         throw refusal(from, reference, "a symbolic link that leads nowhere");
     }
@@ -78,7 +78,7 @@ fs::path FileAccess::resolve(const Place& from, const std::string& reference) co
     return path;
 }
 
-/// A name longer than the system takes, for one, has no path: there is no such file.
+/// For example, a name longer than the system allows has no path, so there is no such file.
 FileAccess::Located FileAccess::locate(const fs::path& name) const {
     std::error_code ec;
     const fs::path path = fs::weakly_canonical(name, ec);

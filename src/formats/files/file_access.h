@@ -1,7 +1,7 @@
 #pragma once
 
-// Which files a scene may read: those under its own folder, and under each folder that the user allowed. A scene file
-// from a stranger must not be able to read (and show in a picture) anything else.
+// Restricts which files a scene may read: those below its own folder, and below each folder that the user allowed. A
+// scene file from a stranger must not be able to read (and show in a picture) anything else.
 
 #include <filesystem>
 #include <memory>
@@ -16,19 +16,19 @@ namespace pertev {
 
 class FileAccess {
 public:
-    /// `scene_file`: the file named by the user. `allowed`: further folders (`allow_path`).
+    /// `scene_file` is the file named by the user, `allowed` are further folders (`allow_path`).
     FileAccess(const std::filesystem::path& scene_file, const std::vector<std::filesystem::path>& allowed);
 
-    /// The path of `reference`, as written at `from` (a place in a file of the scene, whose folder counts), after
-    /// symbolic links, `..` and backslashes are resolved. Throws Error(BadInput) that names `from` and `allow_path`
-    /// when it leads outside. The file need not exist.
+    /// Resolves `reference`, as written at `from` (a location in a file of the scene, to whose folder it is
+    /// relative): symbolic links, `..` and backslashes. Throws Error(BadInput) that names `from` and `allow_path` if
+    /// it leads outside. The file need not exist.
     std::filesystem::path resolve(const Place& from, const std::string& reference) const;
 
-    /// The file that `reference` means, for a file that is read. Where none of that path may be read it is the file
-    /// below the folder of `from` or below a folder that may be read whose path ends like `reference`, without regard
-    /// to the case of A to Z, if one file alone fits best: exporters write paths of the machine that they ran on. A
-    /// warning tells it. Returns nothing where no file fits, and after a warning where several do. Throws
-    /// Error(BadInput), which names `allow_path`, where there is such a file outside alone.
+    /// Finds the file that `reference` names, for reading. If that path is not readable, it searches below the folder
+    /// of `from` or below allowed folders for the file whose path ends like `reference`, ignoring the case of A to Z,
+    /// if a single file fits best, because exporters write paths of the machine on which they ran. A warning reports
+    /// it. Returns nothing if no file fits, and with a warning if several do. Throws Error(BadInput), which names
+    /// `allow_path`, if the only such file is outside.
     std::optional<std::filesystem::path> find(const Place& from, const std::string& reference,
                                               Messages& messages) const;
 
@@ -43,7 +43,7 @@ private:
                                                      Messages& messages) const;
 
     std::vector<std::filesystem::path> roots_; // canonical
-    std::shared_ptr<FolderListing> listing_;   // of roots_
+    std::shared_ptr<FolderListing> listing_;   // listing of roots_
 };
 
 } // namespace pertev

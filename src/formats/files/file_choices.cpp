@@ -15,9 +15,9 @@
 namespace pertev {
 namespace {
 
-constexpr std::string_view kAll = "all"; // of clips
+constexpr std::string_view kAll = "all"; // selects all clips
 
-/// This is the part of a file that is chosen.
+/// The kind of item that is chosen.
 struct Kind {
     const char* name;
     bool has_all; // "all" is no name of one of them
@@ -60,7 +60,7 @@ std::vector<std::string> list_of(const Kind& kind, std::span<const std::string> 
     return list;
 }
 
-/// As a message repeats it.
+/// Text of an item for messages.
 std::string text_of(const Kind& kind, std::span<const std::string> names) {
     constexpr std::size_t kMost = 20;
     std::string text;

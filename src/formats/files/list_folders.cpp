@@ -9,7 +9,7 @@ namespace fs = std::filesystem;
 namespace pertev {
 namespace {
 
-constexpr std::size_t kMostEntries = 20000; // of all folders together
+constexpr std::size_t kMostEntries = 20000; // total for all folders
 constexpr std::size_t kMostLevels = 16;
 constexpr std::size_t kMostNamed = 20;
 
@@ -36,7 +36,7 @@ std::size_t component_count(const fs::path& path) {
 struct Fit {
     std::size_t components = 0; // at the end, that are those of the name
     bool is_direct = false;     // they are all there is below the folder
-    bool is_same_case = false;  // of all of them
+    bool is_same_case = false;  // same case in all of them
     auto operator<=>(const Fit&) const = default;
 };
 
@@ -75,7 +75,7 @@ void FolderListing::list_level(std::vector<fs::path>& level, std::size_t folder_
         for (fs::directory_iterator at(folder, fault), end; !fault && at != end; at.increment(fault)) {
             if (entries_++ == kMostEntries) return level.clear();
             if (at->path().filename().native().starts_with('.')) continue;
-            std::error_code unknown; // a file whose kind the system does not tell is passed over
+            std::error_code unknown; // a file whose kind is unknown is skipped
             if (at->is_directory(unknown) && !at->is_symlink(unknown)) next.push_back(at->path());
             if (at->is_regular_file(unknown)) files_.push_back({at->path(), folder_size});
         }

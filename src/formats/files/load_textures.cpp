@@ -41,8 +41,7 @@ Image to_rgba(const Image& image) {
     return rgba;
 }
 
-/// What an image is read as: values as stored, or colours that are still sRGB-encoded. Colours are converted to Rec.
-/// 709.
+/// How an image is used: values as stored, or colours that are still sRGB-encoded. Colours are converted to Rec. 709.
 struct Uses {
     bool as_srgb = false, as_data = false, as_color = false;
 };
@@ -77,7 +76,7 @@ void put_png16(const Image& image, Uses use, TextureImage& to) {
     to.rgba_float = std::move(rgba);
 }
 
-/// What the picture takes as a TextureImage.
+/// Bytes of the picture as a TextureImage.
 uint64_t texture_bytes(const ImageHeader& header) {
     return uint64_t(header.width) * header.height * 4 * (header.is_float ? sizeof(float) : 1);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Collects the images that a scene refers to, each once, and decodes all of them in parallel. A picture that is missing
-// or broken is left out with a warning, and what used it falls back to its factor.
+// Collects the images to which a scene refers, each once, and decodes all of them in parallel. A picture that is
+// missing or broken is left out with a warning, and its users fall back to their factors.
 
 #include <atomic>
 #include <cstddef>
@@ -29,29 +29,30 @@ class TextureLoader {
 public:
     /// `access` and `messages` outlive it.
     TextureLoader(const FileAccess& access, Messages& messages) : access_(access), messages_(&messages) {}
-    /// From now on to others, which outlive it.
+    /// Redirects messages to `messages`, which must outlive the loader.
     void say_to(Messages& messages) { messages_ = &messages; }
 
-    /// From now on `advice` says, after what is wrong with a picture that is not decoded, how it is converted; it is
-    /// given the glTF extension that the kind of picture has.
+    /// Sets `advice`, which is appended to messages about pictures that are not decoded: how to convert them. It gets
+    /// the glTF extension of the picture's format.
     void advise_by(std::function<std::string(std::string_view extension)> advice) { advice_ = std::move(advice); }
 
     /// Image index of the file `reference`, as written at `from` (see FileAccess::resolve); the same file, however
-    /// spelled, is one image. kNoImage after a warning where there is no such file. Throws Error(BadInput) when access
-    /// is refused.
+    /// spelled, is one image. kNoImage after a warning if there is no such file. Throws Error(BadInput) if access is
+    /// refused.
     int32_t add_file(const Place& from, const std::string& reference);
 
-    /// Image index of an encoded image in memory, which stays alive until load_into returns. `name` is for messages.
+    /// Image index of an encoded image in memory, which must stay alive until load_into returns. `name` is for
+    /// messages.
     int32_t add_bytes(std::string name, std::span<const std::byte> bytes);
 
-    /// Decodes what has been added so far, so that load_into finds it done. It may run beside other work that leaves
-    /// the loader alone. Says nothing yet.
+    /// Decodes everything added so far, so that load_into finds it done. It may run concurrently with work that does
+    /// not use the loader, and reports nothing yet.
     void decode();
 
-    /// Puts everything, decoded, into scene.images (empty before). Images that turn out broken are left out, each with
-    /// a warning, and the references of scene.materials are renumbered: to kNoImage for a broken one. `scene_bytes`:
-    /// size of the files that embedded images are part of. Throws Error(OverLimit) that names an image when all
-    /// together would take more memory than their files justify; no more than that is taken before.
+    /// Moves all decoded images into scene.images (empty before). Broken images are left out, each with a warning,
+    /// and the references of scene.materials are renumbered, to kNoImage for a broken one. `scene_bytes` is the size
+    /// of the files that contain embedded images. Throws Error(OverLimit) that names an image if all together would
+    /// take more memory than their files justify; no more than that is allocated before.
     void load_into(Scene& scene, uint64_t scene_bytes = 0);
 
 private:
@@ -63,11 +64,11 @@ private:
         std::filesystem::path path;       // or
         std::span<const std::byte> bytes; // embedded
 
-        uint64_t texture_bytes = 0;                           // that the picture will take; 0: not known yet
-        std::optional<std::variant<Rgba8Image, Image>> image; // once it is decoded
-        std::optional<ColorMatrix> color_matrix;              // to Rec. 709, where its colours are others
+        uint64_t texture_bytes = 0;                           // bytes that the picture will take; 0: not known yet
+        std::optional<std::variant<Rgba8Image, Image>> image; // after decoding
+        std::optional<ColorMatrix> color_matrix;              // to Rec. 709, if its colours have other primaries
         bool is_png = false;
-        std::optional<Remark> fault; // why it never will be
+        std::optional<Remark> fault; // why it cannot be decoded
         Messages said = {};
     };
     void decode_within(uint64_t limit);

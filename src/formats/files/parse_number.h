@@ -1,8 +1,8 @@
 #pragma once
 
-// Decimal text to numbers, for the text formats and what is typed: by std::from_chars, so the same on every machine and
-// in every locale. Floats are correctly rounded; what a float cannot hold becomes an infinity or zero, as IEEE 754
-// rounds it.
+// Parses decimal text in file formats and user input, by std::from_chars, so that it is the same on every machine and
+// in every locale. Floats are correctly rounded; a value outside the range of floats becomes an infinity or zero, as
+// IEEE 754 rounds it.
 
 #include <algorithm>
 #include <charconv>
@@ -13,7 +13,7 @@
 
 namespace pertev {
 
-/// Whether the size of a number other than 0 is under 1, by the decimal place of its first digit that is not 0.
+/// Whether the absolute value of a nonzero number is below 1, from the position of its first nonzero digit.
 inline bool is_under_one(std::string_view number) {
     const std::size_t end = std::min(number.find_first_of("eE"), number.size());
     const std::string_view digits = number.substr(0, end);
@@ -28,7 +28,7 @@ inline bool is_under_one(std::string_view number) {
     return exponent < -place;
 }
 
-/// The number at the start of `text`, which is cut behind it; nothing when there is none. Takes a leading +, and `nan`
+/// Parses the number at the start of `text` and removes it; nothing if there is none. Accepts a leading +, and `nan`
 /// and `inf` in any case.
 template <class Float = float>
 std::optional<Float> parse_float(std::string_view& text) {
@@ -37,7 +37,7 @@ std::optional<Float> parse_float(std::string_view& text) {
     if (begin != end && *begin == '+') ++begin;
     Float value = 0;
     auto [after, fault] = std::from_chars(begin, end, value);
-    if (fault == std::errc::result_out_of_range) { // the library does not say which way
+    if (fault == std::errc::result_out_of_range) { // the library does not say in which direction
         const std::string_view number(begin, static_cast<std::size_t>(after - begin));
         value = is_under_one(number) ? Float(0) : std::numeric_limits<Float>::infinity();
         if (number.starts_with('-')) value = -value;
@@ -48,7 +48,7 @@ std::optional<Float> parse_float(std::string_view& text) {
     return value;
 }
 
-/// The number that `text` is from its first character to its last, without a leading +.
+/// Parses the whole of `text` as a number without a leading +.
 template <class Float = float>
 std::optional<Float> parse_whole_float(std::string_view text) {
     if (text.starts_with('+')) return std::nullopt;
@@ -56,8 +56,7 @@ std::optional<Float> parse_whole_float(std::string_view text) {
     return text.empty() ? value : std::nullopt;
 }
 
-/// The number in decimal digits alone that `text` is from its first character to its last; nothing where `Unsigned`
-/// cannot hold it.
+/// Parses the whole of `text` as decimal digits; nothing if `Unsigned` cannot hold the number.
 template <class Unsigned = uint64_t>
 std::optional<Unsigned> parse_whole_number(std::string_view text) {
     Unsigned value = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What readers are told beside the file's name.
+// Options of readers besides the file's name.
 
 #include <filesystem>
 #include <string>
@@ -11,12 +11,13 @@
 namespace pertev {
 
 struct ReadOptions {
-    std::vector<std::filesystem::path> allowed_paths; // `allow_path`
-    bool geometry_only = false;                       // skip textures and materials: every surface grey
+    std::vector<std::filesystem::path> allowed_paths; // setting `allow_path`
+    bool geometry_only = false;                       // skips textures and materials: every surface is grey
     bool two_sided_lights = false;                    // surfaces emit from both faces, whatever the file says
-    FileSpace space;                                  // of files that do not tell theirs; others are as they say
-    std::string animation;                            // plays: a name, a number from 0, or "all"; empty: the first
-    std::string file_scene; // is shown: a name or a number from 0 of the file's scenes; empty: the file's own choice
+    FileSpace space;                                  // for formats that do not define theirs; others are unaffected
+    std::string animation;                            // the animation that plays: a name, an index from 0, or "all";
+                                                      // empty: the first
+    std::string file_scene; // the scene to show: a name or an index from 0 in the file; empty: the file's default
 };
 
 } // namespace pertev

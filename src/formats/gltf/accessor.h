@@ -1,8 +1,8 @@
 #pragma once
 
 // An accessor: `count` elements of one to sixteen numbers in a buffer view, some replaced by a sparse list. This is
-// the only way to binary numbers in this reader. Its constructor checks every offset, stride, count and length in
-// 64 bits against the bytes that are really there; nothing is allocated before.
+// the reader's only access to binary numbers. Its constructor checks every offset, stride, count and length in 64
+// bits against the actual bytes before anything is allocated.
 //
 // Source: glTF 2.0 sections 3.6.2 (accessors, sparse ones, data alignment) and 3.11 (normalised integers).
 
@@ -29,13 +29,13 @@ enum class ComponentType : uint16_t {
     Float = 5126
 };
 
-/// Numbers in an element of accessor.type.
+/// Number of components of an element of accessor.type.
 enum class ElementType : uint8_t { Scalar = 1, Vec2 = 2, Vec3 = 3, Vec4 = 4, Mat4 = 16 };
 
 class Accessor {
 public:
-    /// The accessor that `reference` numbers. Throws Error(BadInput) when its element type is not one of `expected` or
-    /// any part of it leaves its data.
+    /// The accessor with the index `reference`. Throws Error(BadInput) if its element type is not one of `expected`
+    /// or any part of it exceeds its data.
     Accessor(const Document& document, Buffers& buffers, const JsonValue& reference,
              std::initializer_list<ElementType> expected);
 
@@ -44,12 +44,12 @@ public:
     ComponentType component_type() const { return component_type_; }
     bool is_normalized() const { return is_normalized_; }
 
-    /// Numbers of all elements, one element after the other; integers as they are, or scaled to [-1, 1] or [0, 1]
-    /// where the accessor is normalised.
+    /// Components of all elements, one element after the other; integers are unscaled, or scaled to [-1, 1] or [0, 1]
+    /// if the accessor is normalised.
     std::vector<float> read_floats() const;
-    /// The same, for integer types alone (Error(BadInput) otherwise), never scaled.
+    /// Components of integer types, never scaled; Error(BadInput) for other types.
     std::vector<uint32_t> read_integers() const;
-    // The same as vectors; the element type must fit.
+    // Elements as vectors; the element type must match.
     std::vector<Vec2> read_vec2() const;
     std::vector<Vec3> read_vec3() const;
     std::vector<Vec4> read_vec4() const;
@@ -69,7 +69,7 @@ private:
     std::vector<Vector> read_vectors() const;
 
     Buffers& buffers_;
-    JsonValue reference_; // who asks, for messages
+    JsonValue reference_; // the reference to the accessor, for messages
     ElementType element_type_ = ElementType::Scalar;
     ComponentType component_type_ = ComponentType::Float;
     bool is_normalized_ = false;

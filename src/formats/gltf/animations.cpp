@@ -41,16 +41,17 @@ ElementType element_of(AnimatedPart part) {
 
 bool takes_integers(AnimatedPart part) { return part == AnimatedPart::Rotation || part == AnimatedPart::Weights; }
 
-/// What a channel changes: one thing, but for a camera or light that several nodes hold.
+/// The target of a channel: one object, except for a camera or light that several nodes hold.
 struct Target {
     AnimatedPart part;
     std::vector<uint32_t> indices; // AnimationChannel::target
-    std::optional<Rgb> factor;     // of a light: what the values are times; the accessor then holds...
-    bool is_scalar = false;        // ...one number a value and not a colour
-    float scale = 1;               // what the values are times
+    std::optional<Rgb> factor;     // factor of a light, by which the values are multiplied; the accessor then
+                                   // holds...
+    bool is_scalar = false;        // ...one number per value and not a colour
+    float scale = 1;               // factor of the values
 };
 
-/// Properties of cameras and lights of one number, which goes into the scene as it is or times `scale`.
+/// Single-number properties of cameras and lights, which are copied or multiplied by `scale`.
 struct NumberPart {
     std::string_view path; // beneath the camera or light
     AnimatedPart part;
@@ -73,7 +74,7 @@ Target node_target(const Document& document, const JsonValue& place, uint32_t no
     return {part, {node}, {}, false};
 }
 
-/// Of a JSON pointer "/before/NUMBER/after": the number, where it is an index below `count`.
+/// The number in a JSON pointer "/before/NUMBER/after" if it is an index below `count`.
 std::optional<uint32_t> index_in(std::string_view pointer, std::string_view before, std::string_view after,
                                  std::size_t count) {
     if (!pointer.starts_with(before) || !pointer.ends_with(after) || pointer.size() < before.size() + after.size()) {
@@ -84,7 +85,7 @@ std::optional<uint32_t> index_in(std::string_view pointer, std::string_view befo
     return number && *number < count ? number : std::nullopt;
 }
 
-/// Those of the scene's cameras or lights that stand in a node for which `holds` is true.
+/// Indices of the scene's cameras or lights whose node satisfies `holds`.
 template <class Held, class Holds>
 std::vector<uint32_t> held_by(const std::vector<Held>& all, const Holds& holds) {
     std::vector<uint32_t> indices;
@@ -246,9 +247,9 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::sp
 
 void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& said) {
     auto clip = scene.clips.begin();
-    Messages none; // what is wrong with the list was said when clips were chosen
+    Messages none; // errors in the list were reported when clips were chosen
     for (const JsonValue& source : animations_of(document, none)) {
-        Messages unsaid; // of a clip that does not play
+        Messages unsaid; // discards messages about clips that do not play
         Messages& messages = clip->plays ? said : unsaid;
         Animation animation;
         animation.name = clip->name;

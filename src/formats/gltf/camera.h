@@ -8,8 +8,8 @@
 
 namespace pertev::gltf {
 
-/// The camera without its place. Clipping planes are not read: nothing is clipped. An angle or aspect that makes no
-/// sense is left out with a warning.
+/// Reads a camera without its position. Clipping planes are ignored, because nothing is clipped. An invalid angle or
+/// aspect is left out with a warning.
 Camera read_camera(const JsonValue& camera, Messages& messages);
 
 } // namespace pertev::gltf

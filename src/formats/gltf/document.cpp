@@ -152,7 +152,7 @@ void Document::split_glb(Messages& messages) {
     bool has_json = false;
     for (std::size_t at = kHeaderBytes; bytes_.size() - at >= kChunkHeaderBytes;) {
         const uint32_t size = read_u32(glb, at), type = read_u32(glb, at + 4);
-        // What follows the end is none of it, but for the binary chunk where the header counts the JSON alone.
+        // Data after the end is ignored, except for the binary chunk if the header counts only the JSON.
         if (at >= end && (type != kBinaryChunk || binary_chunk_)) break;
         const std::size_t begin = at + kChunkHeaderBytes, available = glb.size() - begin;
         if (!has_json && type != kJsonChunk) throw fail(at, "the first chunk of a GLB file must be JSON");

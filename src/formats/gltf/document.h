@@ -1,6 +1,6 @@
 #pragma once
 
-// A glTF 2.0 document, from .gltf (JSON) or .glb (JSON and one binary chunk in a container), told apart by content.
+// A glTF 2.0 document, from .gltf (JSON) or .glb (JSON and a binary chunk in a container), distinguished by content.
 //
 // Source: Khronos glTF 2.0 specification, sections 3.2, 3.12 and 4.4.
 
@@ -23,8 +23,8 @@ namespace pertev::gltf {
 
 class Document {
 public:
-    /// Parses the file. Throws Error(BadInput) when it is no JSON or of another glTF than 2. Warns of each extension
-    /// that the file requires or uses and that is left out.
+    /// Parses the file. Throws Error(BadInput) if it is not JSON or not glTF 2. Warns of each required or used
+    /// extension that is left out.
     Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Messages& messages);
     Document(const Document&) = delete; // its values point into it
     Document& operator=(const Document&) = delete;
@@ -32,13 +32,13 @@ public:
     const std::filesystem::path& path() const { return path_; }
     const std::string& file() const { return file_; } // the path, for messages
     const JsonValue& root() const { return *root_; }
-    /// The binary chunk of a .glb; nothing when there is none.
+    /// The binary chunk of a .glb; nothing if there is none.
     std::optional<std::span<const std::byte>> binary_chunk() const { return binary_chunk_; }
     uint64_t file_bytes() const { return bytes_.size(); }
 
-    /// A top-level array, for instance "accessors"; empty where the file has none. Lights are under "lights".
+    /// A top-level array, for instance "accessors"; empty if the file has none. Lights are under "lights".
     const std::vector<JsonValue>& table(std::string_view name) const;
-    /// The number in `reference` as an index into table(name). Throws Error(BadInput) when there is no such element.
+    /// The number in `reference` as an index into table(name). Throws Error(BadInput) if there is no such element.
     uint32_t index_into(std::string_view name, const JsonValue& reference) const;
     const JsonValue& item(std::string_view name, const JsonValue& reference) const {
         return table(name)[index_into(name, reference)];
@@ -49,7 +49,7 @@ private:
     void read_table(std::string_view name, const JsonValue& holder, Messages& messages);
     std::size_t glb_end(Messages& messages) const;
     struct ChunkEnd {
-        std::size_t end, next = 0; // bytes of the file: where its data end, and where another chunk begins
+        std::size_t end, next = 0; // offsets in the file: end of its data, and start of the next chunk
     };
     ChunkEnd json_chunk_end(std::size_t begin, std::size_t size, Messages& messages) const;
     std::size_t binary_chunk_end(std::size_t begin, std::size_t size, Messages& messages) const;

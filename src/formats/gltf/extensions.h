@@ -1,6 +1,6 @@
 #pragma once
 
-// Which extensions this reader knows, and how a file is converted that needs one of the others.
+// The extensions that this reader supports, and how to convert a file that needs another one.
 
 #include <filesystem>
 #include <string>
@@ -8,12 +8,11 @@
 
 namespace pertev::gltf {
 
-/// Whether nothing is to be said of an extension: it is read, or it changes no picture, or what needs it says so where
-/// it is used.
+/// Whether an extension needs no message: it is read, or it changes no picture, or its users report it.
 bool is_known_extension(std::string_view name);
 
-/// The command that writes `file` without this extension, as a sentence that begins with a semicolon; empty where none
-/// is known.
+/// A command that writes `file` without this extension, as a clause that begins with a semicolon; empty if none is
+/// known.
 std::string conversion_advice(std::string_view extension, const std::filesystem::path& file);
 
 } // namespace pertev::gltf

@@ -1,6 +1,6 @@
 #pragma once
 
-// The one rule of this reader: what cannot be read is left out with a warning, and the rest of the file is read on.
+// The rule of this reader: what cannot be read is left out with a warning, and the rest of the file is read.
 
 #include <optional>
 #include <string>
@@ -13,9 +13,9 @@
 
 namespace pertev::gltf {
 
-/// Runs `read`. Where it throws Error(BadInput), a warning gives the reason and says that `what` is left out. Returns
-/// whether `read` came to its end. Other errors pass: a limit holds for the whole file. Never inlined, because g++ 12
-/// at -O3 then loses what the caller's std::optional held before `read`, where that throws.
+/// Runs `read`. If it throws Error(BadInput), a warning gives the reason and says that `what` is left out. Returns
+/// whether `read` succeeded. Other errors are passed on, because a limit applies to the whole file. Never inlined,
+/// because g++ 12 at -O3 then loses the value that the caller's std::optional had before `read`, if that throws.
 template <class Read>
 [[gnu::noinline]] bool read_or_leave_out(const std::string& what, Messages& messages, const Read& read) {
     try {
@@ -28,13 +28,13 @@ template <class Read>
     }
 }
 
-/// The same for what stands at `place`.
+/// Runs `read` in the same way for the value at `place`.
 template <class Read>
 bool read_or_leave_out(const JsonValue& place, Messages& messages, const Read& read) {
     return read_or_leave_out(place.pointer(), messages, read);
 }
 
-/// Calls read(member) where `object` has the member. One that cannot be read counts as one that is not there.
+/// Calls read(member) if `object` has the member. An unreadable one counts as absent.
 template <class Read>
 void read_member(const JsonValue& object, std::string_view key, Messages& messages, const Read& read) {
     if (const std::optional<JsonValue> member = object.find(key)) {

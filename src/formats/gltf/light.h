@@ -1,6 +1,6 @@
 #pragma once
 
-// Point, spot and directional lights. Candela and lux are taken as W/sr and W/m2, one for one.
+// Point, spot and directional lights. Candela and lux are read as W/sr and W/m2, one for one.
 //
 // Source: KHR_lights_punctual.
 
@@ -10,8 +10,8 @@
 
 namespace pertev::gltf {
 
-/// The light without its place. A cone of equal angles (exporters write it for a sharp edge) is one after a warning.
-/// A strength below 0 is 0, and any other member that cannot be read is left out.
+/// Reads a light without its position. A cone with equal angles (which exporters write for a sharp edge) is accepted
+/// with a warning. A negative strength becomes 0, and any other unreadable member is left out.
 Light read_light(const JsonValue& light, Messages& messages);
 
 } // namespace pertev::gltf

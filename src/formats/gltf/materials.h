@@ -1,12 +1,12 @@
 #pragma once
 
-// glTF materials as Scene materials, in the order of their first use; those that nothing uses are not read.
-// A property that cannot be read is left out, and the rest of the material is read.
+// Converts glTF materials to Scene materials, in the order of their first use; unused ones are not read. An
+// unreadable property is left out, and the rest of the material is read.
 //
 // Source: glTF 2.0 section 3.9; KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_unlit,
-// KHR_materials_pbrSpecularGlossiness by conversion. Of KHR_materials_specular a weight of 0 on what is no metal: that
-// takes the coat off and leaves Lambert's law. Of KHR_materials_transmission and _volume solid clear glass. Occlusion
-// textures are not read: a path tracer computes what they approximate.
+// KHR_materials_pbrSpecularGlossiness by conversion. KHR_materials_specular: a weight of 0 on a non-metal removes the
+// coat and leaves Lambert's law. KHR_materials_transmission and _volume: solid clear glass. Occlusion textures are
+// not read, because a path tracer computes what they approximate.
 
 #include <optional>
 #include <vector>
@@ -19,18 +19,18 @@ namespace pertev::gltf {
 
 class Materials {
 public:
-    /// `textures` is null to leave all materials out: every surface is then one grey.
+    /// A null `textures` leaves all materials out: every surface is then the same grey.
     Materials(const Document& document, Textures* textures, Scene& scene, Messages& messages)
         : document_(document), textures_(textures), scene_(scene), messages_(messages),
           by_index_(document.table("materials").size()) {}
 
-    /// Index into scene.materials of the material of `primitive`; glTF's default material where it names none.
+    /// Index in scene.materials of the material of `primitive`; glTF's default material if it names none.
     uint32_t material_of(const JsonValue& primitive);
 
     uint32_t default_material();
 
-    /// Finishes materials of KHR_materials_pbrSpecularGlossiness once the scene's images are decoded. `limit`: bytes
-    /// that the images which this makes may take.
+    /// Finishes materials of KHR_materials_pbrSpecularGlossiness after the scene's images have been decoded. `limit`
+    /// is the maximum number of bytes of the images that this makes.
     void convert_textures(uint64_t limit);
 
 private:
@@ -53,7 +53,7 @@ private:
     Messages& messages_;
     std::vector<std::optional<uint32_t>> by_index_;
     std::vector<PendingConversion> pending_;
-    std::optional<uint32_t> default_; // glTF's default material, or the grey of geometry alone
+    std::optional<uint32_t> default_; // glTF's default material, or the grey without materials
 };
 
 } // namespace pertev::gltf

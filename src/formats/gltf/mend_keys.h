@@ -1,6 +1,6 @@
 #pragma once
 
-// Key times as files have them, made such as a channel takes them: finite and in order.
+// Repairs the key times of a file for a channel: finite and ascending.
 
 #include <cstddef>
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace pertev::gltf {
 
-/// Brings the keys of `channel`, each of `numbers_a_key` numbers, into the order of their times, without those whose
-/// time is not finite. Two keys at one time are a jump from the first to the last of them. At the ends there is nothing
-/// to jump from or to: there the key counts that adjoins the others, and of steps the last. Returns what was mended,
-/// for a warning; empty where there was nothing to mend.
+/// Sorts the keys of `channel`, each with `numbers_a_key` numbers, by time, and removes those whose time is not
+/// finite. Two keys at one time are a jump from the first to the last of them. At the ends, where no jump is
+/// possible, the key next to the others counts, and for step interpolation the last. Returns what was repaired, for a
+/// warning; empty if nothing was.
 std::string mend_keys(AnimationChannel& channel, std::size_t numbers_a_key);
 
 } // namespace pertev::gltf

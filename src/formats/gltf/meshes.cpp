@@ -110,7 +110,7 @@ std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, uint32_t nod
     return entry->second;
 }
 
-/// What moves the vertices of the last mesh; and puts them where they are at rest.
+/// Adds the deformation of the last mesh, and sets its vertices to rest.
 void Meshes::add_shape(const JsonValue& primitive, uint32_t node, std::vector<MorphTarget> targets) {
     Mesh& mesh = scene_.meshes.back();
     buffers_.charge(mesh.positions.size() * sizeof(Vec3) + mesh.normals.size() * sizeof(Vec3) +

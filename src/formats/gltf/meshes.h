@@ -1,7 +1,7 @@
 #pragma once
 
-// glTF meshes as Scene meshes. A glTF mesh is a list of parts (primitives), each with a material: each part becomes one
-// Scene mesh, and parts with the same data at all times, whatever their material, share one.
+// Converts glTF meshes to Scene meshes. A glTF mesh is a list of primitives, each with a material. Each primitive
+// becomes one Scene mesh, and primitives with the same data at all times, whatever their material, share one.
 
 #include <map>
 #include <optional>
@@ -27,8 +27,8 @@ public:
     Meshes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Materials& materials, Scene& scene,
            bool geometry_only, Messages& messages);
 
-    /// The drawable parts of the mesh that node `index` (which has one) shows, at rest. With a skin they are in world
-    /// space. A part that cannot be read is left out with a warning.
+    /// The drawable parts, at rest, of the mesh that node `index` (which has one) shows. With a skin they are in
+    /// world space. An unreadable part is left out with a warning.
     const std::vector<Part>& parts_of(uint32_t index);
 
 private:
@@ -48,10 +48,10 @@ private:
     Scene& scene_;
     bool geometry_only_;
     Messages& messages_;
-    std::map<std::string, std::vector<Part>> by_use_;        // what one node shows, another may show too
+    std::map<std::string, std::vector<Part>> by_use_;        // several nodes may show the same
     std::map<std::string, std::optional<uint32_t>> by_data_; // nothing: not drawable
-    std::map<uint32_t, std::vector<Transform>> joints_;      // by skin; at rest
-    std::set<uint32_t> reshaped_nodes_;                      // whose morph weights an animation changes
+    std::map<uint32_t, std::vector<Transform>> joints_;      // [skin] at rest
+    std::set<uint32_t> reshaped_nodes_;                      // nodes whose morph weights an animation changes
 };
 
 } // namespace pertev::gltf

@@ -1,6 +1,6 @@
 #pragma once
 
-// The nodes of a document as a forest: the Scene's nodes, world transforms, and which of them the scene shows.
+// The nodes of a document as a forest: the Scene's nodes, world transforms, and the nodes of the shown scene.
 //
 // Source: glTF 2.0 section 3.5. Nothing here recurses: a chain of a million nodes is a loop.
 
@@ -16,17 +16,17 @@ namespace pertev::gltf {
 
 class NodeGraph {
 public:
-    /// A cycle is cut, and of two parents the first counts, each with a warning. `shown`: number of the scene of the
-    /// document that is shown; without scenes all nodes are.
+    /// Cycles are cut, and of two parents the first counts, each with a warning. `shown` is the index of the
+    /// document's scene that is shown; without scenes all nodes are shown.
     NodeGraph(const Document& document, uint32_t shown, Messages& messages);
 
     /// The scene's nodes, each before its children, in the order of the file.
     const std::vector<uint32_t>& scene_nodes() const { return scene_nodes_; }
-    /// The place of any node, in the scene or not, at rest, and its transform in the coordinates of the file.
+    /// Transform of any node, in the scene or not, at rest, in double and as floats in the coordinates of the file.
     const NodePlace& place(uint32_t node) const { return places_[node]; }
     const Transform& world_from_node(uint32_t node) const { return world_from_node_[node]; }
     const std::vector<Transform>& world_from_node() const { return world_from_node_; }
-    /// All nodes of the document, by their numbers.
+    /// All nodes of the document, in its order.
     std::vector<Node> take_nodes() { return std::move(nodes_); }
 
 private:

@@ -56,7 +56,7 @@ bool is_near(const Transform& world_from_local) {
     return is_finite(world_from_local) && max_component(abs(world_from_local.translation)) <= kMaxCoordinate;
 }
 
-// Of a scene without instances: what there is, and what would be right.
+// Explains why a scene has no instances: what there is, and what would be right.
 std::string describe_nothing(const Document& document, const NodeGraph& nodes) {
     const std::size_t meshes = document.table("meshes").size(), shown = nodes.scene_nodes().size();
     if (meshes == 0) return "/meshes: there are none; expected one that a node of the scene shows";

@@ -19,7 +19,7 @@ struct PrimitiveRequest {
     const Document& document;
     Buffers& buffers;
     const JsonValue& primitive;
-    bool geometry_only = false; // positions, normals and indices alone
+    bool geometry_only = false; // only positions, normals and indices
 };
 
 struct Primitive {
@@ -27,10 +27,9 @@ struct Primitive {
     std::vector<MorphTarget> targets;
 };
 
-/// Nothing, after a warning, where the primitive draws no triangle: points, lines, no positions, a compression that is
-/// not supported. Throws Error(BadInput) where positions or indices cannot be read; of what else cannot be, a warning
-/// says that it is left out. Normals and tangents
-/// are as the file gives them; validate() brings them to unit length.
+/// Reads a primitive. Returns nothing, with a warning, if it draws no triangle: points, lines, no positions, an
+/// unsupported compression. Throws Error(BadInput) if positions or indices cannot be read; anything else that cannot
+/// is left out with a warning. Normals and tangents are those of the file; validate() normalizes them.
 std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Messages& messages);
 
 } // namespace pertev::gltf

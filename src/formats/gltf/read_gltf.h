@@ -1,11 +1,11 @@
 #pragma once
 
-// Reads glTF 2.0, .gltf and .glb. The work is done by the files in formats/gltf, one part of the format each.
+// Reads glTF 2.0, .gltf and .glb, by the files in formats/gltf, one for each part of the format.
 //
 // Supported extensions: KHR_texture_transform, KHR_lights_punctual, KHR_materials_unlit, _ior and _emissive_strength,
 // KHR_mesh_quantization, EXT_meshopt_compression, EXT_mesh_gpu_instancing; in part (formats/gltf/materials.h)
-// KHR_materials_specular, _transmission and _volume. Others are an error where the file requires
-// them and a warning where it only uses them.
+// KHR_materials_specular, _transmission and _volume. Others are an error if the file requires them and give a warning
+// if it only uses them.
 
 #include <cstddef>
 #include <filesystem>
@@ -18,11 +18,11 @@
 
 namespace pertev {
 
-/// The scene that the file shows by default, not yet validated. Throws Error(BadInput) that names the file and the JSON
-/// pointer. Where the file has no tangents, Mesh::tangents is empty: validate() makes those that are needed.
+/// Reads the chosen scene without validating it. Throws Error(BadInput) that names the file and the JSON pointer. If
+/// the file has no tangents, Mesh::tangents is empty; validate() makes those that are needed.
 Scene read_gltf(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
                 Messages& messages);
-/// The same for a file whose bytes are at hand; `path` names it and is what references are relative to.
+/// Reads a file from memory; `path` names it, and references are relative to it.
 Scene read_gltf(const std::filesystem::path& path, std::vector<std::byte> bytes, const FileAccess& access,
                 const ReadOptions& options, Messages& messages);
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// Skins: what the file says of joints and of the vertices that they move.
+// Skins: joints, and the joints and weights of vertices.
 //
-// Source: glTF 2.0 section 3.7.3. The node that holds a skinned mesh does not move it: only its joints do.
+// Source: glTF 2.0 section 3.7.3. The node of a skinned mesh does not move it; only its joints do.
 
 #include <vector>
 
@@ -11,13 +11,12 @@
 
 namespace pertev::gltf {
 
-/// One a joint (Skin::joint_from_mesh); empty where the file has none.
+/// One matrix per joint (Skin::joint_from_mesh); empty if the file has none.
 std::vector<Transform> read_inverse_bind_matrices(const Document& document, Buffers& buffers, const JsonValue& skin,
                                                   std::size_t joint_count);
 
-/// Fills the joints and weights of `shape`, which has its positions, by the JOINTS_n and WEIGHTS_n of `attributes`.
-/// A set that cannot be read, as one of a joint that the skin, which has `joint_count`, does not have, is left out with
-/// those after it.
+/// Fills the joints and weights of `shape`, which has its positions, from the JOINTS_n and WEIGHTS_n of `attributes`.
+/// An unreadable set, such as one with a joint beyond the skin's `joint_count`, is left out with all later ones.
 void read_joint_weights(const Document& document, Buffers& buffers, const JsonValue& attributes,
                         std::size_t joint_count, MeshShape& shape, Messages& messages);
 

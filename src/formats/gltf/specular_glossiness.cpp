@@ -14,14 +14,14 @@ namespace pertev::gltf {
 namespace {
 
 constexpr float kDielectric = 0.04f;     // reflectance of what is no metal, for the conversion
-constexpr float kMostDielectric = 0.16f; // of what an index of refraction (2.33) stands for
-constexpr float kGrey = 0.02f;           // channels that differ by no more are one
+constexpr float kMostDielectric = 0.16f; // reflectance of an index of refraction of 2.33
+constexpr float kGrey = 0.02f;           // channels that differ by no more count as equal
 
 float brightness(Rgb c) { return sqrt(0.299f * c.r * c.r + 0.587f * c.g * c.g + 0.114f * c.b * c.b); }
 
 float least_component(Rgb c) { return min(c.r, min(c.g, c.b)); }
 
-/// The share of metal with which the two brightnesses are kept.
+/// The metallic value that preserves both brightnesses.
 float solve_metallic(float diffuse, float specular, float one_minus_specular) {
     if (specular < kDielectric) return 0;
     const float b = diffuse * one_minus_specular / (1 - kDielectric) + specular - 2 * kDielectric;

@@ -21,9 +21,9 @@ class Textures {
 public:
     Textures(const Document& document, Buffers& buffers, TextureLoader& loader, Messages& messages);
 
-    /// The texture that `info`, a textureInfo, describes. Without an image (missing, of a kind that is not supported,
-    /// over a third set of texture coordinates) after a warning. Throws Error(BadInput) for one that is not described
-    /// as the format has it.
+    /// The texture that `info`, a textureInfo, describes. Has no image, after a warning, if that is missing, of an
+    /// unsupported kind, or uses a third set of texture coordinates. Throws Error(BadInput) for an invalid
+    /// textureInfo.
     TextureRef read(const JsonValue& info);
 
 private:
@@ -36,9 +36,9 @@ private:
     Buffers& buffers_;
     TextureLoader& loader_;
     Messages& messages_;
-    std::vector<std::optional<int32_t>> images_; // by glTF image: the loader's index, once asked for
+    std::vector<std::optional<int32_t>> images_; // [glTF image] the loader's index, once requested
     std::map<std::pair<const std::byte*, std::size_t>, int32_t> by_bytes_; // several glTF images may share a view
-    std::deque<std::vector<std::byte>> embedded_; // what data URIs held; the loader reads it later
+    std::deque<std::vector<std::byte>> embedded_; // contents of data URIs, which the loader reads later
 };
 
 } // namespace pertev::gltf

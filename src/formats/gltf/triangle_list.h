@@ -9,8 +9,8 @@ namespace pertev::gltf {
 
 enum class Topology : uint8_t { Points, Lines, LineLoop, LineStrip, Triangles, TriangleStrip, TriangleFan };
 
-/// Three indices a triangle, counter-clockwise seen from the front, of the corners in the order of the file. Corners
-/// that make no whole triangle are left over. Only for the three topologies of triangles.
+/// Three indices per triangle, counter-clockwise as seen from the front, from the corners in the order of the file.
+/// Corners that form no complete triangle are ignored. Only for the three triangle topologies.
 std::vector<uint32_t> triangle_list(Topology topology, std::vector<uint32_t> corners);
 
 } // namespace pertev::gltf

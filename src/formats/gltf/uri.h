@@ -15,20 +15,19 @@
 namespace pertev::gltf {
 
 bool is_data_uri(std::string_view uri);
-/// The bytes of "data:[type][;parameters][;base64],TEXT", TEXT percent-encoded where need be; nothing when it is
-/// anything else.
+/// Decodes "data:[type][;parameters][;base64],TEXT", where TEXT may be percent-encoded; nothing for anything else.
 std::optional<std::vector<std::byte>> decode_data_uri(std::string_view uri);
-/// The path of a file with its percent encoding undone, as FileAccess::find takes it: a relative or absolute path, or
-/// that of a file: URI ("C:/a.png" of "file:///C:/a.png"). A '%' that two hexadecimal digits do not follow stands for
-/// itself. Returns nothing for a URI of another scheme (http:) or one that holds a NUL.
+/// Decodes a percent-encoded path for FileAccess::find: a relative or absolute path, or that of a file: URI
+/// ("C:/a.png" for "file:///C:/a.png"). A '%' without two hexadecimal digits after it stands for itself. Returns
+/// nothing for a URI with another scheme (http:) or with a NUL.
 std::optional<std::string> decode_path_uri(std::string_view uri);
 
-/// The path of a file: URI, as decode_path_uri gives it; any other name as it stands. Of formats whose names are no
+/// The path of a file: URI, decoded by decode_path_uri; any other name unchanged. For formats whose names are not
 /// URIs.
 std::string plain_file_name(const std::string& name);
 
-/// The name that FileAccess::find takes for the file that `uri`, which stands in `from`, means: decode_path_uri, or the
-/// text as it stands where a file has that name alone. Nothing where decode_path_uri has nothing.
+/// The name for FileAccess::find of the file that `uri`, found in `from`, refers to: decode_path_uri, or the
+/// undecoded text if only a file with that name exists. Nothing if decode_path_uri returns nothing.
 std::optional<std::string> file_name_of_uri(std::string_view uri, const std::filesystem::path& from);
 
 } // namespace pertev::gltf

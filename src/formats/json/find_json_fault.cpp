@@ -100,8 +100,10 @@ std::optional<JsonFault> find_json_fault(std::string_view text, MendJson mend) {
 
 std::string line_and_column(std::string_view text, std::size_t byte) {
     const std::string_view before = text.substr(0, byte);
-    const std::string_view line = before.substr(before.rfind('\n') + 1);                               // npos + 1 is 0
-    const auto is_character = [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }; // of UTF-8
+    const std::string_view line = before.substr(before.rfind('\n') + 1); // npos + 1 is 0
+    const auto is_character = [](char c) {
+        return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u;
+    }; // counts characters of UTF-8
     return fmt::format("line {}, column {}", 1 + std::count(before.begin(), before.end(), '\n'),
                        1 + std::count_if(line.begin(), line.end(), is_character));
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Where a text stops being JSON. simdjson's DOM only says that it does; this walks over the brackets, commas and colons
-// of a text that was refused and has simdjson judge each name, number, string and word alone. Nothing recurses.
+// Finds the location of a JSON syntax error, which simdjson's DOM does not report: scans the brackets, commas and
+// colons of a refused text and lets simdjson check each name, number, string and word separately. Nothing recurses.
 //
 // Source: RFC 8259.
 
@@ -15,11 +15,11 @@
 namespace pertev::gltf {
 
 struct JsonFault {
-    std::size_t byte;     // of the text
-    std::string expected; // there, for messages
+    std::size_t byte;     // offset in the text
+    std::string expected; // expected there, for messages
 };
 
-/// The first fault of `text`; nothing when it is JSON once it is mended.
+/// The first fault of `text`; nothing if it is valid JSON after mending.
 std::optional<JsonFault> find_json_fault(std::string_view text, MendJson mend);
 
 /// "line 3, column 14", both from 1, columns in characters.

@@ -1,6 +1,6 @@
 #pragma once
 
-// A small JSON file of ours, whose values know their place in it (formats/json/json_value.h).
+// A small JSON file of ours, whose values know their location (formats/json/json_value.h).
 
 #include <filesystem>
 #include <optional>
@@ -12,7 +12,7 @@ namespace pertev {
 
 class JsonFile {
 public:
-    /// Throws Error(BadInput) for a file that cannot be read or is not JSON, with the place of the first fault.
+    /// Throws Error(BadInput) for a file that cannot be read or is not JSON, with the location of the first fault.
     explicit JsonFile(const std::filesystem::path& path);
     JsonFile(const JsonFile&) = delete; // its values point into it
     JsonFile& operator=(const JsonFile&) = delete;

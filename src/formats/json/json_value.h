@@ -1,10 +1,10 @@
 #pragma once
 
-// One value of a JSON document together with where it stands, so that every error can name its file and JSON pointer.
-// All readings are checked: a value of another type or out of range is an Error(BadInput). A member that is null counts
-// as one that is not there, and a null where an object is expected as one without members.
+// A value of a JSON document with its location, so that every error can name its file and JSON pointer. All
+// conversions are checked: a value of another type or out of range throws Error(BadInput). A null member counts as
+// absent, and a null where an object is expected as an empty object.
 //
-// A JsonValue is a view: the document that it comes from must outlive it.
+// A JsonValue is a view; its document must outlive it.
 
 #include <array>
 #include <cstdint>
@@ -27,21 +27,21 @@ public:
     JsonValue(const std::string& file, std::string pointer, simdjson::dom::element element)
         : file_(&file), pointer_(std::move(pointer)), element_(element) {}
 
-    /// RFC 6901: where in the document it stands; "" is all of it.
+    /// Location in the document, RFC 6901; "" is the whole document.
     const std::string& pointer() const { return pointer_; }
     Place place() const { return {.file = *file_, .pointer = pointer_}; }
-    /// Error(BadInput) of this place.
+    /// Makes an Error(BadInput) with this location.
     Error error(const std::string& what) const;
-    /// `cause` of a file that this value names, at this place.
+    /// Makes an error with `cause`, of a file that this value names, and this location.
     Error error(const Error& cause) const;
 
-    /// Member of an object; nothing when it has none of that name, or null.
+    /// Member of an object; nothing if it is absent or null.
     std::optional<JsonValue> find(std::string_view key) const;
     JsonValue at(std::string_view key) const;
     /// /extensions/NAME of an object.
     std::optional<JsonValue> extension(std::string_view name) const;
-    /// Every member, with its name, of an object "extensions" anywhere in this value, "extras" left out, whose name
-    /// `is_wanted`.
+    /// Every member, with its name, of an object "extensions" anywhere in this value, except in "extras", whose name
+    /// satisfies `is_wanted`.
     std::vector<std::pair<std::string, JsonValue>>
     extensions_within(const std::function<bool(std::string_view)>& is_wanted) const;
     /// All values of an array, in order.
@@ -52,11 +52,11 @@ public:
     /// Returns all members of an object with their names, in order.
     std::vector<std::pair<std::string, JsonValue>> members() const;
 
-    /// A whole number in [0, 2^53], also when written as 3.0.
+    /// A whole number in [0, 2^53], also if written as 3.0.
     uint64_t to_unsigned() const;
     /// A number; one beyond the largest float, as some exporters write for "no limit", becomes the largest float.
     float to_float() const;
-    /// The same number, not rounded to a float.
+    /// A number without rounding to float.
     double to_double() const;
     bool to_bool() const;
     std::string_view to_string() const;
@@ -73,10 +73,10 @@ public:
         read_doubles(numbers.data(), count);
         return numbers;
     }
-    /// The value as JSON text without spaces: equal texts are equal values.
+    /// The value as JSON text without spaces; equal values have equal texts.
     std::string to_json() const;
 
-    // Member `key`, or a default where it is missing.
+    // Member `key`, or a default if it is missing.
     uint64_t unsigned_or(std::string_view key, uint64_t fallback) const;
     float float_or(std::string_view key, float fallback) const;
     bool bool_or(std::string_view key, bool fallback) const;

@@ -1,6 +1,6 @@
 #pragma once
 
-// JSON that simdjson refuses, though its meaning is plain, is rewritten so that it can be read.
+// Rewrites JSON that simdjson refuses although its meaning is clear.
 
 #include <string>
 #include <string_view>
@@ -9,13 +9,13 @@
 namespace pertev::gltf {
 
 enum class MendJson {
-    Numbers, // what RFC 8259 allows: whole numbers beyond 64 bits, and numbers beyond the largest double, which become
-             // it
-    All, // also what it does not: NaN (null), Infinity, bytes that are not UTF-8, half a surrogate pair (U+FFFD), tabs
+    Numbers, // valid by RFC 8259: whole numbers beyond 64 bits, and numbers beyond the largest double, which become
+             // that
+    All,     // also invalid: NaN (null), Infinity, bytes that are not UTF-8, half a surrogate pair (U+FFFD), tabs
 };
 
-/// Returns the text as simdjson reads it; the same text where nothing of that is in it. Appends to `said` what was no
-/// JSON, as the ends of warnings.
+/// Returns text that simdjson can read; the same text if it contains none of these. Appends to `said` what was
+/// invalid, as ends of warnings.
 std::string mend_json(std::string_view text, MendJson mend, std::vector<std::string>* said = nullptr);
 
 } // namespace pertev::gltf

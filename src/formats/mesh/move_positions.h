@@ -1,6 +1,6 @@
 #pragma once
 
-// Moves the positions of a file that lie away from its origin there, while they are still in double.
+// Translates the positions of a file that are far from its origin, while they are still in double.
 
 #include <span>
 
@@ -9,16 +9,16 @@
 
 namespace pertev {
 
-/// Writes `exact`, in the coordinates of the file, less origin_for() what is returned to `positions`. `box`: of what
-/// the faces name, as floats have it. `bounds_of_faces()`: the same of `positions` as they are then. Returns that box
-/// in the coordinates of the file, as positions near 0 have it.
+/// Subtracts origin_for() the returned box from `exact`, in the coordinates of the file, and writes the result to
+/// `positions`. `box` contains the vertices of the faces in float precision. `bounds_of_faces()` computes it for the
+/// present `positions`. Returns that box in the coordinates of the file, as precise as positions near 0.
 template <class BoundsOfFaces>
 DoubleBounds3 move_positions(DoubleBounds3 box, std::span<const DoubleVec3> exact, std::span<Vec3> positions,
                              const BoundsOfFaces& bounds_of_faces) {
     const auto take_off = [&](DoubleVec3 origin) {
         parallel_for(exact.size(), 4096, [&](uint64_t i) { positions[i] = to_float(exact[i] - origin); });
     };
-    for (int step = 0; step < 2; ++step) { // the first box may be one of rounded places
+    for (int step = 0; step < 2; ++step) { // the first box may have rounded positions
         const DoubleVec3 origin = origin_for(box);
         take_off(origin);
         const Bounds3 near = bounds_of_faces();

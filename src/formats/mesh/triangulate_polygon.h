@@ -1,8 +1,8 @@
 #pragma once
 
-// Cuts a polygon of any shape into triangles by ear clipping in the plane of its Newell normal, as O'Rourke,
-// "Computational Geometry in C", 2nd edition, section 1.4 has it. The work is bounded: a polygon that takes too many
-// tests (or crosses itself, so that no ear is found) ends as a fan.
+// Triangulates any polygon by ear clipping in the plane of its Newell normal, as in O'Rourke, "Computational Geometry
+// in C", 2nd edition, section 1.4. The work is bounded: a polygon that needs too many tests (or crosses itself, so
+// that no ear is found) becomes a fan.
 
 #include <cstdint>
 #include <span>
@@ -12,9 +12,9 @@
 
 namespace pertev {
 
-/// Appends 3 (n - 2) numbers in [0, n), corners of `polygon`, to `triangles`, each triangle in the polygon's own sense
-/// of rotation. Fewer than 3 corners give nothing. A convex polygon is a fan about its first corner. Corners need not
-/// be finite: then too it is a fan.
+/// Appends 3 (n - 2) numbers in [0, n), corners of `polygon`, to `triangles`, with the polygon's orientation. Fewer
+/// than 3 corners give nothing. A convex polygon becomes a fan around its first corner, and so does one with corners
+/// that are not finite.
 void triangulate_polygon(std::span<const Vec3> polygon, std::vector<uint32_t>& triangles);
 
 } // namespace pertev

@@ -1,8 +1,8 @@
 #pragma once
 
-// Vertex colours of formats that do not say what their numbers mean: OBJ and PLY. They are display values, sRGB,
-// whether they are whole numbers or not. Scanners and photogrammetry take them from photographs and divide by 255 at
-// most, and Blender writes and reads both formats so. glTF says that its own are linear.
+// Vertex colours of formats that do not define them, OBJ and PLY. They are display values, sRGB, as integers or
+// fractions. Scanners and photogrammetry copy them from photographs and at most divide by 255, and Blender writes and
+// reads both formats so. glTF defines its colours as linear.
 
 #include <string>
 #include <vector>
@@ -12,12 +12,12 @@
 
 namespace pertev {
 
-/// Stands for a vertex without a colour among others that have one. It becomes white.
+/// A vertex without a colour among others that have one. It becomes white.
 inline constexpr Vec4 kNoVertexColor = {1, 1, 1, -1};
 
-/// Makes colours as a file writes them in numbers with fractions linear. They are display values in [0, 1], or, with a
-/// notice, in [0, 255] where one of all is 2 or more: less than that may be rounding or a highlight, and is left for
-/// validate() to clamp. Alpha, which is linear, is judged by itself.
+/// Converts fractional colours of a file to linear ones. They are display values in [0, 1], or, with a notice, in [0,
+/// 255] if any is 2 or more: smaller excesses may be rounding or highlights, which validate() clamps. Alpha, which is
+/// linear, is treated separately.
 void decode_vertex_colors(std::vector<Vec4>& colors, const std::string& file, Messages& messages);
 
 } // namespace pertev

@@ -1,7 +1,7 @@
 #pragma once
 
-// What tells the corners of faces apart, where a file has indices or values of its own for each corner. KeyNumbers of
-// base/key_numbers.h gives each different corner one vertex.
+// Key of a face corner, for files with indices or values per corner. KeyNumbers of base/key_numbers.h assigns a
+// vertex to each different key.
 
 #include <cstdint>
 

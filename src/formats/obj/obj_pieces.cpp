@@ -11,14 +11,14 @@
 namespace pertev {
 namespace {
 
-/// What a piece adds to what stands before the next.
+/// The state that a piece passes on to the next.
 struct Survey {
     uint32_t lines = 0;
     ObjCounts counts = {};
-    std::optional<std::string_view> object = {}, group = {}, material = {}; // of its last o, g and usemtl
+    std::optional<std::string_view> object = {}, group = {}, material = {}; // last o, g and usemtl of the piece
 };
 
-/// ObjCounts what PieceParser::statement makes.
+/// Counts what PieceParser::statement makes from the text.
 Survey survey(std::string_view text, char end_of_line) {
     Survey found;
     ObjLines lines(text, end_of_line, 1);

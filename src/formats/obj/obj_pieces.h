@@ -1,7 +1,7 @@
 #pragma once
 
-// The text of an OBJ file in pieces, which threads read at the same time, and what a piece must know of those before
-// it.
+// Splits the text of an OBJ file into pieces for parallel parsing, with the state that a piece needs from earlier
+// ones.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace pertev {
 
-/// What faces belong to: the names of the last o, g and usemtl.
+/// Key of the group of faces: the names of the last o, g and usemtl.
 struct ObjGroupKey {
     std::string_view object, group, material;
     bool operator==(const ObjGroupKey&) const = default;
@@ -28,26 +28,26 @@ struct ObjGroupKeyHash {
 
 using ObjGroupNumbers = std::unordered_map<ObjGroupKey, std::size_t, ObjGroupKeyHash>;
 
-/// The object, the group, or both apart by a slash where they differ.
+/// The object or the group, or both separated by a slash if they differ.
 std::string name_of(const ObjGroupKey& key);
 
 struct ObjCounts {
     std::size_t positions = 0, uvs = 0, normals = 0;
 };
 
-/// Whole statements, which one thread reads.
+/// Whole statements, which one thread parses.
 struct ObjPiece {
     std::string_view text;
-    // What stands before it.
-    uint32_t line = 1; // the number of its first
+    // State before the piece.
+    uint32_t line = 1; // number of its first line
     ObjCounts counts = {};
     ObjGroupKey key = {};
 };
 
-/// Of about so many bytes, cut where a line ends that cannot be joined with the next, be it a comment or not.
+/// Splits into pieces of about this size, at line ends that cannot continue a line, in comments or not.
 std::vector<ObjPiece> cut_into_obj_pieces(std::string_view text, char end_of_line, std::size_t piece_bytes);
 
-/// Says of each piece what stands before it. Returns the counts of all together.
+/// Sets the state before each piece. Returns the total counts.
 ObjCounts count_before(std::vector<ObjPiece>& pieces, char end_of_line);
 
 } // namespace pertev

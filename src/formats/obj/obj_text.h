@@ -1,6 +1,6 @@
 #pragma once
 
-// What the text of .obj and .mtl files has in common: statements over one or more lines, words, comments, names.
+// The common syntax of .obj and .mtl files: statements over one or more lines, words, comments, names.
 
 #include <algorithm>
 #include <cstddef>
@@ -20,7 +20,7 @@ inline void skip_space(std::string_view& text) {
     text.remove_prefix(n);
 }
 
-/// Cut off the front of `text`; empty when there is none.
+/// Removes and returns the first word of `text`; empty if there is none.
 inline std::string_view take_word(std::string_view& text) {
     skip_space(text);
     std::size_t n = 0;
@@ -30,8 +30,8 @@ inline std::string_view take_word(std::string_view& text) {
     return word;
 }
 
-/// A name, which may hold spaces: the rest of a statement without the space around it and without a comment behind it.
-/// The # of a comment stands alone: "Material #25" is a name.
+/// A name, which may contain spaces: the rest of a statement without surrounding space and without a comment. The #
+/// of a comment is a separate word: "Material #25" is a name.
 inline std::string_view rest_as_name(std::string_view text) {
     for (std::size_t at = text.find('#'); at != text.npos; at = text.find('#', at + 1)) {
         const bool begins = at == 0 || is_obj_space(text[at - 1]);
@@ -46,7 +46,7 @@ inline std::string_view rest_as_name(std::string_view text) {
     return text;
 }
 
-/// Without a byte order mark.
+/// Text without a byte order mark.
 inline std::string_view text_of(std::span<const std::byte> bytes) {
     std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
@@ -57,11 +57,11 @@ inline std::string_view text_of(std::span<const std::byte> bytes) {
 class ObjLines {
 public:
     explicit ObjLines(std::string_view text) : ObjLines(text, end_of_line_of(text), 1) {}
-    /// Of a piece of a text that begins at a statement, in its line `number`.
+    /// Reads a piece of a text that begins at a statement, in line `number`.
     ObjLines(std::string_view piece, char end_of_line, uint32_t number)
         : text_(piece), end_of_line_(end_of_line), number_(number) {}
 
-    /// A lone CR in old Macintosh files.
+    /// End-of-line character: CR for old Macintosh files without LF.
     static char end_of_line_of(std::string_view text) { return text.find('\n') == text.npos ? '\r' : '\n'; }
 
     bool next(std::string_view& line) {
@@ -69,7 +69,8 @@ public:
         number_ += joined_;
         joined_ = 0;
         const std::size_t begin = at_, first = text_.find_first_not_of(" \t", at_);
-        const bool is_comment = first != text_.npos && text_[first] == '#'; // a path may end it, C:\scenes\ say
+        const bool is_comment = first != text_.npos && text_[first] == '#'; // a path such as C:\scenes\ may end a
+                                                                            // comment
         std::size_t end;
         do {
             const void* found = std::memchr(text_.data() + at_, end_of_line_, text_.size() - at_);
@@ -80,12 +81,12 @@ public:
         line = text_.substr(begin, end - begin);
         return true;
     }
-    /// Of the statement's first line; 1 is the file's first.
+    /// Number of the statement's first line; the file's first is 1.
     uint32_t number() const { return number_; }
-    /// Of the line behind the statement.
+    /// Number of the line after the statement.
     uint32_t number_behind() const { return number_ + joined_; }
 
-    /// Whether the line [begin, end) of `text` goes on in the next, unless it is a comment.
+    /// Whether the line [begin, end) of `text` continues in the next, unless it is a comment.
     static bool is_joined(std::string_view text, std::size_t begin, std::size_t end) {
         if (end > begin && text[end - 1] == '\r') --end;
         return end > begin && text[end - 1] == '\\';
@@ -98,7 +99,7 @@ private:
     uint32_t number_, joined_ = 0;
 };
 
-/// Something that happens on many lines: said once, with the first line.
+/// A message about many lines, which is reported once, with the first line.
 struct CountedLines {
     std::size_t times = 0;
     uint32_t first_line = 0;

@@ -176,7 +176,7 @@ private:
     const std::string& file_;
     Messages& messages_;
     std::vector<MtlStatements> materials_;
-    std::string_view key_; // of the statement, as written
+    std::string_view key_; // key of the statement, as written
     std::map<std::string, CountedLines> left_out_;
     CountedLines unknown_, too_long_;
     std::string first_unknown_;

@@ -1,7 +1,7 @@
 #pragma once
 
-// The text of a Wavefront .mtl file as its numbers and names, nothing converted yet. Ramey, Rose, Tyerman, "MTL
-// material format", 1995; the PBR keys as Exocortex defined them and Blender writes them. Keys count in any case.
+// Parses a Wavefront .mtl file to numbers and names without converting them. Ramey, Rose, Tyerman, "MTL material
+// format", 1995; the PBR keys as Exocortex defined them and Blender writes them. Keys are case-insensitive.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@
 namespace pertev {
 
 struct MtlTexture {
-    std::string name; // as written; empty: there is none
+    std::string name; // unresolved; empty: none
     uint32_t line = 0;
     Vec2 offset = {0, 0}, scale = {1, 1}; // -o, -s; v upwards
     bool clamp = false;
@@ -26,20 +26,20 @@ struct MtlTexture {
     float bump_multiplier = 1; // -bm
 };
 
-/// What one newmtl says, with the format's value for what it does not say.
+/// Statements of one newmtl, with the format's defaults.
 struct MtlStatements {
     std::string name;
-    uint32_t line = 0; // of newmtl
+    uint32_t line = 0; // line of newmtl
     std::optional<Rgb> kd;
     Rgb ks = {}, ke = {}, tf = {};
     float illum = 0, ns = 1, ni = 1, pr = 0, pm = 0;
     float d = 1;
-    bool has_d = false; // d itself, which outweighs Tr, its complement
+    bool has_d = false; // d itself was given, which overrides Tr, its complement
     MtlTexture map_kd, map_ke, map_d, map_pr, map_pm, norm, bump;
 };
 
-/// In the order of the file. What is left out is a warning with the line. Throws Error(BadInput) that names `file` and
-/// the line for a number that is missing, is none or is not finite.
+/// Returns materials in the order of the file. Anything left out gives a warning with the line. Throws
+/// Error(BadInput) that names `file` and the line for a number that is missing, invalid or not finite.
 std::vector<MtlStatements> parse_mtl(std::span<const std::byte> bytes, const std::string& file, Messages& messages);
 
 } // namespace pertev

@@ -1,7 +1,7 @@
 #pragma once
 
-// A map statement of an .mtl file: a file's name with options, which stand before it by the format's rule and behind it
-// in the files of some exporters.
+// Parses a map statement of an .mtl file: a file's name with options, which precede it by the format's rule and
+// follow it in the files of some exporters.
 
 #include <string>
 #include <string_view>
@@ -10,18 +10,18 @@
 
 namespace pertev {
 
-/// What is behind the key of a map statement, but for the line's number. Throws MtlFault for an option before the name
-/// that lacks a value. Words behind the name that look like an option but are none are part of the name.
+/// Parses the statement after its key, without the line number. Throws MtlFault for an option before the name without
+/// a value. Words after the name that look like options but are none are part of the name.
 MtlTexture parse_mtl_texture(std::string_view text);
 
 struct MtlFault {
     std::string what;
 };
 
-/// The number at the start of `text`, which is cut behind it. Throws MtlFault where there is none or it is not finite.
+/// Parses the number at the start of `text` and removes it. Throws MtlFault if there is none or it is not finite.
 float take_mtl_number(std::string_view& text, std::string_view of);
 
-/// Whether there is nothing but a comment in the rest of a statement.
+/// Whether the rest of a statement is empty or a comment.
 bool is_mtl_end(std::string_view text);
 
 } // namespace pertev

@@ -37,8 +37,8 @@ struct Face {
 /// Faces of one object, group and material in one piece of the text.
 struct RawGroup {
     ObjGroupKey key;
-    uint32_t line = 0;              // of the first face
-    std::vector<ObjCorner> corners; // of all faces, one after the other
+    uint32_t line = 0;              // line of the first face
+    std::vector<ObjCorner> corners; // corners of all faces, one after the other
     std::vector<Face> faces;
 };
 
@@ -46,7 +46,7 @@ Error fault_at(const std::string& file, uint32_t line, const std::string& what) 
     return Error(ErrorCode::BadInput, Place{file, line}, what);
 }
 
-/// Reads one piece: its vertices to their places in arrays that are as long as all will be.
+/// Parses one piece, and writes its vertices to their positions in arrays that have their final size.
 class PieceParser {
 public:
     /// `exact`: of all positions, as `data` has them.
@@ -59,7 +59,7 @@ public:
         for (std::string_view line; lines_.next(line);) statement(line);
     }
 
-    std::vector<Vec4> colors; // of its positions, as written; or none
+    std::vector<Vec4> colors; // colours of its positions, as written; or empty
     std::vector<RawGroup> groups;
     std::vector<ObjMaterialFiles> material_files;
     std::optional<Remark> first_bad_face; // why its first face was left out
@@ -98,7 +98,7 @@ private:
     }
 
     void other(std::string_view key) {
-        // Smoothing groups (files that want smooth normals give them) and display hints change nothing.
+        // Smoothing groups (files that want smooth normals contain them) and display hints change nothing.
         for (const char* harmless :
              {"s", "mg", "lod", "bevel", "c_interp", "d_interp", "usemap", "maplib", "shadow_obj", "trace_obj"}) {
             if (key == harmless) return;
@@ -244,7 +244,7 @@ private:
     const FoundMaterials* found_materials_; // null: nobody asks
     ObjGroupNumbers numbers_;
     ObjGroupKey key_;
-    RawGroup* current_ = nullptr; // of key_; null until a face needs it
+    RawGroup* current_ = nullptr; // group of key_; null until a face needs it
 };
 
 class ObjParser {
@@ -286,7 +286,7 @@ public:
     }
 
 private:
-    using Parts = std::vector<RawGroup*>; // of one group, in the order of the text
+    using Parts = std::vector<RawGroup*>; // parts of one group, in the order of the text
 
     CountedLines all_of(CountedLines PieceParser::*what) const {
         CountedLines all;
@@ -321,7 +321,7 @@ private:
         if (std::max({all.positions, all.uvs, all.normals}) >= kNoIndex) {
             throw Error(ErrorCode::OverLimit, Place{file_}, "more than 2^32 - 1 vertices");
         }
-        data_.positions.resize(all.positions); // pieces write to places of their own
+        data_.positions.resize(all.positions); // pieces write to disjoint ranges
         exact_.resize(all.positions);
         data_.uvs.resize(all.uvs);
         data_.normals.resize(all.normals);
@@ -331,12 +331,12 @@ private:
         parallel_for(parsers_.size(), 1, [&](uint64_t i) { parsers_[i].run(); });
     }
 
-    /// Round the positions that faces name, of every so many of their corners.
+    /// Bounds of the positions that a sample of face corners refers to.
     Bounds3 bounds_of_faces(std::size_t apart = 1) const {
         std::vector<Bounds3> boxes(parsers_.size());
         const std::span<const Vec3> positions = data_.positions;
         parallel_for(parsers_.size(), 1, [&](uint64_t i) {
-            Bounds3 box; // of its own, so that it stays in registers
+            Bounds3 box; // a local, so that it stays in registers
             for (const RawGroup& group : parsers_[i].groups) {
                 for (std::size_t k = 0; k < group.corners.size(); k += apart) {
                     const uint32_t position = group.corners[k].position;
@@ -350,16 +350,16 @@ private:
         return box;
     }
 
-    /// Where the faces lie away from 0, takes off in double what lies between.
+    /// Subtracts the origin in double if the faces are away from 0.
     void move_to_origin() {
-        const std::vector<DoubleVec3> exact = std::exchange(exact_, {}); // of no use behind this
+        const std::vector<DoubleVec3> exact = std::exchange(exact_, {}); // not needed afterwards
         if (surely_stays(bounds_of_faces(kCornersApart))) return;
         data_.box = double_box_of(bounds_of_faces());
         if (origin_for(data_.box) == DoubleVec3{0, 0, 0}) return;
         data_.box = move_positions(data_.box, exact, data_.positions, [&] { return bounds_of_faces(); });
     }
 
-    /// Puts the parts of each group together. Returns false where there are more than kMostObjGroups.
+    /// Joins the parts of each group. Returns false if there are more than kMostObjGroups.
     bool join_groups(bool by_material_alone) {
         ObjGroupNumbers numbers;
         groups_.clear();
@@ -441,9 +441,9 @@ private:
     Messages& messages_;
     const char end_of_line_;
     std::vector<ObjPiece> pieces_;
-    std::deque<PieceParser> parsers_; // of the pieces
+    std::deque<PieceParser> parsers_; // parsers of the pieces
     ObjData data_;
-    std::vector<DoubleVec3> exact_; // positions as the text says them
+    std::vector<DoubleVec3> exact_; // positions as in the text
     std::vector<Parts> groups_;     // in the order of first use
 };
 

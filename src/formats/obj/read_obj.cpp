@@ -197,7 +197,7 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
     Scene scene;
     set_origin(data.box, scene);
     scene.meshes.resize(data.groups.size());
-    std::unordered_map<std::string_view, uint32_t> numbers; // of materials
+    std::unordered_map<std::string_view, uint32_t> numbers; // index of each material
     std::size_t unknown = 0;
     std::string first_unknown;
     for (uint32_t i = 0; i < data.groups.size(); ++i) {
@@ -256,7 +256,7 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
 } // namespace
 
 Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions& options, Messages& messages) {
-    Messages of_materials; // to be said after those of the geometry
+    Messages of_materials; // reported after those of the geometry
     TextureLoader loader(access, of_materials);
     MaterialsBeside beside(path, access, loader, of_materials);
     const ObjData data = parse_obj(read_file(path), path.string(), messages, [&](const ObjMaterialFiles& line) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Wavefront OBJ with its .mtl files. One mesh and one instance for each object, group and material, in the order of
-// first use. See parse_obj.h and read_mtl.h for what is read and how it is converted.
+// Reads Wavefront OBJ with its .mtl files. One mesh and one instance for each object, group and material, in the
+// order of first use. parse_obj.h and read_mtl.h describe what is read and how it is converted.
 
 #include <cstddef>
 #include <filesystem>
@@ -14,15 +14,16 @@
 
 namespace pertev {
 
-/// Not yet validated. Throws Error(BadInput) that names the file and the line. A missing .mtl or texture is a warning.
+/// The result is not validated. Throws Error(BadInput) that names the file and the line. A missing .mtl or texture
+/// gives a warning.
 Scene read_obj(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
                Messages& messages);
 
 struct ObjTexts {
     std::span<const std::byte> geometry,
-        materials; // of an .obj file, and of the .mtl file that stands for all it names
+        materials; // an .mtl file that replaces all files that the .obj file names
 };
-/// The same from memory; `path` starts every message.
+/// Reads an OBJ file from memory; `path` starts every message.
 Scene read_obj(const std::filesystem::path& path, const ObjTexts& texts, const FileAccess& access,
                const ReadOptions& options, Messages& messages);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What follows the header of a PLY file, as a row of values of any type. All of it is inline, because a value is a few
+// The body of a PLY file as a sequence of values of any type. All of it is inline, because a value takes a few
 // instructions and files have millions.
 
 #include <algorithm>
@@ -28,7 +28,7 @@
 
 namespace pertev {
 
-/// The place of the value that is next is known for messages.
+/// Reads values and tracks the position of the next one for messages.
 class PlyBody {
 public:
     PlyBody(std::span<const std::byte> bytes, const PlyHeader& header, const std::string& file)
@@ -49,12 +49,12 @@ public:
     bool is_binary() const { return format_ != PlyFormat::Ascii; }
     void set_number(uint64_t number) { number_ = number; }
 
-    /// The fewest bytes that a value takes: in text a digit and a space.
+    /// Minimum number of bytes of a value: in text a digit and a space.
     std::size_t least_size(PlyType type) const { return format_ == PlyFormat::Ascii ? 2 : size_of(type); }
 
-    /// Throws unless `count` things of `least` bytes each may still follow.
+    /// Throws unless `count` items of at least `least` bytes each may still follow.
     void expect(uint64_t count, std::size_t least, const char* what) const {
-        // The last value of a text may stand without a space after it.
+        // The last value of a text may have no space after it.
         const uint64_t left = static_cast<uint64_t>(end_ - at_) + (format_ == PlyFormat::Ascii ? 1 : 0);
         if (count > left / least) {
             throw fault(fmt::format("{} {} do not fit into the {} bytes that are left", count, what, end_ - at_));
@@ -73,8 +73,8 @@ public:
         return 0;
     }
 
-    /// Count of a list, checked against what is left. A bad one spoils its line, where elements have a line each; it is
-    /// then 0.
+    /// Count of a list, checked against the remaining bytes. If each element is a line, a bad count invalidates its
+    /// line and becomes 0.
     uint64_t list_count(const PlyProperty& property) {
         const double count = value(property.count_type);
         const bool is_count = count >= 0 && count < 0x1p32;
@@ -88,7 +88,7 @@ public:
         expect(whole, least_size(property.type), "entries of a list");
         return whole;
     }
-    /// Whether what follows on this line means nothing, up to end_element().
+    /// Whether the rest of this line is invalid, up to end_element().
     bool is_line_bad() const { return is_line_bad_; }
 
     void skip(const PlyProperty& property) {
@@ -101,7 +101,7 @@ public:
         for (; values > 0; --values) word();
     }
 
-    /// Leaves out what is left of an element's line, in a text whose elements have a line each.
+    /// Skips the rest of an element's line, in a text with one element per line.
     void end_element() {
         if (!has_lines_) return;
         while (at_ != end_ && (*at_ == ' ' || *at_ == '\t')) ++at_;
@@ -123,7 +123,7 @@ public:
     }
 
 private:
-    /// There are as many lines with something on them as there are elements, or more where lists are broken.
+    /// Text has one element per line if there are as many non-empty lines as elements, or more with broken lists.
     void find_lines(const PlyHeader& header) {
         if (format_ != PlyFormat::Ascii) return;
         uint64_t elements = 0, lines = 0;
@@ -139,7 +139,7 @@ private:
         has_lines_ = lines >= elements;
     }
 
-    /// In a text.
+    /// For text only.
     std::size_t line() const {
         std::size_t lines = 1;
         for (const char* c = begin_; c != at_; ++c) {
@@ -161,7 +161,7 @@ private:
         if (bad_values_++ == 0) first_bad_value_ = fault(what).remark();
     }
 
-    /// NaN, with a warning, for a word that is no number: what has it is left out, and nothing else.
+    /// NaN, with a warning, for a word that is no number; only what contains it is left out.
     double text_value(PlyType type) {
         const std::string_view text = word();
         std::string_view rest = text;
@@ -170,7 +170,7 @@ private:
             const auto [after, ec] = std::from_chars(text.data(), text.data() + text.size(), number);
             if (ec == std::errc{} && after == text.data() + text.size()) return static_cast<double>(number);
         }
-        const std::optional<double> number = parse_float<double>(rest); // some write 255.0 for a uchar
+        const std::optional<double> number = parse_float<double>(rest); // some files have 255.0 for a uchar
         if (number && rest.empty()) return *number;
         note_bad_value(fmt::format("\"{}\" is not a number", text.substr(0, 40)));
         return std::numeric_limits<double>::quiet_NaN();

@@ -109,14 +109,14 @@ private:
         return line;
     }
 
-    /// Of the next line that is no comment.
+    /// Words of the next line that is no comment.
     std::vector<std::string_view> next_words() {
         for (;;) {
             const std::string_view line = next_line();
             const auto words = words_of(line);
             if (!words.empty() && words[0] != "comment" && words[0] != "obj_info") return words;
             if (words.size() >= 3 && words[0] == "comment" && is_texture_file(words[1])) {
-                const auto begin = static_cast<std::size_t>(words[2].data() - line.data()); // a name may hold spaces
+                const auto begin = static_cast<std::size_t>(words[2].data() - line.data()); // a name may contain spaces
                 const auto end = static_cast<std::size_t>(words.back().data() + words.back().size() - line.data());
                 std::string_view name = line.substr(begin, end - begin);
                 if (name.size() > 2 && name.front() == '"' && name.back() == '"')

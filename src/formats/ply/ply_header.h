@@ -1,6 +1,6 @@
 #pragma once
 
-// The header of a PLY file: which elements follow, in which order, with which properties.
+// The header of a PLY file: its elements in order, with their properties.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@ enum class PlyType : uint8_t { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float3
 
 struct PlyProperty {
     std::string name;
-    PlyType type = PlyType::Float32; // of the value, or of a list's entries
+    PlyType type = PlyType::Float32; // type of the value, or of a list's entries
     bool is_list = false;
     PlyType count_type = PlyType::UInt8; // lists
 };
@@ -28,7 +28,7 @@ struct PlyElement {
     std::vector<PlyProperty> properties;
 };
 
-/// Of a comment `TextureFile NAME`.
+/// A comment `TextureFile NAME`.
 struct PlyTexture {
     std::string name;
     std::size_t line = 0;
@@ -38,7 +38,7 @@ struct PlyHeader {
     PlyFormat format = PlyFormat::Ascii;
     std::vector<PlyElement> elements;
     std::vector<PlyTexture> textures;
-    std::vector<Remark> repairs; // what is not as the format has it and is read all the same, for warnings
+    std::vector<Remark> repairs; // repaired violations of the format, for warnings
     std::size_t size = 0;        // bytes up to the body
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the properties of a PLY vertex mean, by their names: the format gives none, and programs differ.
+// Meanings of vertex properties by their names, which PLY does not define and programs use differently.
 
 #include <cstddef>
 #include <string_view>
@@ -9,7 +9,7 @@ namespace pertev {
 
 enum PlySlot : std::size_t { kX, kY, kZ, kNormalX, kNormalY, kNormalZ, kRed, kGreen, kBlue, kAlpha, kU, kV, kSlots };
 
-/// kSlots for a name that is not read.
+/// Returns kSlots for a name that is not read.
 std::size_t ply_slot_of(std::string_view name);
 
 } // namespace pertev

@@ -178,7 +178,7 @@ private:
         const bool has_colour = has[kRed] && has[kGreen] && has[kBlue], has_uv = has[kU] && has[kV];
         const auto count = static_cast<std::size_t>(element.count);
         mesh_.positions.resize(count);
-        // What the file says of a place is more than a float holds.
+        // The file's positions may be more precise than floats.
         const bool is_text = header_.format == PlyFormat::Ascii;
         const auto is_float_there = [&](PlySlot slot) { return types[slot] == PlyType::Float32; };
         if (is_text || !(is_float_there(kX) && is_float_there(kY) && is_float_there(kZ))) exact_.resize(count);
@@ -206,7 +206,7 @@ private:
         }
     }
 
-    /// Faces and triangle strips; every other element is skipped.
+    /// Reads faces and triangle strips; other elements are skipped.
     void lists(const PlyElement& element) {
         const bool is_face = element.name == "face", is_strip = element.name == "tristrips";
         const bool has_textures = is_face && !header_.textures.empty();
@@ -374,13 +374,13 @@ private:
     PlyBody body_;
     const PlyHeader& header_;
     const std::string& file_;
-    uint64_t vertex_count_ = 0; // as declared: faces may stand before the vertices
+    uint64_t vertex_count_ = 0; // declared count, because faces may precede the vertices
     Mesh mesh_;
-    std::vector<DoubleVec3> exact_; // positions, where they are not floats in the file
+    std::vector<DoubleVec3> exact_; // positions, if they are not floats in the file
     DoubleBounds3 box_;
-    std::vector<uint32_t> corners_, sizes_; // of the faces, one after the other
+    std::vector<uint32_t> corners_, sizes_; // corners of the faces, one after the other, and their numbers per face
     PlyFaceTextures of_faces_;
-    std::vector<float> face_uvs_; // of the face that is read
+    std::vector<float> face_uvs_; // texture coordinates of the current face
     bool has_float_colors_ = false;
     uint64_t strays_ = 0, bad_indices_ = 0, bad_textures_ = 0;
     std::optional<Remark> first_bad_index_;

@@ -1,8 +1,8 @@
 #pragma once
 
-// PLY, Stanford's polygon file format (Greg Turk, 1994), ascii and binary of both byte orders: vertex positions,
-// normals, colours and texture coordinates, faces, triangle strips and textures (formats/ply/ply_textures.h);
-// everything else in it is skipped. No count is believed before it is held against the bytes that are left.
+// Reads PLY, Stanford's polygon file format (Greg Turk, 1994), ascii and binary of both byte orders: vertex
+// positions, normals, colours and texture coordinates, faces, triangle strips and textures
+// (formats/ply/ply_textures.h); everything else is skipped. Every count is checked against the remaining bytes.
 
 #include <filesystem>
 
@@ -13,9 +13,10 @@
 
 namespace pertev {
 
-/// One mesh for each texture, grey where there is neither a texture nor vertex colours, which are sRGB
-/// (formats/mesh/vertex_colors.h); v of texture coordinates points up. Not yet validated. Throws Error(BadInput) that
-/// names the file and the header line, or the element, its number and the line (binary: the byte).
+/// Reads one mesh for each texture, grey if there is neither a texture nor vertex colours, which are sRGB
+/// (formats/mesh/vertex_colors.h); v of texture coordinates points up. The result is not validated. Throws
+/// Error(BadInput) that names the file and the header line, or the element, its number and the line (binary: the
+/// byte).
 Scene read_ply(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
                Messages& messages);
 

@@ -1,14 +1,15 @@
 #pragma once
 
-// Bidirectional path tracing: a walk from the camera and a particle's walk from a light; every vertex of the one is
-// joined to every vertex of the other, to a light drawn anew, and, of the particle's, to the camera. A light path of k
-// scatterings is found in k + 2 ways; each way's share is weighted by how densely it finds that path.
+// Bidirectional path tracing: a camera subpath and a light subpath. Every vertex of the camera subpath connects to
+// every vertex of the light subpath and to a sampled light, and every vertex of the light subpath connects to the
+// camera. A light path with k scatterings is found by k + 2 techniques, each weighted by MIS.
 //
 // Sources: Lafortune, Willems, "Bi-Directional Path Tracing", Compugraphics 1993; Veach, "Robust Monte Carlo Methods
 // for Light Transport Simulation", 1997, chapter 10. Weights: integrators/subpaths/walk_memory.h.
 //
-// All light that path tracing finds, L(D|G|S)*E, with less noise where light comes to what the camera sees by narrow
-// ways. What both do not find: a point light seen by clear glass or mirrors alone, L S* D S* E with no end to draw.
+// It finds all light that path tracing finds, L(D|G|S)*E, with less noise if light reaches the visible surfaces
+// through narrow paths. Neither finds a point light that is seen only through clear glass or mirrors, because L S* D
+// S* E then has no vertex to sample.
 
 #include "integrators/bidirectional/eye_stages.h"
 #include "integrators/subpaths/run_walks.h"

@@ -1,16 +1,16 @@
 #pragma once
 
-// The stages of walks from the camera that are joined to particles: shade where their rays have met something, then
-// join that to the vertices that the sample's particle has left behind, some at a time.
+// Stages of camera subpaths: shade their hits, then connect each vertex to the vertices of the sample's light
+// subpath, several at a time.
 
 #include "integrators/subpaths/particle_stages.h"
 
 namespace pertev {
 
-/// Vertices of a particle's walk that a vertex is joined to at once.
+/// Number of light-subpath vertices that a vertex connects to at once.
 inline constexpr uint32_t kJoinedAtOnce = 4;
 
-/// Where the camera's walks have met something: light that they ran into, a light drawn anew, the way on.
+/// Shades hits of camera subpaths: emission, next-event estimation, continuation.
 template <MaterialsKnown kKnown>
 struct ShadeEyes {
     WalkScene scene;
@@ -62,13 +62,13 @@ private:
     HD LightDensities light_densities(const Hit& hit, Vec3 direction) const {
         const LightSetView& lights = scene.picture.scene.lights;
         const uint32_t light = light_of(lights, hit.instance, hit.primitive);
-        if (light == kNoLight) return {}; // found by this walk alone
+        if (light == kNoLight) return {}; // only this subpath can find it
         const EmissiveTriangle& triangle = lights.triangles[light];
         const float cosine = dot(normalize(cross(triangle.ab, triangle.ac)), direction);
         return {pdf_place(triangle), pdf_emission(triangle, cosine)};
     }
 
-    /// One point of one light, as path tracing draws it.
+    /// Samples one point of one light, as path tracing does.
     HD INLINE_ON_DEVICE void ask_for_light(const Surface& surface, const WalkState& state, Vec3 wo,
                                            SampleKey key) const {
         const SceneView& view = scene.picture.scene;
@@ -80,7 +80,7 @@ private:
         const uint32_t coin = coin_key(key, state.depth(), true);
         if (light.instance != kNoLight && view.any_alpha != 0 &&
             !AcceptHit{view, {}, {}, coin}.passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
-            return; // a hole in the light
+            return; // transparent part of the light
         }
         const float found = light.is_delta ? 0.0f : squared_density(scattered.eye.pdf / light.pdf);
         const float arriving = density_from(light) * cosine_at(surface, light.wi);
@@ -93,7 +93,7 @@ private:
         connection.light = (weight / light.pdf) * (state.throughput * scattered.eye.f * light.radiance);
         walks.ask(atomic_add(&walks.counts->asked, 1u), connection, state.pixel);
     }
-    /// Density, 1/m2 across its way, with which a particle that leaves the place drawn passes where it shines.
+    /// Density, in 1/m2 across its direction, with which a particle from the sampled point arrives where it shines.
     HD float density_from(const LightSample& light) const {
         const LightSetView& lights = scene.picture.scene.lights;
         if (light.distance == kInfinity) return pdf_disc(scene.world);
@@ -128,13 +128,13 @@ private:
     }
 };
 
-/// One end of a way between two vertices.
+/// One end of a connection between two vertices.
 struct JoinedEnd {
-    Rgb f;                       // scattered along the way, per solid angle
-    float onwards_density = 0;   // of the walk's own step along the way, 1/sr
-    float backwards_density = 0; // of the other side's step back from here
+    Rgb f;                       // scattered along the connection, per solid angle
+    float onwards_density = 0;   // density of the subpath's own continuation along the connection, 1/sr
+    float backwards_density = 0; // density of the other subpath's continuation from here backwards, 1/sr
     float cosine = 0;
-    Vec3 start; // of a ray along the way
+    Vec3 start; // origin of a ray along the connection
     TriangleId triangle;
 };
 
@@ -158,7 +158,8 @@ HD inline Vec3 position_of(const SceneView& scene, const Hit& hit) {
     return place_triangle(instance, scene.meshes[instance.mesh], hit).position;
 }
 
-/// Pair i: the present round's vertex i % vertices with vertex first + i / vertices of its sample's particle.
+/// Connects pair i: the current round's vertex i % vertices and vertex first + i / vertices of its sample's light
+/// subpath.
 template <MaterialsKnown kKnown>
 struct JoinWalks {
     WalkScene scene;
@@ -178,7 +179,7 @@ struct JoinWalks {
         if (!(distance_squared > 0)) return;
         const Vec3 along = way / sqrt(distance_squared);
         JoinedEnd joined[2];
-        for (int k = 0; k < 2; ++k) { // one after the other: a kernel has room for one surface
+        for (int k = 0; k < 2; ++k) { // one after the other, because a kernel has room for one surface
             joined[k] = join_end<kKnown>(view, ends[k], k == 0 ? along : -along, k == 0);
             if (is_black(joined[k].f)) return;
         }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Ray casting: what a camera ray meets first is lit by the lights that it sees, and that is all.
+// Ray casting: the first hit of a camera ray is lit by the lights that it sees, and nothing else.
 //
 // Source: Appel, "Some Techniques for Shading Machine Renderings of Solids", AFIPS 1968.
 
@@ -9,17 +9,17 @@
 namespace pertev {
 
 struct Cast {
-    static constexpr uint32_t kMostBranches = 0; // rays that a vertex sends on
+    static constexpr uint32_t kMostBranches = 0; // continuation rays per vertex
     static constexpr bool kHasShutter = true;
 
-    /// A point, a spot or a direction each: hard shadows.
+    /// One for each point, spot and directional light: hard shadows.
     HD static uint32_t shadow_rays(const LightSetView& lights) { return lights.punctual_count; }
     HD static bool ask_for_light(const TreeVertex& vertex, uint32_t number, TreeShadowRay& shadow) {
         return vertex.ask_for_punctual_light(number, shadow);
     }
     HD static void follow(const TreeVertex& vertex) { vertex.add_ambient(); }
 
-    /// Without one that was asked for.
+    /// There is no ambient light by default.
     static Rgb ambient(const EnvironmentView*) { return {0, 0, 0}; }
 };
 

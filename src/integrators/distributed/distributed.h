@@ -1,14 +1,14 @@
 #pragma once
 
-// Distributed ray tracing: Whitted's tree, but where light comes from many directions, points or places at once, a
-// sample takes one of them: a point of a lamp or of the sky, a direction of a glossy lobe, a place on the lens. Soft
-// shadows, blurred reflections and depth of field are means over the samples.
+// Distributed ray tracing: Whitted's tree, but if light comes from many directions or points, a sample takes one of
+// them: a point on an emitter or the sky, a direction of a glossy lobe, a point on the lens. Soft shadows, glossy
+// reflections and depth of field are means over the samples.
 //
 // Source: Cook, Porter, Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984.
 //
-// Unbiased for light that at most one surface scatters diffusely, the last one before the light: in Heckbert's words
-// L(D|S|G)?(S|G)*E. Light that a diffuse surface gets from another surface is not there: neither diffuse
-// interreflection nor caustics.
+// It is unbiased for light that at most one surface scatters diffusely, the last one before the light:
+// L(D|S|G)?(S|G)*E in Heckbert's notation. Light from another surface to a diffuse one is missing: there is neither
+// diffuse interreflection nor caustics.
 
 #include "integrators/ray_tree/tree_vertex.h"
 
@@ -28,7 +28,7 @@ struct Distributed {
         vertex.follow_specular(kLeast);
     }
 
-    static Rgb ambient(const EnvironmentView*) { return {0, 0, 0}; } // the light of all around is drawn
+    static Rgb ambient(const EnvironmentView*) { return {0, 0, 0}; } // light from all directions is sampled instead
 };
 
 } // namespace pertev

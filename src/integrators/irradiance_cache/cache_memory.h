@@ -1,6 +1,6 @@
 #pragma once
 
-// What walks of irradiance caching know beside subpaths/walk_memory.h, and the cells of hemispheres in flight.
+// Data that paths of irradiance caching need besides subpaths/walk_memory.h, and the cells of hemispheres in flight.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,46 +10,46 @@
 
 namespace pertev {
 
-/// What a walk is after.
+/// Purpose of a path.
 enum class WalkAim : uint32_t {
-    Seek, // a diffuse surface, past mirrors and smooth glass alone, to look light up there
-    GoOn, // all light that a path finds
-    End,  // nothing any more
+    Seek, // find a diffuse surface through mirrors and smooth glass only, to look its light up
+    GoOn, // find all light, as in path tracing
+    End,  // nothing more
 };
 
-/// Beside the walk's throughput, which counts for light that its next surface sends on.
+/// Data of a path besides its throughput, which counts for light that its next surface scatters.
 struct CacheSight {
-    Rgb seen;  // counts for light that the ray itself runs into
-    float pdf; // with which its direction was drawn, 1/sr; 0 after the camera or a delta lobe
+    Rgb seen;  // factor for light that the ray itself hits
+    float pdf; // density with which its direction was sampled, 1/sr; 0 after the camera or a delta lobe
 };
 
-/// Whether lamps may be seen by mirrors and smooth glass in the scene, which takes some of both.
+/// Whether emitters may be visible in mirrors or smooth glass of the scene, which needs both.
 struct MirroredLamps {
-    uint64_t mirrors, lamps; // instances; where there is an environment, all count as lamps
+    uint64_t mirrors, lamps; // instances; with an environment, all count as emitters
 
     HD bool are_possible() const { return mirrors > 0 && lamps > 0; }
 };
 
-/// A diffuse surface where light is to be looked up.
+/// A diffuse surface whose light is looked up.
 struct CacheLookup {
     Hit hit;
-    Vec3 direction; // of the walk, unit
-    float way;      // from the camera, metres
+    Vec3 direction; // direction of the path, unit
+    float way;      // distance from the camera along the path, metres
     Rgb throughput;
     uint32_t walk, scatterings;
 };
 
 struct CacheWalksView {
-    Float4* sights; // [walks]
-    Float4* paths;  // [walks] throughput of all light, as path tracing has it; 0 of a record's rays
-    float* ways;    // [walks] from the camera, metres
-    WalkAim* aims;  // [walks]
-    // Lookups of a round, side by side; WalkCounts::vertices is their number.
+    Float4* sights; // [paths]
+    Float4* paths;  // [paths] throughput of all light, as in path tracing; 0 for rays of a record
+    float* ways;    // [paths] distance from the camera, metres
+    WalkAim* aims;  // [paths]
+    // Lookups of a round, contiguous; WalkCounts::vertices is their number.
     Float4 *places, *directions, *throughputs;
     uint32_t* scatterings;
     // Cells of hemispheres.
     FixedSum* light; // [3 * cells]
-    Float4* cells;   // [cells] light as floats, W/(sr m2); metres to what the first ray met
+    Float4* cells;   // [cells] light as floats, W/(sr m2); metres to the first hit
 
     HD void store_sight(uint32_t walk, const CacheSight& sight) const {
         sights[walk] = {sight.seen.r, sight.seen.g, sight.seen.b, sight.pdf};
@@ -84,8 +84,8 @@ struct CacheWalksView {
 
 /// The sizes of the arrays.
 struct CacheRoom {
-    uint32_t count; // walks
-    uint32_t cells; // of hemispheres
+    uint32_t count; // paths
+    uint32_t cells; // cells of hemispheres
 };
 
 /// Places the arrays in one piece of memory (lay_out_arrays).

@@ -1,12 +1,11 @@
 #pragma once
 
-// The stages of walks of irradiance caching: those of the camera, and those that are a record's rays. Both are path
-// tracing. But where a walk of the camera's has met mirrors and smooth glass alone and comes to a surface with a
-// diffuse base, the light there is
-//   L S* D                  drawn, by a shadow ray and by the walk's own next ray, as path tracing does it;
-//   L S+ (D|G) (D|G|S)* D   found by the walk, which goes on for it alone where the scene has mirrors or smooth glass;
-//   L (D|G) (D|G|S)* D      looked up: a record's rays bring it. Where there is no record, the walk goes on as a path.
-// What other lobes there scatter is found by the same next ray.
+// Stages of the paths of irradiance caching: camera paths, and the rays of records. Both are path tracing. But where
+// a camera path that has only passed mirrors and smooth glass reaches a surface with a diffuse base, its light is
+//   L S* D                  sampled by a shadow ray and by the path's own next ray, as in path tracing;
+//   L S+ (D|G) (D|G|S)* D   found by the path, which continues only for it if the scene has mirrors or smooth glass;
+//   L (D|G) (D|G|S)* D      looked up, because a record's rays find it. Without a record, the path continues normally.
+// Light that other lobes there scatter is found by the same next ray.
 //
 // Source: Ward, Rubinstein, Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988, section 2.
 
@@ -18,9 +17,10 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kNumberOfOthers = 2; // of the choices of a vertex: whether light goes on by other lobes
+inline constexpr uint32_t kNumberOfOthers = 2; // index among a vertex's choices: whether the path continues for other
+                                               // lobes
 
-/// Stage: counts instance i.
+/// Counts instance i.
 struct CountMirroredLamps {
     SceneView scene;
     MirroredLamps* count;
@@ -35,7 +35,7 @@ struct CountMirroredLamps {
     }
 };
 
-/// Walks 0, 1, ... become the camera's of the samples.
+/// Starts camera paths 0, 1, ... of the samples.
 struct BeginCacheWalks {
     BeginEyes begin;
     CacheWalksView cache;
@@ -49,15 +49,15 @@ struct BeginCacheWalks {
     }
 };
 
-/// Where walks have met something.
+/// Shades the hits of paths.
 template <MaterialsKnown kKnown>
 struct ShadeCacheWalks {
     WalkScene scene;
     WalksView walks;
     CacheWalksView cache;
-    FilmView film; // of pixels, or of the cells of hemispheres; no sums: nothing is added
+    FilmView film; // for pixels or for cells of hemispheres; without sums nothing is added
     const MirroredLamps* mirrored;
-    bool is_hemisphere; // walk i brings light to cell first_cell + i
+    bool is_hemisphere; // path i adds light to cell first_cell + i
     uint32_t first_cell;
     uint32_t round;
 
@@ -109,7 +109,8 @@ private:
         return is_hemisphere ? first_cell + walk : state.pixel;
     }
 
-    /// Light that the walk has run into; `light_pdf`: the density with which a shadow ray would have been sent there.
+    /// Adds light that the path hit. `light_pdf` is the density with which a shadow ray would have been sampled
+    /// there.
     HD void add_light(uint32_t walk, const WalkState& state, const CacheSight& sight, Rgb emission,
                       float light_pdf) const {
         if (is_black(sight.seen)) return;
@@ -125,7 +126,7 @@ private:
                   sight.pdf > 0 ? pdf_environment(lights, ray.origin, ray.direction) : 0.0f);
     }
 
-    /// One point of one light, as path tracing draws it.
+    /// Samples one point of one light, as path tracing does.
     HD INLINE_ON_DEVICE void ask_for_light(const Vertex& vertex, uint32_t walk, const WalkState& state) const {
         const SceneView& view = scene.picture.scene;
         const Surface& surface = vertex.surface;
@@ -138,7 +139,7 @@ private:
         const uint32_t coin = coin_key(vertex.key, state.depth(), true);
         if (light.instance != kNoLight && view.any_alpha != 0 &&
             !AcceptHit{view, {}, {}, coin}.passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
-            return; // a hole in the light
+            return; // transparent part of the light
         }
         const float weight = light.is_delta ? 1.0f : power_heuristic(light.pdf, scattered.pdf);
         Connection connection;
@@ -163,7 +164,8 @@ private:
         const Rgb before = sample.weight;
         if (!survives(settings, vertex.key, choices, state.depth() + 1, sample.weight)) return;
         const float made_up = max_component(before) > 0 ? max_component(sample.weight) / max_component(before) : 0.0f;
-        // What mirrors and smooth glass show of lamps is no record's, so that it counts for all of the path.
+        // Records do not contain reflections of emitters in mirrors and smooth glass, so those count fully for the
+        // path.
         const Rgb path = cache.path_of(walk) * sample.weight;
         sight = sample.is_delta() ? CacheSight{path, 0} : CacheSight{state.throughput * sample.weight, sample.pdf};
         state.throughput = made_up * (state.throughput * onwards);
@@ -174,7 +176,7 @@ private:
         walks.states[walk] = state;
         cache.store_sight(walk, sight);
         if (!sample.is_delta()) cache.aims[walk] = WalkAim::GoOn;
-        if (!sample.is_delta() && !adds_light()) return; // no more is to be seen
+        if (!sample.is_delta() && !adds_light()) return; // nothing more can contribute
         const Vec3 wi = sample.wi;
         const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi), 0, wi,
                          kInfinity};
@@ -182,7 +184,7 @@ private:
                         coin_key(vertex.key, state.depth(), false), round + 1);
     }
 
-    /// Of the weight, what other lobes than the diffuse base scatter. Where that is little, few walks go on by it.
+    /// Part of the weight that lobes other than the diffuse base scatter. If it is small, few paths continue for it.
     HD Rgb others_share(const Vertex& vertex, const BsdfSample& sample, uint32_t choices) const {
         if (vertex.surface.bsdf.layer_count == 0) return {0, 0, 0};
         const Rgb f = vertex.surface.evaluate(vertex.wo, sample.wi, only(LobeClass::Glossy)).f;

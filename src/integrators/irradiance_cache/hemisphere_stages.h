@@ -1,6 +1,6 @@
 #pragma once
 
-// The stages that make records of places: a walk from each cell of a place's hemisphere, then the sum over the cells.
+// Stages that make records: a path from each cell of a point's hemisphere, then the sum over the cells.
 
 #include "integrators/irradiance_cache/cache_memory.h"
 #include "integrators/irradiance_cache/irradiance_cache_settings.h"
@@ -15,14 +15,15 @@
 
 namespace pertev {
 
-// A place learns this from the rays of its hemisphere: the light that comes, how it changes with a turn and with a
-// step, and how near all is. Any light may be asked for it, cell by cell, so this can be held to closed forms.
+// A record results from the rays of its hemisphere: the light, its rotational and translational gradients, and the
+// distance to the surroundings. The light comes from a function of the cell, so tests can compare it with closed
+// forms.
 //
-// Sources: Ward, Heckbert, "Irradiance Gradients", EGWR 1992, section 3 (the gradients; by a turn the mean of the
-// tangent over a row is in closed form here); Ward et al. 1988 (the harmonic mean of distances). A turn's gradient is
-// kept as the vector g of dE = g (n' - n).
+// Sources: Ward, Heckbert, "Irradiance Gradients", EGWR 1992, section 3 (the gradients; the mean of the tangent over
+// a row is in closed form here); Ward et al. 1988 (the harmonic mean of distances). The rotational gradient is stored
+// as the vector g of dE = g (n' - n).
 
-/// In cell `cell` (row by row), at `u` in its unit square; unit, about +z.
+/// Direction in cell `cell` (row by row) at `u` in its unit square; unit, around +z.
 HD inline Vec3 direction_in_cell(const HemisphereGrid& grid, uint32_t cell, Vec2 u) {
     const float sine_squared = (static_cast<float>(cell / grid.columns) + u.x) / static_cast<float>(grid.rows);
     const float turns = (static_cast<float>(cell % grid.columns) + u.y) / static_cast<float>(grid.columns);
@@ -37,16 +38,16 @@ struct HemisphereCell {
     float distance; // metres; may be infinite
 };
 
-/// See IrradianceRecord.
+/// Sum over a hemisphere; see IrradianceRecord.
 struct HemisphereSum {
     Rgb light;
     Vec3 by_turn[3], by_move[3];
-    float radius; // harmonic mean of the distances; infinite where nothing is met
+    float radius; // harmonic mean of the distances; infinite if nothing is hit
 };
 
 namespace hemisphere {
 
-/// Integral of tan from the normal to where the squared sine is `s`, over the cosine-weighted hemisphere.
+/// Integral of tan from the normal to the angle with squared sine `s`, over the cosine-weighted hemisphere.
 HD inline float tangents_to(float s) { return asin(sqrt(s)) - sqrt(s * (1.0f - s)); }
 
 HD inline void add(Vec3 (&sums)[3], Rgb light, Vec3 direction) {
@@ -57,7 +58,8 @@ HD inline void add(Vec3 (&sums)[3], Rgb light, Vec3 direction) {
 
 } // namespace hemisphere
 
-/// `cell_of(cell)`: its HemisphereCell. `frame`: its tangent and bitangent are x and y of direction_in_cell.
+/// Sums a hemisphere. `cell_of(cell)` returns its HemisphereCell. The tangent and bitangent of `frame` are x and y of
+/// direction_in_cell.
 template <class CellOf>
 HD inline HemisphereSum sum_hemisphere(const HemisphereGrid& grid, const Frame& frame, const CellOf& cell_of) {
     const float rows = static_cast<float>(grid.rows), columns = static_cast<float>(grid.columns);
@@ -84,7 +86,7 @@ HD inline HemisphereSum sum_hemisphere(const HemisphereGrid& grid, const Frame& 
             }
             const HemisphereCell before = cell_of(column > 0 ? cell - 1 : cell + grid.columns - 1);
             sin_cos_2pi(static_cast<float>(column) / columns, sine, cosine);
-            const Vec3 round = cosine * frame.bitangent - sine * frame.tangent; // at the border between the two
+            const Vec3 round = cosine * frame.bitangent - sine * frame.tangent; // at the border between two columns
             const float change = across_column / min(here.distance, before.distance);
             hemisphere::add(sum.by_move, change * (here.light - before.light), round);
         }
@@ -96,9 +98,8 @@ HD inline HemisphereSum sum_hemisphere(const HemisphereGrid& grid, const Frame& 
     return sum;
 }
 
-/// How far a record may serve, metres: no less than `least` and no more than `most`, and no further than its light
-/// changes by as much as it is (Ward and Heckbert 1992, section 4). Where the least is more than that, the gradient
-/// is made as much smaller.
+/// Limits the radius of a record, in metres, to [least, most] and to where its light would change by its own value
+/// (Ward and Heckbert 1992, section 4). If `least` exceeds that, the gradient is reduced accordingly.
 HD inline void limit_radius(HemisphereSum& sum, float least, float most) {
     const Vec3 gradient = 0.2126f * sum.by_move[0] + 0.7152f * sum.by_move[1] + 0.0722f * sum.by_move[2];
     const float change = length(gradient), light = luminance(sum.light);
@@ -109,17 +110,17 @@ HD inline void limit_radius(HemisphereSum& sum, float least, float most) {
     sum.radius = clamp(sum.radius, least, most);
 }
 
-/// Records of a picture that are to be made.
+/// Records of a picture that are being made.
 struct HemisphereJob {
-    const RecordSite* sites; // of these records
-    uint32_t first_record;   // the number of the first one, in the picture
-    uint32_t begin;          // the first whose cells lie in memory
+    const RecordSite* sites; // sites of these records
+    uint32_t first_record;   // index of the first one in the picture
+    uint32_t begin;          // the first record whose cells are in memory
     HemisphereGrid grid;
 };
 
 HD inline Hit hit_of(const RecordSite& site) { return {0, site.u, site.v, site.instance, site.primitive}; }
 
-/// Walks 0, 1, ... become those of cells `first`, first + 1, ... in memory.
+/// Starts paths 0, 1, ... for the cells `first`, first + 1, ... in memory.
 template <MaterialsKnown kKnown>
 struct BeginHemispheres {
     WalkScene scene;
@@ -148,7 +149,8 @@ struct BeginHemispheres {
         const bool is_before = (dot(surface.geometric_normal, wi) > 0) == (side > 0);
         if (!is_before || is_black(state.throughput)) return;
         walks.states[i] = state;
-        // What is seen straight or by mirrors is not the record's, nor are lamps that later bounces see by mirrors.
+        // A record contains neither directly visible or mirrored emitters, nor emitters that later bounces see in
+        // mirrors.
         cache.store_sight(i, {{0, 0, 0}, 0});
         cache.store_path(i, {0, 0, 0});
         cache.ways[i] = 0;
@@ -160,7 +162,7 @@ struct BeginHemispheres {
     }
 };
 
-/// What ray i of a first round has met is so far away.
+/// Stores the hit distance of ray i of a first round.
 struct StoreDistances {
     WalksView walks;
     CacheWalksView cache;
@@ -172,7 +174,7 @@ struct StoreDistances {
     }
 };
 
-/// The sums of cell i in memory become floats.
+/// Converts the sums of cell i in memory to floats.
 struct ReadCells {
     CacheWalksView cache;
 
@@ -183,16 +185,16 @@ struct ReadCells {
     }
 };
 
-/// In pixels: a record's radius is no smaller and no larger (Tabellion and Lamorlette 2004, section 4.2).
+/// Limits of a record's radius in pixels (Tabellion and Lamorlette 2004, section 4.2).
 inline constexpr float kLeastPixels = 16, kMostPixels = 400;
 
-/// Record i of those whose cells lie in memory.
+/// Finishes record i of those whose cells are in memory.
 template <MaterialsKnown kKnown>
 struct FinishRecords {
     WalkScene scene;
     CacheWalksView cache;
     HemisphereJob job;
-    IrradianceRecord* records; // of the picture
+    IrradianceRecord* records; // records of the picture
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const RecordSite site = job.sites[job.begin + i];
@@ -200,7 +202,7 @@ struct FinishRecords {
         const float side = CachedSurface(surface, -site.direction).side;
         const float pixel = pixel_size(scene.picture.camera.view, site.way);
         const std::size_t first = std::size_t(i) * job.grid.cells();
-        const float nearest = 0x1p-6f * pixel; // what is nearer counts as so near
+        const float nearest = 0x1p-6f * pixel; // smaller distances count as this
         HemisphereSum sum = sum_hemisphere(job.grid, surface.frame, [&](uint32_t cell) {
             const Float4 c = cache.cells[first + cell];
             return HemisphereCell{{c.x, c.y, c.z}, max(c.w, nearest)};

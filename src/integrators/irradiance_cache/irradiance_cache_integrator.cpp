@@ -7,7 +7,7 @@
 namespace pertev {
 namespace {
 
-enum : std::size_t { kMissed, kInvalid, kCounts }; // of counts_
+enum : std::size_t { kMissed, kInvalid, kCounts }; // indices into counts_
 
 uint32_t cells_of(const IrradianceCacheSettings& cache) { return make_hemisphere_grid(cache.hemisphere_rays).cells(); }
 
@@ -22,7 +22,7 @@ void IrradianceCacheIntegrator::reserve(const WorkSize& size) {
     counts_.grow(queue_, kCounts, "counts of irradiance caching");
     mirrored_.grow(queue_, 1, "counts of mirrors and lamps");
     if (goes_by_loop(size)) return;
-    // The wavefront holds the picture's samples or all rays of some records, and at least one record's.
+    // The wavefront holds the picture's samples or all rays of some records, at least of one.
     const uint32_t cells = cells_of(settings_.cache);
     const uint64_t wanted = std::max<uint64_t>(size.pixels(), uint64_t(cells) * 64);
     const uint64_t most =
@@ -79,7 +79,7 @@ void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const Fil
     rays_.camera += job.samples.count();
 }
 
-/// What is invalid of the records is told with sample 0, once, however the work is split.
+/// Adds invalid samples of the records to the count together with sample 0, thus once, however the work is split.
 void IrradianceCacheIntegrator::tell_invalid(uint64_t* invalid) {
     uint64_t of_records = 0, so_far = 0;
     queue_.copy_to_host(&of_records, counts_.data() + kInvalid, sizeof of_records);
@@ -93,7 +93,7 @@ bool IrradianceCacheIntegrator::make_ready(const std::function<bool(double share
     if (has_records_) return true;
     store_.clear();
     queue_.zero(counts_.data() + kInvalid, sizeof(uint64_t));
-    // Light that is scattered once is found by shadow rays alone.
+    // Shadow rays alone find light that is scattered once.
     const uint32_t rounds = picture_settings_.walks.max_depth < 2 ? 0 : kOvertureRounds;
     const uint32_t width = picture_.camera.width, height = picture_.camera.height;
     OvertureProgress progress(width, height, cells_of(picture_settings_.cache), most_records(uint64_t(width) * height));
@@ -123,7 +123,7 @@ bool IrradianceCacheIntegrator::make_round(uint32_t round, OvertureProgress& pro
     if (!went_on) return false;
     const uint32_t wanted = store_.gather_sites(job.grid.count());
     progress.begin_records(wanted, rays_.total());
-    if (wanted == 0) return true; // of a picture smaller than a step, too
+    if (wanted == 0) return true; // also if the picture is smaller than a step
     if (!make_hemispheres(make_job(kHemisphereSeed), wanted, goes_on)) return false;
     store_.take(wanted, picture_settings_.cache.accuracy);
     return true;

@@ -1,10 +1,10 @@
 #pragma once
 
-// Irradiance caching: diffuse light of other surfaces changes slowly, so it is found by many rays at a few places, the
-// records, and put together from these everywhere else (irradiance_record.h). The records are made before the first
-// sample, in rounds (overture_grid.h, hemisphere_stages.h), and stay as they are, so each sample is a function of
-// picture, settings and number. Light of lamps and sky, straight or by mirrors, is found by each sample itself
-// (cache_stages.h). They are kept from one begin() to the next where the picture is the same.
+// Irradiance caching: indirect diffuse light varies slowly, so many rays find it at a few points, the records, and it
+// is interpolated everywhere else (irradiance_record.h). Records are made in rounds before the first sample
+// (overture_grid.h, hemisphere_stages.h) and then do not change, so each sample depends only on picture, settings and
+// its number. Each sample finds the light of emitters and sky, direct or mirrored, itself (cache_stages.h). Records
+// are kept from one begin() to the next if the picture is the same.
 //
 // Source: Ward, Rubinstein, Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988.
 
@@ -38,16 +38,16 @@ public:
     void expect_same_picture() override { is_same_picture_ = true; }
     bool has_made() const override { return has_records_ && store_.count() > 0; }
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
-    /// Makes the records. On the CPU one record a thread is not broken off.
+    /// Makes the records. On the CPU the record that each thread is working on is always finished.
     bool make_ready(const std::function<bool(double share)>& goes_on) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
-    /// The most that records have taken of the host's memory beside.
+    /// Maximum additional host memory that records have taken, in bytes.
     std::size_t host_bytes() const { return store_.host_bytes(); }
 
-    /// Of the picture begun, once it has samples.
+    /// Number of records of the current picture, once it has samples.
     uint32_t record_count() const { return store_.count(); }
     std::vector<IrradianceRecord> records() const;
-    /// Lookups of all samples since begin() that found no record.
+    /// Number of lookups of all samples since begin() that found no record.
     uint64_t missed_lookups() const;
 
 private:
@@ -61,10 +61,10 @@ private:
     }
     void tell_invalid(uint64_t* invalid);
 
-    bool is_same_picture_ = false; // of the next begin()
+    bool is_same_picture_ = false; // whether the next begin() gets the same picture
     bool has_records_ = false;
     RecordStore store_;
-    Buffer<uint64_t> counts_; // lookups that found no record; invalid samples of the records
+    Buffer<uint64_t> counts_; // lookups without a record; invalid samples of the records
     Buffer<MirroredLamps> mirrored_;
 };
 

@@ -1,10 +1,10 @@
 #pragma once
 
-// A record of the light that comes to a place, and how records near another place are put together to the light there.
+// A record of the light that arrives at a point, and the interpolation of records near another point.
 //
-// Sources: Ward, Rubinstein, Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988, section 3; the
-// extrapolation by gradients: Ward, Heckbert, "Irradiance Gradients", EGWR 1992. The weight falls to 0 at the end of a
-// record's reach, as Tabellion and Lamorlette have it ("An Approximate Global Illumination System for Computer
+// Sources: Ward, Rubinstein, Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988, section 3;
+// the extrapolation by gradients: Ward, Heckbert, "Irradiance Gradients", EGWR 1992. The weight falls to 0 at the end
+// of a record's range, as in Tabellion and Lamorlette ("An Approximate Global Illumination System for Computer
 // Generated Films", SIGGRAPH 2004), so that light has no step there.
 
 #include <cstdint>
@@ -18,28 +18,28 @@
 
 namespace pertev {
 
-/// `material` of diffuse surfaces that nothing lies on: their records serve one another.
+/// Value of `material` for diffuse surfaces without a coating; their records are interchangeable.
 inline constexpr uint32_t kBareDiffuse = 0xffffffffu;
 
-/// A place that light is asked for, or that a record has.
+/// A point whose light is looked up, or the point of a record.
 struct CachePlace {
-    Vec3 position;        // moved world, metres
-    Vec3 normal;          // of shading, unit, on the side that is seen
-    uint32_t scatterings; // between the camera and the place
-    uint32_t material;    // kBareDiffuse, or that of a surface with a reflection on its diffuse base
+    Vec3 position;        // translated world, metres
+    Vec3 normal;          // shading normal, unit, on the visible side
+    uint32_t scatterings; // scatterings between the camera and the point
+    uint32_t material;    // kBareDiffuse, or the material of a surface with a reflection on its diffuse base
 };
 
 struct alignas(16) IrradianceRecord {
     CachePlace place;
-    float radius;    // mean distance to what surrounds the place, metres
+    float radius;    // mean distance to the surroundings, metres
     Rgb light;       // irradiance over pi, W/(sr m2)
-    Vec3 by_turn[3]; // what `light` grows by with a step of the normal, of each channel; across the normal
-    Vec3 by_move[3]; // and with a step of the place, in a metre
+    Vec3 by_turn[3]; // rotational gradient of `light` per channel; perpendicular to the normal
+    Vec3 by_move[3]; // translational gradient of `light` per channel, per metre
     float unused[2] = {};
 };
 static_assert(sizeof(IrradianceRecord) == 128);
 
-/// The light at `place`, as the record has it.
+/// The light at `place`, extrapolated from the record.
 HD inline Rgb extrapolate(const IrradianceRecord& record, const CachePlace& place) {
     const Vec3 turn = place.normal - record.place.normal, move = place.position - record.place.position;
     return {record.light.r + dot(record.by_turn[0], turn) + dot(record.by_move[0], move),
@@ -50,13 +50,13 @@ HD inline Rgb extrapolate(const IrradianceRecord& record, const CachePlace& plac
 /// All records of a picture.
 struct IrradianceCacheView {
     const IrradianceRecord* records;
-    const float* reaches; // of each: how far it serves, metres
-    PointOctreeView tree; // of spheres of these radii
+    const float* reaches; // [record] range, metres
+    PointOctreeView tree; // octree of spheres with these radii
     float accuracy;
 
-    /// [0, 1]: 1 - e / accuracy, e = distance / radius + sqrt(1 - cosine of the turn), which Ward's split sphere model
-    /// bounds the relative error by. 0 where the record is of other places, or lies above the surface there: it does
-    /// not see what stands between.
+    /// Weight of a record in [0, 1]: 1 - e / accuracy, e = distance / radius + sqrt(1 - cosine of the rotation),
+    /// which bounds the relative error in Ward's split sphere model. It is 0 if the record belongs to other surfaces,
+    /// or lies above the surface there, because it does not see what is between.
     HD float weight(uint32_t index, const CachePlace& place, float distance_squared) const {
         const CachePlace& own = records[index].place;
         if (own.scatterings != place.scatterings || own.material != place.material) return 0;
@@ -71,10 +71,10 @@ struct IrradianceCacheView {
 
 struct CachedLight {
     Rgb light = {};   // irradiance over pi, W/(sr m2)
-    float weight = 0; // of all records together; 0: there is none
+    float weight = 0; // sum of all records' weights; 0 if there is none
 };
 
-/// What the records say of `place`, in the tree's order.
+/// Interpolates the records at `place`, in the tree's order.
 HD inline CachedLight look_up(const IrradianceCacheView& cache, const CachePlace& place) {
     CachedLight found;
     visit_covering(cache.tree, place.position, [&](const NearPoint& near) {
@@ -90,18 +90,19 @@ HD inline CachedLight look_up(const IrradianceCacheView& cache, const CachePlace
     return found;
 }
 
-// A surface as the cache sees it. Records hold the light that comes to a diffuse base, so what lies on it must let
-// light in alike whatever is seen: nothing, or one reflection, whose part in f(wo, wi) is a product of one of wo and
-// one of wi (lobes/passage.h). The second is in the record, with the surface's material.
+// A surface as the cache sees it. Records hold the light that arrives at a diffuse base, so a coating must let light
+// in independently of the viewing direction: either there is none, or one reflection, whose part in f(wo, wi) is a
+// product of a function of wo and one of wi (lobes/passage.h). The latter is in the record, with the surface's
+// material.
 
-/// What the diffuse base sends from local wi to wo, of the light that would come evenly: [0, 1] per channel.
+/// Share of uniform light that the diffuse base scatters from local wi to wo: [0, 1] per channel.
 HD inline Rgb diffuse_reflectance(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
     return (kPi / abs(wi.z)) * bsdf.evaluate(wo, wi, only(LobeClass::Diffuse)).f;
 }
 
 struct CachedSurface {
-    bool is_cached; // light may be looked up there
-    float side;     // of the shading normal, seen from wo: 1 or -1
+    bool is_cached; // whether light may be looked up there
+    float side;     // side of the shading normal as seen from wo: 1 or -1
 
     HD CachedSurface(const Surface& surface, Vec3 wo) {
         const Bsdf& bsdf = surface.bsdf;
@@ -112,18 +113,18 @@ struct CachedSurface {
     }
 };
 
-/// Of a surface that is_cached.
+/// The point of a surface that is_cached.
 HD inline CachePlace place_of(const Surface& surface, float side, uint32_t scatterings) {
     return {surface.position, side * surface.frame.normal, scatterings,
             surface.bsdf.layer_count == 0 ? kBareDiffuse : surface.material};
 }
 
-/// Radiance towards wo of the light of a record, by the diffuse base.
+/// Radiance towards wo from the light of a record, by the diffuse base.
 HD inline Rgb sent_on(const Surface& surface, Vec3 wo, float side, Rgb light) {
     return diffuse_reflectance(surface.bsdf, surface.frame.to_local(wo), {0, 0, side}) * light;
 }
 
-/// How much of the light along local wi comes to the base, beside that along the normal: 1 where nothing lies on it.
+/// Transmittance to the base along local wi, relative to that along the normal; 1 without a coating.
 HD inline float let_in(const Bsdf& bsdf, float side, Vec3 wi) {
     if (bsdf.layer_count == 0) return 1;
     const float straight = max_component(diffuse_reflectance(bsdf, {0, 0, side}, {0, 0, side}));

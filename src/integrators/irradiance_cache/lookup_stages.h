@@ -1,7 +1,7 @@
 #pragma once
 
-// What becomes of the places where walks from the camera look light up: in a picture light is added, or the walk is
-// sent on as a path; in the overture, before there is a picture, a record is asked for where there is none.
+// Stages that handle lookups of camera paths. In a picture they add light, or let the path continue without it; in
+// the overture, before the picture, they request a record if there is none.
 
 #include "integrators/irradiance_cache/cache_memory.h"
 #include "integrators/irradiance_cache/irradiance_record.h"
@@ -19,7 +19,7 @@ struct LookUpLight {
     CacheWalksView cache;
     IrradianceCacheView records;
     FilmView film;
-    uint64_t* missed; // lookups that found no record
+    uint64_t* missed; // lookups without a record
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const CacheLookup lookup = cache.load(i);
@@ -40,21 +40,21 @@ struct LookUpLight {
 
 inline constexpr uint32_t kNoSite = 0xffffffffu;
 
-/// A place that a record is wanted for.
+/// A point for which a record is requested.
 struct alignas(16) RecordSite {
-    Vec3 direction = {}; // of the walk that met it, unit
-    float way = 0;       // from the camera, metres
+    Vec3 direction = {}; // direction of the path that hit it, unit
+    float way = 0;       // distance from the camera, metres
     float u = 0, v = 0;  // on the triangle
     uint32_t instance = 0, primitive = 0;
-    uint32_t scatterings = kNoSite; // between the camera and the place; kNoSite: no record is wanted
+    uint32_t scatterings = kNoSite; // between the camera and the point; kNoSite: no record is requested
     uint32_t unused[3] = {};
 };
 
-/// In the overture a record is wanted where those there are weigh less than this together: at the end of their reach
-/// other samples of the pixel would find none.
+/// In the overture a record is requested if the existing ones have a smaller total weight than this, because near the
+/// end of their range other samples of the pixel would find none.
 inline constexpr float kServedWeight = 0.25f;
 
-/// Lookup i of a round of the overture, whose walks have a site each, from `first` on.
+/// Lookup i of a round of the overture; each of its paths has a site, from `first` on.
 template <MaterialsKnown kKnown>
 struct SeekPlaces {
     WalkScene scene;
@@ -78,7 +78,7 @@ struct SeekPlaces {
     }
 };
 
-/// Where ray i of a picture meets the mark of a record, the walk shows that and ends.
+/// Ends the path if ray i of a picture hits the mark of a record, and shows the mark.
 template <MaterialsKnown kKnown>
 struct DrawRecords {
     static constexpr float kPixels = 1.25f; // radius of a mark
@@ -88,7 +88,7 @@ struct DrawRecords {
     CacheWalksView cache;
     IrradianceCacheView records;
     FilmView film;
-    Rgb light; // of marks, W/(sr m2)
+    Rgb light; // light of marks, W/(sr m2)
     uint32_t round;
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {

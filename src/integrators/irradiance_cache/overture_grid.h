@@ -1,12 +1,11 @@
 #pragma once
 
-// The overture: before a picture has samples, records are made, in rounds. A round sends a walk from each pixel of a
-// grid; each round's grid is finer than the one before, and where walks find too little, the places are the next
-// records, in the order of the grid. Places of one round lie at least a step of its grid apart, so few of their records
-// serve one another's places.
+// The overture: records are made in rounds before a picture has samples. A round traces a path from each pixel of a
+// grid, which gets finer in each round. Where paths find too little, the points become the next records, in grid
+// order. Points of one round are at least a grid step apart, so few of their records cover each other's points.
 //
-// Source: Ward, Rubinstein, Clear 1988, section 3, has the pass before the picture; rounds in place of one record after
-// the other are so that many are made at once, in an order that no device has a say in.
+// Source: Ward, Rubinstein, Clear 1988, section 3, has the pass before the picture. Rounds replace the creation of
+// one record at a time, so that many are made at once, in an order that does not depend on the device.
 
 #include <cstdint>
 
@@ -16,9 +15,10 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kOvertureSteps[] = {64, 32, 16, 8, 4, 2, 1, 1, 1}; // pixels, of each round
+inline constexpr uint32_t kOvertureSteps[] = {64, 32, 16, 8, 4, 2, 1, 1, 1}; // pixels, per round
 inline constexpr uint32_t kOvertureRounds = sizeof(kOvertureSteps) / sizeof(kOvertureSteps[0]);
-inline constexpr uint32_t kOvertureSeed = 0x6a09e667u, kHemisphereSeed = 0xbb67ae85u; // beside the picture's own
+inline constexpr uint32_t kOvertureSeed = 0x6a09e667u,
+                          kHemisphereSeed = 0xbb67ae85u; // seeds, combined with the picture's own
 
 struct OvertureGrid {
     uint32_t step, columns, rows, width;
@@ -35,7 +35,7 @@ inline OvertureGrid make_overture_grid(uint32_t round, uint32_t width, uint32_t 
     return {step, along(width), along(height), width};
 }
 
-/// Walks 0, 1, ... become those of the grid's numbers `first`, first + 1, ...; no record is wanted yet.
+/// Starts paths 0, 1, ... at the grid's indices `first`, first + 1, ...; no record is requested yet.
 struct BeginSeekers {
     WalkScene scene;
     WalksView walks;
@@ -57,7 +57,7 @@ struct BeginSeekers {
         cache.store_path(i, {1, 1, 1});
         cache.ways[i] = 0;
         cache.aims[i] = WalkAim::Seek;
-        sites[first + i] = {}; // whole: the host reads all of it
+        sites[first + i] = {}; // written completely, because the host reads all of it
     }
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kNearlyAll = 0.999;
 
-constexpr uint32_t kFewWalks = 256; // of which a share says little
+constexpr uint32_t kFewWalks = 256; // too few paths for a reliable share
 
 double next_fall(double fall) { return fall * std::sqrt(fall) * std::sqrt(std::sqrt(fall)); }
 
@@ -20,7 +20,7 @@ uint32_t OvertureProgress::grid_count(uint32_t round) const {
     return make_overture_grid(round, width_, height_).count();
 }
 
-/// Rays to be expected of the rounds from `round` on, if `wanting` is the share of the grid before that wanted records.
+/// Expected rays of the rounds from `round` on, if the share `wanting` of the previous grid requested records.
 double OvertureProgress::rays_from(uint32_t round, double wanting) const {
     double rays = 0, room = static_cast<double>(room_) - records_ - wanted_, falls_by = falls_by_;
     for (; round < kOvertureRounds; ++round) {

@@ -1,10 +1,10 @@
 #pragma once
 
-// How far the overture is: its rays so far, over those and the rays that are still to be expected. How many records its
-// later rounds want is not known beforehand. Once records serve one another's places, the share of a grid that wants
-// one falls from round to round, ever faster: of the Cornell box, 320x240, it is 0.64, 0.44, 0.21, 0.05, 0.007 from the
-// third round on. So each fall is taken to be the 1.75th power of the one before. Until there is one, all are to be
-// expected that there is room for.
+// Progress of the overture: its rays so far, over those and the expected ones. The number of records that later
+// rounds request is not known in advance. Once records cover each other's points, the share of a grid that requests
+// one falls from round to round, ever faster: for the Cornell box at 320x240 it is 0.64, 0.44, 0.21, 0.05, 0.007 from
+// the third round on. So each ratio is assumed to be the 1.75th power of the one before. Before the first one, as
+// many are expected as there is room for.
 
 #include <algorithm>
 #include <cstdint>
@@ -16,15 +16,16 @@ namespace pertev {
 
 class OvertureProgress {
 public:
-    /// Of a picture of this size, in pixels. `record_rays`: a record's own rays, `room`: most records of all rounds.
+    /// Starts a picture of this size in pixels. `record_rays` are the rays of one record, `room` is the maximum
+    /// number of records.
     OvertureProgress(uint32_t width, uint32_t height, uint32_t record_rays, uint32_t room)
         : width_(width), height_(height), room_(room), rays_a_record_(3.0 * record_rays) {}
 
-    /// The walks of the next round's grid begin. `rays`: of the overture so far, as in the next two.
+    /// Starts the paths of the next round's grid. `rays` counts the overture's rays so far, here and in the next two.
     void begin_walks(uint64_t rays);
-    /// They have ended, and want so many records.
+    /// Ends the paths, which requested `wanted` records.
     void begin_records(uint32_t wanted, uint64_t rays);
-    /// [0, 1), never less than before: more rays than were expected are no end.
+    /// Progress in [0, 1), never falling: more rays than expected do not complete it.
     double share(uint64_t rays);
 
 private:
@@ -32,25 +33,26 @@ private:
     double rays_from(uint32_t round, double wanting) const;
 
     uint32_t width_, height_, room_;
-    uint32_t round_ = 0;                     // under way
-    bool has_begun_ = false;                 // the first one has
-    uint64_t began_at_ = 0;                  // rays before the walks, or the records, under way
-    double expected_ = 0, later_ = 0;        // rays of these, and of all that follows
-    uint32_t wanted_ = 0, records_ = 0;      // of the round under way; of the rounds before
-    double wanting_ = 1, falls_by_ = 1;      // share of the last grid that wanted records, over that of the one before
-    double rays_a_walk_ = 2, rays_a_record_; // of the last ones that were done, or a guess
+    uint32_t round_ = 0;                     // current round
+    bool has_begun_ = false;                 // whether the first round has begun
+    uint64_t began_at_ = 0;                  // rays before the current paths or records
+    double expected_ = 0, later_ = 0;        // expected rays of these, and of all that follows
+    uint32_t wanted_ = 0, records_ = 0;      // records of the current round, and of the rounds before
+    double wanting_ = 1, falls_by_ = 1;      // share of the last grid that requested records, and its ratio to the
+                                             // one before
+    double rays_a_walk_ = 2, rays_a_record_; // rays of the last completed ones, or an estimate
     double share_ = 0;
 };
 
-// Work that may take long, in parts short enough to be asked between them whether it is to go on.
+// Long work is done in parts that are short enough to check between them whether to continue.
 
-/// Sizes of a part. Between the two it follows the clock, which no result may depend on.
+/// Limits of the size of a part. Within them it depends on the clock, which must not affect results.
 struct PartSizes {
     uint64_t least, most;
 };
 
-/// Calls run(begin, end) over [0, count) in order, in parts of about a tenth of a second, and asks `goes_on` before
-/// each and after the last. Returns false once that is false.
+/// Calls run(begin, end) over [0, count) in order, in parts of about a tenth of a second, and `goes_on` before each
+/// and after the last. Returns false once `goes_on` does.
 template <class Run>
 bool do_in_parts(uint64_t count, const PartSizes& sizes, const std::function<bool()>& goes_on, const Run& run) {
     constexpr double kShort = 0.04, kLong = 0.1; // seconds

@@ -11,7 +11,7 @@ namespace pertev {
 
 namespace {
 
-/// An octree over the centres, which lie in its leaves, however far records reach; with their radii.
+/// Builds an octree over the centres, which lie in its leaves, whatever the radii.
 PointOctree tree_over_centres(std::span<const Sphere> records) {
     std::vector<Sphere> centres(records.begin(), records.end());
     for (Sphere& centre : centres) centre.radius = 0;
@@ -20,10 +20,11 @@ PointOctree tree_over_centres(std::span<const Sphere> records) {
     return tree;
 }
 
-/// Of each node the least radius in its subtree.
+/// Least radius in the subtree of each node.
 std::vector<float> least_radii(const PointOctree& tree) {
     std::vector<float> least(tree.nodes.size());
-    for (std::size_t i = tree.nodes.size(); i-- > 0;) { // depth first: a node's children come after it
+    for (std::size_t i = tree.nodes.size(); i-- > 0;) { // reverse depth-first order: children come before their
+                                                        // parents
         const PointOctreeNode& node = tree.nodes[i];
         float radius = kInfinity;
         for (uint32_t k = node.first; k < node.first + node.count; ++k) radius = min(radius, tree.spheres[k].radius);
@@ -35,19 +36,19 @@ std::vector<float> least_radii(const PointOctree& tree) {
     return least;
 }
 
-/// The least radius of one record and those of its neighbours plus the way there, so far.
+/// The minimum so far of a record's radius and of its neighbours' radii plus distance.
 struct Clamped {
     float radius;
-    uint32_t by; // number of that neighbour in the tree
+    uint32_t by; // index of that neighbour in the tree
 };
 
 class Clamp {
 public:
     explicit Clamp(const PointOctree& tree) : tree_(tree), least_(least_radii(tree)) {}
 
-    /// Of the record of that number in the tree. What is as far as its radius makes it no smaller, nor does a subtree
-    /// whose least radius and the way to it are no less than what was found. `guess`: a neighbour that may be the one
-    /// looked for, so that little is left to look at.
+    /// Clamps the record with this index in the tree. Neighbours farther away than its radius do not reduce it, nor
+    /// does a subtree whose least radius plus distance is not below the minimum so far. `guess` is a likely minimum,
+    /// which prunes the search.
     Clamped clamp(uint32_t number, uint32_t guess) const {
         const Sphere& record = tree_.spheres[number];
         const float most_squared = square_of_radius(record.radius);
@@ -85,7 +86,8 @@ std::vector<float> clamp_by_neighbours(std::span<const Sphere> records) {
     const Clamp clamp(tree);
     std::vector<float> clamped(records.size());
     parallel_for_ranges(records.size(), 64, [&](uint64_t begin, uint64_t end) {
-        auto guess = static_cast<uint32_t>(begin); // who clamps a record often clamps the next one in the tree
+        auto guess = static_cast<uint32_t>(begin); // the neighbour that clamps a record often clamps the next one in
+                                                   // the tree too
         for (uint64_t i = begin; i < end; ++i) {
             const Clamped found = clamp.clamp(static_cast<uint32_t>(i), guess);
             clamped[tree.indices[i]] = found.radius;
@@ -97,7 +99,7 @@ std::vector<float> clamp_by_neighbours(std::span<const Sphere> records) {
 
 namespace {
 
-/// Elements [0, count) at `data`: where they lie, or in `copy` where the device has memory of its own.
+/// Host access to elements [0, count) at `data`: in place, or through `copy` if the device has its own memory.
 template <class T>
 std::span<T> on_host(Queue& queue, T* data, std::size_t count, std::vector<T>& copy) {
     if (!queue.is_cuda()) return {data, count};

@@ -19,37 +19,37 @@ public:
     /// `queue` outlives it.
     explicit RecordStore(Queue& queue) : queue_(queue) {}
 
-    /// Bytes that it takes beside of the host's memory, for the octree and the spacing of records, at most.
+    /// Maximum additional host memory, in bytes, for the octree and the spacing of records.
     static std::size_t most_host_bytes(uint64_t pixels);
-    /// For a picture of so many pixels. Throws Error(OutOfMemory).
+    /// Allocates for a picture of `pixels` pixels. Throws Error(OutOfMemory).
     void make_room(uint64_t pixels);
-    /// The most that it has taken of the host's memory.
+    /// Maximum host memory that it has taken, in bytes.
     std::size_t host_bytes() const { return host_bytes_; }
 
-    /// A picture begins: no records.
+    /// Removes all records for a new picture.
     void clear();
     uint32_t count() const { return static_cast<uint32_t>(spheres_.size()); }
 
-    /// [pixels] of the overture.
+    /// [pixels] sites of the overture.
     RecordSite* sites() const { return sites_.data(); }
-    /// Of the first `count` sites those that records are wanted for come first, in their order, as many as there is
-    /// room for. Returns how many.
+    /// Moves the requested ones of the first `count` sites to the front in their order, as many as there is room for,
+    /// and returns their number.
     uint32_t gather_sites(uint32_t count);
-    /// Where the next records go: number count() is the first.
+    /// Memory of the next records; the first has index count().
     IrradianceRecord* records() const { return records_.data(); }
-    /// So many have been made: they serve from here on, and all are spaced anew.
+    /// Adds `made` new records, which serve from now on, and recomputes the spacing of all.
     void take(uint32_t made, float accuracy);
 
     IrradianceCacheView view() const;
-    /// Mean of the luminance of all records' light, W/(sr m2).
+    /// Mean luminance of all records' light, W/(sr m2).
     float mean_luminance() const;
 
 private:
     Queue& queue_;
     uint64_t pixels_ = 0;
     float accuracy_ = 0;
-    std::vector<Sphere> spheres_;   // of their own radii
-    std::vector<float> luminances_; // of their light
+    std::vector<Sphere> spheres_;   // with the records' unclamped radii
+    std::vector<float> luminances_; // luminance of the records' light
     std::size_t host_bytes_ = 0;
     uint32_t node_count_ = 0;
     Buffer<RecordSite> sites_;
@@ -60,14 +60,15 @@ private:
     Buffer<uint32_t> tree_indices_;
 };
 
-// How far records serve, once all of a round are there: neighbour clamping. Where a record has near walls, those near
-// it cannot be much farther from them, whatever their own rays have met: by the triangle inequality a radius is at most
-// a neighbour's plus the way there. Of all records at once, so no order matters.
+// Neighbour clamping of all radii, after each round. If a record is close to a wall, records near it cannot be much
+// farther from it, whatever their own rays have hit: by the triangle inequality a radius is at most a neighbour's
+// plus the distance. All records are clamped at once, so their order does not matter.
 //
-// Source: Krivanek, Bouatouch, Pattanaik, Zara, "Making Radiance and Irradiance Caching Practical: Adaptive Caching and
-// Neighbor Clamping", EGSR 2006, section 5.
+// Source: Krivanek, Bouatouch, Pattanaik, Zara, "Making Radiance and Irradiance Caching Practical: Adaptive Caching
+// and Neighbor Clamping", EGSR 2006, section 5.
 
-/// Of spheres round records, of their own radii: the least of radius_j + distance to j over all j, themselves too.
+/// Clamps the radii of spheres around records: returns the minimum of radius_j + distance to j over all j, itself
+/// included.
 std::vector<float> clamp_by_neighbours(std::span<const Sphere> records);
 
 } // namespace pertev

@@ -1,6 +1,6 @@
 #pragma once
 
-// The stages in their order, written once for both ways to run them (integrators/subpaths/run_walks.h).
+// Orders the stages once for both schedules (integrators/subpaths/run_walks.h).
 
 #include "integrators/irradiance_cache/cache_stages.h"
 #include "integrators/irradiance_cache/hemisphere_stages.h"
@@ -19,11 +19,11 @@ struct CacheJob : WalkJob {
     uint64_t* missed;
     const MirroredLamps* mirrored;
 
-    // Of the overture.
+    // Used by the overture.
     OvertureGrid grid;
     uint32_t round;
     RecordSite* sites;
-    // Of hemispheres.
+    // Used by hemispheres.
     HemisphereJob hemispheres;
     IrradianceRecord* made;
 };
@@ -33,10 +33,10 @@ inline std::size_t lay_out(CacheJob& job, std::byte* memory, const CacheRoom& ro
     return of_walks + lay_out(job.cache, memory != nullptr ? memory + of_walks : nullptr, room);
 }
 
-/// What a job's walks are.
+/// Purpose of a job's paths.
 enum class CacheWalks : uint8_t { Picture, Overture, Hemispheres };
 
-/// Walks that have begun, to their ends.
+/// Runs the paths that have begun to their ends.
 template <CacheWalks kWalks, class Way>
 void run_cache_rounds(Way& way, const CacheJob& job) {
     const WalksView& walks = job.walks;
@@ -73,7 +73,7 @@ void run_cache_rounds(Way& way, const CacheJob& job) {
     }
 }
 
-/// Samples [job.first, + job.count) of job.samples.
+/// Renders samples [job.first, + job.count) of job.samples.
 template <class Way>
 void run_picture(Way& way, const CacheJob& job) {
     way.run("begin_walks", 1, BeginWalks{job.walks.counts, job.count});
@@ -81,7 +81,7 @@ void run_picture(Way& way, const CacheJob& job) {
     run_cache_rounds<CacheWalks::Picture>(way, job);
 }
 
-/// Numbers [job.first, + job.count) of the grid.
+/// Traces indices [job.first, + job.count) of the grid.
 template <class Way>
 void run_overture(Way& way, const CacheJob& job) {
     way.run("begin_walks", 1, BeginWalks{job.walks.counts, job.count});
@@ -91,7 +91,7 @@ void run_overture(Way& way, const CacheJob& job) {
     run_cache_rounds<CacheWalks::Overture>(way, job);
 }
 
-/// Cells [job.first, + job.count) in memory.
+/// Traces cells [job.first, + job.count) in memory.
 template <class Way>
 void run_hemispheres(Way& way, const CacheJob& job) {
     way.run("begin_walks", 1, BeginWalks{job.walks.counts, 0});
@@ -104,7 +104,7 @@ void run_hemispheres(Way& way, const CacheJob& job) {
     run_cache_rounds<CacheWalks::Hemispheres>(way, job);
 }
 
-/// So many of the records whose cells are in memory, from the first one on.
+/// Finishes the first `count` records whose cells are in memory.
 template <class Way>
 void finish_records(Way& way, const CacheJob& job, uint32_t count) {
     way.run("read_cells", count * job.hemispheres.grid.cells(), ReadCells{job.cache});

@@ -27,7 +27,7 @@ RayTreeSettings tree_settings(const IntegratorSettings& settings) {
             .seed = settings.path.seed,
             .has_ambient = settings.ambient.has_value(),
             .ambient = settings.ambient.value_or(Rgb{0, 0, 0}),
-            .radiosity = {}}; // which its integrator adds
+            .radiosity = {}}; // its integrator adds the radiosity
 }
 
 RadiosityIntegrator::Settings radiosity_settings(const IntegratorSettings& settings) {

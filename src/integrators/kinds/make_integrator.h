@@ -1,6 +1,6 @@
 #pragma once
 
-// Every integrator there is, and the settings of each: this file and its .cpp alone know them all.
+// All integrators and their settings; only this file and its .cpp know them all.
 
 #include <cstdint>
 #include <memory>
@@ -23,7 +23,7 @@ namespace pertev {
 
 enum class IntegratorKind : uint8_t {
     Path,
-    Hybrid,          // path's samples, with what the camera sees found by rasterisation (render/raster/camera_raster.h)
+    Hybrid,          // path's samples, with primary visibility by rasterization (render/raster/camera_raster.h)
     Cast,            // integrators/cast/cast.h
     Whitted,         // integrators/whitted/whitted.h
     Distributed,     // integrators/distributed/distributed.h
@@ -39,59 +39,63 @@ inline constexpr IntegratorKind kLastIntegrator = IntegratorKind::Radiosity;
 
 struct IntegratorSettings {
     IntegratorKind integrator = IntegratorKind::Path;
-    PathSettings path; // of which all integrators have max_depth, sampler and seed
+    PathSettings path; // max_depth, sampler and seed apply to all integrators
 
-    // Of Cast, Whitted, Raster and Reyes: radiance from all around that diffuse surfaces reflect, W/(sr m2). None: all
-    // but Cast take the mean of the environment.
+    // For Cast, Whitted, Raster and Reyes: radiance from all directions that diffuse surfaces reflect, W/(sr m2).
+    // Without a value, all but Cast use the mean of the environment.
     std::optional<Rgb> ambient;
-    RasterLook look;                           // of Raster
-    float shading_rate = 1;                    // of Reyes: no edge of a micropolygon is longer, pixels
-    std::shared_ptr<const HeightMaps> heights; // of Reyes: what displaces surfaces; null: nothing
-    PhotonMapSettings photon_map;              // of PhotonMap
-    IrradianceCacheSettings irradiance_cache;  // of IrradianceCache
-    RadiosityLook radiosity;                   // of Radiosity
+    RasterLook look;                           // for Raster
+    float shading_rate = 1;                    // for Reyes: maximum length of a micropolygon's edge, pixels
+    std::shared_ptr<const HeightMaps> heights; // for Reyes: displacement; null: none
+    PhotonMapSettings photon_map;              // for PhotonMap
+    IrradianceCacheSettings irradiance_cache;  // for IrradianceCache
+    RadiosityLook radiosity;                   // for Radiosity
 
-    // Of Path and Hybrid: layers of the film beside the picture, each of some light paths alone. Null: none.
+    // For Path and Hybrid: additional film layers, each of selected light paths. Null: none.
     std::shared_ptr<const LightPathLayers> light_paths;
-    // Of Path and Hybrid: in place of radiance, W/m2 on the side that the camera sees; 0 where it sees none.
+    // For Path and Hybrid: renders irradiance, W/m2, on the visible side in place of radiance; 0 if no surface is
+    // visible.
     bool irradiance = false;
 
-    // How the device does it: the light stays the same.
-    PathBody body = PathBody::Loop; // CUDA always takes Wavefront
-    uint32_t batch = 5u << 19;      // most paths in flight of wavefronts, 228 bytes and more each; or other samples
+    // How the device renders; this does not change the light.
+    PathBody body = PathBody::Loop; // CUDA always uses Wavefront
+    uint32_t batch = 5u << 19;      // maximum number of paths in flight of wavefronts, at least 228 bytes each; or of
+                                    // other samples
 };
 
 /// Describes a kind of integrator to code that does not know it. The table of all rows is in make_integrator.cpp. A new
 /// integrator is a folder, a kind above, and a row.
 struct IntegratorDescriptor {
     IntegratorKind value;
-    std::string_view name; // as text (base/value_names.h)
-    /// Whether its samples can be taken apart for frames that are reconstructed (FilmView::frame), for pictures that
-    /// are denoised, and for ReSTIR.
+    std::string_view name; // name as text (base/value_names.h)
+    /// Whether its samples can be separated for frames that are reconstructed (FilmView::frame), for denoised
+    /// pictures and for ReSTIR.
     bool makes_frames = false;
-    /// Whether it tells light paths apart and can show irradiance: IntegratorSettings::light_paths and irradiance.
+    /// Whether it supports light-path layers and irradiance: IntegratorSettings::light_paths and irradiance.
     bool has_light_path_layers = false;
-    /// Whether its mean is all light that there is, in the end, so that another one of these has the same, or nearly.
+    /// Whether its mean converges to all light, so that such integrators agree, at least approximately.
     bool finds_all_light = false;
-    /// Whether what the camera sees is found by rasterisation; why_no_raster (render/raster/pinhole.h) says which
+    /// Whether it rasterizes primary visibility; why_no_raster (render/raster/pinhole.h) says which cameras it
+    /// excludes.
     /// cameras it cannot have.
     bool rasterises_camera = false;
-    /// Whether its rays have a time, so that what moves while a shutter is open is blurred.
+    /// Whether its rays have a time, so that motion while a shutter is open is blurred.
     bool has_shutter = false;
-    /// Whether point, spot and directional lights alone light surfaces.
+    /// Whether only point, spot and directional lights illuminate surfaces.
     bool needs_punctual_lights = false;
     /// The largest PathSettings::max_depth.
     uint32_t most_depth = kMaxPathDepth - 1;
-    /// Returns how many samples of each pixel together take hardly longer than one.
+    /// Returns how many samples per pixel together take hardly longer than one.
     uint32_t (*samples_at_once)(uint64_t pixels) = [](uint64_t) { return 1u; };
     std::unique_ptr<Integrator> (*make)(Queue&, const IntegratorSettings&) = nullptr;
-    void (*change)(Integrator&, const IntegratorSettings&) = nullptr; // gives new settings to what `make` has made
+    void (*change)(Integrator&, const IntegratorSettings&) = nullptr; // applies new settings to the integrator of
+                                                                      // `make`
 };
 
 /// Returns the table, in the order of the kinds.
 std::span<const IntegratorDescriptor> integrators();
 const IntegratorDescriptor& describe(IntegratorKind kind);
-/// Makes the names known to base/value_names.h.
+/// Registers the names with base/value_names.h.
 inline std::span<const IntegratorDescriptor> names_of_all(IntegratorKind) { return integrators(); }
 
 inline bool makes_frames(IntegratorKind kind) { return describe(kind).makes_frames; }
@@ -108,15 +112,15 @@ inline uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pix
 /// Whether both give the same samples.
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b);
 
-/// `queue` outlives it.
+/// `queue` outlives the integrator.
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings);
 
-/// Gives `integrator`, which has the settings `from`, the settings `to`, and lets it keep its memory; begin() must come
-/// next. False, and nothing done, where that takes another integrator.
+/// Changes the settings of `integrator` from `from` to `to` and keeps its memory; begin() must follow. Returns false
+/// and does nothing if that needs another integrator.
 bool change_settings(Integrator& integrator, const IntegratorSettings& from, const IntegratorSettings& to);
 
-/// Predicts by a dry run how many bytes of the device's memory the integrator takes for work of this size. On the CPU
-/// that includes what it takes besides of the host's memory.
+/// Predicts by a dry run the device memory, in bytes, that the integrator needs for work of this size. On the CPU
+/// that includes its additional host memory.
 std::size_t predicted_bytes(const IntegratorSettings& settings, const WorkSize& size, bool on_cuda);
 
 } // namespace pertev

@@ -1,21 +1,20 @@
 #pragma once
 
-// Particle tracing, or light tracing: particles leave the lights, and each surface that one meets is joined to the
-// camera by a ray; what comes through counts for the pixels there. The camera's own rays bring lamps and surroundings
-// that it looks straight at.
+// Particle tracing, or light tracing: each surface that a particle from a light hits connects to the camera, and
+// unoccluded connections count for the pixels there. Camera rays add directly visible emitters and background.
 //
 // Source: Dutre, Lafortune, Willems, "Monte Carlo Light Tracing with Direct Computation of Pixel Intensities", 1993.
 //
-// In Heckbert's words L(D|G|S)*(D|G)E and LE, unbiased, caustics above all. What it cannot find ends in S E: what is
-// seen in a mirror or through clear glass, for no ray from a particle to the camera goes the one way that such a
-// surface sends light.
+// It is unbiased for L(D|G|S)*(D|G)E and LE in Heckbert's notation, and best for caustics. It cannot find paths that
+// end in S E, seen in a mirror or through clear glass, because the connection would have to take the only direction
+// in which such a surface scatters.
 
 #include "integrators/subpaths/particle_stages.h"
 #include "integrators/subpaths/run_walks.h"
 
 namespace pertev {
 
-/// What the camera's rays have met.
+/// Shades the hits of camera rays.
 struct ShadeSeen {
     WalkScene scene;
     WalksView walks;
@@ -30,7 +29,7 @@ struct ShadeSeen {
     }
 };
 
-/// The stages in their order.
+/// Runs the stages in order.
 struct ParticlesAlone {
     static constexpr bool kIsJoined = false;
     static WalkRoom room(const SubpathSettings&, uint32_t walks) { return {walks, 0, 1}; }

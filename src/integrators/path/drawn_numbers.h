@@ -1,13 +1,13 @@
 #pragma once
 
-// Random numbers of eight paths, drawn at once. Host only; the same bits as each path draws by itself.
+// Random numbers of eight paths, drawn at once with the same bits as for each path alone. Host only.
 
 #include "integrators/path/vertex_numbers.h"
 #include "math/words8.h"
 
 namespace pertev {
 
-/// The sample of one lane out of eight.
+/// Sets the sample of one of eight lanes.
 inline void set_lane(SampleKeyOf<Words8>& keys, uint32_t lane, SampleKey key) {
     keys.pixel[lane] = key.pixel;
     keys.sample[lane] = key.sample;
@@ -18,8 +18,8 @@ inline Vec2 unit_square(const SampleBitsOf<Words8>& bits, uint32_t lane) {
     return {unit_interval(bits.x[lane]), unit_interval(bits.y[lane])};
 }
 
-/// Of one path out of eight, as shade_vertex asks for them (vertex_numbers.h). `lobe` and `roulette` are only of words
-/// that were drawn with choices.
+/// Numbers of one of eight paths, with the interface that shade_vertex uses (vertex_numbers.h). `lobe` and `roulette`
+/// are valid only if the words were drawn with choices.
 class DrawnNumbers {
 public:
     DrawnNumbers(const VertexWords<Words8>& words, uint32_t lane) : words_(words), lane_(lane) {}

@@ -1,6 +1,6 @@
 #pragma once
 
-// First step of eight paths at once (generate_path.h has that of one). Host only.
+// Starts eight paths at once (generate_path.h starts one). Host only.
 
 #include "integrators/path/drawn_numbers.h"
 #include "integrators/path/generate_path.h"
@@ -15,10 +15,10 @@ public:
     bool is_full() const { return count_ == kWords; }
     void add(uint32_t pixel, uint32_t sample) {
         set_lane(keys_, count_, sample_key(settings_, pixel, sample));
-        pixels_[count_++] = pixel; // a key may have another number for it
+        pixels_[count_++] = pixel; // its key may contain another pixel number
     }
 
-    /// Hands each path to `take`, in the order in which they were added, and leaves none.
+    /// Passes each path to `take`, in the order in which they were added, and becomes empty.
     template <class Take>
     void begin(const Take& take) {
         const SamplerKind kind = settings_.sampler;
@@ -40,7 +40,7 @@ public:
 private:
     const CameraRays& camera_;
     const PathSettings& settings_;
-    SampleKeyOf<Words8> keys_; // those beyond `count_` of samples before, or 0: drawn for nothing
+    SampleKeyOf<Words8> keys_; // lanes beyond `count_` hold previous samples or 0, whose numbers are not used
     uint32_t pixels_[kWords];
     uint32_t count_ = 0;
 };

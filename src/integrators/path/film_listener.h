@@ -1,6 +1,6 @@
 #pragma once
 
-// Listens for a film: auxiliary layers of what camera rays meet first, and the samples of its pixels.
+// A listener for films: auxiliary layers of the first hit, and the samples of pixels.
 
 #include "integrators/path/path_listener.h"
 #include "render/first_hit.h"

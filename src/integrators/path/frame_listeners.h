@@ -1,13 +1,13 @@
 #pragma once
 
-// Listen for a frame of samples (render/noisy_frame_view.h): the surface that a camera ray met; which part of the light
-// went through its diffuse lobes; and what is left to ReSTIR of the path's first bounce.
+// Listeners for a frame of samples (render/noisy_frame_view.h): the G-buffer of the first hit, the part of the light
+// that its diffuse lobes scatter, and the data of the path's first bounce for ReSTIR.
 
 #include "integrators/path/path_listener.h"
 
 namespace pertev {
 
-/// The surface that the camera's ray met, and the sample.
+/// Stores the first hit in the G-buffer, and the sample.
 class FrameSurface : public PathListener<FrameSurface> {
 public:
     HD explicit FrameSurface(const PathJob& job) : film_(job.film), axis_(job.picture.camera.axis) {}
@@ -45,17 +45,18 @@ private:
 
     const FilmView& film_;
     const Vec3& axis_;
-    float passage_ = 1; // Gloss's
+    float passage_ = 1; // transmittance of Gloss
 };
 
-/// Which part of a path's radiance went through diffuse lobes of its first vertex, where a frame splits light.
+/// Separates the part of a path's radiance that diffuse lobes of its first vertex scatter, if a frame splits light.
 class LightSplit : public PathListener<LightSplit> {
 public:
     struct Kept {
-        Float4 diffuse; // rgb; w: bits of the share of diffuse lobes in what the first vertex scattered, ten a colour
+        Float4 diffuse; // rgb; w: bits of the share of diffuse lobes in what the first vertex scattered, ten per
+                        // colour
     };
     struct Asked {
-        Rgb diffuse; // of the contribution
+        Rgb diffuse; // part of the contribution
     };
 
     HD explicit LightSplit(const PathJob& job) : frame_(job.film.frame) {}
@@ -65,7 +66,7 @@ public:
         kept_ = kept;
         first_ = unpacked(bits_of(kept.diffuse.w));
     }
-    /// Light that the camera's ray itself meets is not scattered.
+    /// Light that the camera ray itself hits is not scattered.
     HD void emitted(const PathState&, Rgb light) {
         if (!frame_.splits_light()) return;
         const Rgb more = first_ * light;
@@ -75,7 +76,8 @@ public:
         if (!frame_.splits_light()) return;
         asked_.diffuse = (path.depth == 0 ? at.surface.diffuse_share(at.wo, wi) : first_) * shadow.contribution;
     }
-    /// Not by the lobe that was drawn: others send light that way, too, and light of glossy ones changes with the view.
+    /// The drawn lobe does not matter: other lobes scatter light that way too, and light of glossy ones depends on
+    /// the view.
     HD void scattered(const PathState& path, const SurfaceVertex& at, const BsdfSample&) {
         if (!frame_.splits_light() || path.depth != 1) return;
         first_ = path.bsdf_pdf > 0 ? at.surface.diffuse_share(at.wo, path.direction) : Rgb{0, 0, 0};
@@ -130,11 +132,11 @@ private:
     Rgb first_ = {0, 0, 0}; // share of diffuse lobes in what the first vertex scattered
 };
 
-/// What a frame leaves to ReSTIR (FirstBounceView), where it does.
+/// Stores the data of the first bounce for ReSTIR (FirstBounceView), if the frame has room for it.
 class FirstBounce : public PathListener<FirstBounce> {
 public:
     struct Asked {
-        Rgb sent; // of the contribution, what goes through the diffuse lobes of the second vertex
+        Rgb sent; // part of the contribution that passes through diffuse lobes of the second vertex
         uint32_t pixel;
     };
 
@@ -151,12 +153,12 @@ public:
     }
     HD void emitted(const PathState& path, Rgb light) {
         if (!tells() || path.depth <= 1) return;
-        // As much as the sample's radiance grows by, which where light is split is of this vertex alone.
+        // Equals the growth of the sample's radiance, which for split light contains only this vertex.
         const Rgb more = frame_.splits_light() ? light : (path.radiance + light) - path.radiance;
         left().add_sent(path.pixel, share_onwards(path.pixel) * more);
     }
     HD bool wants_direct(const PathState& path, const Hit& hit, const Surface& surface) {
-        // With coat or sheen on top, what leaves it in one direction says little of another.
+        // Beneath coat or sheen, the light that leaves in one direction does not determine the light in another.
         is_bounce_ = tells() && path.depth == 1 && path.bsdf_pdf > 0 && !surface.bsdf.is_stacked;
         if (is_bounce_) begin_bounce(path, hit, true);
         return !(leaves() && path.depth == 0);
@@ -167,7 +169,7 @@ public:
         asked_ = {share * shadow.contribution, path.pixel};
     }
     HD void scattered(const PathState& path, const SurfaceVertex& at, const BsdfSample&) {
-        if (!is_bounce_ || !(path.bsdf_pdf > 0)) return; // by a delta lobe nothing can be shared
+        if (!is_bounce_ || !(path.bsdf_pdf > 0)) return; // light of a delta lobe cannot be shared
         const Rgb share = at.surface.diffuse_share(at.wo, path.direction);
         left().onwards[path.pixel] = {share.r, share.g, share.b, 0};
     }
@@ -191,7 +193,7 @@ private:
     HD const FirstBounceView& left() const { return frame_.first_bounce; }
     HD bool leaves() const { return left().leaves_direct_light(); }
     HD bool tells() const { return left().tells_bounce(); }
-    /// What the first bounce has met, before anything is added there. A place that nobody can share is none.
+    /// Stores the point that the first bounce hit before light is added there; none if it cannot be shared.
     HD void begin_bounce(const PathState& path, const Hit& hit, bool is_shared) const {
         left().place[path.pixel] = {float_of(is_shared ? hit.instance : kNoHit), float_of(hit.primitive), hit.u, hit.v};
         left().way[path.pixel] = {path.throughput.r, path.throughput.g, path.throughput.b, path.bsdf_pdf};
@@ -207,7 +209,7 @@ private:
     Asked asked_ = {};
 };
 
-/// Plain: of scenes that have diffuse lobes alone. Reuse: light is left to ReSTIR.
+/// Plain is for scenes with diffuse lobes only. Reuse leaves light to ReSTIR.
 using FrameListeners = Listeners<FrameSurface, LightSplit>;
 using PlainFrameListeners = Listeners<FrameSurface>;
 using ReuseListeners = Listeners<FrameSurface, LightSplit, FirstBounce>;

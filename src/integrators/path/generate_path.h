@@ -1,6 +1,6 @@
 #pragma once
 
-// First step of a path: draws the place in the pixel and on the lens.
+// First step of a path: draws the position in the pixel and on the lens.
 
 #include "integrators/path/path_settings.h"
 #include "integrators/path/path_state.h"
@@ -8,12 +8,12 @@
 
 namespace pertev {
 
-/// PathState::time of a path that was begun before.
+/// Recomputes PathState::time of a path.
 HD inline float time_of(const CameraRays& camera, const PathSettings& settings, const PathState& path) {
     return camera.time(settings.sampler, sample_key(settings, path.pixel, path.sample));
 }
 
-/// `ray`, `time`: CameraRays', of the sample.
+/// Starts a path; `ray` and `time` come from CameraRays for the sample.
 HD inline PathState begin_path(const CameraRays& camera, uint32_t pixel, uint32_t sample, const Ray& ray, float time) {
     PathState path;
     path.origin = ray.origin;

@@ -1,7 +1,7 @@
 #pragma once
 
-// shade_vertex as the CPU's loop calls it: compiled for what a picture's materials are known to be, by numbers that
-// have been drawn.
+// Host versions of shade_vertex for the CPU's loop, compiled per set of features and using random numbers that are
+// already drawn.
 
 #include "integrators/path/drawn_numbers.h"
 #include "integrators/path/frame_listeners.h"
@@ -10,20 +10,20 @@
 
 namespace pertev {
 
-/// What a vertex gives beside its path.
+/// Results of a vertex besides its path.
 template <class Listener>
 struct AskedByVertex {
-    ShadowRay ray; // where one is wanted
+    ShadowRay ray; // if a shadow ray is traced
     [[no_unique_address]] typename Listener::Asked asked;
 };
 
-/// Takes a path over a vertex, with what the listener keeps of it. Sets whether the path goes on and returns whether it
-/// asks for a shadow ray.
+/// Shades a vertex of a path and updates the listener's data of it. Sets whether the path continues and returns
+/// whether it needs a shadow ray.
 template <class Listener>
 using ShadeOnHost = bool (*)(const PathJob&, PathState&, typename Listener::Kept&, const Hit&, const DrawnNumbers&,
                              AskedByVertex<Listener>&, bool& goes_on);
 
-/// Returns the one with no more code than the job needs.
+/// Returns the version with the least code that the job needs.
 template <class Listener>
 ShadeOnHost<Listener> shading_for(const PathJob& job);
 template <>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Bodies of host_shading.h, for the files that compile them: one a kind of listeners.
+// Bodies of host_shading.h for the files that compile them, one per kind of listeners.
 
 #include "base/error.h"
 #include "integrators/path/host_shading.h"
@@ -12,8 +12,8 @@ namespace pertev {
 #define PERTEV_INLINE_ALL [[gnu::flatten]]
 #endif
 
-/// All that it calls is in line: g++ by itself would leave a dozen calls, for a third more time of Bitterli's box. That
-/// takes g++ twenty times as long, so that a build that only tests (src/CMakeLists.txt) does without.
+/// Everything it calls is inlined. By default g++ would leave a dozen calls, which takes a third more time in
+/// Bitterli's box. Inlining takes g++ twenty times as long, so builds that only test (src/CMakeLists.txt) do without.
 template <Features kFeatures, class Listener>
 PERTEV_INLINE_ALL bool shade_on_host(const PathJob& job, PathState& path, typename Listener::Kept& kept, const Hit& hit,
                                      const DrawnNumbers& numbers, AskedByVertex<Listener>& asked, bool& goes_on) {

@@ -1,14 +1,14 @@
 #pragma once
 
-// Listen for layers of light-path expressions, and for pictures of irradiance, whose paths' first surface is a light
-// meter.
+// Listeners for layers of light-path expressions, and for pictures of irradiance, which place a light meter on the
+// first surface of each path.
 
 #include "integrators/path/film_listener.h"
 
 namespace pertev {
 
-/// Share of diffuse lobes, [0, 1] for each colour, in what the surface scatters of light along wi to wo by lobes that
-/// are not delta; the rest is by glossy ones. `if_dark` where it scatters nothing.
+/// Share of diffuse lobes, [0, 1] per colour, in the light that the surface scatters from wi to wo by non-delta
+/// lobes; glossy lobes have the rest. Returns `if_dark` if it scatters nothing.
 HD inline Rgb exact_diffuse_share(const Surface& surface, Vec3 wo, Vec3 wi, float if_dark) {
     if (!surface.bsdf.has(LobeClass::Glossy)) return grey(1.0f);
     if (!surface.bsdf.has(LobeClass::Diffuse)) return grey(0.0f);
@@ -17,15 +17,15 @@ HD inline Rgb exact_diffuse_share(const Surface& surface, Vec3 wo, Vec3 wi, floa
             all.b > 0 ? min(f.b / all.b, 1.0f) : if_dark};
 }
 
-/// Makes the first surface a light meter, which gives its irradiance to the eye and nothing else. Black where the
-/// camera sees no surface.
+/// Turns the first surface into a light meter, which sends its irradiance to the camera and nothing else. The picture
+/// is black where the camera sees no surface.
 class IrradianceMeter : public PathListener<IrradianceMeter> {
 public:
     HD explicit IrradianceMeter(const PathJob& job) : is_there_(job.is_meter) {}
 
     HD void vertex(const PathState& path, const Hit&, Surface& surface) {
         if (!is_there_ || path.depth != 0) return;
-        surface.bsdf = Bsdf(DiffuseLobe{grey(kPi), 1}); // a white one would have the radiance E / pi
+        surface.bsdf = Bsdf(DiffuseLobe{grey(kPi), 1}); // a white diffuse surface would have the radiance E / pi
         surface.emission = {};
         surface.is_unlit = false;
     }
@@ -35,18 +35,18 @@ private:
     bool is_there_;
 };
 
-/// Gives light to the layers that the automaton says (render/light_paths/light_path_view.h).
+/// Adds light to the layers that the automaton selects (render/light_paths/light_path_view.h).
 class LightPaths : public PathListener<LightPaths> {
 public:
     struct Kept {
-        LightPathState state; // of the path before the vertex that it goes to
+        LightPathState state; // state before the next vertex
     };
     struct Asked {
-        Rgb diffuse; // of the contribution, what goes through diffuse lobes of the vertex
+        Rgb diffuse; // part of the contribution that passes through diffuse lobes of the vertex
         uint32_t pixel;
-        LightPathState state; // of the path before the vertex
-        uint32_t column;      // of the vertex' scatterings to that side
-        uint32_t light;       // LightPathView::light_of
+        LightPathState state; // state before the vertex
+        uint32_t column;      // column of the vertex's scattering to that side
+        uint32_t light;       // result of LightPathView::light_of
     };
 
     HD explicit LightPaths(const PathJob& job) : job_(job) {}
@@ -75,7 +75,7 @@ public:
             const float if_dark = sample.lobe_class == LobeClass::Diffuse ? 1.0f : 0.0f;
             diffuse = exact_diffuse_share(at.surface, at.wo, sample.wi, if_dark);
             const SampleKey key = sample_key(job_.settings, path.pixel, path.sample);
-            const uint32_t group = vertex_group(path.depth - 1, kGroupChoices); // of the vertex left behind
+            const uint32_t group = vertex_group(path.depth - 1, kGroupChoices); // group of the previous vertex
             u = sample_1d(job_.settings.sampler, key, group, kNumberLightPath);
         }
         state_ = after_scattering(layers(), state_, layers().first_column(met_.instance), is_specular,
@@ -120,7 +120,7 @@ private:
 
     const PathJob& job_;
     LightPathState state_;
-    TriangleId met_; // by the path's ray
+    TriangleId met_; // hit of the path's ray
     Asked asked_ = {};
 };
 

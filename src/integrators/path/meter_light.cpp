@@ -9,7 +9,7 @@ namespace pertev {
 
 uint64_t add_meter_lights(Queue& queue, SceneTracer& tracer, const PictureView& picture, const PathSettings& settings,
                           uint32_t first, uint32_t count, const FilmView& film) {
-    if (picture.scene.lights.choice.starts == nullptr) return 0; // no lights
+    if (picture.scene.lights.choice.starts == nullptr) return 0; // there are no lights
     constexpr uint32_t kMost = 1u << 18;                         // rays at once
     const uint32_t pixels = film.width * film.height;
     const uint32_t samples_at_once = std::clamp(kMost / pixels, 1u, count);
@@ -27,7 +27,7 @@ uint64_t add_meter_lights(Queue& queue, SceneTracer& tracer, const PictureView& 
         launch(queue, "add_meter_lights", pixels * now, AddMeterLights{view, film});
         done += now;
     }
-    queue.wait(); // the buffers go away
+    queue.wait(); // the buffers must outlive queued work
     return uint64_t(pixels) * count;
 }
 

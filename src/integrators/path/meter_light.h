@@ -1,9 +1,9 @@
 #pragma once
 
-// A light meter: pictures of a camera with Projection::Cosine are the radiance of a white diffuse surface that stands
-// at the camera and faces along its -z; pi times that is the irradiance there. No such surface is in the scene. Paths
-// begin where its bounces would, and this is its next-event estimation: one light a sample, lights without extent
-// included, weighted against what the paths find as at every other vertex (integrators/path/path_vertex.h).
+// A light meter: a camera with Projection::Cosine renders the radiance of a white diffuse surface at the camera that
+// faces along its -z; pi times that is the irradiance. No such surface is in the scene. Paths begin as its bounces
+// would, and this is its next-event estimation: one light per sample, including lights without extent, with the MIS
+// weights of any other vertex (integrators/path/path_vertex.h).
 
 #include <cstdint>
 
@@ -18,22 +18,22 @@
 
 namespace pertev {
 
-/// Samples of pixels that go to the tracer together.
+/// Samples of pixels that are traced together.
 struct MeterSamples {
     uint32_t pixels, first_sample;
-    PixelWindow window; // which pixels of the picture they are
+    PixelWindow window; // the pixels of the picture that they belong to
 };
 
 struct MeterQueueView {
     Ray* rays;
     Uint2* targets;
-    uint32_t* keys;       // then what the ray met
+    uint32_t* keys;       // keys, and after tracing the results
     Float4* contribution; // rgb, bits of the pixel
 
     RayQueueView query() const { return {.rays = rays, .targets = targets, .keys = keys}; }
 };
 
-/// What reaches the meter from one point of one light, if nothing stands between; black where nothing does.
+/// Light that reaches the meter from one point of one light without occlusion; black if there is none.
 HD inline ShadowRay draw_meter_light(const PictureView& picture, const PathSettings& settings, uint32_t pixel,
                                      uint32_t sample) {
     const SceneView& scene = picture.scene;
@@ -50,7 +50,7 @@ HD inline ShadowRay draw_meter_light(const PictureView& picture, const PathSetti
     const uint32_t key = coin_key({pixel, sample, settings.seed}, 0, true);
     if (light.instance != kNoLight && scene.any_alpha != 0 &&
         !AcceptHit{scene, {}, {}, key}.passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
-        return shadow; // a hole in the light
+        return shadow; // transparent part of the light
     }
     const bool is_weighted = !light.is_delta && settings.strategy == LightStrategy::Mis;
     const float weight = is_weighted ? power_heuristic(light.pdf, pdf) : 1.0f;
@@ -59,7 +59,8 @@ HD inline ShadowRay draw_meter_light(const PictureView& picture, const PathSetti
     shadow.direction = ray.direction;
     shadow.t_max = ray.t_max;
     shadow.target = {light.instance, light.primitive};
-    shadow.contribution = (pdf * (weight / light.pdf)) * light.radiance; // of albedo 1 the BSDF's value is its density
+    shadow.contribution = (pdf * (weight / light.pdf)) * light.radiance; // for albedo 1 the BSDF's value equals its
+                                                                         // density
     return shadow;
 }
 
@@ -91,8 +92,8 @@ struct AddMeterLights {
     }
 };
 
-/// Adds to samples [first, first + count) of each pixel what lights send to the meter. Returns the rays that it took.
-/// Throws Error(OutOfMemory, DeviceFault).
+/// Adds direct light at the meter to samples [first, first + count) of each pixel. Returns the number of rays. Throws
+/// Error(OutOfMemory, DeviceFault).
 uint64_t add_meter_lights(Queue& queue, SceneTracer& tracer, const PictureView& picture, const PathSettings& settings,
                           uint32_t first, uint32_t count, const FilmView& film);
 

@@ -12,22 +12,22 @@
 namespace pertev {
 namespace {
 
-// Paths that two wavefronts share at least: rounds of fewer are over before the host has given those of two. So are the
-// last of many rounds, which are most of what one wavefront does where it has room for all paths at once.
+// Minimum number of paths for two wavefronts: smaller rounds finish before the host has launched those of two. That
+// also holds for the last of many rounds, which dominate if all paths are in flight at once.
 constexpr uint64_t kSharedPaths = 500'000;
 constexpr uint32_t kManyRounds = 16;
 
 bool does_one_wavefront(uint64_t paths, uint32_t max_depth) { return paths < kSharedPaths || max_depth > kManyRounds; }
 
-/// Wavefronts that go side by side, and the paths that each has in flight.
+/// Number of concurrent wavefronts, and of paths in flight in each.
 struct Size {
     int wavefronts;
     uint32_t capacity;
 };
 
-constexpr uint64_t kRoundedUp = 128; // paths, more than capacities grow below, with the counts of rounds
+constexpr uint64_t kRoundedUp = 128; // paths by which capacities may be rounded up, including the round's counts
 
-/// In all queues together.
+/// Maximum number of paths in all queues together.
 uint64_t most_paths(const PathParts& parts) {
     return PathIntegrator::kMostQueueBytes / PathIntegrator::bytes_of_path(parts) - kRoundedUp;
 }
@@ -37,11 +37,10 @@ Size size_for(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth
     const bool does_one = !on_cuda || does_one_wavefront(paths, paths == samples ? max_depth : 0);
     const int wavefronts = does_one ? 1 : 2;
     const uint32_t each = (paths - 1) / static_cast<uint32_t>(wavefronts) + 1;
-    return {wavefronts, (each + 31) / 32 * 32}; // rounds begin 32 paths at a time
+    return {wavefronts, (each + 31) / 32 * 32}; // rounds start 32 paths at a time
 }
 
-/// Calls `with`, a template over a mask of features and a listener, with those that have no more code than the job
-/// needs.
+/// Calls `with`, a template over a mask of features and a listener, with the least code that the job needs.
 template <class With>
 void choose_shading(const PathJob& job, const With& with) {
     const Features features = features_for(job);
@@ -145,7 +144,7 @@ void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint
     if (raster_) raster_->begin(picture);
 }
 
-/// None for a film that has no layers.
+/// Empty view for a film without layers.
 LightPathView PathIntegrator::layers_for(const FilmView& film) const {
     if (!layers_on_device_) return {};
     PERTEV_CHECK(!film.frame.is_there() && film.channels == film_channel_count(film.aovs) + 3 * uploaded_->count());
@@ -158,13 +157,13 @@ void PathIntegrator::take_wavefronts(uint64_t samples, const PathParts& parts) {
     parts_.splits_light |= parts.splits_light;
     parts_.tells_bounce |= parts.tells_bounce;
     const Size size = size_for(samples, batch_, queue_.is_cuda(), settings_.path.max_depth, parts_);
-    // Two serve for one, so that a picture's passes of few samples and of many go by the same memory.
+    // Two wavefronts can serve as one, so that passes of few samples and of many use the same memory.
     const uint64_t held = wavefronts_.empty() ? 0 : wavefronts_.size() * uint64_t(wavefronts_.front().capacity);
     const bool are_enough = wavefronts_.size() >= static_cast<std::size_t>(size.wavefronts) &&
                             held >= static_cast<uint64_t>(size.wavefronts) * size.capacity;
-    const bool are_too_many = held > most_paths(parts_) + kRoundedUp; // by new parts of each path
+    const bool are_too_many = held > most_paths(parts_) + kRoundedUp; // new parts of each path may need it
     if (!are_enough || are_too_many) {
-        wavefronts_.clear(); // before there is more
+        wavefronts_.clear(); // freed before the new allocation
         render_counts_.grow(queue_, 1, "path counts");
         for (int i = 0; i < size.wavefronts; ++i) wavefronts_.emplace_back(queue_, size.capacity);
     }
@@ -183,7 +182,7 @@ void PathIntegrator::render(uint32_t first, uint32_t count, const FilmView& film
     }
 }
 
-/// What ReSTIR takes over from the first surface on goes through no roulette there.
+/// Vertices whose light ReSTIR takes over use no roulette there.
 PathJob PathIntegrator::job_for(const FilmView& film) const {
     PathJob job = {picture_, settings_.path, film, layers_for(film), settings_.is_meter};
     if (film.frame.first_bounce.leaves_direct_light()) {
@@ -212,13 +211,13 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
         {.splits_light = film.frame.splits_light(), .tells_bounce = film.frame.first_bounce.tells_bounce()});
     const uint32_t pixels = film.width * film.height;
     const Work work = {{0, pixels, first, count}, job_for(film)};
-    // Kinds of rays can be timed only one after the other.
+    // Ray kinds can only be timed one after the other.
     const bool in_turns = tracer_->times_kinds();
     const uint64_t all = work.samples.count();
     const bool fits_one = all <= wavefronts_.front().capacity;
     const bool does_one = in_turns || (fits_one && does_one_wavefront(all, settings_.path.max_depth));
     const int going = does_one ? 1 : static_cast<int>(wavefronts_.size());
-    // Where all paths fit in at once, as in a frame, wavefronts have equal shares and end together.
+    // If all paths fit at once, as in a frame, wavefronts get equal shares and end together.
     const uint64_t share = (all - 1) / static_cast<uint64_t>(going) + 1;
     render_counts_.zero();
     for (int i = 0; i < going; ++i) {
@@ -241,7 +240,7 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
     rays_.shadow += counts.shadows;
 }
 
-/// To the first `going` wavefronts in turns, until all of them are done.
+/// Launches rounds of the first `going` wavefronts alternately until all of them are done.
 void PathIntegrator::give_rounds(int going, const Work& work) {
     for (int done = 0; done < going;) {
         for (int i = 0; i < going; ++i) {
@@ -266,7 +265,7 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
     const ListenerQueues listened = w.listened(w.round);
     const HitQueueView hits = {w.hit_places.data(), w.hit_instances.data()};
     RoundCounts* const counts = w.counts.data() + w.round % 2;
-    // Once all paths have begun, a round has no more of them than the one before.
+    // After all paths have begun, a round has no more of them than the previous one.
     const uint32_t most = w.known.all_begun != 0 ? w.known.active : w.in_flight;
     const auto pool = [&](RayKind kind) { return counts->taken + static_cast<int>(kind); };
     {
@@ -277,7 +276,7 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
         w.seen.mark();
         if (w.round > 0) {
             tracer_->find_hits(RayKind::Bounce, paths.query(), {most, &counts->going_on}, hits, pool(RayKind::Bounce));
-            queue_.let_wait(w.path_stream, w.light_stream); // for places of paths that have ended
+            queue_.let_wait(w.path_stream, w.light_stream); // waits for slots of paths that have ended
         }
         if (w.known.all_begun == 0) {
             const WorkCount fresh = {most, &counts->fresh};

@@ -1,16 +1,16 @@
 #pragma once
 
-// Path tracing: the one file that orders the stages. Its two bodies, a loop in which each thread of the CPU takes 128
-// paths side by side to their ends (integrators/path/path_loop.h) and a wavefront over queues, call the same functions
-// and give the same bytes (tests/consistency/one_picture_test.cpp).
+// Path tracing; this file orders the stages. It has two bodies: a loop in which each CPU thread renders 128 paths
+// side by side (integrators/path/path_loop.h), and a wavefront over queues. They call the same functions and give the
+// same bytes (tests/consistency/one_picture_test.cpp).
 //
-// The wavefront goes round by round (integrators/path/path_queues.h). The host gives rounds to the device without
-// waiting for one: how many paths a round has stays there, and the host reads one round late whether any were left. Two
-// wavefronts go side by side on a GPU, or one where there are few paths, each with its shadow rays beside its next
-// bounce: rays of one kind fill what the last rays of another's launch leave idle.
+// The wavefront runs in rounds (integrators/path/path_queues.h). The host launches rounds without waiting: the number
+// of paths of a round stays on the device, and the host reads one round late whether any were left. A GPU runs two
+// wavefronts concurrently, or one if there are few paths, each with its shadow rays concurrent with its next bounce,
+// so that rays of one kind fill what the last rays of another launch leave idle.
 //
-// Source: Laine, Karras, Aila, "Megakernels Considered Harmful: Wavefront Path Tracing on GPUs", HPG 2013, whose pool
-// of paths is refilled as they end.
+// Source: Laine, Karras, Aila, "Megakernels Considered Harmful: Wavefront Path Tracing on GPUs", HPG 2013; ended
+// paths are replaced by new ones.
 
 #include <memory>
 #include <optional>
@@ -31,22 +31,22 @@ namespace pertev {
 /// The settings of a path-traced render.
 struct PathRequest {
     PathSettings path;
-    // Light is added to these layers of the film too. They may be null. A film of render() has as many.
+    // Additional layers of the film that receive light; may be null. A film of render() has the same layers.
     std::shared_ptr<const LightPathLayers> layers;
-    bool is_meter = false; // the picture shows the irradiance of what the camera sees (IrradianceMeter)
-    // Rasterisation finds what the camera sees (render/raster/camera_raster.h), which changes no sample. The camera
+    bool is_meter = false; // the picture shows the irradiance of visible surfaces (IrradianceMeter)
+    // Rasterization finds primary visibility (render/raster/camera_raster.h), which changes no sample. The camera
     // then has no lens. Only the constructor reads this.
     bool rasterises = false;
 };
 
 class PathIntegrator final : public IntegratorBase<PathRequest> {
 public:
-    /// `batch`: most paths in flight of the wavefronts together, rounded up to 32 each; fewer where their queues would
-    /// pass kMostQueueBytes.
+    /// `batch` is the maximum number of paths in flight of all wavefronts, each rounded up to 32; fewer if their
+    /// queues would exceed kMostQueueBytes.
     PathIntegrator(Queue& queue, const PathRequest& settings, bool in_loop, uint32_t batch);
 
     static constexpr std::size_t kMostQueueBytes = 600'000'000;
-    /// Of a path in flight in all queues, its shadow ray's and its hit's among them.
+    /// Bytes of a path in flight in all queues, including its shadow ray and its hit.
     static std::size_t bytes_of_path(const PathParts& parts);
 
     void reserve(const WorkSize& size) override;
@@ -57,7 +57,7 @@ private:
     void render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees);
     void render_wavefront(uint32_t first, uint32_t count, const FilmView& film);
 
-    /// Samples that render() makes.
+    /// Range of samples of a render() call.
     struct Work {
         BeginOrder samples;
         PathJob job;
@@ -69,14 +69,14 @@ private:
     void give_rounds(int going, const Work& work);
     void give_round(Wavefront& wavefront, const Work& work);
 
-    std::optional<CameraRaster> raster_; // where it rasterises
+    std::optional<CameraRaster> raster_; // if it rasterizes
 
-    // The queues of one wavefront, one element a path in flight.
+    // The queues of one wavefront, with one element per path in flight.
     struct Wavefront {
         Wavefront(Queue& queue, uint32_t capacity);
-        /// Memory for what is not there yet. It is kept.
+        /// Allocates missing memory and keeps the rest.
         void take(Queue& queue, const PathParts& parts);
-        /// Of a round: rounds read and write two sets of arrays in turns.
+        /// Paths of a round; rounds alternate between two sets of arrays.
         PathQueueView paths(uint32_t of_round) const;
         ShadowQueueView shadows() const;
         ListenerQueues listened(uint32_t of_round) const;
@@ -85,35 +85,36 @@ private:
             Paths(Queue& queue, uint32_t capacity);
             Buffer<Ray> rays;
             Buffer<Float4> throughput, radiance;
-            Buffer<Float4> diffuse; // where frames split light
-            Buffer<Uint2> states;   // where there are layers
+            Buffer<Float4> diffuse; // if frames split light
+            Buffer<Uint2> states;   // if there are layers
         };
         uint32_t capacity;
-        uint32_t in_flight = 0; // at most, of what is rendered now
+        uint32_t in_flight = 0; // maximum for the current call of render()
         Paths sets[2];
         Buffer<Ray> shadow_rays;
         Buffer<Uint2> path_starts, shadow_starts, shadow_targets;
         Buffer<uint32_t> path_keys, shadow_keys;
         Buffer<Float4> contribution, hit_places;
-        Buffer<Float4> shadow_diffuse;          // where frames split light
-        Buffer<Float4> shadow_sent;             // where frames tell their first bounce
-        Buffer<float> path_times, shadow_times; // where something moves while the shutter is open
-        Buffer<Float4> layer_diffuse;           // where there are layers
-        Buffer<Uint4> layer_parts;              // likewise
+        Buffer<Float4> shadow_diffuse;          // if frames split light
+        Buffer<Float4> shadow_sent;             // if frames store the first bounce
+        Buffer<float> path_times, shadow_times; // if something moves while the shutter is open
+        Buffer<Float4> layer_diffuse;           // if there are layers
+        Buffer<Uint4> layer_parts;              // if there are layers
         Buffer<uint32_t> hit_instances;
-        Buffer<RoundCounts> counts; // of two rounds in turns
-        Readback<SeenCounts> seen;  // of the round given last, at its start
+        Buffer<RoundCounts> counts; // two rounds alternate
+        Readback<SeenCounts> seen;  // counts at the start of the last launched round
         uint32_t round = 0;
-        SeenCounts known = {}; // of the round before the last one given
+        SeenCounts known = {}; // counts of the round before the last launched one
         bool is_done = false;
-        // Shadow rays of a round and the rays of the next go side by side.
+        // Shadow rays of a round run concurrently with the rays of the next.
         int path_stream = 0, light_stream = 0;
     };
     std::vector<Wavefront> wavefronts_;
-    PathParts parts_; // that they have: all that were ever asked for, so that frames and pictures in turns take none
+    PathParts parts_; // parts that have been allocated; they never shrink, so alternating frames and pictures
+                      // allocate nothing
     Buffer<RenderCounts> render_counts_;
     std::shared_ptr<const LightPathLayers> uploaded_;    // the layers on the device
-    std::optional<LightPathsOnDevice> layers_on_device_; // where there are some
+    std::optional<LightPathsOnDevice> layers_on_device_; // if there are any
 };
 
 } // namespace pertev

@@ -1,7 +1,7 @@
 #pragma once
 
-// What a path tracer renders: views and numbers that every vertex of every path is given. And which code it needs: a
-// mask of features, of which one table says what has been compiled.
+// The job of a path tracer: views and numbers for every vertex of every path, and the mask of features that selects
+// its code; one table lists the masks that are compiled.
 
 #include <cstdint>
 
@@ -17,16 +17,16 @@ struct PathJob {
     PictureView picture;
     PathSettings settings;
     FilmView film;
-    LightPathView layers;  // may be none
-    bool is_meter = false; // the picture is that of the irradiance of what the camera sees, W/m2
+    LightPathView layers;  // may be empty
+    bool is_meter = false; // the picture shows the irradiance of visible surfaces, W/m2
 };
 
-/// What a scene and a request make use of. Code for what is not there would cost others registers.
+/// Features that a scene and a request use. Code for absent features would cost registers.
 using Features = uint32_t;
 enum Feature : Features {
-    kTextured = 1, // of colours, emission or normals
-    kAlpha = 2,    // surfaces that a ray may pass, emitters among them
-    kLayered = 4,  // other surfaces than diffuse ones
+    kTextured = 1, // textured colours, emission or normals
+    kAlpha = 2,    // surfaces that a ray may pass, including emitters
+    kLayered = 4,  // surfaces other than diffuse ones
     kMoving = 8,   // paths have a time
 };
 inline constexpr Features kPlainDiffuse = 0, kDiffuse = kTextured | kAlpha, kAllMaterials = kDiffuse | kLayered;
@@ -52,7 +52,7 @@ inline Features features_of(MaterialsKnown known) {
     return kAllMaterials;
 }
 
-/// Returns what code has to know of the job. The depth that a moving camera sees is along its axis at the ray's time.
+/// Returns the features that the job needs. A moving camera's depth is along its axis at the ray's time.
 inline Features features_for(const PathJob& job) {
     const PictureView& picture = job.picture;
     const bool has_times =
@@ -61,15 +61,16 @@ inline Features features_for(const PathJob& job) {
     return features_of(picture.scene.known) | (has_times ? Features{kMoving} : 0);
 }
 
-/// Code for a mask of features chooses lights by this class (shading/light_set.h). A light tree is a feature, for which
-/// it is specialised.
+/// The light selection of code for a mask of features (shading/light_set.h). A light tree is a feature, for which it
+/// is specialised.
 template <Features kFeatures>
 struct LightChoice : ChosenByPower {};
 
-/// Masks that code has been compiled for, from those of the least code on.
+/// Masks for which code has been compiled, ordered from the least code on.
 template <Features... kMasks>
 struct CompiledFor {
-    /// Calls `with`, a template over a mask, with the first one that holds all of `wanted`. False: there is none.
+    /// Calls `with`, a template over a mask, with the first one that contains all of `wanted`. Returns false if there
+    /// is none.
     template <class With>
     static bool choose(Features wanted, const With& with) {
         return (((wanted & ~kMasks) == 0 && (with.template operator()<kMasks>(), true)) || ...);

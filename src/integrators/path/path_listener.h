@@ -1,10 +1,10 @@
 #pragma once
 
-// Whoever wants more of a path's vertices than their light listens: auxiliary layers, layers of light-path expressions,
-// frames of samples, ReSTIR, the meter of irradiance. A listener is a class with the functions below that it wants; of
-// the others no code is left. What it keeps of a path until the next vertex, and of a shadow ray until that has been
-// traced, are two plain structs; the CPU has arrays of them, a GPU's queues have arrays of their parts
-// (ListenerQueues), and the listener says how they are put there.
+// Listeners receive more of a path's vertices than their light: for auxiliary layers, layers of light-path
+// expressions, frames of samples, ReSTIR, and the irradiance meter. A listener is a class with those of the functions
+// below that it needs; the others leave no code. Its data of a path up to the next vertex (Kept), and of a shadow ray
+// until it has been traced (Asked), are two plain structs. The CPU has arrays of them; a GPU's queues have arrays of
+// their parts (ListenerQueues), and the listener loads and stores them.
 
 #include "device_scene/ray_origin.h"
 #include "device_scene/surface.h"
@@ -15,8 +15,8 @@
 
 namespace pertev {
 
-/// Where listeners keep what they do, on a device: beside the arrays of paths that a round reads and writes, and beside
-/// its shadow rays. Null for those that there are not.
+/// Listeners' data on a device, besides the arrays of paths that a round reads and writes and of its shadow rays.
+/// Null for absent listeners.
 struct ListenerQueues {
     Float4 *diffuse = nullptr, *next_diffuse = nullptr; // LightSplit
     Float4* shadow_diffuse = nullptr;
@@ -31,7 +31,7 @@ struct SurfaceVertex {
     const Surface& surface;
     Vec3 wo;
 
-    /// Returns whether no direction but those of delta lobes scatters light.
+    /// Returns whether only delta lobes scatter light.
     HD bool scatters_by_delta_alone() const { return surface.bsdf.has_delta_only(); }
     HD LightContext light_context(float time) const { return surface.light_context(wo, time); }
     HD BsdfValue evaluate(Vec3 wi) const { return surface.evaluate(wo, wi); }
@@ -42,7 +42,7 @@ struct SurfaceVertex {
     HD Vec3 origin_towards(Vec3 wi) const {
         return offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi);
     }
-    /// Returns the shadow ray to what was drawn of a light, which ray_to_light describes.
+    /// Returns the shadow ray to the sample point on a light, as ray_to_light makes it.
     HD Ray ray_to(const LightSample& light, float lamp_error) const {
         return ray_to_light(light, surface.position, surface.error, surface.geometric_normal, lamp_error);
     }
@@ -50,47 +50,48 @@ struct SurfaceVertex {
     HD TriangleId triangle() const { return surface.triangle; }
 };
 
-/// What every listener inherits, by its own name. A listener is made of the job, for one vertex of one path.
+/// Base class of every listener, with the listener's class as parameter. A listener is constructed from the job for
+/// one vertex of one path.
 template <class Self>
 struct PathListener {
     struct Kept {};
     struct Asked {};
 
-    /// Before the vertex, of a path at the camera, of which nothing is kept yet, or of one that goes on.
+    /// Called before the vertex, for a path that starts at the camera (then nothing is kept yet) or continues.
     HD void begins(const PathState&) {}
     template <class K>
     HD void take_up(const K&) {}
-    /// The path's ray has met a surface, before which there were path.depth scatterings.
+    /// The path's ray has hit a surface after path.depth scatterings.
     HD void vertex(const PathState&, const Hit&, Surface&) {}
-    /// It has met none: it leaves the scene, or it has met a medium before a surface.
+    /// The ray has hit no surface: it leaves the scene, or a medium scatters it first.
     HD void missed(const PathState&) {}
-    /// Light that the ray has run into at `place`, which next-event estimation would have drawn by the density
-    /// `light_pdf` (0: it could not), is to be added. True keeps it out of the path: the listener has taken it.
+    /// Called before light at `place`, which the ray hit, is added; next-event estimation would have sampled it with
+    /// density `light_pdf` (0: it could not). Returns true to take that light away from the path.
     HD bool takes(const PathState&, const LightPlace&, float) { return false; }
-    /// Light that the ray has run into, perhaps black, is added next.
+    /// Light that the ray hit, possibly black, is added next.
     HD void emitted(const PathState&, Rgb) {}
-    /// Whether light of a vertex is asked for by a shadow ray.
+    /// Whether a vertex samples a light with a shadow ray.
     HD bool wants_direct(const PathState&, const Hit&, const Surface&) { return true; }
-    /// It is, along `wi`. The vertex is a SurfaceVertex, or that of a medium (medium.h).
+    /// A shadow ray goes along `wi`. The vertex is a SurfaceVertex, or that of a medium (medium.h).
     template <class Vertex>
     HD void direct(const PathState&, const Vertex&, Vec3, const ShadowRay&) {}
-    /// The path goes on, as `sample` was drawn; it has left the vertex.
+    /// The path continues along `sample`; it has left the vertex.
     template <class Vertex>
     HD void scattered(const PathState&, const Vertex&, const BsdfSample&) {}
-    /// After the vertex.
+    /// Called after the vertex to store the listener's data.
     template <class K>
     HD void put_down(K&) const {}
     template <class A>
     HD void hand_over(A&) const {}
 
-    /// A shadow ray has met nothing, and what it contributes is added to the path.
+    /// A shadow ray was unoccluded, and its contribution is added to the path.
     template <class K, class A>
     HD void arrived(K&, const A&, Rgb) const {}
-    /// The path of a sample of the pixel has ended, with this radiance.
+    /// The path of a sample of the pixel has ended with this radiance.
     template <class K>
     HD void ended(uint32_t, Rgb, const K&) const {}
 
-    // Of a device's queues.
+    // Loads and stores data in a device's queues.
     template <class K>
     HD static void load(const ListenerQueues&, uint32_t, K&) {}
     template <class K>
@@ -103,7 +104,7 @@ struct PathListener {
     HD static void store_asked(const ListenerQueues&, uint32_t, const A&) {}
 };
 
-/// Several as one; each is told in turn.
+/// Several listeners as one; each is called in turn.
 template <class... Ls>
 struct Listeners : Ls... {
     struct Kept : Ls::Kept... {};
@@ -112,7 +113,7 @@ struct Listeners : Ls... {
     template <class L>
     static constexpr bool has = (std::is_same_v<L, Ls> || ...);
 
-    template <class Job> // PathJob, or one that is derived from it for what a listener needs besides
+    template <class Job> // PathJob, or a class derived from it with data that a listener needs
     HD explicit Listeners(const Job& job) : Ls(job)... {}
     HD void begins(const PathState& path) { (Ls::begins(path), ...); }
     HD void take_up(const Kept& kept) { (Ls::take_up(static_cast<const typename Ls::Kept&>(kept)), ...); }

@@ -7,7 +7,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kPaths = 128; // side by side: 30 KB, of a cache of 1 MB that the trees want too
+constexpr uint32_t kPaths = 128; // paths side by side: 30 KB of a 1 MB cache, which the trees need too
 
 template <class Listener>
 class PathGroup {
@@ -18,7 +18,7 @@ public:
     bool is_empty() const { return count_ == 0; }
     void add(const PathState& path) { paths_[count_++] = path; }
 
-    /// Takes each path to its next vertex. Those that have been added since the last call start at the camera.
+    /// Advances each path to its next vertex. Paths that were added since the last call start at the camera.
     void advance(RayCounts& counts) {
         find_hits_of(0, going_on_);
         find_hits_of(going_on_, count_);
@@ -47,11 +47,11 @@ private:
         uint32_t key, path;
     };
 
-    /// What paths [begin, begin + 8) draw at the vertices that they have come to.
+    /// Random numbers of paths [begin, begin + 8) at their present vertices.
     VertexWords<Words8> draw_for(uint32_t begin) const {
         SampleKeyOf<Words8> keys;
         Words8 depths = {};
-        bool has_choices = job_.picture.scene.known == MaterialsKnown::Nothing; // lobes
+        bool has_choices = job_.picture.scene.known == MaterialsKnown::Nothing; // lobes have choices
         for (uint32_t i = begin; i < begin + kWords && i < count_; ++i) {
             const PathState& path = paths_[i];
             set_lane(keys, i - begin, sample_key(job_.settings, path.pixel, path.sample));
@@ -61,12 +61,12 @@ private:
         return draw_vertex(job_.settings.sampler, keys, depths, has_choices);
     }
 
-    /// Of the path's ray at its depth, for the coins of blended surfaces; nothing else asks for it.
+    /// Key of the path's ray at its depth, for the coins of blended surfaces only.
     uint32_t key_of(const PathState& path, bool is_shadow) const {
         return job_.picture.scene.any_alpha != 0 ? path_key(path, job_.settings.seed, is_shadow) : 0;
     }
 
-    // What make_surface reads of hit i, asked for in time: its vertices are known once its indices are there.
+    // Prefetches what make_surface reads of hit i; vertices follow once the indices have arrived.
     const MeshView* mesh_of(uint32_t i) const {
         if (i >= count_ || hits_[i].instance == kNoHit) return nullptr;
         return job_.picture.scene.meshes + job_.picture.scene.instances[hits_[i].instance].mesh;
@@ -142,12 +142,12 @@ private:
     const HostTrees& trees_;
     const TileRasterView* raster_;
     const ShadeOnHost<Listener> shade_ = shading_for<Listener>(job_);
-    uint32_t count_ = 0, going_on_ = 0; // paths; of which those that are not new
+    uint32_t count_ = 0, going_on_ = 0; // paths; those that are not new
     PathState paths_[kPaths];
     typename Listener::Kept kept_[kPaths];
     Hit hits_[kPaths];
     bool goes_on_[kPaths];
-    Asked asked_[kPaths + 1]; // one more: written before it is known whether it is wanted
+    Asked asked_[kPaths + 1]; // one more, because an element is written before it is known to be needed
     bool occluded_[kPaths];
 };
 

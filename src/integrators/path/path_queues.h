@@ -1,11 +1,11 @@
 #pragma once
 
-// Paths in flight on the GPU, as structures of arrays, and their shadow rays.
+// Paths in flight on the GPU and their shadow rays, as structures of arrays.
 //
-// Paths go round by round: a round traces one ray of every path in flight. Those that go on are written side by side to
-// the front of a second set of arrays, which the next round reads, and those that have ended to its end, for the film.
-// The next round begins new paths there, so that all rounds but the last few are full, and all that is read and written
-// lies side by side. How many paths a round has only the device knows (RoundCounts).
+// Paths are processed in rounds: a round traces one ray of every path in flight. Paths that continue are compacted at
+// the front of a second set of arrays, which the next round reads, and ended paths at its end, for the film. The next
+// round starts new paths there, so that all rounds but the last few are full and all accesses are contiguous. Only
+// the device knows the number of paths of a round (RoundCounts).
 
 #include <cstdint>
 
@@ -17,14 +17,15 @@
 namespace pertev {
 
 struct PathQueueView {
-    Ray* rays;          // to trace next, endless; pixel and sample in place of where they begin and end
-    Uint2* starts;      // RayQueueView's; with the keys, one array of both sets: only the tracer reads it
-    uint32_t* keys;     // written where some surface is blended
+    Ray* rays;          // to trace next, endless; pixel and sample are stored in place of t_min and t_max
+    Uint2* starts;      // the starts of RayQueueView; with the keys, one array for both sets, because only the tracer
+                        // reads it
+    uint32_t* keys;     // written if some surface is blended
     Float4* throughput; // rgb, bits of (depth | rough_depth << 16)
-    Float4* radiance;   // rgb, bsdf_pdf; of a path that has ended rgb, bits of the pixel
-    float* times;       // RayQueueView's, as the keys; null unless something moves while the shutter is open
+    Float4* radiance;   // rgb, bsdf_pdf; for an ended path rgb, bits of the pixel
+    float* times;       // the times of RayQueueView; null unless something moves while the shutter is open
 
-    /// Of the rays at places 0, 1, ..., or back from `last`.
+    /// Query of the rays at slots 0, 1, ..., or backwards from `last`.
     RayQueueView query() const {
         return {.rays = rays, .starts = starts, .keys = keys, .times = times, .is_endless = true};
     }
@@ -37,7 +38,7 @@ struct PathQueueView {
                 .is_endless = true};
     }
 
-    /// Without `start`, which only the tracer needs.
+    /// Loads a path without `start`, which only the tracer needs.
     HD PathState load(uint32_t i) const {
         const Ray ray = load_ray(rays + i);
         const Float4 t = throughput[i], r = radiance[i];
@@ -54,7 +55,7 @@ struct PathQueueView {
         path.rough_depth = depths >> 16;
         return path;
     }
-    /// `any_alpha`: the coin's key is wanted.
+    /// Stores a path. `any_alpha` means that the coin's key is needed.
     HD void store(uint32_t i, const PathState& path, uint32_t seed, bool any_alpha) const {
         store_ray(rays + i, {path.origin, float_of(path.pixel), path.direction, float_of(path.sample)});
         starts[i] = {path.start.instance, path.start.primitive};
@@ -63,13 +64,13 @@ struct PathQueueView {
                          float_of(path.depth | (path.rough_depth << 16))};
         radiance[i] = {path.radiance.r, path.radiance.g, path.radiance.b, path.bsdf_pdf};
     }
-    /// A path that has ended.
+    /// Stores a path that has ended.
     HD void store_ended(uint32_t i, const PathState& path) const {
         radiance[i] = {path.radiance.r, path.radiance.g, path.radiance.b, float_of(path.pixel)};
     }
     HD uint32_t load_pixel(uint32_t i) const { return bits_of(radiance[i].w); }
     HD Rgb load_radiance(uint32_t i) const { return {radiance[i].x, radiance[i].y, radiance[i].z}; }
-    /// Keeps what lies beside it.
+    /// Adds to the radiance and keeps the w component.
     HD void add_radiance(uint32_t i, Rgb value) const {
         const Float4 r = radiance[i];
         radiance[i] = {r.x + value.r, r.y + value.g, r.z + value.b, r.w};
@@ -79,9 +80,9 @@ struct PathQueueView {
 struct ShadowQueueView {
     Ray* rays;
     Uint2 *starts, *targets;
-    uint32_t* keys;       // then what the ray met
-    Float4* contribution; // rgb, bits of the path's place in the next round's arrays
-    float* times;         // as PathQueueView's
+    uint32_t* keys;       // keys, and after tracing the results
+    Float4* contribution; // rgb, bits of the path's slot in the next round's arrays
+    float* times;         // the times of PathQueueView
 
     RayQueueView query() const {
         return {.rays = rays, .starts = starts, .targets = targets, .keys = keys, .times = times};
@@ -96,30 +97,30 @@ struct ShadowQueueView {
     }
 };
 
-/// Of one round; on cache lines of its own, since kernels of two rounds go side by side.
+/// Counts of one round, on their own cache lines because kernels of two rounds run concurrently.
 struct alignas(128) RoundCounts {
-    uint64_t first;       // number of the first fresh path's sample (BeginOrder::at)
-    uint32_t going_on;    // paths from the round before, at the front
-    uint32_t fresh;       // paths that begin in it, from the end on
-    uint32_t active;      // both
-    uint32_t shadows;     // rays that its vertices ask for
-    uint32_t next, ended; // of the active paths, those that go on after it and those that do not
-    uint32_t all_begun;   // 1: no path begins after it
-    uint32_t taken[3];    // of its rays, by RayKind, what a tracer has taken from its pool
+    uint64_t first;       // number of the first new path's sample (BeginOrder::at)
+    uint32_t going_on;    // paths from the previous round, at the front
+    uint32_t fresh;       // new paths in this round, at the end
+    uint32_t active;      // sum of both
+    uint32_t shadows;     // shadow rays of its vertices
+    uint32_t next, ended; // active paths that continue after the round, and that end
+    uint32_t all_begun;   // 1 if no path begins afterwards
+    uint32_t taken[3];    // rays that a tracer has taken from its pool, by RayKind
 };
 
-/// What the host knows of a round.
+/// The host's knowledge of a round.
 struct SeenCounts {
-    uint32_t active, all_begun; // RoundCounts'
+    uint32_t active, all_begun; // copies from RoundCounts
 };
 
-/// Where a vertex stores its path for the next round, or for the film, and its shadow ray.
+/// Slots of a vertex's path, for the next round or the film, and of its shadow ray.
 struct RoundPlaces {
     uint32_t path, shadow;
 };
 using RoundLists = BlockLists<3>;
 
-/// `last`: place of the first path that ends.
+/// Takes slots. `last` is the slot of the first path that ends.
 HD inline RoundPlaces take_places(const RoundLists& lists, RoundCounts& round, uint32_t last, bool is_there,
                                   bool goes_on, bool wants_shadow) {
     const bool ends = is_there && !goes_on;
@@ -127,9 +128,9 @@ HD inline RoundPlaces take_places(const RoundLists& lists, RoundCounts& round, u
     return {ends ? last - places.at[1] : places.at[0], places.at[2]};
 }
 
-/// Of all rounds of a render.
+/// Counts of all rounds of a render.
 struct RenderCounts {
-    uint64_t begun;            // samples of pixels; may pass how many are wanted
+    uint64_t begun;            // samples; may exceed the requested number
     uint64_t bounces, shadows; // rays
 };
 

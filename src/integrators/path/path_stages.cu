@@ -1,7 +1,7 @@
 #include "device/launch_body.h"
 #include "integrators/path/path_stages.h"
 
-// Those that compile soon: shading has files of its own.
+// Instantiations of stages that compile quickly; shading has its own files.
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const PlanRound&);
 template void launch(Queue&, const char*, WorkCount, const GeneratePaths&);

@@ -1,7 +1,7 @@
 #pragma once
 
-// The stages of a wavefront of paths, in the order in which path_integrator.cpp launches them. Each does for one index
-// what the CPU's loop does in one line, through the same functions.
+// Stages of a wavefront of paths, in the order in which path_integrator.cpp launches them. Each does for one index
+// what the CPU's loop does in one line, by the same functions.
 
 #include "device/launch.h"
 #include "integrators/path/frame_listeners.h"
@@ -13,18 +13,18 @@
 
 namespace pertev {
 
-/// One thread decides what a round does: as many new paths as there is room for, until `samples` have begun.
+/// Plans a round in one thread: as many new paths as there is room for, until `samples` have begun.
 struct PlanRound {
     const RoundCounts* before;
     RoundCounts* round;
     SeenCounts* seen;
-    RenderCounts* render; // shared by several that go round at once
+    RenderCounts* render; // shared by concurrent wavefronts
     uint32_t capacity;
     uint64_t samples;
 
     HD void operator()(uint32_t) const {
         const uint32_t going_on = before->next;
-        const uint32_t room = (capacity - going_on) / 32 * 32; // whole warps: their camera rays stay together
+        const uint32_t room = (capacity - going_on) / 32 * 32; // whole warps, so that their camera rays stay together
         const uint64_t first = atomic_add(&render->begun, uint64_t(room));
         const uint64_t left = first < samples ? samples - first : 0;
         const uint32_t fresh = left < room ? static_cast<uint32_t>(left) : room;
@@ -44,7 +44,7 @@ struct GeneratePaths {
     PathJob job;
     BeginOrder samples;
     const RoundCounts* round;
-    uint32_t last; // place of the first one
+    uint32_t last; // slot of the first one
     bool any_alpha;
     PathQueueView paths;
 
@@ -58,7 +58,7 @@ struct GeneratePaths {
     }
 };
 
-/// Shading of what paths have met, with no more code than the features need, and `Listener` listens.
+/// Shades the hits of paths, with the least code that the features need, for `Listener`.
 template <Features kFeatures, class Listener>
 struct Shade {
     PathJob job;
@@ -67,9 +67,9 @@ struct Shade {
     ShadowQueueView shadows;
     ListenerQueues listened;
     RoundCounts* round;
-    uint32_t last; // place of the first fresh path, and of the first one that ends
+    uint32_t last; // slot of the first new path, and of the first one that ends
 
-    // Measured (docs/performance.md). Where there is much code, warps that wait for each other fetch it together.
+    // Measured (docs/performance.md). For large code, warps that wait for each other fetch it together.
     static constexpr BlockShape kShape = Listener::template has<LightPaths>     ? BlockShape{128, 1}
                                          : (kFeatures & kAllMaterials) == 0     ? BlockShape{128, 6}
                                          : (kFeatures & kLayered) == 0          ? BlockShape{512, 2}
@@ -119,11 +119,11 @@ struct Shade {
     }
 };
 
-/// Light whose shadow ray met nothing.
+/// Adds the light of unoccluded shadow rays.
 template <class Listener>
 struct AddLight {
     PathJob job;
-    ShadowQueueView shadows; // keys: what a tracer found, kNoHit where the ray met nothing
+    ShadowQueueView shadows; // keys hold the tracer's results, kNoHit if the ray hit nothing
     PathQueueView next;
     ListenerQueues listened;
 
@@ -141,13 +141,13 @@ struct AddLight {
     }
 };
 
-/// Paths that have ended.
+/// Ends paths: adds them to the film.
 template <class Listener>
 struct EndPaths {
     PathJob job;
     PathQueueView next;
     ListenerQueues listened;
-    uint32_t last; // place of the first one
+    uint32_t last; // slot of the first one
 
     HD void operator()(uint32_t i) const {
         typename Listener::Kept kept{};

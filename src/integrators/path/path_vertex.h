@@ -1,8 +1,8 @@
 #pragma once
 
-// Third step of a path: what happens where its ray has hit (or left the scene). Makes the vertex, adds what it emits,
-// asks for a shadow ray towards one light (next-event estimation), and scatters the path onwards: light transport and
-// nothing else, of which listeners are told (path_listener.h). The same functions on both devices.
+// Shades a path's hit, or its miss: makes the vertex, adds emission, requests a shadow ray towards one light
+// (next-event estimation) and scatters the path. It contains light transport only; everything else is done by
+// listeners (path_listener.h). Both devices use the same functions.
 //
 // Source: Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, chapter 9 (multiple importance
 // sampling, power heuristic) and 10.4 (Russian roulette).
@@ -16,7 +16,7 @@
 
 namespace pertev {
 
-/// Whether light that was scattered `rough` times by other than delta lobes is asked for.
+/// Whether light counts that was scattered `rough` times by other than delta lobes.
 HD inline bool counts(PathLight light, uint32_t rough) {
     switch (light) {
     case PathLight::Path:
@@ -29,16 +29,16 @@ HD inline bool counts(PathLight light, uint32_t rough) {
     return false;
 }
 
-/// Contribution after the user's clamp, which spares light that was scattered at most once. It is for what a technique
-/// found before its weight: `contribution` has been weighted by `weight`, so the limit is as well.
+/// Contribution after the user's clamp, which excludes light that was scattered at most once. The limit applies
+/// before the MIS weight: `contribution` has been weighted by `weight`, so the limit is as well.
 HD inline Rgb clamp_contribution(const PathSettings& settings, uint32_t scatterings, float weight, Rgb contribution) {
     const float largest = max_component(contribution), limit = weight * settings.clamp;
     if (!(settings.clamp > 0) || scatterings <= 1 || !(largest > limit)) return contribution;
     return (limit / largest) * contribution;
 }
 
-/// What light that the path's own ray has run into adds to it. `light_pdf`: density with which next-event estimation at
-/// the previous vertex would have drawn this direction, 1/sr; 0 for light that it cannot find.
+/// Contribution of light that the path's own ray hit. `light_pdf` is the density with which next-event estimation at
+/// the previous vertex would have sampled this direction, 1/sr; 0 for light that it cannot find.
 HD inline Rgb emitted_light(const PathSettings& settings, const PathState& path, Rgb emission, float light_pdf) {
     if (!counts(settings.light, path.rough_depth)) return {0, 0, 0};
     float weight = 1;
@@ -49,20 +49,18 @@ HD inline Rgb emitted_light(const PathSettings& settings, const PathState& path,
     return clamp_contribution(settings, path.depth, weight, path.throughput * (weight * emission));
 }
 
-/// Returns the context by which next-event estimation has chosen a light where the ray begins, but for the offset of
-/// the ray's origin.
-HD inline LightContext context_before(const PathState& path) {
-    return {path.origin, path.normal, false, path.time};
-}
+/// Returns the context with which next-event estimation selected a light where the ray begins, except for the offset
+/// of the ray's origin.
+HD inline LightContext context_before(const PathState& path) { return {path.origin, path.normal, false, path.time}; }
 
-/// Adds light that the path's own ray has run into.
+/// Adds light that the path's own ray hit.
 template <class Listener>
 HD inline void add_emitted(PathState& path, Rgb light, Listener& listener) {
     listener.emitted(path, light);
     path.radiance += light;
 }
 
-/// Adds the light of the environment that a ray sees which met nothing.
+/// Adds the light of the environment for a ray that hit nothing.
 template <Features kFeatures, class Listener>
 HD INLINE_ON_DEVICE void add_background(const PathJob& job, PathState& path, Listener& listener) {
     const LightSetView& lights = job.picture.scene.lights;
@@ -77,7 +75,7 @@ HD INLINE_ON_DEVICE void add_background(const PathJob& job, PathState& path, Lis
     add_emitted(path, light, listener);
 }
 
-/// Adds the light that the surface which the ray has hit emits.
+/// Adds the emission of the surface that the ray hit.
 template <Features kFeatures, class Listener>
 HD INLINE_ON_DEVICE void add_surface_emission(const PathJob& job, PathState& path, const Hit& hit,
                                               const Surface& surface, Listener& listener) {
@@ -94,7 +92,7 @@ HD INLINE_ON_DEVICE void add_surface_emission(const PathJob& job, PathState& pat
     add_emitted(path, light, listener);
 }
 
-/// Draws one point of one light for the vertex. Returns whether `shadow` is to be traced.
+/// Samples one point of one light for the vertex. Returns whether `shadow` must be traced.
 template <Features kFeatures, class Vertex, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path, const Vertex& vertex,
                                        const Numbers& numbers, ShadowRay& shadow, Listener& listener) {
@@ -115,7 +113,7 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     if ((kFeatures & kAlpha) != 0 && light.instance != kNoLight && scene.any_alpha != 0 &&
         !AcceptHit{scene, {}, {}, path_key(path, settings.seed, true)}.passes_alpha(light.instance, light.primitive,
                                                                                     light.b1, light.b2)) {
-        return false; // a hole in the light
+        return false; // transparent part of the light
     }
     float weight = 1;
     if (!light.is_delta && settings.strategy == LightStrategy::Mis) {
@@ -147,7 +145,7 @@ HD inline float survival_probability(Roulette roulette, float throughput) {
     return roulette == Roulette::FourthRoot ? fourth : fourth * sqrt(sqrt(fourth));
 }
 
-/// Draws where the path goes on. Returns false when it ends here.
+/// Samples the direction in which the path continues. Returns false if it ends here.
 template <class Vertex, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathState& path, const Vertex& vertex,
                                            const Numbers& numbers, Listener& listener) {
@@ -161,7 +159,7 @@ HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathSta
     path.direction = wi;
     path.start = vertex.triangle();
     path.rough_depth += sample.is_delta() ? 0 : 1;
-    if (settings.light == PathLight::Direct && path.rough_depth > 1) return false; // nothing of it would count
+    if (settings.light == PathLight::Direct && path.rough_depth > 1) return false; // nothing further would count
     const uint32_t depth = path.depth + 1;
     if (may_end_by_chance(settings, depth)) {
         const float survival = survival_probability(settings.roulette, max_component(path.throughput));
@@ -175,7 +173,7 @@ HD INLINE_ON_DEVICE bool sample_scattering(const PathSettings& settings, PathSta
     return true;
 }
 
-/// Returns the surface that the path's ray has hit, where it is at the time of the ray.
+/// Returns the surface that the path's ray hit, at the time of the ray.
 template <Features kFeatures>
 HD INLINE_ON_DEVICE Surface make_vertex(const SceneView& scene, const PathState& path, const Hit& hit) {
     constexpr bool kMoves = (kFeatures & kMoving) != 0;
@@ -186,7 +184,7 @@ HD INLINE_ON_DEVICE Surface make_vertex(const SceneView& scene, const PathState&
     return surface;
 }
 
-/// The path's ray has met a medium at `vertex`, before any surface.
+/// Shades a vertex in a medium, which the path's ray reached before any surface.
 template <Features kFeatures, class Vertex, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool shade_in_medium(const PathJob& job, PathState& path, const Vertex& vertex,
                                          const Numbers& numbers, ShadowRay& shadow, bool& wants_shadow,
@@ -198,8 +196,8 @@ HD INLINE_ON_DEVICE bool shade_in_medium(const PathJob& job, PathState& path, co
     return sample_scattering(job.settings, path, vertex, numbers, listener);
 }
 
-/// Takes the path over what its ray met: `hit`, or nothing when hit.instance is kNoHit. Returns whether it goes on;
-/// `wants_shadow` says whether `shadow` was written. `numbers`: DrawWhenAsked or DrawnNumbers.
+/// Shades the result of the path's ray: `hit`, or a miss if hit.instance is kNoHit. Returns whether the path
+/// continues; `wants_shadow` says whether `shadow` was written. `numbers` is DrawWhenAsked or DrawnNumbers.
 template <Features kFeatures, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const Hit& hit, const Numbers& numbers,
                                       ShadowRay& shadow, bool& wants_shadow, Listener& listener) {

@@ -1,7 +1,7 @@
 #include "device/launch_body.h"
 #include "integrators/path/path_stages.h"
 
-// Of frames that leave light to ReSTIR.
+// Instantiations for frames that leave light to ReSTIR.
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const Shade<kPlainDiffuse, PlainReuseListeners>&);
 template void launch(Queue&, const char*, WorkCount, const Shade<kDiffuse, PlainReuseListeners>&);

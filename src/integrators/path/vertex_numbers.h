@@ -1,21 +1,21 @@
 #pragma once
 
-// The random numbers that a vertex of a path draws (path_state.h says which groups they are of): when they are asked
-// for, as a GPU does, or ahead, those of eight paths at once, as a CPU does (drawn_numbers.h).
+// Random numbers of a path's vertex (path_state.h has their groups): drawn on demand, as on a GPU, or ahead for eight
+// paths at once, as on a CPU (drawn_numbers.h).
 
 #include "integrators/path/path_settings.h"
 #include "integrators/path/path_state.h"
 
 namespace pertev {
 
-/// `Word`: of one path, or of eight (math/random.h).
+/// Random words of a vertex; `Word` is for one path or for eight (math/random.h).
 template <class Word>
 struct VertexWords {
     SampleBitsOf<Word> light, direction;
     SampleBitsOf<Word> choices = {}; // lobe, roulette
 };
 
-/// `depth`: PathState's. Choices are drawn only where they are asked for.
+/// Draws the words of a vertex; `depth` as in PathState. Choices are drawn only if requested.
 template <class Word>
 HD inline VertexWords<Word> draw_vertex(SamplerKind kind, SampleKeyOf<Word> key, Word depth, bool has_choices) {
     VertexWords<Word> words;
@@ -25,7 +25,7 @@ HD inline VertexWords<Word> draw_vertex(SamplerKind kind, SampleKeyOf<Word> key,
     return words;
 }
 
-/// Each number drawn when it is asked for.
+/// Draws each number on demand.
 struct DrawWhenAsked {
     HD SampleBits light(const PathSettings& settings, const PathState& path) const {
         return sample_bits(settings.sampler, key_of(settings, path), vertex_light_group(path.depth), Pair::Last);

@@ -1,17 +1,19 @@
 #pragma once
 
-// Light that a diffuse surface sends on, estimated from the photons near a place of it: of those within the radius r
+// Estimates the light that a diffuse surface scatters from the photons near a point, within the radius r:
 //     L = sum over photons of f(wo, wi) power / (pi r^2),
-// f being the diffuse lobes' BSDF. Photons on surfaces that are turned away by more than 45 degrees belong to another
+// where f is the BSDF of the diffuse lobes. Photons on surfaces turned away by more than 45 degrees belong to another
+// wall and do not count.
 // wall and do not count.
 //
-// Sources: Jensen, "Global Illumination using Photon Maps", 1996, section 5; of the k nearest the farthest sets the
-// radius and does not count itself: so the mean is right where photons lie evenly (Loftsgaarden, Quesenberry 1965).
+// Sources: Jensen, "Global Illumination using Photon Maps", 1996, section 5. Of the k nearest photons the farthest
+// sets the radius and does not count itself, so that the mean is right for uniform photons (Loftsgaarden, Quesenberry
+// 1965).
 //
-// Sums within a radius are by integers, so they do not depend on the order in which a structure meets the photons; the
-// k nearest are added in their order (distance, number). So all structures give the same bytes; and so threads may
-// share a look-up in a grid. Where all stages run over all walks they do where photons crowd, as under a ball of glass:
-// one thread of a GPU would be at it long after all others.
+// Sums within a radius use integers, so they do not depend on the order in which a structure visits the photons; the
+// k nearest are added in their order (distance, number). Thus all structures give the same bytes, and threads may
+// share a lookup in a grid. The wavefront shares lookups where photons crowd, as under a glass ball; otherwise one
+// GPU thread would still work on one long after all others.
 
 #include "integrators/photon_map/gather_memory.h"
 #include "integrators/photon_map/photon_map_view.h"
@@ -23,15 +25,15 @@ namespace pertev {
 /// Both maps of a pass.
 struct PhotonMapsView {
     PhotonMapView global, caustic;
-    bool global_has_all = false; // the caustic map's photons too
+    bool global_has_all = false; // contains the caustic map's photons too
 };
 
-/// Photons that a look-up has to look at, from which on threads share it.
+/// Number of photons in a lookup from which on threads share it.
 inline constexpr uint32_t kCrowd = 128;
-inline constexpr uint32_t kShares = 32;            // of such a look-up
+inline constexpr uint32_t kShares = 32;            // shares of such a lookup
 inline constexpr uint32_t kMostSharing = 1u << 18; // threads at once
 
-/// All lookups; those near which photons crowd are left to be shared, where GatherView has room for that.
+/// Evaluates all lookups. Those with many photons are left to be shared if GatherView has room for that.
 template <MaterialsKnown kKnown, PhotonSearch kSearch>
 struct EstimateRadiance {
     WalkScene scene;
@@ -62,7 +64,7 @@ struct EstimateRadiance {
         add_sums(lookup, sums);
     }
 
-    /// A share of lookup `gather.crowded[at]`.
+    /// Adds a share of the lookup `gather.crowded[at]`.
     HD INLINE_ON_DEVICE void add_share(uint32_t at, Share share) const {
         const Lookup lookup = gather.load(gather.crowded[at]);
         const Surface surface = make_surface<kKnown>(scene.picture.scene, lookup.hit, lookup.direction);
@@ -75,7 +77,7 @@ struct EstimateRadiance {
             atomic_add(&all.global[c], sums.global[c]);
         }
     }
-    /// ... once all shares are in.
+    /// Adds the sums of that lookup to the film after all shares are done.
     HD void add_shared(uint32_t at) const { add_sums(gather.load(gather.crowded[at]), gather.shared_sums[at]); }
 
 private:
@@ -87,7 +89,7 @@ private:
 
     HD Place place_of(const Lookup& lookup, const Surface& surface) const {
         const Vec3 wo = -lookup.direction;
-        // Scatterings of a photon at most: the surface itself is one more.
+        // Maximum number of scatterings of a photon; the surface itself adds one.
         return {surface, wo, normal_towards(surface, wo), scene.settings.max_depth - lookup.scatterings - 1};
     }
     HD bool asks_caustic(const Lookup& lookup) const { return !lookup.wants_all || !maps.global_has_all; }
@@ -112,7 +114,7 @@ private:
     HD static Vec3 normal_towards(const Surface& surface, Vec3 wo) {
         return dot(surface.geometric_normal, wo) < 0 ? -surface.geometric_normal : surface.geometric_normal;
     }
-    /// f(wo, wi) power of photon `number`, W/sr.
+    /// Scattered power f(wo, wi) power of photon `number`, W/sr.
     HD static Rgb sent_on(const PhotonMapView& map, const Place& place, uint32_t number) {
         const Float4 power = map.photons.powers[number], way = map.photons.ways[number];
         if (bits_of(power.w) > place.most_scatterings) return {};
@@ -124,7 +126,7 @@ private:
         return (1.0f / cosine) * (f * Rgb{power.x, power.y, power.z});
     }
 
-    /// Adds what the photons of a share, within the radius, send on.
+    /// Adds the scattered light of the photons in a share that are within the radius.
     HD void visit(const PhotonMapView& map, const Place& place, FixedSum* sums, Share share = {}) const {
         if (map.count == 0) return;
         const auto add_light = [&](const NearPoint& near) {
@@ -155,19 +157,19 @@ private:
             find_nearest(structure_of<kSearch>(map), place.surface.position, map.radius, gather.nearest_count, nearest);
         float radius_squared = square(map.radius);
         if (count == gather.nearest_count) radius_squared = nearest[--count].distance_squared;
-        if (!(radius_squared >= square(kLeastPhotonRadius))) return {}; // all in one place
+        if (!(radius_squared >= square(kLeastPhotonRadius))) return {}; // all at one point
         Rgb all = {};
         for (uint32_t k = 0; k < count; ++k) all += sent_on(map, place, nearest[k].index);
         return (kInvPi / radius_squared) * all;
     }
 };
 
-/// Threads that share the crowded lookups: thread i takes share i % kShares of lookups i / kShares,
-/// i / kShares + sharing / kShares, ...
+/// Shares the lookups with many photons among threads: thread i takes share i % kShares of lookups i / kShares, i /
+/// kShares + sharing / kShares, ...
 template <MaterialsKnown kKnown>
 struct ShareLookups {
     EstimateRadiance<kKnown, PhotonSearch::Grid> estimate;
-    uint32_t sharing; // threads, a multiple of kShares
+    uint32_t sharing; // number of threads, a multiple of kShares
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const uint32_t crowded = estimate.walks.counts->crowded;
@@ -177,7 +179,7 @@ struct ShareLookups {
     }
 };
 
-/// The crowded lookups to the film.
+/// Adds the shared lookups to the film.
 template <MaterialsKnown kKnown>
 struct AddSharedLookups {
     EstimateRadiance<kKnown, PhotonSearch::Grid> estimate;

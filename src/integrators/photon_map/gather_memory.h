@@ -1,7 +1,7 @@
 #pragma once
 
-// What walks of photon mapping know beside subpaths/walk_memory.h: what a mirror at their end may show, and the places
-// where light is to be looked up in the maps.
+// Data of photon-mapping subpaths besides subpaths/walk_memory.h: what their next ray may add, and the lookups in the
+// maps.
 
 #include "accel/nearest_points.h"
 #include "integrators/subpaths/walk_memory.h"
@@ -9,45 +9,45 @@
 
 namespace pertev {
 
-/// Of a walk from the camera, beside its throughput.
+/// Data of a camera subpath besides its throughput.
 struct Sight {
-    Rgb past_mirrors; // of the throughput, what counts of light met behind mirrors and smooth glass alone: the rest of
-                      // that is in the caustic map
-    float pdf;        // with which the ray's direction was drawn, 1/sr; 0 after the camera or a delta lobe
+    Rgb past_mirrors; // part of the throughput that applies to light behind mirrors and smooth glass only; the
+                      // caustic map has the rest of that light
+    float pdf;        // density with which the ray's direction was sampled, 1/sr; 0 after the camera or a delta lobe
 };
 
-/// A diffuse surface at which a walk ends or turns.
+/// A diffuse surface at which a subpath ends or continues.
 struct Lookup {
     Hit hit;
-    Vec3 direction; // of the walk, unit
+    Vec3 direction; // direction of the subpath, unit
     Rgb throughput;
-    uint32_t pixel, scatterings; // so far
-    bool wants_all;              // of both maps; else of the caustic map alone
+    uint32_t pixel, scatterings; // scatterings so far
+    bool wants_all;              // looks up both maps, else only the caustic map
 };
 
-/// What photons of both maps send on at a place, W/sr.
+/// Light of photons from both maps that is scattered at a point, W/sr.
 struct GatheredSums {
     FixedSum caustic[3], global[3];
 };
 
-/// How much there is room for.
+/// Sizes of the arrays.
 struct GatherRoom {
-    uint32_t count;   // walks
-    uint32_t nearest; // photons of each walk; 0: all within a radius count
-    bool can_share;   // look-ups between several threads
+    uint32_t count;   // subpaths
+    uint32_t nearest; // photons per subpath; 0: all within a radius count
+    bool can_share;   // several threads may share a lookup
 };
 
 struct GatherView {
-    Float4* sights;  // [walks] of a photon index_squared alone
-    uint32_t* marks; // [walks] 1: of a photon, scattered otherwise than by delta lobes; of a walk from the camera, it
-                     // has turned at a diffuse surface
-    // Lookups of a round, side by side; WalkCounts::vertices is their number.
+    Float4* sights;  // [subpaths]; for a photon only index_squared
+    uint32_t* marks; // [subpaths] for a photon 1 if other than delta lobes have scattered it; for a camera subpath
+                     // whether it has continued at a diffuse surface
+    // Lookups of a round, contiguous; WalkCounts::vertices is their number.
     Float4 *places, *directions, *throughputs;
     NearPoint* nearest; // [walks * nearest_count]
     uint32_t nearest_count;
-    // Lookups of a round near which photons crowd: several threads share each. WalkCounts::crowded is their number.
-    uint32_t* crowded = nullptr; // [walks] numbers of lookups; null: none is shared
-    GatheredSums* shared_sums;   // [walks]
+    // Lookups of a round with many photons, which several threads share. WalkCounts::crowded is their number.
+    uint32_t* crowded = nullptr; // [subpaths] indices of lookups; null: none is shared
+    GatheredSums* shared_sums;   // [subpaths]
 
     HD void store_sight(uint32_t walk, const Sight& sight) const {
         sights[walk] = {sight.past_mirrors.r, sight.past_mirrors.g, sight.past_mirrors.b, sight.pdf};
@@ -56,7 +56,7 @@ struct GatherView {
         const Float4 s = sights[walk];
         return {{s.x, s.y, s.z}, s.w};
     }
-    /// Of a photon: the square of the refractive index of what it is in, over that of what its light stands in.
+    /// For a photon: square of the refractive index of its medium, over that of its light's medium.
     HD float index_squared(uint32_t walk) const { return sights[walk].w; }
     HD void store_index(uint32_t walk, float squared) const { sights[walk] = {0, 0, 0, squared}; }
     HD void store(uint32_t at, const Lookup& lookup) const {

@@ -1,16 +1,17 @@
 #pragma once
 
-// The stages of walks from the camera. A walk goes on by mirrors, smooth glass and glossy lobes as path tracing does;
-// where a surface is diffuse, light is
-//   L D            drawn by a shadow ray,
-//   L S+ D         looked up in the caustic map,
-//   all other      looked up in the global map too; or, with final gathering, found by going on once from there, to
-//                  where a surface is diffuse again and all of it is looked up. Where that is nearer than the radius,
-//                  the walk goes on once more: a map blurs what is nearer than that.
-// Each light path is found in one of these ways and in no other. Where a walk ends, a ray of its own looks for lamps,
-// so that a lamp close by, of which a shadow ray finds much light by little chance, is no bright spot (Veach 1997,
-// section 9.2); seldom where the lamp that the shadow ray is sent to is far. Where it goes on by glossy lobes alone,
-// the next ray does that: lamps and sky count for all lobes there, and what lies behind them for the glossy ones.
+// Stages of camera subpaths. A subpath continues at mirrors, smooth glass and glossy lobes as in path tracing. At a
+// diffuse surface the light
+//   L D            is sampled by a shadow ray,
+//   L S+ D         is looked up in the caustic map,
+//   all other      is looked up in the global map too; or, with final gathering, found by continuing once to the next
+//                  diffuse surface, where all of it is looked up. If that is nearer than the radius, the subpath
+//                  continues once more, because a map blurs nearby detail.
+// Each light path is found in exactly one of these ways. Where a subpath ends, an extra ray looks for emitters,
+// because a shadow ray finds the strong light of a close emitter with a low density, which would give bright spots
+// (Veach 1997, section 9.2). It is seldom traced if the emitter of the shadow ray is far. If the subpath continues by
+// glossy lobes only, the next ray does that: emitters and sky count for all lobes there, and light behind them for
+// the glossy ones.
 //
 // Source: Jensen, "Global Illumination using Photon Maps", 1996, section 5.
 
@@ -20,15 +21,17 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kLooksForLamps = 2;       // GatherView::marks of a walk that does nothing else any more
-inline constexpr uint32_t kSeesLampsWhole = 4;      // ... beside others: but for lamps and sky that the ray meets, the
-                                                    // throughput is Sight::past_mirrors
-inline constexpr uint32_t kNumberOfLook = 2;        // of the choices of a vertex: whether a ray looks for lamps
-inline constexpr float kLeastChanceToLook = 0.125f; // of that
-inline constexpr float kLookWithin = 4.0f; // ... which is 1 where a lamp's area is more than 1/4 of the square of
-                                           // the way there
+inline constexpr uint32_t kLooksForLamps = 2;       // mark in GatherView::marks of a subpath that only looks for
+                                                    // emitters
+inline constexpr uint32_t kSeesLampsWhole = 4;      // mark, combined with others: except for emitters and sky that
+                                                    // the ray hits, the throughput is Sight::past_mirrors
+inline constexpr uint32_t kNumberOfLook = 2;        // index among a vertex's choices: whether a ray looks for
+                                                    // emitters
+inline constexpr float kLeastChanceToLook = 0.125f; // minimum probability of that ray
+inline constexpr float kLookWithin = 4.0f;          // its probability is 1 if an emitter's area is more than 1/4 of the
+                                                    // squared distance
 
-/// Walks 0, 1, ... become the camera's of a pass.
+/// Starts camera subpaths 0, 1, ... of a pass.
 struct BeginSights {
     BeginEyes begin;
     GatherView gather;
@@ -40,7 +43,7 @@ struct BeginSights {
     }
 };
 
-/// Where the camera's walks have met something.
+/// Shades hits of camera subpaths.
 template <MaterialsKnown kKnown>
 struct ShadeSights {
     WalkScene scene;
@@ -48,7 +51,7 @@ struct ShadeSights {
     GatherView gather;
     FilmView film;
     PhotonGather how;
-    float near; // metres: a surface that is so near to the last one is no place to look light up
+    float near; // metres; a surface so near to the previous one is not used for a lookup
     uint32_t round;
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
@@ -107,12 +110,13 @@ private:
         const Surface& surface;
         Vec3 wo;
         bool is_diffuse, is_glossy;
-        bool turns;    // the walk goes on by diffuse lobes too
-        bool may_look; // for lamps alone, by diffuse lobes
+        bool turns;    // the subpath continues by diffuse lobes too
+        bool may_look; // a ray may look for emitters only, by diffuse lobes
         SampleKey key;
     };
 
-    /// Light that the walk has run into; `light_pdf`: the density with which a shadow ray would have been sent there.
+    /// Adds light that the subpath hit. `light_pdf` is the density with which a shadow ray would have been sampled
+    /// there.
     HD void add_light(const WalkState& state, const Sight& sight, Rgb emission, float light_pdf) const {
         const float weight = light_pdf > 0 ? power_heuristic(sight.pdf, light_pdf) : 1.0f;
         add_radiance(film, state.pixel, (sight.pdf > 0 ? weight * state.throughput : sight.past_mirrors) * emission);
@@ -125,7 +129,7 @@ private:
                   sight.pdf > 0 ? pdf_environment(lights, ray.origin, ray.direction) : 0.0f);
     }
 
-    /// One point of one light, as path tracing draws it. Returns how near that is: nearness_of, or 0.
+    /// Samples one point of one light, as path tracing does. Returns its nearness_of(), or 0.
     HD INLINE_ON_DEVICE float ask_for_light(const Vertex& vertex, const WalkState& state) const {
         const SceneView& view = scene.picture.scene;
         const Surface& surface = vertex.surface;
@@ -138,7 +142,7 @@ private:
         const uint32_t coin = coin_key(vertex.key, state.depth(), true);
         if (light.instance != kNoLight && view.any_alpha != 0 &&
             !AcceptHit{view, {}, {}, coin}.passes_alpha(light.instance, light.primitive, light.b1, light.b2)) {
-            return nearness; // a hole in the light
+            return nearness; // transparent part of the light
         }
         Connection connection;
         connection.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal);
@@ -149,20 +153,20 @@ private:
         walks.ask(atomic_add(&walks.counts->asked, 1u), connection, state.pixel);
         return nearness;
     }
-    /// Of a lamp its area, over the chance to draw it, beside the square of the way there; 0 of lights without place or
-    /// size.
+    /// Area of an emitter over the probability to sample it, relative to the squared distance; 0 for lights without
+    /// position or size.
     HD static float nearness_of(const LightSample& light) {
         if (light.is_delta || !(light.distance < kInfinity)) return 0;
         return 1.0f / (light.pdf * abs(dot(light.light_normal, light.wi)));
     }
-    /// Of what the surface sends on of a light that was drawn, what the walk's own ray does not find.
+    /// Part of the scattered light of a sampled light that the subpath's own ray does not find.
     HD Rgb drawn_share(const Vertex& vertex, const LightSample& light, const BsdfValue& all) const {
         const bool is_sky = !light.is_delta && light.instance == kNoLight;
         if (light.is_delta || (vertex.may_look && is_sky)) return all.f;
         return power_heuristic(light.pdf, all.pdf) * all.f;
     }
 
-    /// `nearness`: of ask_for_light.
+    /// `nearness` is the result of ask_for_light.
     HD INLINE_ON_DEVICE void go_on(const Vertex& vertex, uint32_t walk, WalkState& state, Sight sight,
                                    float nearness) const {
         const Surface& surface = vertex.surface;
@@ -172,7 +176,7 @@ private:
             draw_scatter(settings, vertex.key, surface.bsdf, eye_group(state.depth(), kWalkScatter), choices);
         BsdfSample sample = surface.sample(vertex.wo, draw.lobe, draw.u);
         if (!(sample.pdf > 0)) return;
-        Rgb past_mirrors = sample.weight; // of light beyond delta lobes from here on
+        Rgb past_mirrors = sample.weight; // factor for light beyond delta lobes from here on
         if (!sample.is_delta() && vertex.is_diffuse) {
             past_mirrors = {};
             if (vertex.is_glossy) {
@@ -205,7 +209,7 @@ private:
                         coin_key(vertex.key, state.depth(), false), round + 1);
     }
 
-    /// 0: no ray looks for lamps; else what makes up for those that do not.
+    /// Returns 0 if no ray looks for emitters; otherwise the factor that compensates for those that do not.
     HD float share_that_looks(const Vertex& vertex, float nearness, uint32_t choices) const {
         if (scene.picture.scene.lights.triangle_count == 0) return 0;
         const float chance = clamp(kLookWithin * nearness, kLeastChanceToLook, 1.0f);

@@ -1,12 +1,12 @@
 #pragma once
 
-// From photons as they come to maps: the photons in the order of (path, scatterings), which no device or thread has a
-// say in, and the buckets of the hash grid over them. Where photons crowd, as in the focus of a caustic, a look-up
-// would take long for more of them than it needs: of a bucket no more than kMostKept stay, with the power of all. Dim
-// light in the same bucket is noisier for that.
+// Turns stored photons into maps: sorts them by (path, scatterings), independently of device and threads, and makes
+// the buckets of the hash grid. Where photons crowd, as in the focus of a caustic, lookups would take long for more
+// photons than they need. Therefore at most kMostKept photons of a bucket stay, with the power of all. That makes dim
+// light in the same bucket noisier.
 //
-// Source: Suykens, Willems, "Density Control for Photon Maps", EGWR 2000, which gives the power of a photon that is
-// left out to its neighbours; here chance chooses, so that the mean is that of all.
+// Source: Suykens, Willems, "Density Control for Photon Maps", EGWR 2000, which distributes the power of a removed
+// photon to its neighbours; here selection is random, so that the mean is that of all.
 
 #include "device/buffer.h"
 #include "integrators/photon_map/photon_map_view.h"
@@ -14,13 +14,13 @@
 
 namespace pertev {
 
-/// order[i] = i.
+/// Sets order[i] = i.
 struct NumberPhotons {
     uint32_t* order;
     HD void operator()(uint32_t i) const { order[i] = i; }
 };
 
-/// Photon i of the order, from where it was stored.
+/// Moves photon i of the order from where it was stored.
 struct OrderPhotons {
     PhotonsView stored, ordered;
     const uint32_t* order;
@@ -33,7 +33,7 @@ struct OrderPhotons {
     }
 };
 
-/// The key of photon i is its bucket.
+/// Sets the key of photon i to its bucket.
 struct MakeBuckets {
     const Float4* places;
     PhotonCells cells;
@@ -47,9 +47,9 @@ struct MakeBuckets {
     }
 };
 
-inline constexpr uint32_t kMostKept = 1024; // of a bucket's photons
+inline constexpr uint32_t kMostKept = 1024; // photons per bucket
 
-/// Where buckets start, of sorted keys; thread `count` closes the list.
+/// Finds the starts of buckets in sorted keys; thread `count` closes the list.
 struct FindBuckets {
     const uint64_t* sorted_keys;
     uint32_t count, buckets;
@@ -62,11 +62,12 @@ struct FindBuckets {
     }
 };
 
-/// Puts photons into their buckets. Of n in one that has more than `most`, those of rank r stay for which the whole
-/// part of (r * most + offset) / n is less than that for r + 1, `offset` drawn evenly from 0 to n - 1: `most` of them,
-/// spread evenly over the numbers, each with the chance most / n. Their power is made up for the others'.
+/// Puts photons into their buckets. Of n > `most` photons in a bucket, the photon of rank r stays if the integer part
+/// of (r * most + offset) / n is less than that for r + 1, with `offset` uniform from 0 to n - 1. These are `most`
+/// photons, evenly spread over the ranks, each with probability most / n. Their power is scaled to compensate for the
+/// others.
 struct KeepPhotons {
-    PhotonsView photons; // of the map alone; places' last number becomes 1 of those that stay, else 0
+    PhotonsView photons; // the map's photons; the last component of places becomes 1 for those that stay, else 0
     const uint64_t* sorted_keys;
     const uint32_t* sorted_order;
     const uint32_t* starts;
@@ -95,12 +96,12 @@ struct KeepPhotons {
     }
 
 private:
-    static constexpr uint32_t kDrawsOffset = 0x6b656570; // no other draw has this word
+    static constexpr uint32_t kDrawsOffset = 0x6b656570; // unique among the random draws
 };
 
-/// Sorts `keys` of so many bits, 1 to 63, each with its number in `order`, of which order[i] is i; equal keys stay in
-/// the order of numbers. What was in `keys` and `order` is lost. On the host by bytes, on a GPU by
-/// tracer/hploc/sort_codes.h, whose `scratch` it is.
+/// Sorts `keys` with `bits` bits, 1 to 63, each with its index in `order`, where order[i] is i; equal keys keep their
+/// order. The contents of `keys` and `order` are lost. It is a radix sort on the host; a GPU uses
+/// tracer/hploc/sort_codes.h with `scratch`.
 void sort_photons(Queue& queue, Buffer<std::byte>& scratch, uint64_t* keys, uint32_t* order, uint64_t* sorted_keys,
                   uint32_t* sorted_order, uint32_t count, int bits);
 

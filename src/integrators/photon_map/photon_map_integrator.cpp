@@ -8,7 +8,7 @@ namespace pertev {
 
 namespace {
 
-/// `in_loop`: of a thread of the CPU's, which has other look-ups to do when this one is long.
+/// `in_loop` means the room of a CPU thread, which has other lookups to do when one is long.
 GatherRoom gather_room(uint32_t walks, const PhotonMapSettings& map, bool in_loop) {
     return {walks, map.nearest, !in_loop && map.search == PhotonSearch::Grid && map.nearest == 0};
 }
@@ -16,7 +16,7 @@ GatherRoom gather_room(uint32_t walks, const PhotonMapSettings& map, bool in_loo
 } // namespace
 
 GatherRoom PhotonMapIntegrator::loop_room() const {
-    constexpr std::size_t kLoopBytes = std::size_t(1) << 18; // of a thread: what its cache holds
+    constexpr std::size_t kLoopBytes = std::size_t(1) << 18; // per thread, so that it fits the cache
     return room_within(kLoopBytes, kLoopCount,
                        [&](uint32_t walks) { return gather_room(walks, picture_settings_.map, true); });
 }
@@ -26,7 +26,7 @@ void PhotonMapIntegrator::reserve(const WorkSize& size) {
     maps_.make_room(map, settings_.walks.max_depth);
     targets_.grow(queue_, kMostTargets, "targets of photons");
     if (goes_by_loop(size)) return;
-    const uint64_t walks = std::max<uint64_t>(size.pixels(), 2 * uint64_t(map.photons)); // the camera's, or photons
+    const uint64_t walks = std::max<uint64_t>(size.pixels(), 2 * uint64_t(map.photons)); // camera subpaths or photons
     take_room(room_within(kMostBytes, std::min<uint64_t>(walks, batch_),
                           [&](uint32_t count) { return gather_room(count, map, false); }),
               "walks of photon mapping");
@@ -81,7 +81,7 @@ void PhotonMapIntegrator::render(uint32_t first, uint32_t count, const FilmView&
 void PhotonMapIntegrator::render_pass(uint32_t pass, const FilmView& film) {
     PhotonJob job = make_job(pass, film);
     const SubpathSettings& walks = picture_settings_.walks;
-    // Light that is scattered once is found by shadow rays alone.
+    // Shadow rays alone find light that is scattered once.
     const uint64_t kinds = walks.max_depth < 2 ? 0 : target_count_ > 0 ? 2 : 1;
     run_stages(job, 0, kinds * picture_settings_.map.photons, loop_room(), 1,
                [this](auto& schedule, const PhotonJob& part) {
@@ -98,7 +98,7 @@ void PhotonMapIntegrator::render_pass(uint32_t pass, const FilmView& film) {
 
 float radius_of_pass(uint32_t pass) {
     constexpr double kAlpha = 2.0 / 3.0;
-    double squared = 1; // a product of doubles in a fixed order: the same everywhere
+    double squared = 1; // a product of doubles in a fixed order has the same bits everywhere
     for (uint32_t i = 1; i <= pass; ++i) squared *= (i + kAlpha) / (i + 1.0);
     return sqrt(static_cast<float>(squared));
 }

@@ -1,9 +1,9 @@
 #pragma once
 
-// Photon mapping: each sample of the film is a pass. Photons leave the lights and are left where they meet diffuse
-// surfaces (photon_stages.h); a structure is built over them (photon_maps.h); then each pixel's walk looks light up
-// there (gather_stages.h, estimate_radiance.h). The next pass begins anew with another radius: a function of the pass's
-// number alone, so that passes may be rendered in any order and anywhere, and added as samples are.
+// Photon mapping: each sample of the film is a pass. Photons leave the lights and are stored on diffuse surfaces
+// (photon_stages.h); a structure is built over them (photon_maps.h); then the camera subpath of each pixel looks up
+// light there (gather_stages.h, estimate_radiance.h). Each pass starts anew with a radius that depends only on the
+// pass's number, so passes may be rendered in any order and anywhere, and are added like samples.
 //
 // Sources: Jensen, "Global Illumination using Photon Maps", EGWR 1996; Knaus, Zwicker, "Progressive Photon Mapping: A
 // Probabilistic Approach", TOG 30(3), 2011.
@@ -28,13 +28,14 @@ public:
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
 
-    /// Of the last pass.
+    /// Photon counts of the last pass.
     const PhotonCounts& photons() const { return maps_.counts(); }
-    /// Likewise, in the queue's memory.
+    /// Maps of the last pass, in the queue's memory.
     const PhotonMapsView& maps() const { return maps_.view(); }
-    /// From the next pass on tells what becomes of photons, which takes time. Null: no more. In the queue's memory.
+    /// Records what happens to photons from the next pass on, which takes time; null stops it. `energy` is in the
+    /// queue's memory.
     void tell_energy(PhotonEnergy* energy) { energy_ = energy; }
-    /// Metres, of a pass of the present picture.
+    /// Radius of a pass of the current picture, in metres.
     float global_radius(uint32_t pass) const { return global_radius_ * radius_of_pass(pass); }
 
 private:
@@ -45,7 +46,7 @@ private:
 
     PhotonEnergy* energy_ = nullptr;
     WorldSphere world_{};
-    float global_radius_ = 0, caustic_radius_ = 0; // of the first pass
+    float global_radius_ = 0, caustic_radius_ = 0; // radii of the first pass
     PhotonMaps maps_;
     Buffer<Float4> targets_;
     uint32_t target_count_ = 0;

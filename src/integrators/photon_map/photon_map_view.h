@@ -1,6 +1,6 @@
 #pragma once
 
-// Photons that a pass has left on diffuse surfaces, the hash grid over them, and both maps as device code sees them.
+// Photons that a pass has stored on diffuse surfaces, the hash grid over them, and both maps in device code.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,14 +19,15 @@
 namespace pertev {
 
 struct Photon {
-    Vec3 position; // moved world, metres
-    Vec3 wi;       // unit, to where it came from
-    Vec3 normal;   // unit, of the triangle, on the side where it came from
-    Rgb power;     // W, of all that the lights send in the pass, over the square of the refractive index there
+    Vec3 position; // translated world, metres
+    Vec3 wi;       // unit, towards its origin
+    Vec3 normal;   // unit, of the triangle, on the side from which it came
+    Rgb power;     // W, for the total power of all lights in a pass, divided by the square of the refractive index
+                   // there
     uint32_t path, scatterings;
 };
 
-/// Components by 10 bits each.
+/// Packs the components with 10 bits each.
 HD inline uint32_t pack_normal(Vec3 normal) {
     const auto part = [](float x) { return static_cast<uint32_t>(to_int((x + 1.0f) * 511.5f, 0, 1023)); };
     return part(normal.x) << 20 | part(normal.y) << 10 | part(normal.z);
@@ -36,12 +37,12 @@ HD inline Vec3 unpack_normal(uint32_t bits) {
     return {part(bits >> 20), part(bits >> 10), part(bits)};
 }
 
-/// Their number in the order of (path, scatterings).
+/// Sort key of a photon: its order is (path, scatterings).
 HD inline uint64_t photon_key(uint32_t path, uint32_t scatterings) { return uint64_t(path) << 8 | scatterings; }
 
 struct PhotonsView {
-    // Position, in a map then 1, or 0 of one that is left out (order_photons.h); wi, bits of the normal; power, bits of
-    // the scatterings.
+    // Position, with 1 in a map, or 0 if it was removed (order_photons.h); wi, bits of the normal; power, bits of the
+    // scatterings.
     Float4 *places, *ways, *powers;
 
     HD void store(std::size_t at, const Photon& photon) const {
@@ -54,13 +55,13 @@ struct PhotonsView {
 };
 
 struct PhotonCounts {
-    uint32_t stored, caustic; // in both maps; of these in the caustic map
+    uint32_t stored, caustic; // in both maps; in the caustic map
 };
 
-/// Photons as they are stored, in whatever order they come.
+/// Photons as they are stored, in arbitrary order.
 struct StoredPhotonsView {
     PhotonsView photons;
-    uint64_t* keys; // photon_key
+    uint64_t* keys; // result of photon_key
     PhotonCounts* counts;
 
     HD void add(const Photon& photon, bool is_caustic) const {
@@ -71,10 +72,10 @@ struct StoredPhotonsView {
     }
 };
 
-/// Cells, and what it takes to be sure: places are rounded by up to 2^-24 of the largest coordinate.
+/// Cells of the grid, with a margin because positions are rounded by up to 2^-24 of the largest coordinate.
 struct PhotonCells {
-    float reach;      // metres round a place, more than the radius
-    float per_metre;  // 1 / a cell's side
+    float reach;      // metres around a point, more than the radius
+    float per_metre;  // inverse of a cell's side
     uint32_t buckets; // a power of two
 
     HD int cell(float x) const { return to_int(floor(x * per_metre), -(1 << 30), 1 << 30); }
@@ -85,8 +86,9 @@ struct PhotonCells {
     HD uint32_t bucket_of(Vec3 p) const { return bucket(cell(p.x), cell(p.y), cell(p.z)); }
 };
 
-/// `largest`: |coordinate| of any photon and place. At most two cells an axis: a side is more than twice the reach, and
-/// x * per_metre is rounded by less than the hundredth of a cell that is left.
+/// Makes the cells. `largest` is the largest |coordinate| of any photon and lookup. A lookup touches at most two
+/// cells per axis: a side is more than twice the reach, and x * per_metre is rounded by less than the hundredth of a
+/// cell that is left.
 inline PhotonCells make_photon_cells(float radius, float largest, uint32_t count) {
     const float side = 2.05f * radius + 0x1p-17f * largest;
     uint32_t buckets = 1;
@@ -96,12 +98,12 @@ inline PhotonCells make_photon_cells(float radius, float largest, uint32_t count
 
 struct PhotonGridView {
     PhotonCells cells;
-    const Float4* points = nullptr;   // by buckets: position, bits of the photon's number
-    const uint32_t* starts = nullptr; // [buckets + 1] in `points`
-    uint32_t most_kept = 0xffffffffu; // of a bucket's points: the first ones
+    const Float4* points = nullptr;   // ordered by bucket: position, bits of the photon's number
+    const uint32_t* starts = nullptr; // [buckets + 1] start in `points`
+    uint32_t most_kept = 0xffffffffu; // only the first points of a bucket are used
 };
 
-/// Calls visit(begin, end) for each bucket, a part of grid.points, that may hold a photon near `at`.
+/// Calls visit(begin, end) for each bucket, a range of grid.points, that may contain a photon near `at`.
 template <class Visit>
 HD inline void visit_buckets(const PhotonGridView& grid, Vec3 at, Visit&& visit) {
     const PhotonCells& cells = grid.cells;
@@ -125,7 +127,7 @@ HD inline void visit_buckets(const PhotonGridView& grid, Vec3 at, Visit&& visit)
     }
 }
 
-/// Photons that a search has to look at, at most.
+/// Upper bound of the photons that a search visits.
 HD inline uint32_t count_near(const PhotonGridView& grid, Vec3 at) {
     uint32_t count = 0;
     visit_buckets(grid, at, [&](uint32_t begin, uint32_t end) { count += end - begin; });
@@ -150,14 +152,14 @@ HD inline void search_points(const PhotonGridView& grid, Vec3 at, Found& found, 
 
 struct PhotonMapView {
     PhotonsView photons; // in the order of (path, scatterings)
-    uint32_t count = 0;  // with those that are left out
-    float radius = 0;    // metres, of the present pass
+    uint32_t count = 0;  // includes removed ones
+    float radius = 0;    // metres, of the current pass
     PhotonGridView grid;
     PointKdTreeView kd_tree;
     PointOctreeView octree;
 };
 
-/// The map's structure of that kind.
+/// The map's structure for this kind of search.
 template <PhotonSearch kSearch>
 HD inline const auto& structure_of(const PhotonMapView& map) {
     if constexpr (kSearch == PhotonSearch::Grid) {

@@ -14,13 +14,13 @@ namespace pertev {
 
 namespace {
 
-/// What photons of one kind may leave.
+/// Maximum number of photons that one kind may store.
 uint64_t room_of_kind(const PhotonMapSettings& settings, uint32_t max_depth) {
     return uint64_t(settings.photons) * (max_depth > 1 ? max_depth - 1 : 1);
 }
 /// Gathering rays look up all light in the global map (Jensen 1996, section 5).
 bool global_has_all(const PhotonMapSettings& settings) { return settings.gather == PhotonGather::Final; }
-/// In both maps together.
+/// Maximum number of photons in both maps together.
 uint64_t room_of_maps(const PhotonMapSettings& settings, uint32_t max_depth) {
     return (global_has_all(settings) ? 3 : 2) * room_of_kind(settings, max_depth);
 }
@@ -32,7 +32,7 @@ void PhotonMaps::make_room(const PhotonMapSettings& settings, uint32_t max_depth
     const uint64_t of_kind = room_of_kind(settings, max_depth), room = 2 * of_kind;
     const uint64_t in_maps = room_of_maps(settings, max_depth);
     search_ = settings.search;
-    most_kept_ = settings.nearest > 0 ? 0xffffffffu : kMostKept; // the nearest are to be those of all
+    most_kept_ = settings.nearest > 0 ? 0xffffffffu : kMostKept; // the nearest photons are selected from all
     global_has_all_ = global_has_all(settings);
     for (int k = 0; k < 3; ++k) {
         stored_[k].grow(queue_, room, "photons as they come");
@@ -144,7 +144,7 @@ namespace {
 
 constexpr int kDigitBits = 11;
 
-/// Least digit first.
+/// Radix sort, least significant digit first.
 void sort_on_host(uint64_t* keys, uint32_t* order, uint64_t* sorted_keys, uint32_t* sorted_order, uint32_t count,
                   int bits) {
     uint64_t* from_keys = keys;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Owns both maps of a pass and what it takes to build them: memory for all photons that a pass may leave.
+// Owns both maps of a pass and the memory to build them, for all photons that a pass may store.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,14 +16,15 @@ public:
     /// `queue` outlives it.
     explicit PhotonMaps(Queue& queue) : queue_(queue) {}
 
-    /// For passes of such settings. Throws Error(OutOfMemory).
+    /// Allocates for passes with these settings. Throws Error(OutOfMemory).
     void make_room(const PhotonMapSettings& settings, uint32_t max_depth);
 
-    /// A pass begins: no photons. Where they go.
+    /// Starts a pass: empties the maps and returns the arrays that photons are appended to.
     StoredPhotonsView clear();
-    /// What was stored in pass `pass` becomes maps. `largest`: |coordinate| of any place. Waits for the device.
+    /// Builds the maps from the photons of pass `pass`. `largest` is the largest |coordinate| of any point. Waits for
+    /// the device.
     const PhotonMapsView& build(float global_radius, float caustic_radius, float largest, uint32_t pass, uint32_t seed);
-    /// Of the last build().
+    /// Counts of the last build().
     const PhotonCounts& counts() const { return found_; }
     const PhotonMapsView& view() const { return view_; }
 
@@ -36,16 +37,17 @@ private:
     Queue& queue_;
     PhotonSearch search_ = PhotonSearch::Grid;
     bool global_has_all_ = false;
-    uint32_t most_kept_ = 0;      // of a bucket's photons
-    uint64_t room_ = 0;           // photons
-    Buffer<Float4> stored_[3];    // of stored photons; then those of the grids: [0] of the global one, [1] of the other
-    Buffer<Float4> ordered_[3];   // in the order of their numbers; of the global map, then of the caustic map
-    Buffer<uint64_t> keys_[2];    // as they come; sorted
-    Buffer<uint32_t> order_[2];   // likewise
-    Buffer<uint32_t> starts_[2];  // of buckets: of the global map, of the caustic map
-    Buffer<std::byte> scratch_;   // of sorting
-    Buffer<PhotonCounts> counts_; // one
-    // Of one kind alone; global photons first.
+    uint32_t most_kept_ = 0;      // photons per bucket
+    uint64_t room_ = 0;           // in photons
+    Buffer<Float4> stored_[3];    // stored photons; then the points of the grids: [0] of the global map, [1] of the
+                                  // caustic map
+    Buffer<Float4> ordered_[3];   // in the order of their numbers; first the global map, then the caustic map
+    Buffer<uint64_t> keys_[2];    // [0] as stored, [1] sorted
+    Buffer<uint32_t> order_[2];   // [0] as stored, [1] sorted
+    Buffer<uint32_t> starts_[2];  // starts of buckets: [0] of the global map, [1] of the caustic map
+    Buffer<std::byte> scratch_;   // memory for sorting
+    Buffer<PhotonCounts> counts_; // one element
+    // Only one of these three structures is filled; global photons come first.
     Buffer<PointKdNode> kd_nodes_;
     Buffer<PointOctreeNode> octree_nodes_;
     Buffer<Sphere> octree_spheres_;

@@ -1,12 +1,12 @@
 #pragma once
 
-// The stages of a pass's photons: leave the lights; then, round by round, be left where they meet something diffuse,
-// and go on. Particles of two kinds, as the maps have them:
-//   global   leave the lights as particles do (emit_particle.h); kept where they have been scattered otherwise than by
-//            delta lobes: L (D|G|S)* (D|G) S* D
-//   caustic  are aimed at what mirrors or refracts (photon_targets.h); kept where delta lobes alone have scattered
-//            them: L S+ D
-// Light that has not been scattered is in neither: shadow rays find it.
+// Stages of a pass's photons: emission from the lights; then, round by round, storage at diffuse hits and scattering.
+// The maps need two kinds of particles:
+//   global   leave the lights as all particles do (emit_particle.h); stored after a scattering by other than delta
+//            lobes: L (D|G|S)* (D|G) S* D
+//   caustic  are aimed at surfaces that mirror or refract (photon_targets.h); stored after scatterings by delta lobes
+//            only: L S+ D
+// Direct light is in neither map, because shadow rays find it.
 //
 // Source: Jensen, "Global Illumination using Photon Maps", 1996, section 4.1.
 
@@ -18,25 +18,25 @@
 
 namespace pertev {
 
-/// What becomes of photons, for who asks: powers, the three colours together, W.
+/// Power balance of photons, for tests: powers summed over the three colours, W.
 struct PhotonEnergy {
     FixedSum emitted;
-    FixedSum escaped;   // met nothing
-    FixedSum arrived;   // at surfaces
-    FixedSum left_none; // of what arrived, what left no photon: the rest lies in the maps
-    FixedSum went_on;   // from there: the rest is absorbed
+    FixedSum escaped;   // hit nothing
+    FixedSum arrived;   // arrived at surfaces
+    FixedSum left_none; // part of `arrived` that stored no photon; the maps contain the rest
+    FixedSum went_on;   // part of `arrived` that was scattered; the rest was absorbed
 };
 
-/// A pass's photons: paths [0, count) are global ones, [count, 2 count) caustic ones.
+/// Photons of a pass: paths [0, count) are global ones, [count, 2 count) caustic ones.
 struct PhotonPass {
     uint32_t pass, count;
     PhotonTargetsView targets;
     StoredPhotonsView stored;
-    uint64_t* invalid;    // photons that are left out, for a power that is no number
-    PhotonEnergy* energy; // null: nobody asks
+    uint64_t* invalid;    // number of photons that were dropped because their power was not finite
+    PhotonEnergy* energy; // may be null
 
     HD bool is_caustic(uint32_t path) const { return path >= count; }
-    /// One sequence goes through the photons of all passes.
+    /// A single sequence covers the photons of all passes.
     HD SampleKey key(uint32_t path, uint32_t seed) const {
         const uint64_t number = uint64_t(pass) * count + (is_caustic(path) ? path - count : path);
         return {static_cast<uint32_t>(number >> 32), static_cast<uint32_t>(number),
@@ -47,7 +47,7 @@ struct PhotonPass {
     }
 };
 
-/// Walks 0, 1, ... become photons `first`, first + 1, ...
+/// Starts photons `first`, first + 1, ... as subpaths 0, 1, ...
 struct BeginPhotons {
     WalkScene scene;
     WalksView walks;
@@ -84,7 +84,7 @@ struct BeginPhotons {
     }
 };
 
-/// Where the photons' rays have met something.
+/// Shades hits of photons.
 template <MaterialsKnown kKnown>
 struct ShadePhotons {
     WalkScene scene;
@@ -116,8 +116,7 @@ struct ShadePhotons {
 
 private:
     HD void keep(const Surface& surface, uint32_t walk, const WalkState& state, Vec3 wi, bool is_caustic) const {
-        // Walks from the camera carry radiance over the square of the index (shading/lobes/bsdf_sample.h), photons
-        // power.
+        // Camera subpaths carry radiance over the squared index (shading/lobes/bsdf_sample.h), photons carry power.
         const Rgb power = (1.0f / gather.index_squared(walk)) * state.throughput;
         if (!(max_component(power) <= kMaxSampleValue)) {
             atomic_add(pass.invalid, 1);
@@ -137,8 +136,8 @@ private:
             draw_scatter(settings, key, surface.bsdf, particle_group(state.depth(), kWalkScatter), choices);
         BsdfSample sample = sample_adjoint(surface, wi, draw.lobe, draw.u);
         if (!(sample.pdf > 0) || (is_caustic && !sample.is_delta())) return;
-        // Photons of much the same power make the smoothest maps: of what is scattered in part, fewer go on (Jensen
-        // 1996, section 4.1).
+        // Photons of similar power give the smoothest maps, so fewer photons continue where only a part is scattered
+        // (Jensen 1996, section 4.1).
         const float chance = max_component(sample.weight);
         if (!(chance > 0)) return;
         if (chance < 1) {

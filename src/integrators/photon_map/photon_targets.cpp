@@ -3,7 +3,7 @@
 namespace pertev {
 namespace {
 
-constexpr float kGrown = 1.0f + 0x1p-10f; // what rounding may take
+constexpr float kGrown = 1.0f + 0x1p-10f; // margin for rounding
 
 bool is_nothing(const hploc::OrderedBounds& bounds) { return bounds.least[0] == 0x7f7f7f7f; }
 
@@ -12,7 +12,7 @@ Float4 sphere_round(const Bounds3& box) {
     return {centre.x, centre.y, centre.z, kGrown * (0.5f * length(box.size()) + 0x1p-20f * box.max_abs())};
 }
 
-/// Those of the cells, of which `together` along each axis make one.
+/// Spheres of the cells, of which `together` along each axis form one.
 std::vector<Float4> spheres_of_cells(const SpecularBounds& found, uint32_t together) {
     constexpr uint32_t kAcross = kTargetCellsAcross;
     const uint32_t across = kAcross / together;

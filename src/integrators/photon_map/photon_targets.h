@@ -1,13 +1,13 @@
 #pragma once
 
-// Where photons of the caustic map are aimed: spheres that together hold every surface that may mirror or refract. A
-// photon whose first surface is none of them brings no caustic. And how such a photon leaves its light: the light and
-// the place on it as emit_particle.h draws them, then a direction evenly in the cones from there to the spheres; of
-// light from far away, a place evenly in their discs. Where the targets are wider than what the light sends anyway, it
-// sends it as ever.
+// Targets of caustic photons: spheres that together contain every surface that may mirror or refract. A photon that
+// hits another surface first brings no caustic. This file also samples how such a photon leaves its light: the light
+// and the point on it as in emit_particle.h, then a uniform direction in the cones from there to the spheres, or, for
+// distant light, a uniform point in their discs. If the targets are wider than the light's normal emission, normal
+// emission is used.
 //
 // Source: Jensen, "Global Illumination using Photon Maps", 1996, section 4.1, whose projection maps are grids of
-// directions, made for one place each; spheres serve every place on a lamp.
+// directions for one point each; spheres serve every point on an emitter.
 
 #include <vector>
 
@@ -21,13 +21,13 @@ namespace pertev {
 inline constexpr uint32_t kMostTargets = 64;
 
 struct PhotonTargetsView {
-    const Float4* spheres; // centre, radius: moved world, metres
-    uint32_t count;        // 0: nothing mirrors or refracts
+    const Float4* spheres; // centre, radius: translated world, metres
+    uint32_t count;        // 0 if nothing mirrors or refracts
 };
 
 namespace aim {
 
-/// 1 - cosine of the half angle under which a sphere is seen; 2 from within.
+/// 1 - cosine of the half angle that a sphere subtends; 2 from inside.
 HD inline float depth_of_cone(Vec3 from, Float4 sphere) {
     const float distance_squared = length_squared(Vec3{sphere.x, sphere.y, sphere.z} - from);
     const float sine_squared = square(sphere.w) / distance_squared;
@@ -48,14 +48,14 @@ HD inline float depth_of_cones(const PhotonTargetsView& targets, Vec3 from) {
     for (uint32_t i = 0; i < targets.count; ++i) all += depth_of_cone(from, targets.spheres[i]);
     return all;
 }
-/// Square metres over pi.
+/// Total area of the discs over pi, in square metres.
 HD inline float area_of_discs(const PhotonTargetsView& targets) {
     float all = 0;
     for (uint32_t i = 0; i < targets.count; ++i) all += square(targets.spheres[i].w);
     return all;
 }
 
-/// Evenly in the cones: a direction in two of them is twice as likely.
+/// Samples the cones uniformly; a direction in two of them is twice as likely.
 HD inline Direction draw_direction(const PhotonTargetsView& targets, Vec3 from, Vec2 u) {
     const float all = depth_of_cones(targets, from);
     float rest = u.x * all, depth = 0;
@@ -82,7 +82,7 @@ struct Start {
     float pdf; // 1/m2, across the direction
 };
 
-/// Of a ray along `direction` from outside of the world: evenly in the discs of the spheres.
+/// Samples the origin of a ray along `direction` from outside the world, uniformly in the discs of the spheres.
 HD inline Start draw_start(const PhotonTargetsView& targets, const WorldSphere& world, Vec3 direction, Vec2 u) {
     const float all = area_of_discs(targets);
     float rest = u.x * all;
@@ -104,7 +104,7 @@ HD inline Start draw_start(const PhotonTargetsView& targets, const WorldSphere& 
     return {through - back * direction, static_cast<float>(discs) * kInvPi / all};
 }
 
-/// How a particle leaves each kind of light for the targets.
+/// Aims a particle from each kind of light at the targets.
 struct AimFromKind {
     EmitFromKind freely;
     const PhotonTargetsView& targets;
@@ -118,7 +118,7 @@ struct AimFromKind {
         Vec3 normal = place.normal;
         if (triangle.is_two_sided == 0 ? triangle.is_mirrored != 0 : dot(normal, direction.to) < 0) normal = -normal;
         const float cosine = dot(normal, direction.to);
-        if (!(cosine > 0)) return false; // the target lies behind the lamp
+        if (!(cosine > 0)) return false; // the target is behind the emitter
         leave_lamp(triangle, place, normal, direction.to, freely.particle);
         freely.particle.power = (cosine / (place.pdf * direction.pdf)) * place.radiance;
         return true;
@@ -160,14 +160,14 @@ struct AimFromKind {
     }
 
 private:
-    /// Narrower than the disc that light from far away comes through.
+    /// Whether the targets are narrower than the disc through which distant light enters.
     HD bool are_narrow() const { return area_of_discs(targets) < square(freely.world.radius); }
 };
 
 } // namespace aim
 
-/// As emit_particle, towards `targets`, of which there are some: the particle's power is over the density of all that
-/// was drawn. Its `mis` says nothing.
+/// Emits a particle like emit_particle, but towards `targets`, of which there is at least one. The power is divided
+/// by the density of all that was sampled. Its `mis` is not set.
 HD inline bool aim_particle(const SceneView& scene, const PhotonTargetsView& targets, const WorldSphere& world,
                             SampleBits u_place, Vec2 u, uint32_t key, Particle& particle) {
     if (!(world.radius > 0)) return false;
@@ -176,20 +176,20 @@ HD inline bool aim_particle(const SceneView& scene, const PhotonTargetsView& tar
     return draw_light(scene.lights, u_place, aim::AimFromKind{{scene, world, u, key, particle}, targets});
 }
 
-// Finds the spheres that photons of the caustic map are aimed at, from the triangles of a scene as it stands on the
-// device: the bounds of all surfaces that may mirror or refract, then those of what lies in each of 4 x 4 x 4 cells of
-// them. One sphere round all, or those of some cells: the smallest together serve best.
+// Finds the target spheres of caustic photons from a scene's triangles on the device: the bounds of all surfaces that
+// may mirror or refract, then those of the contents of each of 4 x 4 x 4 cells. The result is one sphere around all,
+// or those of some cells, whichever is smallest in total.
 
 inline constexpr uint32_t kTargetCellsAcross = 4;
 static_assert(kTargetCellsAcross * kTargetCellsAcross * kTargetCellsAcross <= kMostTargets);
 
-/// What the stages find. Of nothing all bytes are hploc::kNothing.
+/// Result of the stages; all bytes are hploc::kNothing while it is empty.
 struct SpecularBounds {
     hploc::OrderedBounds all, cells[kMostTargets];
-    int32_t reach; // hploc::ordered of minus the squared distance, of the farthest corner from the middle of `all`
+    int32_t reach; // hploc::ordered of minus the squared distance of the farthest corner from the middle of `all`
 };
 
-/// Triangle i of all instances: extends the bounds, or, once these are known, those of the cells.
+/// Extends the bounds by triangle i of all instances, or, once these are known, those of the cells.
 struct FindSpecular {
     SceneView scene;
     SpecularBounds* bounds;
@@ -244,7 +244,7 @@ private:
     }
 };
 
-/// The spheres; none where nothing was found.
+/// Chooses the spheres; empty if nothing was found.
 std::vector<Float4> choose_targets(const SpecularBounds& found);
 
 } // namespace pertev

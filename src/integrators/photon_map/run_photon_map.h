@@ -1,6 +1,6 @@
 #pragma once
 
-// The stages of a pass in their order, written once for both ways to run them (integrators/subpaths/run_walks.h).
+// Orders the stages of a pass once for both schedules (integrators/subpaths/run_walks.h).
 
 #include "integrators/photon_map/gather_stages.h"
 #include "integrators/photon_map/photon_stages.h"
@@ -13,7 +13,7 @@ struct PhotonJob : WalkJob {
 
     GatherView gather;
     PhotonPass pass;
-    PhotonMapsView maps; // of the walks from the camera alone
+    PhotonMapsView maps; // for camera subpaths only
     PhotonGather how;
     PhotonSearch search;
     float near; // metres, ShadeSights::near
@@ -24,7 +24,7 @@ inline std::size_t lay_out(PhotonJob& job, std::byte* memory, const GatherRoom& 
     return of_walks + lay_out(job.gather, memory != nullptr ? memory + of_walks : nullptr, room);
 }
 
-/// Photons [job.first, + job.count) of the pass to their ends.
+/// Traces photons [job.first, + job.count) of the pass to their ends.
 template <class Way>
 void run_photons(Way& way, const PhotonJob& job) {
     const WalksView& walks = job.walks;
@@ -66,7 +66,7 @@ void estimate_radiance(Way& way, const PhotonJob& job, WorkCount lookups) {
     }
 }
 
-/// Walks from the camera, [job.first, + job.count) of the pass, to their ends.
+/// Traces camera subpaths [job.first, + job.count) of the pass to their ends.
 template <class Way>
 void run_sights(Way& way, const PhotonJob& job) {
     const WalksView& walks = job.walks;

@@ -1,8 +1,8 @@
 #pragma once
 
-// Shows a radiosity solution (radiosity/radiosity_solution.h): diffuse surfaces reflect the light that their patches
-// receive, with their texture; mirrors and smooth glass are followed as Whitted's ray tracing does, to surfaces that
-// show theirs. Glossy lobes show nothing.
+// Renders a radiosity solution (radiosity/radiosity_solution.h): diffuse surfaces reflect the light that their
+// patches receive, with their texture; mirrors and smooth glass are followed as in Whitted's ray tracing. Glossy
+// lobes contribute nothing.
 //
 // Source: Goral et al. 1984, section 6; the second pass by rays: Wallace, Cohen, Greenberg, "A Two-Pass Solution to the
 // Rendering Equation", SIGGRAPH 1987.
@@ -31,7 +31,7 @@ struct Radiosity {
         vertex.follow_specular(kLeast);
     }
 
-    /// It has the solution's own.
+    /// None, because the solution contains it.
     static Rgb ambient(const EnvironmentView*) { return {0, 0, 0}; }
 };
 

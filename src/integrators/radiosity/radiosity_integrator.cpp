@@ -11,7 +11,7 @@ template class RayTreeIntegrator<Radiosity>;
 void RadiosityIntegrator::reserve(const WorkSize& size) {
     if (uploaded_ != look_.solution) {
         uploaded_.reset();
-        roots_ = {}, quads_ = {}, patches_ = {}; // before the new ones, so that both need not fit
+        roots_ = {}, quads_ = {}, patches_ = {}; // freed before the new allocations, so that both need not fit
         const RadiositySolution& solution = *look_.solution;
         roots_ = {queue_, std::span<const PatchCode>(solution.roots), "radiosity solution: surfaces"};
         quads_ = {queue_, std::span<const PatchQuad>(solution.quads), "radiosity solution: quads"};

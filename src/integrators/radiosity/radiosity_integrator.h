@@ -1,6 +1,6 @@
 #pragma once
 
-// Pictures of a radiosity solution: it keeps the solution on the device, and trees of rays show it
+// Pictures of a radiosity solution: copies the solution to the device and renders it with ray trees
 // (integrators/radiosity/radiosity.h).
 
 #include "integrators/radiosity/radiosity_look.h"
@@ -14,15 +14,15 @@ public:
         RayTreeSettings trees;
         RadiosityLook look;
     };
-    /// As RayTreeIntegrator.
+    /// `queue`, `in_loop` and `batch` have the meanings of RayTreeIntegrator's.
     RadiosityIntegrator(Queue& queue, const Settings& settings, bool in_loop, uint32_t batch)
         : RayTreeIntegrator(queue, settings.trees, in_loop, batch), look_(settings.look) {}
 
     void reserve(const WorkSize& size) override;
-    /// Throws Error(BadInput) too, where there is no solution or it is of another scene.
+    /// Throws Error(BadInput) too, if there is no solution or it belongs to another scene.
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
 
-    /// Count from the next begin().
+    /// The settings take effect at the next begin().
     void set_settings(const Settings& settings) {
         RayTreeIntegrator::set_settings(settings.trees);
         look_ = settings.look;
@@ -30,7 +30,7 @@ public:
 
 private:
     RadiosityLook look_;
-    std::shared_ptr<const RadiositySolution> uploaded_; // that the buffers hold
+    std::shared_ptr<const RadiositySolution> uploaded_; // the solution in the buffers
     Buffer<PatchCode> roots_;
     Buffer<PatchQuad> quads_;
     Buffer<PatchLight> patches_;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What `integrator=radiosity` is asked for beside scene and camera.
+// Settings of `integrator=radiosity` besides scene and camera.
 
 #include <memory>
 
@@ -9,8 +9,8 @@
 namespace pertev {
 
 struct RadiosityLook {
-    std::shared_ptr<const RadiositySolution> solution; // of the scene; null: there is none yet
-    bool is_flat = false;                              // patches as they are solved, without what is between them
+    std::shared_ptr<const RadiositySolution> solution; // null before the scene has one
+    bool is_flat = false;                              // shows patches without interpolation
 
     bool operator==(const RadiosityLook&) const = default;
 };

@@ -1,8 +1,8 @@
 #pragma once
 
-// Rasterisation with a depth buffer and local light: the pipeline of transforms, clipping, scan conversion and shading
-// without a ray. The file that orders its stages (integrators/raster/scan_triangles.h, shade_pixels.h); a sample of all
-// pixels goes through them at once.
+// Rasterization with a depth buffer and local illumination: a pipeline of transforms, clipping, scan conversion and
+// shading without rays. This file orders its stages (integrators/raster/scan_triangles.h, shade_pixels.h); one sample
+// of all pixels passes through them at once.
 
 #include "device/buffer.h"
 #include "integrators/integrator_base.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a rasterised picture is asked for, beside scene and camera.
+// Settings of a rasterized picture besides scene and camera.
 
 #include <cstdint>
 
@@ -8,22 +8,22 @@
 
 namespace pertev {
 
-/// Where light is evaluated: once a triangle, at its corners and interpolated (Gouraud 1971), or in every pixel with
-/// interpolated normals (Phong 1975).
+/// Where light is evaluated: once per triangle, at its corners with interpolation (Gouraud 1971), or in every pixel
+/// with interpolated normals (Phong 1975).
 enum class RasterShading : uint8_t { Flat, Gouraud, Phong };
 
 struct RasterLook {
     RasterShading shading = RasterShading::Phong;
-    bool is_wireframe = false; // edges of triangles alone
+    bool is_wireframe = false; // draws only the edges of triangles
     bool operator==(const RasterLook&) const = default;
 };
 
 struct RasterSettings {
     RasterLook look;
-    uint32_t max_depth = 16; // 0: what emits alone; else direct light too
+    uint32_t max_depth = 16; // 0: emission only; otherwise direct light too
     uint32_t seed = 0;
-    bool has_ambient = false; // it was asked for; else it is the mean of the environment
-    Rgb ambient = {0, 0, 0};  // radiance from all around that diffuse surfaces reflect, W/(sr m2)
+    bool has_ambient = false; // `ambient` was given; otherwise it is the mean of the environment
+    Rgb ambient = {0, 0, 0};  // radiance from all directions that diffuse surfaces reflect, W/(sr m2)
     bool operator==(const RasterSettings&) const = default;
 };
 

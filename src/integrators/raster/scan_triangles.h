@@ -1,9 +1,9 @@
 #pragma once
 
-// The stages of a rasterised sample, in their order: triangles are scanned into a depth buffer, or their edges drawn
-// into it. A buffer's element is (depth, number of the triangle) in one 64-bit number, and the least of all that are
-// written stays: the nearest triangle, of equally near ones the first, whatever the order.
-// integrators/raster/shade_pixels.h then shades what stayed.
+// Stages of a rasterized sample in order: triangles are scanned into a depth buffer, or their edges are drawn into
+// it. An element of the buffer is (depth, number of the triangle) in one 64-bit number, and the minimum of all writes
+// stays: the nearest triangle, or the first of equally near ones, in any order of threads.
+// integrators/raster/shade_pixels.h then shades the result.
 
 #include "device/atomic_add.h"
 #include "device/atomic_min.h"
@@ -16,19 +16,19 @@ namespace pertev {
 
 inline constexpr uint64_t kNoDepth = ~uint64_t(0);
 
-/// What all stages of a sample know.
+/// Data that all stages of a sample share.
 struct RasterPass {
     Pinhole camera;
     PictureView picture;
     RasterSettings settings;
     uint64_t* depths; // [pixels]
-    Uint2* rows;      // triangle and row that wait for the second pass
+    Uint2* rows;      // triangle and row, deferred to the second pass
     uint64_t* row_count;
     uint64_t most_rows;
     uint32_t sample;
 
-    /// Sample 0 lies in the middle; further ones by a sequence that covers the filter evenly from its start on, the
-    /// same place in every pixel: Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018.
+    /// Sample 0 lies in the middle. Further ones follow a sequence that covers the filter evenly from its start, with
+    /// the same position in every pixel: Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018.
     HD SamplePlace place() const {
         const uint32_t x = 0x80000000u + sample * 3242174889u, y = 0x80000000u + sample * 2447445413u;
         const auto unit = [](uint32_t bits) { return (static_cast<float>(bits >> 9) + 0.5f) * 0x1p-23f; };
@@ -38,7 +38,7 @@ struct RasterPass {
         };
         return {rounded(offset.x), rounded(offset.y)};
     }
-    /// Of the sample in the pixel at column `x`, row `y`.
+    /// Picture position of the sample in the pixel at column `x`, row `y`.
     HD Vec2 place_in_picture(int32_t x, int32_t y) const {
         const SamplePlace at = place();
         constexpr float kStep = 1.0f / static_cast<float>(kSubpixels);
@@ -47,7 +47,7 @@ struct RasterPass {
     }
 };
 
-/// A triangle's way into the depth buffer.
+/// Scan conversion of one triangle into the depth buffer.
 struct TriangleScan {
     const RasterPass& pass;
     uint32_t number;
@@ -55,7 +55,7 @@ struct TriangleScan {
     ProjectedTriangle projected;
     bool has_alpha;
 
-    /// False where nothing of it is seen.
+    /// Returns false if no part of it is visible.
     HD bool begin() {
         const SceneView& scene = pass.picture.scene;
         if (!triangle_corners(pass.camera, scene, number, corners)) return false;
@@ -98,7 +98,7 @@ private:
     }
 };
 
-/// Triangle i. A large one leaves its rows to the second pass, where there is room.
+/// Scans triangle i. A large one defers its rows to the second pass if there is room.
 struct ScanTriangles {
     RasterPass pass;
 
@@ -121,7 +121,7 @@ struct ScanTriangles {
     }
 };
 
-/// Row i of those that wait.
+/// Scans row i of the deferred ones.
 struct ScanRows {
     RasterPass pass;
 
@@ -134,8 +134,8 @@ struct ScanRows {
     }
 };
 
-/// The edges of triangle i, in place of it.
-/// Source: Bresenham, "Algorithm for Computer Control of a Digital Plotter", IBM Systems Journal 4(1), 1965.
+/// Draws the edges of triangle i in place of its interior. Source: Bresenham, "Algorithm for Computer Control of a
+/// Digital Plotter", IBM Systems Journal 4(1), 1965.
 struct DrawEdges {
     RasterPass pass;
 
@@ -155,7 +155,7 @@ private:
         int32_t x[2], y[2];
         double depth[2];
     };
-    /// The ends of a flat polygon: its first corner and the one that lies farthest from it in the picture.
+    /// Ends of a degenerate polygon: its first corner and the one farthest from it in the picture.
     HD Ends farthest_pair(const ClippedTriangle& seen) const {
         const SamplePlace place = pass.place();
         Ends ends = {};
@@ -177,7 +177,8 @@ private:
         return ends;
     }
     HD void draw(uint32_t number, Ends e) const {
-        if (e.y[1] < e.y[0] || (e.y[1] == e.y[0] && e.x[1] < e.x[0])) { // one direction, whoever draws the edge
+        if (e.y[1] < e.y[0] || (e.y[1] == e.y[0] && e.x[1] < e.x[0])) { // one direction for all triangles that share
+                                                                        // the edge
             e = {{e.x[1], e.x[0]}, {e.y[1], e.y[0]}, {e.depth[1], e.depth[0]}};
         }
         const int32_t across = e.x[1] < e.x[0] ? e.x[0] - e.x[1] : e.x[1] - e.x[0], down = e.y[1] - e.y[0];
@@ -193,7 +194,7 @@ private:
     HD void put(uint32_t number, int32_t x, int32_t y, const Ends& e, double t) const {
         const auto width = static_cast<int32_t>(pass.camera.width), height = static_cast<int32_t>(pass.camera.height);
         if (x < 0 || y < 0 || x >= width || y >= height) return;
-        const double depth = pass.camera.is_perspective // whose reciprocal goes evenly over the picture
+        const double depth = pass.camera.is_perspective // the reciprocal of depth is linear in the picture
                                  ? 1 / (1 / e.depth[0] + t * (1 / e.depth[1] - 1 / e.depth[0]))
                                  : e.depth[0] + t * (e.depth[1] - e.depth[0]);
         const float least = static_cast<float>(max(depth, kNearest));

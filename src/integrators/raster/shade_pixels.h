@@ -1,8 +1,8 @@
 #pragma once
 
-// Last stage of a rasterised sample: what stayed in the depth buffer is lit, by Phong's terms: what it emits, an
-// ambient light, and of each point, spot and directional light what the diffuse and glossy lobes of its BSDF scatter.
-// No shadow is cast; mirrors and glass are black.
+// Last stage of a rasterized sample: shades the visible triangles by Phong's terms: emission, an ambient light, and
+// the light of each point, spot and directional light that the diffuse and glossy lobes of the BSDF scatter. There
+// are no shadows; mirrors and glass are black.
 //
 // Sources: Gouraud, "Continuous Shading of Curved Surfaces", IEEE ToC 20(6), 1971; Phong, "Illumination for Computer
 // Generated Pictures", CACM 18(6), 1975.
@@ -39,7 +39,7 @@ private:
         const Vec2 weights = weights_at(corners.p, pass.camera.x_of(static_cast<double>(place.x)),
                                         pass.camera.y_of(static_cast<double>(place.y)));
         const RasterShading shading = pass.settings.look.shading;
-        // The corners (gouraud), the middle of the triangle (flat), and the pixel, which layers always want.
+        // The corners (gouraud), the middle of the triangle (flat), and the pixel, which layers always need.
         const Vec2 at[] = {{0, 0}, {1, 0}, {0, 1}, {1.0f / 3, 1.0f / 3}, weights};
         const float of_corner[] = {1 - weights.x - weights.y, weights.x, weights.y};
         Rgb sum = {};
@@ -55,7 +55,7 @@ private:
             Surface surface = make_surface(scene, hit, direction);
             if (k == 4) {
                 add_first_hit(film, pixel, pass.sample, {ray.origin, ray.direction}, hit, surface, pass.picture);
-                if (pass.settings.look.is_wireframe) return surface.albedo; // lines show their colour as it is
+                if (pass.settings.look.is_wireframe) return surface.albedo; // lines show their unlit colour
                 if (shading != RasterShading::Phong) return sum;
             } else if (k == 3) {
                 surface.frame = make_frame(surface.geometric_normal);

@@ -1,13 +1,13 @@
 #pragma once
 
-// An integrator whose samples are trees of rays (tree_memory.h). What differs from one to the other is `Algorithm`, a
-// few lines (integrators/cast/cast.h is the shortest):
-//   kMostBranches   rays that a vertex sends on, at most
+// An integrator whose samples are ray trees (tree_memory.h). `Algorithm` defines one in a few lines
+// (integrators/cast/cast.h is the shortest):
+//   kMostBranches   maximum number of continuation rays per vertex
 //   kHasShutter     whether its rays have a time
-//   shadow_rays     that a vertex may ask for
+//   shadow_rays     number of shadow rays that a vertex may need
 //   ask_for_light   writes one of them
-//   follow          puts what the vertex sends on on the stack, and adds ambient light
-//   ambient         its ambient light where none was asked for
+//   follow          pushes the vertex's continuation rays on the stack, and adds ambient light
+//   ambient         its default ambient light
 // The .cpp of each algorithm instantiates it.
 
 #include "integrators/ray_tree/ray_tree_settings.h"
@@ -26,7 +26,7 @@ public:
 
 private:
     static TreeRoom room_for(const RayTreeSettings& settings, bool has_times, std::size_t bytes, uint64_t most) {
-        // A tree holds the ray under way and, for each vertex above it, all branches but the one taken.
+        // A stack holds the current ray and, for each vertex above it, all branches but the current one.
         const uint32_t entries =
             Algorithm::kMostBranches > 1 ? 1 + (Algorithm::kMostBranches - 1) * settings.max_depth : 1;
         return room_within(bytes, most, [&](uint32_t trees) { return TreeRoom{trees, entries, has_times}; });
@@ -50,7 +50,7 @@ void RayTreeIntegrator<Algorithm>::begin(const PictureView& picture, SceneTracer
 template <class Algorithm>
 void RayTreeIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const FilmView& film) {
     PERTEV_CHECK(film.is_whole_picture());
-    constexpr std::size_t kLoopBytes = std::size_t(1) << 19; // of a thread: what its cache holds
+    constexpr std::size_t kLoopBytes = std::size_t(1) << 19; // per thread, so that it fits the cache
     constexpr uint64_t kMostInLoop = 128;
     const bool has_times = picture_.scene.motions.is_there();
     const BeginOrder samples = {0, pixels(), first, count};
@@ -62,7 +62,7 @@ void RayTreeIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const 
     rays_.camera += samples.count();
 }
 
-// Those that there are.
+// Explicit instantiations.
 struct Cast;
 struct Whitted;
 struct Distributed;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What integrators whose samples are trees of rays are asked for, beside scene and camera.
+// Settings of integrators with ray trees, besides scene and camera.
 
 #include <cstdint>
 
@@ -11,18 +11,18 @@
 namespace pertev {
 
 struct RayTreeSettings {
-    uint32_t max_depth = 16; // scatterings on the way from a light to the camera: 0 emission only, 1 direct light
+    uint32_t max_depth = 16; // scatterings between light and camera: 0 emission only, 1 direct light
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
-    // Radiance that reaches every diffuse surface from all around, W/(sr m2), in place of what diffuse surfaces send to
-    // each other; of integrators that have such a term.
-    bool has_ambient = false; // it was asked for; else the integrator has its own
+    // Radiance that reaches every diffuse surface from all directions, W/(sr m2), in place of diffuse
+    // interreflection; for integrators with such a term.
+    bool has_ambient = false; // `ambient` was given; otherwise the integrator's default applies
     Rgb ambient = {0, 0, 0};
 
-    RadiosityView radiosity; // of Radiosity: what surfaces receive; on the device
+    RadiosityView radiosity; // for Radiosity: the light that surfaces receive, on the device
 };
 
-/// What the random numbers of a sample are drawn by.
+/// Key of the random numbers of a sample.
 HD inline SampleKey sample_key(const RayTreeSettings& settings, uint32_t pixel, uint32_t sample) {
     return {pixel, sample, settings.seed};
 }

@@ -26,8 +26,8 @@ struct TreeJob {
     FilmView film;
     TreesView trees;
     BeginOrder samples;
-    uint64_t first; // of the samples
-    uint32_t count; // of trees
+    uint64_t first; // first sample
+    uint32_t count; // number of trees
 
     TreeCounts* counts() const { return trees.counts; }
 };

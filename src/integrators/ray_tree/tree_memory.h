@@ -1,11 +1,10 @@
 #pragma once
 
-// Samples in flight, each of them a tree of rays that is walked depth first. A tree has one ray under way and a stack
-// of those that wait, so that it takes a memory that is known beforehand however many rays it has. Each round traces
-// the ray that every live tree has under way, through one queue of all; then each tree takes its next ray off its
-// stack.
+// Samples in flight, each a ray tree that is evaluated depth first. A tree has one current ray and a stack of pending
+// rays, so its memory is known in advance however many rays it has. Each round traces the current ray of every live
+// tree, through one queue; then each tree pops its next ray.
 //
-// One piece of memory holds all arrays, for the device and for a thread of the CPU alike.
+// One allocation holds all arrays, for the device as for a CPU thread.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,57 +18,58 @@
 
 namespace pertev {
 
-/// Shadow rays that a vertex asks for at once; a vertex with more of them is looked at again.
+/// Maximum number of shadow rays that a vertex requests at once; a vertex with more is shaded repeatedly.
 inline constexpr uint32_t kShadowsAtOnce = 4;
 
-/// A ray that waits, or that is under way.
+/// A pending or current ray.
 struct PendingRay {
     Vec3 origin, direction; // unit direction
-    Rgb weight = {1, 1, 1}; // of what it brings, in the sample
-    float bsdf_pdf = 0;     // density with which `direction` was drawn, 1/sr; 0 where it is the only one there is
+    Rgb weight = {1, 1, 1}; // factor of its radiance in the sample
+    float bsdf_pdf = 0;     // density with which `direction` was sampled, 1/sr; 0 if it is the only possible
+                            // direction
     uint32_t depth = 0;     // scatterings between it and the camera
     TriangleId start;       // triangle that it leaves
 };
 
-/// `contribution` counts if nothing stands between the ray's ends.
+/// A shadow ray; `contribution` counts if it is unoccluded.
 struct TreeShadowRay {
     Ray ray;
     TriangleId target; // the light's triangle
-    Rgb contribution;  // to the sample
+    Rgb contribution;  // added to the sample
 };
 
 struct alignas(16) TreeState {
-    Rgb radiance;           // gathered so far
-    uint32_t pixel, sample; // that it is
-    uint32_t pending;       // rays on the stack; the one under way is stored above them
-    uint32_t rays;          // that have been under way: the present one has the number rays - 1
-    uint32_t shadows;       // rays that the present vertex asked for last
+    Rgb radiance;           // sum so far
+    uint32_t pixel, sample; // the sample that the tree renders
+    uint32_t pending;       // rays on the stack; the current one is stored above them
+    uint32_t rays;          // rays traced so far; the current one has the number rays - 1
+    uint32_t shadows;       // shadow rays of the vertex's last request
 };
 static_assert(sizeof(TreeState) == 32);
 
-/// Of one round.
+/// Counts of one round.
 struct TreeCounts {
-    uint32_t rays;                 // under way
-    uint32_t next;                 // that go on after it
-    uint32_t shadows;              // asked for since the last look
-    uint64_t bounces, all_shadows; // of all rounds
+    uint32_t rays;                 // current rays
+    uint32_t next;                 // rays that continue after the round
+    uint32_t shadows;              // shadow rays since the last count
+    uint64_t bounces, all_shadows; // totals of all rounds
 };
 
 struct TreesView {
     uint32_t capacity; // trees
     TreeState* states; // [capacity]
 
-    // The stacks, entry k of tree i at k * capacity + i.
+    // The stacks; entry k of tree i is at k * capacity + i.
     Float4* origins;      // origin, bits of the depth
     Float4* directions;   // direction, bsdf_pdf
     Float4* weights;      // weight, bits of the start's instance
-    uint32_t* primitives; // of the start
+    uint32_t* primitives; // primitive of the start
 
-    // The rays under way, side by side. Rounds read and write their owners, the trees, in two arrays in turns.
+    // The current rays, contiguous. Rounds alternate between two arrays for their owners, the trees.
     Ray* rays;
     Uint2* starts;
-    uint32_t* keys; // of coins
-    float* times;   // RayQueueView's; null unless something moves while the shutter is open
+    uint32_t* keys; // keys of coins
+    float* times;   // the times of RayQueueView; null unless something moves while the shutter is open
     uint32_t* owners[2];
     Float4* hit_places;
     uint32_t* hit_instances;
@@ -77,10 +77,10 @@ struct TreesView {
     // Shadow rays, [kShadowsAtOnce * capacity].
     Ray* shadow_rays;
     Uint2 *shadow_starts, *shadow_targets;
-    uint32_t* shadow_keys; // then what the ray met
+    uint32_t* shadow_keys; // keys, and after tracing the results
     float* shadow_times;
     Float4* contributions;
-    Uint4* asked; // [capacity]: places of the shadow rays of a tree
+    Uint4* asked; // [capacity]: slots of a tree's shadow rays
 
     TreeCounts* counts;
 
@@ -114,8 +114,8 @@ struct TreesView {
         weights[at] = {ray.weight.r, ray.weight.g, ray.weight.b, float_of(ray.start.instance)};
         primitives[at] = ray.start.primitive;
     }
-    /// Puts `ray` of `tree` at `place` of the queue of those under way. `key`: its coin's; `time`: of all rays of the
-    /// tree.
+    /// Stores `ray` of `tree` at slot `place` of the current rays. `key` is that of its coin, and `time` that of all
+    /// rays of the tree.
     HD void queue_ray(uint32_t place, uint32_t tree, const PendingRay& ray, uint32_t key, float time,
                       uint32_t round) const {
         pertev::store_ray(rays + place, {ray.origin, 0.0f, ray.direction, kInfinity});
@@ -138,7 +138,7 @@ struct TreesView {
 /// The sizes of the arrays.
 struct TreeRoom {
     uint32_t count;   // trees
-    uint32_t entries; // rays of a stack
+    uint32_t entries; // rays per stack
     bool has_times;   // rays have a time
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// The stages of a round of trees, in their order. Launched one by one on a device; a thread of the CPU runs the same
-// ones over a few trees of its own.
+// Stages of a round of trees, in order. They are launched one by one on a device; a CPU thread runs the same ones
+// over a few trees of its own.
 
 #include "device/atomic_add.h"
 #include "integrators/ray_tree/tree_vertex.h"
@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-/// Trees 0, 1, ... become samples `first`, first + 1, ... of `samples`, with the camera's ray under way.
+/// Starts samples `first`, first + 1, ... of `samples` as trees 0, 1, ... with their camera rays.
 struct BeginTrees {
     CameraRays camera;
     RayTreeSettings settings;
@@ -35,10 +35,10 @@ struct BeginTrees {
     }
 };
 
-/// What the rays under way have met. The vertex's shadow rays from `first_shadow` on are queued, kShadowsAtOnce at
-/// most: the stage runs again until all have been. The first time emission is added, the last time (`is_last`) what the
-/// vertex sends on goes on the stack, over the ray that ended there. `kMotion`: None where no shutter is open; code for
-/// both would keep surfaces in memory.
+/// Shades hits of the current rays. The vertex's shadow rays from `first_shadow` on are queued, at most
+/// kShadowsAtOnce; the stage runs again until all have been. The first run adds emission; the last one (`is_last`)
+/// pushes the continuation rays on the stack, in place of the ray that ended there. `kMotion` is None if no shutter
+/// is open; code for both cases would keep surfaces in memory.
 template <class Algorithm, MotionKnown kMotion>
 struct ShadeTrees {
     PictureView picture;
@@ -70,7 +70,8 @@ private:
         const float light_pdf = ray.bsdf_pdf > 0 ? pdf_environment(lights, ray.origin, ray.direction) : 0.0f;
         add_emission(state, ray, environment_radiance(lights.environment, ray.direction), light_pdf);
     }
-    /// `light_pdf`: density with which light sampling at the ray's start draws its direction, 1/sr; 0: it cannot.
+    /// `light_pdf` is the density with which light sampling at the ray's start samples its direction, 1/sr; 0 if it
+    /// cannot.
     HD static void add_emission(TreeState& state, const PendingRay& ray, Rgb emission, float light_pdf) {
         const float weight = ray.bsdf_pdf > 0 && light_pdf > 0 ? power_heuristic(ray.bsdf_pdf, light_pdf) : 1.0f;
         state.radiance += ray.weight * (weight * emission);
@@ -116,7 +117,7 @@ private:
 };
 static_assert(kShadowsAtOnce == 4, "TreesView::asked");
 
-/// Light whose shadow ray met nothing, tree by tree, in the order in which it was asked for.
+/// Adds light of unoccluded shadow rays, tree by tree, in the order of requests.
 struct AddTreeLight {
     TreesView trees;
     uint32_t round;
@@ -137,7 +138,7 @@ struct AddTreeLight {
     }
 };
 
-/// Takes the next ray of each tree off its stack; a tree that has none is a sample of the film.
+/// Pops the next ray of each tree; a tree without one is added to the film.
 struct TakeNextRays {
     CameraRays camera;
     RayTreeSettings settings;
@@ -156,7 +157,7 @@ struct TakeNextRays {
     }
 };
 
-/// One thread counts: what was asked for since the last time, and, where `ends_round`, the rays that go on.
+/// Counts in one thread: shadow rays since the last time and, if `ends_round`, the rays that continue.
 struct CountTrees {
     TreeCounts* counts;
     bool ends_round;
@@ -171,7 +172,7 @@ struct CountTrees {
     }
 };
 
-/// One thread: `trees` begin a first round.
+/// Starts the first round of `trees` in one thread.
 struct BeginRounds {
     TreeCounts* counts;
     uint32_t trees;

@@ -1,7 +1,7 @@
 #pragma once
 
-// A surface that a ray of a tree has met, as an algorithm sees it: what it may ask for there. Each algorithm
-// (integrators/cast/cast.h, whitted/whitted.h, distributed/distributed.h) is a few lines over these.
+// A surface that a ray of a tree has hit, with the operations of an algorithm. Each algorithm
+// (integrators/cast/cast.h, whitted/whitted.h, distributed/distributed.h) is a few lines on top of these.
 
 #include "device_scene/moved_surface.h"
 #include "device_scene/ray_origin.h"
@@ -13,8 +13,8 @@
 
 namespace pertev {
 
-/// What becomes of a ray whose weight is less than the least: left out, which loses its light, or kept by chance with a
-/// weight that makes up for those that are not (Russian roulette), which does not.
+/// Treatment of a ray whose weight is below the minimum: it is dropped, which loses its light, or kept at random with
+/// a compensating weight (Russian roulette), which does not.
 enum class WeakRays : uint8_t { LeftOut, ByChance };
 struct LeastWeight {
     float weight;
@@ -23,20 +23,20 @@ struct LeastWeight {
 
 /// Random numbers of a tree, in groups of four (math/sampler.h). Rays are numbered in the order in which they are
 /// traced, and ray v ends at vertex v.
-///   camera         place in the pixel, then the light of vertex 0
-///   lens           place on the lens
-///   scatter, of v  a glossy direction from vertex v, then the light of vertex v where that is not the first
+///   camera         position in the pixel, then the light of vertex 0
+///   lens           position on the lens
+///   scatter, of v  a glossy direction from vertex v, then the light of vertex v if that is not the first
 ///   choices, of v  the lobe, then whether weak rays are kept: mirror, refraction, glossy
 enum TreeGroup : uint32_t { kTreeScatter, kTreeChoices, kTreeGroups };
 inline constexpr uint32_t kTreeNumberLobe = 0;
-enum class Branch : uint32_t { Mirror = 1, Refraction = 2, Glossy = 3 }; // with its number of the choices
+enum class Branch : uint32_t { Mirror = 1, Refraction = 2, Glossy = 3 }; // values are indices among the choices
 
-/// The coin of blended surfaces for ray `number` of a tree; its vertex's shadow rays toss another one.
+/// Key of the coin of blended surfaces for ray `number` of a tree; its vertex's shadow rays have another one.
 HD inline uint32_t tree_key(const TreeState& tree, uint32_t seed, uint32_t number, bool is_shadow) {
     return coin_key({tree.pixel, tree.sample, seed}, number, is_shadow);
 }
 
-/// Of all rays of a tree, while the shutter is open.
+/// Time of all rays of a tree while the shutter is open.
 HD inline float time_of(const CameraRays& camera, const RayTreeSettings& settings, const TreeState& tree) {
     return camera.time(settings.sampler, sample_key(settings, tree.pixel, tree.sample));
 }
@@ -47,10 +47,10 @@ struct TreeVertex {
     const TreesView& trees;
     uint32_t tree;
     TreeState& state;
-    const PendingRay& ray; // that ends here
+    const PendingRay& ray; // the ray that ends here
     const Surface& surface;
-    float time; // of all rays of the tree
-    bool moves; // something does while the shutter is open
+    float time; // time of all rays of the tree
+    bool moves; // something moves while the shutter is open
     Vec2 place; // on the triangle: weights of its second and third corner
 
     HD Vec3 wo() const { return -ray.direction; }
@@ -58,7 +58,8 @@ struct TreeVertex {
     HD SampleKey key() const { return sample_key(settings, state.pixel, state.sample); }
     HD uint32_t group(TreeGroup of) const { return kCameraGroups + number() * kTreeGroups + of; }
 
-    /// Light of the punctual light `light`, by all lobes but delta ones. True where `shadow` is to be traced.
+    /// Requests light of the punctual light `light`, for all lobes but delta ones. Returns true if `shadow` must be
+    /// traced.
     HD bool ask_for_punctual_light(uint32_t light, TreeShadowRay& shadow) const {
         LightSample sample;
         const LightSetView& lights = picture.scene.lights;
@@ -68,8 +69,8 @@ struct TreeVertex {
         return ask_for(sample, all.f * sample.radiance, shadow);
     }
 
-    /// One point of one light, drawn by power: also of lamps and the environment. A glossy ray may run into these as
-    /// well, so what glossy lobes scatter of them is weighted by the power heuristic.
+    /// Requests one point of one light, sampled by power, including emitters and the environment. A glossy ray may
+    /// hit these too, so what glossy lobes scatter of them is weighted by the power heuristic.
     HD bool ask_for_drawn_light(TreeShadowRay& shadow) const {
         if (surface.bsdf.has_delta_only()) return false;
         const uint32_t of = number() == 0 ? uint32_t(kGroupCamera) : group(kTreeScatter);
@@ -86,37 +87,38 @@ struct TreeVertex {
         return ask_for(sample, f * ((1.0f / sample.pdf) * sample.radiance), shadow);
     }
 
-    /// What a constant radiance from all around sends here by the diffuse lobe (Whitted's ambient term).
+    /// Adds the light that the diffuse lobe scatters of a constant radiance from all directions (Whitted's ambient
+    /// term).
     HD void add_ambient() const { state.radiance += ray.weight * surface.bsdf.diffuse_albedo() * settings.ambient; }
 
-    /// Sends rays along the directions of the delta lobes: both branches.
+    /// Pushes rays along the directions of the delta lobes: both branches.
     HD void follow_specular(LeastWeight least) const {
         if (!surface.bsdf.has_delta()) return;
         const Vec3 wo_local = surface.frame.to_local(wo());
         const SpecularBranches branches = surface.bsdf.specular(wo_local);
-        // The refraction waits deeper in the stack: the mirror's part of the tree comes first.
+        // The refraction is deeper in the stack, so the mirror's subtree comes first.
         follow_delta(branches.refraction, wo_local, branches.refracted, Branch::Refraction, least);
         follow_delta(branches.mirror, wo_local, {-wo_local.x, -wo_local.y, wo_local.z}, Branch::Mirror, least);
     }
 
-    /// Sends one ray along a direction drawn by the glossy lobes.
+    /// Pushes one ray along a direction sampled by the glossy lobes.
     HD void follow_glossy(LeastWeight least) const {
         if (!surface.bsdf.has(LobeClass::Glossy)) return;
         const float lobe =
             surface.bsdf.draws_lobe() ? sample_1d(settings.sampler, key(), group(kTreeChoices), kTreeNumberLobe) : 0.5f;
         const BsdfSample drawn = surface.sample(wo(), lobe, sample_2d(settings.sampler, key(), group(kTreeScatter)));
-        if (!(drawn.pdf > 0) || drawn.is_delta()) return; // delta lobes have been followed
+        if (!(drawn.pdf > 0) || drawn.is_delta()) return; // delta lobes have their own rays
         const BsdfValue value = scattered(surface, wo(), drawn.wi, only(LobeClass::Glossy));
         if (!(value.pdf > 1e-30f)) return;
         follow(drawn.wi, (1.0f / value.pdf) * value.f, value.pdf, Branch::Glossy, least);
     }
 
 private:
-    /// Out of line: a kernel holds it once, however often it is asked.
+    /// Not inlined, so that a kernel contains it once.
     HD_CALL static BsdfValue scattered(const Surface& surface, Vec3 wo, Vec3 wi, LobeClasses classes) {
         return surface.evaluate(wo, wi, classes);
     }
-    /// The ray to what was drawn of a light, `f_times_light` of which arrives if nothing is in between.
+    /// Makes the shadow ray to a light sample; `f_times_light` arrives if it is unoccluded.
     HD bool ask_for(const LightSample& light, Rgb f_times_light, TreeShadowRay& shadow) const {
         if (is_black(f_times_light)) return false;
         const float lamp_error = moves ? lamp_error_at(picture.scene, light, time) : 0.0f;
@@ -125,7 +127,7 @@ private:
         shadow.contribution = ray.weight * f_times_light;
         return true;
     }
-    /// Whether the point drawn lies in a hole of the lamp.
+    /// Whether the sampled point lies in a transparent part of the emitter.
     HD bool is_hole(const LightSample& light) const {
         if (light.instance == kNoLight || picture.scene.any_alpha == 0) return false;
         const AcceptHit accept = {picture.scene, {}, {}, tree_key(state, settings.seed, number(), true)};

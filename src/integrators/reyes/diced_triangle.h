@@ -1,12 +1,12 @@
 #pragma once
 
-// A triangle of the scene as a surface to dice: where a point of it lies, before and after it is displaced, and which
-// edges on it are too long.
+// A triangle of the scene as a surface to dice: the position of its points before and after displacement, and the
+// edges on it that are too long.
 //
-// No cracks: a point is named by its weights, multiples of 2^-23, whose sums and differences are exact. On an edge one
-// weight is 0, so its place there is a sum of two products and the same bits in both triangles that share the edge, and
-// so are its normal and its height where they share those of the corners. Whether an edge is halved depends on its two
-// ends alone, and treats them alike.
+// No cracks: a point is identified by its weights, multiples of 2^-23, whose sums and differences are exact. On an
+// edge one weight is 0, so a position there is a sum of two products with the same bits in both triangles that share
+// the edge, and so are its normal and height if they share those of the corners. Whether an edge is halved depends
+// only on its two ends, symmetrically.
 
 #include "device_scene/scene_view.h"
 #include "device_scene/textured_factor.h"
@@ -15,13 +15,13 @@
 
 namespace pertev {
 
-// Heights of a material as device code reads them: bilinear, in our own arithmetic, repeating.
+// Heights of a material in device code: bilinear, in our own arithmetic, repeating.
 
 struct DisplacementView {
     const float* heights = nullptr; // [height * width]; null: the material has none
     uint32_t width = 0, height = 0;
     float scale = 0, middle = 0;
-    float reach = 0; // no place is moved farther, in the mesh's own unit
+    float reach = 0; // maximum displacement, in the mesh's own unit
 
     HD float at(Vec2 uv) const {
         const TexelPair x = linear_texels(uv.x, Wrap::Repeat, width), y = linear_texels(uv.y, Wrap::Repeat, height);
@@ -35,30 +35,30 @@ struct DisplacementsView {
     const DisplacementView* of_material = nullptr; // [count]
     uint32_t count = 0;                            // later materials have none
 
-    /// Null: the material has none.
+    /// Returns null if the material has none.
     HD const DisplacementView* find(uint32_t material) const {
         if (material >= count || of_material[material].heights == nullptr) return nullptr;
         return of_material + material;
     }
 };
 
-/// Weights of a triangle's second and third corner, and where that is in the camera's space.
+/// Weights of a triangle's second and third corner, and the point in camera space.
 struct DicedPoint {
     Vec2 at;
-    PinholePoint base, place; // before and after it is displaced
+    PinholePoint base, place; // before and after displacement
 };
 
 struct DicedTriangle {
     TriangleCorners corners;
     const InstanceView* placed;
     const MeshView* mesh;
-    const DisplacementView* displacement; // null: none
+    const DisplacementView* displacement; // null if there is none
     TriangleIndices indices;
-    Vec3 flat_normal;                   // by the winding, mesh space; where the mesh has no normals
-    DoubleVec3 row_x, row_y, row_depth; // of camera-from-mesh
-    double reach;                       // no point is moved by more in any coordinate of the camera's space, metres
+    Vec3 flat_normal;                   // by the winding, mesh space; for meshes without normals
+    DoubleVec3 row_x, row_y, row_depth; // rows of camera-from-mesh
+    double reach;                       // maximum displacement of any coordinate in camera space, metres
 
-    /// False where it is hidden.
+    /// Returns false if the triangle is hidden.
     HD bool begin(const Pinhole& camera, const SceneView& scene, const DisplacementsView& displacements,
                   uint32_t number) {
         if (!triangle_corners(camera, scene, number, corners)) return false;
@@ -80,11 +80,11 @@ struct DicedTriangle {
         const Vec3 a = mesh->positions[indices.a];
         const Vec3 ab = mesh->positions[indices.b] - a, ac = mesh->positions[indices.c] - a;
         const float size = max(max_component(abs(ab)), max_component(abs(ac)));
-        flat_normal = cross((1.0f / size) * ab, ac); // scaled: the product of two tiny edges would underflow
+        flat_normal = cross((1.0f / size) * ab, ac); // scaled, because the product of two tiny edges would underflow
         return true;
     }
 
-    /// How a point is moved, mesh space.
+    /// Displacement of a point, in mesh space.
     HD DoubleVec3 moved(Vec2 at) const {
         const Vec3 normal = mesh->normals != nullptr ? interpolate(mesh->normals, indices, at.x, at.y) : flat_normal;
         const DoubleVec3 n = to_double(normal);
@@ -111,8 +111,8 @@ struct DicedTriangle {
         return point;
     }
 
-    /// Whether the edge is to be halved: it is longer than `rate`, pixels, by way of its middle, or its length cannot
-    /// be told, as it goes through the plane of the eye.
+    /// Whether the edge must be halved: its length through its middle exceeds `rate` pixels, or is undefined because
+    /// the edge crosses the plane of the eye.
     HD bool is_long(const Pinhole& camera, double rate, const DicedPoint& a, const DicedPoint& b) const {
         const float u = 0.5f * (a.at.x + b.at.x) * 0x1p23f, v = 0.5f * (a.at.y + b.at.y) * 0x1p23f;
         if (!(floor(u) == u && floor(v) == v)) return false; // its middle would have no exact weights
@@ -122,7 +122,7 @@ struct DicedTriangle {
         return is_long(camera, 0.5 * rate, a.place, middle) || is_long(camera, 0.5 * rate, middle, b.place);
     }
 
-    /// Whether nothing of the triangle between the points can be in the picture.
+    /// Whether no part of the triangle between the points can be in the picture.
     HD bool is_outside(const Pinhole& camera, const DicedPoint (&p)[3]) const {
         const double beyond = camera.filter_radius + 2; // pixels
         const double x = camera.x_of(camera.width + beyond), y = camera.y_of(camera.height + beyond);

@@ -1,10 +1,11 @@
 #pragma once
 
-// Hiding: which samples a micropolygon covers, and of which it is the nearest. By the edge rule of the rasteriser
-// (render/raster/scan_row.h), so of micropolygons that share an edge just one has a sample on it.
+// Hiding: finds the samples that a micropolygon covers and for which it is the nearest. Coverage follows the edge
+// rule of the rasterizer (render/raster/scan_row.h), so exactly one of the micropolygons that share an edge has a
+// sample on it.
 //
-// Two passes over all micropolygons: the first finds the least (depth, triangle) of a sample, the second the least of
-// that triangle's micropolygons with this depth. Both are minima, so no order of threads shows.
+// Two passes run over all micropolygons: the first finds the least (depth, triangle) of a sample, the second the
+// least of that triangle's micropolygons with this depth. Both are minima, so the order of threads does not matter.
 
 #include "device/atomic_add.h"
 #include "device/atomic_exchange.h"
@@ -19,27 +20,28 @@
 
 namespace pertev {
 
-// Where the samples of a pass lie: each pixel has its own places, drawn as for rays of the camera, and each place is on
-// the list of the cell of one pixel that it lies in, which may not be its own where the filter is wide. So a
-// micropolygon looks at the samples near it alone.
+// Sample positions of a pass: each pixel has its own, sampled like camera rays. Each position is on the list of the
+// pixel cell that contains it, which may not be its own pixel if the filter is wide. Thus a micropolygon tests only
+// the samples near it.
 //
-// Source: Cook, "Stochastic Sampling in Computer Graphics", ACM TOG 5(1), 1986, for samples that are jittered.
+// Source: Cook, "Stochastic Sampling in Computer Graphics", ACM TOG 5(1), 1986, for jittered samples.
 
 inline constexpr uint32_t kNoSample = ~uint32_t(0);
 inline constexpr uint64_t kNothingThere = ~uint64_t(0);
 
-/// Arrays of one pass; sample s of pixel p stands at s * pixels + p.
+/// Arrays of one pass; sample s of pixel p is at s * pixels + p.
 struct SampleLists {
     SamplePlace* places; // 1/256 pixels from the picture's upper left corner
-    uint64_t* nearest;   // (bits of the depth, triangle) of what is nearest, or kNothingThere
-    uint64_t* ways;      // of which micropolygon of that triangle (Piece::way)
-    uint32_t* next;      // on the list, or kNoSample
-    uint32_t* heads;     // [pixels] of each cell's list
-    float* far;          // [pixels] that no sample on the list shows anything beyond, when FindFar last looked
+    uint64_t* nearest;   // (bits of the depth, triangle) of the nearest one, or kNothingThere
+    uint64_t* ways;      // that triangle's micropolygon (Piece::way)
+    uint32_t* next;      // next on the list, or kNoSample
+    uint32_t* heads;     // [pixels] head of each cell's list
+    float* far;          // [pixels] depth beyond which everything is hidden for all samples on the list, updated by
+                         // FindFar
     uint32_t width, height;
     uint32_t first, count; // samples of each pixel in this pass
 
-    /// The cell of a place; what lies outside of the picture belongs to the cells at its edge.
+    /// Cell of a position; positions outside the picture belong to the cells at its edge.
     HD int32_t column_of(int32_t x) const {
         return clamp(static_cast<int32_t>(floor_divide(x, kSubpixels)), 0, static_cast<int32_t>(width) - 1);
     }
@@ -55,7 +57,7 @@ struct SampleLists {
     HD uint32_t pixels() const { return width * height; }
 };
 
-/// Sample i of a pass finds its place.
+/// Finds the position of sample i of a pass.
 struct PlaceSamples {
     CameraRays camera;
     SamplerKind sampler;
@@ -74,11 +76,11 @@ struct PlaceSamples {
         samples.places[i] = at;
         uint32_t* head = samples.heads + static_cast<uint32_t>(samples.row_of(at.y)) * samples.width +
                          static_cast<uint32_t>(samples.column_of(at.x));
-        samples.next[i] = atomic_exchange(head, i); // in any order, which nothing shows
+        samples.next[i] = atomic_exchange(head, i); // the order does not matter
     }
 };
 
-/// How far away the samples on the list of cell i are by now: what lies beyond is hidden, whatever comes later.
+/// Finds the farthest visible depth of the samples on the list of cell i; anything beyond it stays hidden.
 struct FindFar {
     SampleLists samples;
 
@@ -93,7 +95,7 @@ struct FindFar {
     }
 };
 
-/// What all stages of a pass know.
+/// Data that all stages of a pass share.
 struct ReyesPass {
     Pinhole camera;
     PictureView picture;
@@ -101,30 +103,31 @@ struct ReyesPass {
     double rate; // ReyesSettings::shading_rate
     LocalLight light;
     uint32_t seed;
-    uint32_t* wide; // cells that wide micropolygons have looked at, in units of kWideCells; null: nobody asks
+    uint32_t* wide; // cells that wide micropolygons have visited, in units of kWideCells; null: not counted
     SampleLists samples;
 };
 
-/// Of a displaced surface the micropolygon's own winding tells its front.
+/// On a displaced surface the micropolygon's own winding determines its front.
 HD inline bool is_hidden_back(const InstanceView& placed, const SeenPlane& plane) {
     if (placed.hides_back == 0) return false;
-    const double away = plane.is_perspective ? plane.constant : plane.depth; // of the normal from the eye
+    const double away = plane.is_perspective ? plane.constant : plane.depth; // component of the normal away from the
+                                                                             // eye
     return placed.is_mirrored != 0 ? away < 0 : away > 0;
 }
 
-/// Work that a displaced scene may make, for each pixel of the picture in each of the two passes: pieces, and looks of
-/// wide micropolygons at its cell. Surfaces displaced by half their size made 172 pieces.
+/// Limit of the work of a displaced scene, per pixel of the picture in each of the two passes: pieces, and visits of
+/// its cell by wide micropolygons. Surfaces displaced by half their size made 172 pieces.
 inline constexpr uint64_t kMostWorkOfPixel = 1024;
-inline constexpr uint64_t kWideCells = 256; // of no concern up to here
+inline constexpr uint64_t kWideCells = 256; // micropolygons up to this size are not counted
 
-/// Of a picture; a tiny one may have as many as one of 64x64.
+/// Limits for a picture; a tiny one has the limit of 64x64.
 HD inline uint64_t most_work(uint64_t pixels) { return kMostWorkOfPixel * max(pixels, uint64_t(4096)); }
 HD inline uint64_t most_wide(uint64_t pixels) { return min(most_work(pixels) / kWideCells, uint64_t(1) << 30); }
 
-/// False where wide micropolygons have looked at so many cells that the pass is given up.
+/// Returns false if wide micropolygons have visited so many cells that the pass is aborted.
 HD inline bool may_look(const ReyesPass& pass, uint64_t cells) {
     if (pass.wide == nullptr || cells <= kWideCells) return true;
-    constexpr uint64_t kMost = 1u << 15; // so that the count does not go round, whatever a round of pieces adds
+    constexpr uint64_t kMost = 1u << 15; // prevents overflow of the count, whatever a round of pieces adds
     const auto more = static_cast<uint32_t>(min(cells / kWideCells, kMost));
     return atomic_add(pass.wide, more) <= most_wide(pass.samples.pixels());
 }

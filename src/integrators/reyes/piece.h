@@ -1,7 +1,7 @@
 #pragma once
 
-// A piece of a triangle on its way to micropolygons. What is too long in the picture is halved at its middle, edge by
-// edge, so a piece goes on as two, three or four. What has no long edge is a micropolygon.
+// A piece of a triangle that is split into micropolygons. Edges that are too long in the picture are halved at their
+// middle, so a piece becomes two, three or four. A piece without a long edge is a micropolygon.
 
 #include <cstdint>
 
@@ -10,31 +10,32 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kMostLevels = 31; // of halving, two bits each of Piece::way
+inline constexpr uint32_t kMostLevels = 31; // levels of halving, two bits each in Piece::way
 inline constexpr uint64_t kNoWay = ~uint64_t(0);
 
 struct Piece {
     Vec2 corners[3];   // weights of the triangle's second and third corner
-    uint32_t triangle; // of the scene
-    uint32_t level;    // how often it was divided
-    uint64_t way; // which child each time, from the top bits down: no two micropolygons of a triangle have the same
+    uint32_t triangle; // number in the scene
+    uint32_t level;    // number of splits
+    uint64_t way;      // index of the child at each split, from the top bits down; unique for each micropolygon of a
+                       // triangle
 };
 
 HD inline Piece whole_triangle(uint32_t number) { return {{{0, 0}, {1, 0}, {0, 1}}, number, 0, 0}; }
 
-/// Weights of its middle.
+/// Weights of the middle of a piece.
 HD inline Vec2 middle_of(const Piece& piece) {
     constexpr float kThird = 1.0f / 3;
     return kThird * (piece.corners[0] + piece.corners[1] + piece.corners[2]);
 }
 
-/// `long_edges`: bit k says that the edge from corner k to the next one is to be halved.
+/// Number of children. Bit k of `long_edges` means that the edge from corner k to the next one is halved.
 HD inline uint32_t child_count(uint32_t long_edges) {
     const uint32_t edges = (long_edges & 1u) + (long_edges >> 1 & 1u) + (long_edges >> 2 & 1u);
     return edges == 0 ? 0 : edges + 1;
 }
 
-/// Child `number` of `piece`, wound as it is.
+/// Child `number` of `piece`, with the same winding.
 HD inline Piece child_of(const Piece& piece, uint32_t long_edges, uint32_t number) {
     const Vec2* c = piece.corners;
     const auto middle = [&](uint32_t edge) { return 0.5f * (c[edge] + c[(edge + 1) % 3]); };
@@ -50,7 +51,7 @@ HD inline Piece child_of(const Piece& piece, uint32_t long_edges, uint32_t numbe
         }
         return child;
     }
-    if ((long_edges & (long_edges - 1)) == 0) { // one
+    if ((long_edges & (long_edges - 1)) == 0) { // one long edge
         const uint32_t k = long_edges == 1 ? 0 : long_edges == 2 ? 1 : 2;
         const Vec2 p = c[k], q = c[(k + 1) % 3], r = c[(k + 2) % 3], m = middle(k);
         if (number == 0) {
@@ -72,7 +73,7 @@ HD inline Piece child_of(const Piece& piece, uint32_t long_edges, uint32_t numbe
     return child;
 }
 
-/// The child through which `way` goes from a piece at `level`.
+/// The child on the path `way` below a piece at `level`.
 HD inline uint32_t child_on_way(uint64_t way, uint32_t level) {
     return static_cast<uint32_t>(way >> (2 * (kMostLevels - 1 - level))) & 3u;
 }

@@ -14,14 +14,14 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kMostSamplesAtOnce = uint64_t(1) << 23; // of all pixels, but for one of each
-constexpr double kMostPiecesOfTriangle = 64;               // beside kMostWorkOfPixel
-constexpr uint32_t kRoundsWithOneLook = 8;                 // at how far away everything is by now
+constexpr uint64_t kMostSamplesAtOnce = uint64_t(1) << 23; // samples of all pixels, but at least one of each
+constexpr double kMostPiecesOfTriangle = 64;               // added to kMostWorkOfPixel
+constexpr uint32_t kRoundsWithOneLook = 8;                 // rounds between updates of the farthest depths
 constexpr uint32_t kStack = 1u << 19, kMostUnderWay = 1u << 16;
 
-// Why the stack suffices: a round takes `kLeast` pieces at least off the top and leaves four of each at most, one level
-// further. So what lies 4 kLeast higher is a level further, and no level is beyond kMostLevels. Larger rounds never
-// fill what is kept for that.
+// Why the stack suffices: a round takes at least `kLeast` pieces off the top and leaves at most four of each, one
+// level deeper. Thus a piece 4 kLeast higher is one level deeper, and no level exceeds kMostLevels. Larger rounds
+// never use the reserve for that.
 constexpr uint32_t kLeast = 1024, kReserve = 4 * kLeast * (kMostLevels + 2);
 
 uint32_t pieces_at_once(uint32_t height) {
@@ -39,14 +39,14 @@ uint64_t texels(const HeightMaps& maps) {
     return sum;
 }
 
-/// Materials up to the last that has heights.
+/// Number of materials up to the last one with heights.
 uint64_t materials_of(const HeightMaps& maps) {
     uint64_t count = 0;
     for (const HeightMap& map : maps) count = std::max(count, uint64_t(map.material) + 1);
     return count;
 }
 
-/// Of scale (h - middle), in size.
+/// Maximum of |scale (h - middle)|.
 float reach_of(const HeightMap& map) {
     float reach = 0;
     for (const float h : map.heights.pixels) reach = std::max(reach, std::abs(map.scale * (h - map.middle)));
@@ -72,7 +72,7 @@ void ReyesIntegrator::reserve(const WorkSize& size) {
     under_way_.grow(queue_, kMostUnderWay, "pieces of triangles");
     if (!settings_.heights || settings_.heights == uploaded_) return;
     uploaded_ = nullptr;
-    heights_ = Buffer<float>(), displacements_ = Buffer<DisplacementView>(); // before the new ones
+    heights_ = Buffer<float>(), displacements_ = Buffer<DisplacementView>(); // freed before the new allocations
     heights_ = Buffer<float>(queue_, texels(*settings_.heights), "heights");
     displacements_ = Buffer<DisplacementView>(queue_, materials_of(*settings_.heights), "heights");
 }
@@ -104,8 +104,8 @@ void ReyesIntegrator::upload_heights() {
     uploaded_ = settings_.heights;
 }
 
-/// Heights that are large by the size of the scene fold its surfaces over each other without end. Since what is hidden
-/// is found out in any order, two runs may differ by some pieces in what they get to do before this.
+/// Heights that are large relative to the scene fold its surfaces over each other without end. Because hidden pieces
+/// are found in arbitrary order, two runs may differ by some pieces before this limit.
 void ReyesIntegrator::check_work(uint64_t pieces, uint32_t wide) const {
     if (!settings_.heights) return;
     const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;
@@ -141,7 +141,7 @@ bool ReyesIntegrator::hide(const ReyesPass& pass, const std::function<bool()>& g
         launch(queue_, "take_pieces", taken + more, TakePieces{pieces, height, taken, begun});
         launch(queue_, "split_pieces", taken + more, SplitPieces<kPass>{pass, pieces});
         begun += more;
-        uint32_t counts[2]; // on the stack; of wide micropolygons
+        uint32_t counts[2]; // pieces on the stack; wide micropolygons
         queue_.copy_to_host(counts, count_.data(), sizeof counts);
         height = counts[0];
         PERTEV_CHECK(height <= kStack);

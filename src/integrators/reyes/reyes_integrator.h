@@ -1,7 +1,7 @@
 #pragma once
 
-// The Reyes architecture: every surface is diced to micropolygons of under a pixel, displaced, lit as a whole, and
-// hidden by samples at random places. The file that orders its stages (split_stages.h, hide_micropolygon.h,
+// The Reyes architecture: every surface is diced into micropolygons smaller than a pixel, displaced, shaded as a
+// whole, and hidden by stochastic samples. This file orders its stages (split_stages.h, hide_micropolygon.h,
 // shade_samples.h).
 //
 // Source: Cook, Carpenter, Catmull, "The Reyes Image Rendering Architecture", SIGGRAPH 1987.
@@ -18,13 +18,12 @@ class ReyesIntegrator final : public IntegratorBase<ReyesSettings> {
 public:
     ReyesIntegrator(Queue& queue, const ReyesSettings& settings) : IntegratorBase(queue, settings) {}
 
-    /// Of each pixel, that are hidden together: surfaces are diced once for all of them.
+    /// Samples per pixel that are hidden together, so that surfaces are diced once for all of them.
     static uint32_t samples_at_once(uint64_t pixels);
     void reserve(const WorkSize& size) override;
     /// The camera has no lens (why_no_raster). Throws Error(OverLimit) too, for a scene with too many triangles.
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
-    /// Traces no rays. Throws Error(OverLimit) too, where what is displaced makes more work than is ever wanted
-    /// (kMostWorkOfPixel).
+    /// Traces no rays. Throws Error(OverLimit) too, if displaced surfaces make too much work (kMostWorkOfPixel).
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
     uint32_t render_while(uint32_t first, uint32_t count, const FilmView& film,
                           const std::function<bool()>& goes_on) override;
@@ -37,7 +36,7 @@ private:
 
     Pinhole camera_{};
     LocalLight light_{};
-    std::shared_ptr<const HeightMaps> uploaded_; // that are on the device
+    std::shared_ptr<const HeightMaps> uploaded_; // the maps on the device
 
     Buffer<SamplePlace> places_;
     Buffer<uint64_t> nearest_, ways_;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a picture of micropolygons is asked for, beside scene and camera.
+// Settings of a picture of micropolygons, besides scene and camera.
 
 #include <cstdint>
 #include <memory>
@@ -13,13 +13,13 @@
 
 namespace pertev {
 
-/// Heights that move the surfaces of a material along their interpolated normals, by scale (height - middle).
+/// Heights that displace the surfaces of a material along their interpolated normals by scale (height - middle).
 struct HeightMap {
-    uint32_t material;     // of the scene
-    Image heights;         // one channel; (u, v) = (0, 0) is the upper left corner, it repeats
+    uint32_t material;     // index in the scene
+    Image heights;         // one channel, repeating; (u, v) = (0, 0) is the upper left corner
     float scale = 1;       // in the mesh's own unit, of any sign
-    float middle = 0;      // the height that moves nothing
-    std::string text = {}; // as it was asked for
+    float middle = 0;      // the height without displacement
+    std::string text = {}; // text of the request
 
     bool operator==(const HeightMap& b) const {
         return material == b.material && heights.width == b.heights.width && heights.height == b.heights.height &&
@@ -31,13 +31,13 @@ using HeightMaps = std::vector<HeightMap>;
 inline constexpr float kLeastShadingRate = 0.125f, kMostShadingRate = 64; // pixels
 
 struct ReyesSettings {
-    float shading_rate = 1;                    // no edge of a micropolygon is longer, pixels
-    std::shared_ptr<const HeightMaps> heights; // at most one a material; null: none
-    uint32_t max_depth = 16;                   // 0: what emits alone; else direct light too
+    float shading_rate = 1;                    // maximum length of a micropolygon's edge, pixels
+    std::shared_ptr<const HeightMaps> heights; // at most one per material; null: none
+    uint32_t max_depth = 16;                   // 0: emission only; otherwise direct light too
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
-    bool has_ambient = false; // it was asked for; else it is the mean of the environment
-    Rgb ambient = {0, 0, 0};  // radiance from all around that diffuse surfaces reflect, W/(sr m2)
+    bool has_ambient = false; // `ambient` was given; otherwise it is the mean of the environment
+    Rgb ambient = {0, 0, 0};  // radiance from all directions that diffuse surfaces reflect, W/(sr m2)
 };
 
 } // namespace pertev

@@ -1,18 +1,17 @@
 #pragma once
 
-// Last stage of a pass: each sample shows the micropolygon that is nearest there. A micropolygon has one colour, that
-// of its middle, so it is a function of the scene and the camera alone, and what a pixel's samples share is shaded
-// once.
+// Last stage of a pass: each sample shows its nearest micropolygon. A micropolygon has a single colour, that of its
+// middle, so it depends only on the scene and the camera, and samples of a pixel that share it are shaded once.
 //
-// A displaced one is lit with its own normal, turned by what interpolation turns the normal of the bare triangle by: so
-// smooth meshes stay smooth.
+// A displaced micropolygon is lit with its own normal, rotated as interpolation rotates the normal of the undisplaced
+// triangle, so that smooth meshes stay smooth.
 
 #include "integrators/reyes/split_stages.h"
 #include "render/first_hit.h"
 
 namespace pertev {
 
-/// A micropolygon again, by its triangle and its way.
+/// Reconstructs a micropolygon from its triangle and its path of splits.
 struct Micropolygon {
     DicedTriangle triangle;
     Piece piece;
@@ -29,7 +28,7 @@ struct Micropolygon {
         }
     }
 
-    /// In the world, displaced.
+    /// Displaced position in the world.
     HD DoubleVec3 world_place(Vec2 at) const {
         const MeshView& mesh = *triangle.mesh;
         const TriangleIndices i = triangle.indices;
@@ -46,8 +45,8 @@ struct Micropolygon {
         return {dot(to_double(m.row0), p) + t.x, dot(to_double(m.row1), p) + t.y, dot(to_double(m.row2), p) + t.z};
     }
 
-    /// What is there at weights `at` of the triangle, `inside` being those of the micropolygon itself. `direction`:
-    /// unit, from the eye.
+    /// Surface at weights `at` of the triangle, where `inside` are the weights in the micropolygon itself.
+    /// `direction` is unit, from the eye.
     HD Surface surface(const SceneView& scene, Vec2 at, Vec2 inside, Vec3 direction) const {
         const TriangleCorners& of = triangle.corners;
         Surface s = make_surface(scene, {0, at.x, at.y, of.instance, of.primitive}, direction);
@@ -55,7 +54,8 @@ struct Micropolygon {
         const DoubleVec3 a = world_place(piece.corners[0]);
         const DoubleVec3 ab = world_place(piece.corners[1]) - a, ac = world_place(piece.corners[2]) - a;
         const Vec3 bare = bare_normal();
-        const bool is_turned = dot(bare, s.geometric_normal) < 0; // its vertex normals call the other side the front
+        const bool is_turned = dot(bare, s.geometric_normal) < 0; // its vertex normals define the other side as the
+                                                                  // front
         const float sign = (triangle.placed->is_mirrored != 0) != is_turned ? -1.0f : 1.0f;
         const DoubleVec3 across = cross(ab, ac);
         const double length = ::sqrt(dot(across, across));
@@ -69,7 +69,7 @@ struct Micropolygon {
         return s;
     }
 
-    /// Its one colour, W/(sr m2), towards the eye.
+    /// Its single colour towards the eye, W/(sr m2).
     HD Rgb color(const ReyesPass& pass) const {
         const CameraRays& camera = pass.picture.camera;
         constexpr float kThird = 1.0f / 3;
@@ -83,7 +83,7 @@ struct Micropolygon {
     }
 
 private:
-    /// Of the triangle before it is displaced, by its winding.
+    /// Normal of the undisplaced triangle, by its winding.
     HD Vec3 bare_normal() const {
         const MeshView& mesh = *triangle.mesh;
         const Transform& m = triangle.placed->world_from_local;
@@ -96,7 +96,7 @@ private:
     }
 };
 
-/// All samples of a pixel.
+/// Shades all samples of a pixel.
 struct ShadeSamples {
     ReyesPass pass;
     FilmView film;

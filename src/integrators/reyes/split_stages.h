@@ -1,8 +1,8 @@
 #pragma once
 
-// Bound, split and dice: pieces of triangles are taken off a stack, and what is in the picture either is a
-// micropolygon, which goes into the samples at once and is forgotten, or leaves its children on the stack. So there are
-// never more pieces than the stack holds, however many micropolygons the scene has.
+// Bound, split and dice: pieces of triangles are taken off a stack. Those in the picture are either micropolygons,
+// which are sampled at once and discarded, or push their children on the stack. Thus the stack limits the number of
+// pieces, however many micropolygons the scene has.
 //
 // Source: Cook, Carpenter, Catmull, "The Reyes Image Rendering Architecture", SIGGRAPH 1987.
 
@@ -11,10 +11,11 @@
 
 namespace pertev {
 
-// What need not be split further, since nothing of it would show: backs that are hidden, and what lies behind all that
-// the samples there show already. Such a piece has no nearest micropolygon, so when it is found out changes nothing.
+// Culling of pieces that cannot be visible: hidden backs, and pieces behind everything that the samples there show
+// already. Such a piece has no nearest micropolygon, so the time of its culling does not change the picture.
 
-/// Behind what is seen in all pixels that it may touch. Looked at where those are few: else its children will be.
+/// Whether a piece is behind everything visible in all pixels that it may cover. Only tested if these are few;
+/// otherwise its children will be.
 HD inline bool is_behind(const ReyesPass& pass, const DicedTriangle& triangle, const DicedPoint (&p)[3]) {
     constexpr int32_t kMostSamplesOnce = 64;
     const Pinhole& camera = pass.camera;
@@ -37,7 +38,7 @@ HD inline bool is_behind(const ReyesPass& pass, const DicedTriangle& triangle, c
     const int32_t first_row = samples.row_of(to_subpixels(camera.row_of(up)) - 1);
     const int32_t last_row = samples.row_of(to_subpixels(camera.row_of(down)) + 1);
     if (int64_t(last_column - first_column + 1) * (last_row - first_row + 1) > kMostSamplesOnce) return false;
-    const auto depth = static_cast<float>((nearest - reach) * (1 - 0x1p-20)); // rounding allowed for
+    const auto depth = static_cast<float>((nearest - reach) * (1 - 0x1p-20)); // margin for rounding
     for (int32_t row = first_row; row <= last_row; ++row) {
         for (int32_t column = first_column; column <= last_column; ++column) {
             if (!(depth > samples.far_of(column, row))) return false;
@@ -56,15 +57,15 @@ HD inline bool is_hidden_piece(const ReyesPass& pass, const DicedTriangle& trian
 
 struct PiecesView {
     Piece* stack;     // [capacity]
-    Piece* under_way; // of the present round
-    uint32_t* count;  // on the stack
+    Piece* under_way; // pieces of the current round
+    uint32_t* count;  // pieces on the stack
     uint32_t capacity;
 };
 
-/// Piece i of a round: of `from_stack` those on top of the stack, then triangles `first_triangle` and on.
+/// Takes piece i of a round: `from_stack` pieces from the top of the stack, then triangles from `first_triangle` on.
 struct TakePieces {
     PiecesView pieces;
-    uint32_t height, from_stack; // of the stack, before
+    uint32_t height, from_stack; // `height` of the stack before the round
     uint32_t first_triangle;
 
     HD void operator()(uint32_t i) const {
@@ -74,7 +75,7 @@ struct TakePieces {
     }
 };
 
-/// Bit k: the edge from point k to the next one is to be halved.
+/// Bit k means that the edge from point k to the next one must be halved.
 HD inline uint32_t long_edges(const ReyesPass& pass, const DicedTriangle& triangle, const DicedPoint (&p)[3]) {
     uint32_t edges = 0;
     for (uint32_t k = 0; k < 3; ++k) {

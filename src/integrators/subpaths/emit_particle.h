@@ -1,9 +1,9 @@
 #pragma once
 
-// How a particle leaves a light: the light by the draws of shading/light_set.h (power, and how much of it is near), the
-// place on it evenly, the direction by the cosine (lamps), evenly over the sphere or the cone (point and spot lights),
-// or from a disc as wide as the scene (directional lights, the environment). And the densities of that for a light
-// found otherwise, for the weights.
+// Emission of particles: samples the light as in shading/light_set.h (by power and the share of near lights), a
+// uniform point on it, and the direction by the cosine (emitters), uniformly over the sphere or the cone (point and
+// spot lights), or from a disc as wide as the scene (directional lights, the environment). It also has the densities
+// of these samples for lights found otherwise, for MIS weights.
 
 #include <cstdint>
 
@@ -16,44 +16,44 @@
 namespace pertev {
 
 struct Particle {
-    Ray ray;          // t_max: how far the light reaches
-    TriangleId start; // that it leaves
-    Rgb power;        // W, over the density of all that was drawn
+    Ray ray;          // t_max: range of the light
+    TriangleId start; // triangle that it leaves
+    Rgb power;        // W, divided by the density of everything that was sampled
     MisWalk mis;
-    bool is_from_far; // its ray is one of many parallel ones: no distance counts on its first way
+    bool is_from_far; // its ray is one of many parallel ones, so its first segment has no distance
 };
 
-/// Of a lamp: density of the direction under `cosine` to its normal, 1/sr.
+/// For an emitter: density of the direction with `cosine` to its normal, 1/sr.
 HD inline float pdf_emission(const EmissiveTriangle& triangle, float cosine) {
     return (triangle.is_two_sided != 0 ? 0.5f * kInvPi : kInvPi) * abs(cosine);
 }
-/// Density of a place on a triangle light, 1/m2, the choice of the light included.
+/// Density of a point on a triangle light, 1/m2, including the selection of the light.
 HD inline float pdf_place(const EmissiveTriangle& triangle) {
     const float pdf = 2.0f * triangle.pmf / length(cross(triangle.ab, triangle.ac));
     return is_finite(pdf) ? pdf : 0.0f;
 }
-/// Of places that parallel rays come through, 1/m2.
+/// Density of the points through which parallel rays enter, 1/m2.
 HD inline float pdf_disc(const WorldSphere& world) { return kInvPi / square(world.radius); }
 
-/// Share of a point or spot light that is left at `distance` of one that reaches to `t_max`.
+/// Attenuation of a point or spot light at `distance` if its range is `t_max`.
 HD inline float left_at(float distance, float t_max) {
     return t_max < kInfinity ? range_falloff(t_max, distance) : 1.0f;
 }
 
-/// A place on a lamp that light leaves.
+/// A point on an emitter that light leaves.
 struct LampPlace {
-    Vec3 point, normal; // normal: unit, by the winding
+    Vec3 point, normal; // `normal` is unit, by the winding
     Rgb radiance;
-    float pdf; // 1/m2, the choice of the lamp included
+    float pdf; // 1/m2, including the selection of the emitter
 };
 
-/// The place with the weights `at` of a triangle light's second and third vertex. False where it emits nothing. `key`:
-/// the coin of a blended lamp.
+/// Finds the point with the weights `at` of a triangle light's second and third vertex. Returns false if it emits
+/// nothing. `key` is that of the coin of a blended emitter.
 HD inline bool find_lamp_place(const SceneView& scene, uint32_t light, Vec2 at, uint32_t key, LampPlace& place) {
     const EmissiveTriangle& triangle = scene.lights.triangles[light];
     if (scene.any_alpha != 0 &&
         !AcceptHit{scene, {}, {}, key}.passes_alpha(triangle.instance, triangle.primitive, at.x, at.y)) {
-        return false; // a hole in the light
+        return false; // transparent part of the light
     }
     const Vec2 uv = (1.0f - at.x - at.y) * triangle.uv0 + at.x * triangle.uv1 + at.y * triangle.uv2;
     place.radiance = surface_emission<true>(scene.lights, triangle.material, uv);
@@ -64,7 +64,7 @@ HD inline bool find_lamp_place(const SceneView& scene, uint32_t light, Vec2 at, 
     return true;
 }
 
-/// The ray from there, on the side of `normal`.
+/// Makes the ray from that point, on the side of `normal`.
 HD inline void leave_lamp(const EmissiveTriangle& triangle, const LampPlace& place, Vec3 normal, Vec3 direction,
                           Particle& particle) {
     particle.ray = {offset_ray_origin(place.point, light_point_error(place.point), normal, direction), 0, direction,
@@ -72,12 +72,12 @@ HD inline void leave_lamp(const EmissiveTriangle& triangle, const LampPlace& pla
     particle.start = {triangle.instance, triangle.primitive};
 }
 
-/// How a particle leaves each kind of light that draw_light has drawn, by `u`.
+/// Emits a particle from each kind of light that draw_light has selected, by `u`.
 struct EmitFromKind {
     const SceneView& scene;
     const WorldSphere& world;
     Vec2 u;
-    uint32_t key; // find_lamp_place's
+    uint32_t key; // the key that find_lamp_place takes
     Particle& particle;
 
     HD bool triangle(uint32_t light, Vec2 at, float) const {
@@ -134,7 +134,7 @@ struct EmitFromKind {
     }
 
 private:
-    /// From outside of the world, through a place of the disc across `direction` that `u` draws.
+    /// Starts outside the world, at the point of the disc across `direction` that `u` selects.
     HD void from_disc(Vec3 direction) const {
         const Vec2 disc = sample_uniform_disk_concentric(u);
         const Vec3 across = world.radius * make_frame(direction).to_world({disc.x, disc.y, -1});
@@ -143,8 +143,8 @@ private:
     }
 };
 
-/// Draws a particle by `u_place`, as sample_light draws a light by it, and `u`. False: none, which counts as black.
-/// `key`: the coin of a blended lamp.
+/// Samples a particle; `u_place` is used as in sample_light, and `u` for the rest. Returns false if there is none,
+/// which counts as black. `key` is that of the coin of a blended emitter.
 HD inline bool emit_particle(const SceneView& scene, const WorldSphere& world, SampleBits u_place, Vec2 u, uint32_t key,
                              Particle& particle) {
     if (!(world.radius > 0)) return false;
@@ -153,12 +153,12 @@ HD inline bool emit_particle(const SceneView& scene, const WorldSphere& world, S
     return draw_light(scene.lights, u_place, EmitFromKind{scene, world, u, key, particle});
 }
 
-/// Densities of a light that a walk from the camera has met: of the place (1/m2; of far light the direction, 1/sr),
-/// and of the direction from there (1/sr; of far light the place on the disc, 1/m2).
+/// Densities of a light that a camera subpath has hit: of the point (1/m2; for distant light of the direction, 1/sr),
+/// and of the direction from there (1/sr; for distant light of the point on the disc, 1/m2).
 struct LightDensities {
     float place = 0, onwards = 0;
 
-    /// Odds of all ways to find this light but the walk's own.
+    /// MIS weight sum of all techniques that find this light, except the subpath's own.
     HD float odds(const MisWalk& walk) const { return squared_density(place) * min(walk.others(onwards), kMostOdds); }
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// The stages of walks from the lights, in their order: begin; then, round by round, shade where the rays have met
-// something, add what the camera sees of that, count. Launched one by one on a device; a thread of the CPU runs the
-// same ones over a few walks of its own.
+// Stages of light subpaths in order: begin; then, round by round, shade the hits, add the connections that the camera
+// sees, and count. They are launched one by one on a device; a CPU thread runs the same ones over a few subpaths of
+// its own.
 //
 // Source: Dutre, Lafortune, Willems, "Monte Carlo Light Tracing with Direct Computation of Pixel Intensities", 1993.
 
@@ -17,12 +17,12 @@
 
 namespace pertev {
 
-// Adds what a particle brings to the picture. The camera's rays of a pixel are drawn from the pixel filter about its
-// centre (render/pixel_filter.h), so the pixel's value is a mean over the filter's density; what a particle brings to
-// a place of the picture therefore counts for each pixel about it times that very density, in 1/pixel^2. By integers,
-// whose sums do not depend on their order.
+// Splats of particles. Camera rays of a pixel are sampled from the pixel filter around its centre
+// (render/pixel_filter.h), so the pixel's value is a mean over the filter's density. Therefore a particle's light at
+// a picture position counts for each pixel around it times that density, in 1/pixel^2. Sums are integers, thus
+// independent of their order.
 
-/// Density, 1/pixel, with which sample_filter_axis gives `x`, pixels from the pixel's centre.
+/// Density, 1/pixel, with which sample_filter_axis returns `x`, in pixels from the pixel's centre.
 HD inline float filter_density(const PixelFilterView& filter, float x) {
     const float at = x / filter.radius;
     if (!(abs(at) < 1)) return 0;
@@ -47,7 +47,7 @@ HD inline float filter_density(const PixelFilterView& filter, float x) {
     return pdf_tent(2.0f * u - 1.0f) * (2.0f * part) / (width * filter.radius);
 }
 
-/// `light` at `raster`, in pixels from the upper left corner.
+/// Adds `light` at `raster`, in pixels from the upper left corner.
 HD inline void add_splat(const FilmView& film, const PixelFilterView& filter, Vec2 raster, Rgb light) {
     constexpr int kFar = 1 << 30;
     const float left = raster.x - 0.5f - filter.radius, top = raster.y - 0.5f - filter.radius;
@@ -65,7 +65,7 @@ HD inline void add_splat(const FilmView& film, const PixelFilterView& filter, Ve
     }
 }
 
-/// The state of a walk that begins for the sample `number`.
+/// Initial state of a subpath for the sample `number`.
 HD inline WalkState state_of_sample(const BeginOrder& samples, uint64_t number, const CameraRays& camera) {
     const PixelSample begun = samples.at(number, camera.width, camera.height);
     WalkState state = {};
@@ -73,9 +73,9 @@ HD inline WalkState state_of_sample(const BeginOrder& samples, uint64_t number, 
     return state;
 }
 
-/// What a particle's random numbers are drawn by. Where particles are all there is, one sequence goes through the
-/// particles of the whole picture, so that all of them together are spread evenly. Where they are joined to the
-/// camera's walk of their pixel, each pixel has its own.
+/// Key of a particle's random numbers. If there are only particles, one sequence covers the particles of the whole
+/// picture, so that all of them together are evenly distributed. If they connect to the camera subpath of their
+/// pixel, each pixel has its own sequence.
 HD inline SampleKey particle_sample_key(const WalkScene& scene, uint32_t pixel, uint32_t sample) {
     if (scene.is_joined) return {pixel, sample, scene.settings.seed};
     const CameraRays& camera = scene.picture.camera;
@@ -83,7 +83,7 @@ HD inline SampleKey particle_sample_key(const WalkScene& scene, uint32_t pixel, 
     return {static_cast<uint32_t>(number >> 32), static_cast<uint32_t>(number), scene.settings.seed};
 }
 
-/// Walks 0, 1, ... become the particles of samples `first`, first + 1, ... of `samples`.
+/// Starts the particles of samples `first`, first + 1, ... of `samples` as subpaths 0, 1, ...
 struct BeginParticles {
     WalkScene scene;
     WalksView walks;
@@ -110,7 +110,7 @@ struct BeginParticles {
     }
 };
 
-/// Where the particles' rays have met something: a connection to the camera, a vertex to be joined, the way on.
+/// Shades hits of particles: a connection to the camera, a stored vertex, the continuation.
 template <MaterialsKnown kKnown>
 struct ShadeParticles {
     WalkScene scene;
@@ -159,7 +159,7 @@ private:
         const AcceptHit accept = {scene.picture.scene, {}, {}, 0};
         if (scene.picture.scene.any_hidden_back != 0 &&
             AcceptCameraHit{accept, seen.direction}.meets_hidden_back(hit.instance, hit.primitive)) {
-            return; // the camera looks through its back
+            return; // the camera sees through its back
         }
         const Vec3 wo = -seen.direction;
         const BothWays scattered = scatter_both_ways<kKnown>(surface, wo, wi);
@@ -170,7 +170,7 @@ private:
             weight = mis_weight(squared_density(density) * state.mis.others(scattered.eye.pdf));
         }
         Connection connection;
-        // From the camera, as it looks: its rays pass hidden backs.
+        // The ray starts on the camera's side, because camera rays pass through hidden backs.
         const Vec3 end = offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wo);
         connection.ray = {seen.from, 0, end - seen.from, 1};
         connection.start = {};
@@ -214,9 +214,9 @@ private:
     }
 };
 
-/// What the camera sees of particles.
+/// Adds the particles that the camera sees.
 struct AddSplats {
-    WalksView walks; // asked_keys: what a tracer found, kNoHit where the ray met nothing
+    WalksView walks; // asked_keys hold the tracer's results, kNoHit if the ray hit nothing
     PixelFilterView filter;
     FilmView film;
 
@@ -227,7 +227,7 @@ struct AddSplats {
     }
 };
 
-/// What other connections bring to their pixels.
+/// Adds other connections to their pixels.
 struct AddConnections {
     WalksView walks;
     FilmView film;
@@ -239,8 +239,8 @@ struct AddConnections {
     }
 };
 
-/// One thread counts what was asked for since the last look, and, where `ends_round`, the rays that go on. `joined`:
-/// vertices of walks from lights that each of the present ones is to be joined to next.
+/// Counts in one thread: connections since the last count and, if `ends_round`, the rays that continue. `joined` is
+/// the number of light-subpath vertices that each current vertex connects to next.
 struct CountWalks {
     WalkCounts* counts;
     bool ends_round;
@@ -257,7 +257,7 @@ struct CountWalks {
     }
 };
 
-/// One thread: `rays` begin a first round.
+/// Starts the first round of `rays` in one thread.
 struct BeginWalks {
     WalkCounts* counts;
     uint32_t rays;
@@ -268,10 +268,10 @@ struct BeginWalks {
     }
 };
 
-// Walks from the camera begin: as path tracing's do, by the same numbers, so that layers of the first surface are
-// the same.
+// Camera subpaths begin like paths of path tracing, with the same random numbers, so that layers of the first surface
+// are equal.
 
-/// Walks 0, 1, ... become the camera's of samples `first`, first + 1, ... of `samples`.
+/// Starts the camera subpaths of samples `first`, first + 1, ... of `samples` as subpaths 0, 1, ...
 struct BeginEyes {
     WalkScene scene;
     WalksView walks;
@@ -291,13 +291,13 @@ struct BeginEyes {
     }
 };
 
-/// What the camera's own rays say of the first surface, and the light that comes straight from it.
+/// Adds auxiliary channels of the first surface, and its emission.
 HD INLINE_ON_DEVICE void add_seen(const PictureView& picture, const FilmView& film, const WalkState& state,
                                   const Ray& ray, const Hit& hit, const Surface& surface) {
     add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, picture);
     if (!is_black(surface.emission)) add_radiance(film, state.pixel, surface.emission);
 }
-/// Of one that met nothing.
+/// Adds the background for a camera ray that hit nothing.
 HD inline void add_seen_background(const PictureView& picture, const FilmView& film, const WalkState& state,
                                    const Ray& ray) {
     add_no_first_hit(film, state.pixel, state.sample);

@@ -25,8 +25,8 @@ struct WalkJob {
     FilmView film;
     WalksView walks;
     BeginOrder samples;
-    uint64_t first; // of the samples
-    uint32_t count; // of walks of each kind
+    uint64_t first; // first sample
+    uint32_t count; // subpaths of each kind
 
     WalkCounts* counts() const { return walks.counts; }
 };
@@ -37,7 +37,7 @@ inline RayCounts rays_of(const WalkCounts& counts) { return {0, counts.bounces, 
 
 inline WorldSphere sphere_round(const Bounds3& bounds) {
     if (bounds.is_empty()) return {};
-    return {bounds.centre(), 0.51f * length(bounds.size())}; // half the diagonal, and what rounding may take of it
+    return {bounds.centre(), 0.51f * length(bounds.size())}; // half the diagonal, with a margin for rounding
 }
 
 class WalksWavefront : public WavefrontSchedule<WalkCounts> {
@@ -47,7 +47,7 @@ public:
     void find_hits(RayKind kind, const WalkJob& job, WorkCount rays, uint32_t round) {
         tracer_.find_hits(kind, job.walks.query(round), rays, job.walks.hits());
     }
-    /// asked_keys become kNoHit where nothing is met.
+    /// Traces connections; asked_keys becomes kNoHit for unoccluded ones.
     void find_connections(const WalkJob& job, WorkCount asked) {
         tracer_.find_occlusions(job.walks.asked_query(), asked, {nullptr, job.walks.asked_keys});
     }
@@ -104,14 +104,14 @@ private:
     std::unique_ptr<bool[]> met_;
 };
 
-/// Calls run.operator()<kKnown>() with what is known of the materials, as far as walks have kernels for it.
+/// Calls run.operator()<kKnown>() with the materials' shading variant, as far as subpaths have kernels for it.
 template <class Run>
 void with_known(MaterialsKnown known, const Run& run) {
     if (known == MaterialsKnown::PlainDiffuse) return run.template operator()<MaterialsKnown::PlainDiffuse>();
     run.template operator()<MaterialsKnown::Nothing>();
 }
 
-/// All particles of the job to their ends, and what the camera sees of them to the film.
+/// Traces all particles of the job to their ends and adds those that the camera sees to the film.
 template <class Way>
 void run_particles(Way& way, const WalkJob& job) {
     const WalksView& walks = job.walks;

@@ -1,7 +1,6 @@
 #pragma once
 
-// What integrators that walk from the lights are asked for, beside scene and camera, and the random numbers of their
-// walks.
+// Settings of integrators with light subpaths, besides scene and camera, and the random numbers of their subpaths.
 
 #include <cstdint>
 
@@ -13,43 +12,43 @@ namespace pertev {
 
 struct SubpathSettings {
     uint32_t max_depth = 16;     // scatterings between light and camera
-    uint32_t roulette_depth = 3; // first vertex of a walk (counted from 1) at which Russian roulette may end it
+    uint32_t roulette_depth = 3; // first vertex of a subpath (counted from 1) at which Russian roulette may end it
     SamplerKind sampler = SamplerKind::Sobol;
     uint32_t seed = 0;
 
     bool operator==(const SubpathSettings&) const = default;
 };
 
-/// The largest max_depth of `integrator=bidirectional`: vertices of the walks from the lights are kept, 48 bytes each.
+/// Largest max_depth of `integrator=bidirectional`, because vertices of light subpaths are stored, 48 bytes each.
 inline constexpr uint32_t kMostJoinedDepth = 255;
 
-/// A sphere round all that rays can meet, the moved world: light from far away comes through its discs.
+/// A sphere around everything that rays can hit, in the translated world; distant light enters through its discs.
 struct WorldSphere {
     Vec3 centre;
-    float radius = 0; // metres; 0: there is nothing
+    float radius = 0; // metres; 0 if the world is empty
 };
 
-/// Random numbers of a walk from the camera, in groups of four (math/sampler.h), as path tracing draws them:
-///   camera         place in the pixel, then the light of vertex 0
-///   lens           place on the lens
+/// Random numbers of a camera subpath, in groups of four (math/sampler.h), as in path tracing:
+///   camera         position in the pixel, then the light of vertex 0
+///   lens           position on the lens
 ///   scatter, of v  direction from vertex v, then the light of vertex v + 1
 ///   choices, of v  lobe, roulette
-/// Of a walk from a light:
-///   light          the light and the place on it, then the direction
-///   scatter, of v  direction from vertex v, then the place on the lens that looks at it
+/// Random numbers of a light subpath:
+///   light          the light and the point on it, then the direction
+///   scatter, of v  direction from vertex v, then the point on the lens that it connects to
 ///   choices, of v  lobe, roulette
 enum WalkGroup : uint32_t { kWalkScatter, kWalkChoices, kWalkGroups };
 inline constexpr uint32_t kNumberOfLobe = 0, kNumberOfRoulette = 1;
-inline constexpr uint32_t kGroupLight = 1u << 20; // beyond all groups of walks from the camera
+inline constexpr uint32_t kGroupLight = 1u << 20; // beyond all groups of camera subpaths
 
 HD inline uint32_t eye_group(uint32_t depth, WalkGroup of) { return kCameraGroups + depth * kWalkGroups + of; }
 HD inline uint32_t particle_group(uint32_t depth, WalkGroup of) { return kGroupLight + 1 + depth * kWalkGroups + of; }
-/// The group whose last pair draws the light of the eye's vertex.
+/// The group whose last pair samples the light of the camera subpath's vertex.
 HD inline uint32_t light_group(uint32_t depth) {
     return depth == 0 ? uint32_t(kGroupCamera) : eye_group(depth - 1, kWalkScatter);
 }
 
-/// Whose coins blended surfaces toss: of one walk, number by number, each its own.
+/// Offsets of the coin keys of blended surfaces, one for each kind of ray of a subpath.
 inline constexpr uint32_t kEyeCoins = 0, kParticleCoins = 0x9e3779b9u, kConnectionCoins = 0x7f4a7c15u;
 
 } // namespace pertev

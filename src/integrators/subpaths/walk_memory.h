@@ -1,8 +1,8 @@
 #pragma once
 
-// Walks in flight, first from the lights and then from the camera, one of each a sample: arrays in one piece of memory,
-// placed by lay_out() for a device and for a thread of the CPU alike. Rays that are under way lie side by side; what
-// else a walk knows lies at its own number. Vertices of walks from lights stay for the camera's walks to be joined to.
+// Subpaths in flight, first from the lights and then from the camera, one of each per sample. The arrays share one
+// allocation, which lay_out() divides, for the device as for a CPU thread. Current rays are contiguous; other data of
+// a subpath is at its own index. Vertices of light subpaths stay for the camera subpaths to connect to.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,34 +17,36 @@
 
 namespace pertev {
 
-// The weight of a light path among all ways in which it could have been found: a walk from the camera and one from a
-// light, joined anywhere. A weight needs the densities of all these ways; two numbers that a walk carries along hold
-// what its own side has to say, so that no vertex is looked at twice.
+// MIS weights over all techniques that could have found a light path: a camera subpath and a light subpath of any
+// lengths, connected. A weight needs the densities of all techniques; each subpath carries two numbers that summarize
+// its side, so that no vertex is visited twice.
 //
-// Source: Georgiev, "Implementing Vertex Connection and Merging", 2012, whose dVCM and dVC these are, without merging;
-// the power heuristic (Veach 1997, section 9.2.4) with exponent 2, so all densities are squared. Delta scatterings
-// count as if drawn with the same density from both sides, which any weights that add up to 1 may do.
+// Source: Georgiev, "Implementing Vertex Connection and Merging", 2012, whose dVCM and dVC these are, without
+// merging; the power heuristic (Veach 1997, section 9.2.4) with exponent 2, so all densities are squared. Delta
+// scatterings count as sampled with the same density from both sides, which is valid for any weights that add up to
+// 1.
 
-/// Odds beyond this decide any weight: what is larger is this.
+/// Larger weight sums are clamped to this, because they determine any weight.
 inline constexpr float kMostOdds = 0x1p+100f;
 
 HD inline float squared_density(float density) { return square(min(density, 0x1p+30f)); }
 
 struct MisWalk {
-    // Squared densities over that of this walk as it is: of the way that ends one vertex earlier and reaches the last
-    // one from the other side, but for the density of that step, which the other side knows;
+    // Squared density over that of this subpath, for the technique that ends one vertex earlier and reaches the last
+    // vertex from the other side, without the density of that step, which the other side knows;
     float last = 0;
-    // and of all ways that end earlier still, but for the density of the step back from the last vertex.
+    // and for all techniques that end even earlier, without the density of the step back from the last vertex.
     float earlier = 0;
 
-    /// The walk reaches a surface under the cosine `cos_in` to its geometric normal, `distance_squared` away; that is 1
-    /// where it comes from infinitely far.
+    /// Updates the weights on arrival at a surface with cosine `cos_in` to its geometric normal at the squared
+    /// distance `distance_squared`, which is 1 for an infinite distance.
     HD void arrive(float cos_in, float distance_squared) {
         const float inverse = 1.0f / max(square(cos_in), 0x1p-60f);
         last = min(last * min(square(distance_squared) * inverse, kMostOdds), kMostOdds);
         earlier = min(earlier * inverse, kMostOdds);
     }
-    /// It goes on by the solid angle density `pdf` under `cos_out`; `reverse_pdf`: density of the way back.
+    /// Updates the weights for a scattering with solid angle density `pdf` and cosine `cos_out`; `reverse_pdf` is the
+    /// density of the reverse direction.
     HD void scatter(float cos_out, float pdf, float reverse_pdf) {
         const float by = min(squared_density(cos_out) / square(pdf), kMostOdds);
         earlier = min(by * others(reverse_pdf), kMostOdds);
@@ -54,30 +56,31 @@ struct MisWalk {
         earlier = earlier * square(cos_out);
         last = 0;
     }
-    /// All ways that this walk knows, over the present one, but for the density of the step onto its last vertex.
+    /// Weight sum of all other techniques that this subpath knows, without the density of the step to its last
+    /// vertex.
     HD float others(float reverse_pdf) const { return min(last + earlier * squared_density(reverse_pdf), kMostOdds); }
 };
 
-/// The weight of one way, where the odds of all others add up to `others`; 0 where that is no number.
+/// MIS weight of one technique if the weight sum of all others is `others`; 0 if that is not finite.
 HD inline float mis_weight(float others) { return others < kInfinity ? 1.0f / (1.0f + others) : 0.0f; }
 
-/// Beside its ray.
+/// State of a subpath besides its ray.
 struct alignas(16) WalkState {
     Rgb throughput; // from the camera: of radiance; from a light: power, W
     MisWalk mis;
-    uint32_t pixel, sample;   // whose it is
+    uint32_t pixel, sample;   // sample that it belongs to
     uint16_t scatterings = 0; // so far
-    uint16_t is_from_far = 0; // 1: its first way has no distance
+    uint16_t is_from_far = 0; // 1 if its first segment has no distance
 
     HD uint32_t depth() const { return scatterings; }
 };
 static_assert(sizeof(WalkState) == 32);
 
-/// A surface that a walk has met, from which the other side's is to be joined.
+/// A surface that a subpath has hit and that the other subpath may connect to.
 struct WalkVertex {
-    Hit hit;        // no instance: delta lobes alone, nothing can be joined
-    Vec3 direction; // of the walk, unit
-    Rgb throughput; // on arrival; of a walk from a light over the square of the index where it arrives
+    Hit hit;        // without instance if there are only delta lobes, which cannot connect
+    Vec3 direction; // direction of the subpath, unit
+    Rgb throughput; // on arrival; for a light subpath divided by the squared index there
     MisWalk mis;
 };
 
@@ -103,57 +106,57 @@ struct WalkVerticesView {
     }
 };
 
-/// What counts if nothing stands between a ray's ends.
+/// A connection; `light` counts if it is unoccluded.
 struct Connection {
     Ray ray;
     TriangleId start, target;
-    uint32_t key; // of blended surfaces' coin
-    Rgb light;    // W/(sr m2) of its pixel
+    uint32_t key; // key of the coin of blended surfaces
+    Rgb light;    // for its pixel, W/(sr m2)
 };
 
-/// Of one round.
+/// Counts of one round.
 struct WalkCounts {
-    uint32_t rays;               // under way
-    uint32_t next;               // that go on after it
-    uint32_t asked;              // connections, since the last look
-    uint32_t vertices;           // of this round's walks that can be joined
-    uint32_t pairs;              // of these with some of those of the walks from lights
-    uint32_t crowded;            // of look-ups in a photon map, those that threads share
-    uint64_t bounces, all_asked; // of all rounds
+    uint32_t rays;               // current rays
+    uint32_t next;               // rays that continue after the round
+    uint32_t asked;              // connections since the last count
+    uint32_t vertices;           // vertices of this round that can connect
+    uint32_t pairs;              // pairs of these with vertices of light subpaths
+    uint32_t crowded;            // lookups in a photon map that threads share
+    uint64_t bounces, all_asked; // totals of all rounds
 };
 
-/// How much there is room for.
+/// Sizes of the arrays.
 struct WalkRoom {
-    uint32_t count;       // walks
-    uint32_t kept;        // vertices of a walk from a light
-    uint32_t connections; // of each walk at once
+    uint32_t count;       // subpaths
+    uint32_t kept;        // stored vertices per light subpath
+    uint32_t connections; // connections per subpath at once
 };
 
 struct WalksView {
     WalkRoom room;
-    WalkState* states;      // [walks]
-    float* squared_indices; // [walks] of walks from lights: where they are, over where their light stands
+    WalkState* states;      // [subpaths]
+    float* squared_indices; // [subpaths] for light subpaths: squared index at their vertex, over that at their light
 
-    // Rays under way, side by side. Rounds read and write these and their owners, the walks, in two arrays in turns.
+    // Current rays, contiguous. Rounds alternate between two arrays for them and for their owners, the subpaths.
     Ray* rays[2];
     Uint2* starts;
-    uint32_t* keys; // of coins
+    uint32_t* keys; // keys of coins
     uint32_t* owners[2];
     Float4* hit_places;
     uint32_t* hit_instances;
 
-    // Vertices of the walks from lights, vertex k of walk i at k * walks + i, and how many each has.
+    // Vertices of the light subpaths: vertex k of subpath i at k * subpaths + i, and how many each has.
     WalkVerticesView kept;
     uint32_t* kept_counts;
-    // Those of the camera's walks in the present round, side by side.
+    // Vertices of the camera subpaths in the current round, contiguous.
     WalkVerticesView present;
     uint32_t* present_owners;
 
     Ray* asked_rays;
     Uint2 *asked_starts, *asked_targets;
-    uint32_t* asked_keys; // then what the ray met
+    uint32_t* asked_keys; // keys, and after tracing the results
     Float4* asked_light;  // rgb, bits of the pixel
-    Vec2* asked_rasters;  // [walks] of those of the camera with a particle
+    Vec2* asked_rasters;  // [subpaths] positions of the particles' connections to the camera
 
     WalkCounts* counts;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What both kinds of walks do where they meet a surface.
+// Operations of camera and light subpaths at a surface.
 
 #include "base/host_device.h"
 #include "integrators/subpaths/subpath_settings.h"
@@ -10,17 +10,16 @@
 
 namespace pertev {
 
-/// What walks are made of.
+/// Scene, lights and settings of subpaths.
 struct WalkScene {
     PictureView picture;
     SubpathSettings settings;
     WorldSphere world;
-    bool is_joined; // walks from both sides are joined, and what each way brings is weighted; else particles alone
+    bool is_joined; // subpaths connect and contributions have MIS weights; else there are only particles
 };
 
-/// A surface's scattering between two directions, as a walk from the camera has it (light along wi to wo) and as a
-/// particle has it (from wi, on along wo): each is the other's way back. Out of line where it is long: a kernel holds
-/// it once.
+/// A surface's scattering between two directions, for a camera subpath (light along wi to wo) and for a particle
+/// (from wi, along wo); each is the other's reverse. Long code is not inlined, so that a kernel contains it once.
 struct BothWays {
     BsdfValue eye, particle;
 };
@@ -37,9 +36,9 @@ HD inline float cosine_at(const Surface& surface, Vec3 direction) {
     return abs(dot(surface.geometric_normal, direction));
 }
 
-/// Russian roulette, from a walk's vertex `vertex` (counted from 1) on: the chance to go on is the square root of what
-/// the vertex lets through, the same rule from both sides. What goes on is made up for, so nothing is lost in the mean;
-/// weights do not know of it. False: the walk ends.
+/// Russian roulette from a subpath's vertex `vertex` (counted from 1) on: the survival probability is the square root
+/// of the vertex's throughput, by the same rule on both sides. The throughput compensates for it, so the mean is
+/// unbiased; MIS weights ignore it. Returns false if the subpath ends.
 HD inline bool survives(const SubpathSettings& settings, SampleKey key, uint32_t group, uint32_t vertex, Rgb& weight) {
     if (vertex < settings.roulette_depth) return true;
     const float chance = sqrt(max_component(weight));
@@ -49,7 +48,7 @@ HD inline bool survives(const SubpathSettings& settings, SampleKey key, uint32_t
     return true;
 }
 
-/// The lobe and the direction that a walk is scattered by are drawn from here.
+/// Random numbers that sample the lobe and the direction of a subpath's scattering.
 struct WalkDraw {
     float lobe;
     Vec2 u;

@@ -1,10 +1,10 @@
 #pragma once
 
-// An integrator whose samples are a walk from the lights and one from the camera each. What it does with them is
-// `Algorithm` (integrators/light/light.h, bidirectional/bidirectional.h), a few lines:
-//   kIsJoined  whether walks from both sides are joined
-//   room       what so many walks need
-//   render     the stages in their order, written once for both schedules
+// An integrator whose samples consist of a light subpath and a camera subpath. `Algorithm` defines in a few lines how
+// they are used (integrators/light/light.h, bidirectional/bidirectional.h):
+//   kIsJoined  whether the subpaths connect
+//   room       sizes for a number of subpaths
+//   render     the stages in order, written once for both schedules
 // The .cpp of each algorithm instantiates it.
 
 #include "integrators/subpaths/run_walks.h"
@@ -35,7 +35,7 @@ void WalksIntegrator<Algorithm>::reserve(const WorkSize& size) {
 template <class Algorithm>
 void WalksIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const FilmView& film) {
     PERTEV_CHECK(film.is_whole_picture());
-    constexpr std::size_t kLoopBytes = std::size_t(1) << 18; // of a thread: what its cache holds
+    constexpr std::size_t kLoopBytes = std::size_t(1) << 18; // per thread, so that it fits the cache
     WalkJob job = {};
     job.scene = {picture_, picture_settings_, sphere_round(tracer_->bounds()), Algorithm::kIsJoined};
     job.film = film;
@@ -47,7 +47,7 @@ void WalksIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const Fi
     rays_.camera += job.samples.count();
 }
 
-// Those that there are.
+// Explicit instantiations.
 struct ParticlesAlone;
 struct BothDirections;
 extern template class WalksIntegrator<ParticlesAlone>;

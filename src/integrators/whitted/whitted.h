@@ -1,10 +1,10 @@
 #pragma once
 
-// Whitted's ray tracing: where a mirror or a smooth glass is met the reflected and the refracted ray are both followed,
-// by Fresnel's shares, and what is not mirror-like is lit by the lights that it sees and by a constant ambient light.
+// Whitted's ray tracing: at a mirror or smooth glass both the reflected and the refracted ray are followed, weighted
+// by Fresnel's terms. Other surfaces are lit by visible lights and by a constant ambient light.
 //
-// Source: Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980; rays that hardly count end:
-// Hall, Greenberg, "A Testbed for Realistic Image Synthesis", 1983 (adaptive tree depth).
+// Source: Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980; rays with a negligible
+// weight end: Hall, Greenberg, "A Testbed for Realistic Image Synthesis", 1983 (adaptive tree depth).
 
 #include "integrators/ray_tree/tree_vertex.h"
 
@@ -24,8 +24,7 @@ struct Whitted {
         vertex.follow_specular(kLeast);
     }
 
-    /// Without one that was asked for: the mean of the environment, right for a bare diffuse surface, convex,
-    /// under an even sky.
+    /// The default is the mean of the environment, which is right for a convex diffuse surface under a uniform sky.
     static Rgb ambient(const EnvironmentView* environment) {
         return environment != nullptr ? environment->mean : Rgb{0, 0, 0};
     }

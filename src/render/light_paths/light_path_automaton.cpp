@@ -14,13 +14,13 @@ namespace pertev {
 namespace {
 
 using Kind = LightPathLetter::Kind;
-using StateSet = std::vector<uint32_t>; // of all automata, sorted
+using StateSet = std::vector<uint32_t>; // sorted states of all automata
 
 [[noreturn]] void refuse(const std::string& why) {
     throw Error(ErrorCode::OverLimit, "lpe", "", why + "; render some of the expressions apart");
 }
 
-/// The automata of all expressions side by side, as if they were one.
+/// The automata of all expressions, side by side as one.
 class AllExpressions {
 public:
     AllExpressions(std::span<const LightPathExpression> expressions, uint64_t most_steps, StateSet& firsts)
@@ -54,7 +54,7 @@ public:
     }
 
     uint32_t words() const { return (layers_ + 31) / 32; }
-    /// Which letters read a scattering.
+    /// Returns which letters match a scattering.
     std::vector<bool> readers_of(LobeClass lobe_class, bool is_transmission, const std::vector<bool>& tag) {
         std::vector<bool> readers(letters_.size());
         const int way = is_transmission ? kWayTransmitted : kWayReflected;
@@ -81,7 +81,8 @@ public:
         for (uint32_t i = 0; i < letters_.size(); ++i) readers[i] = letters_[i]->kind == Kind::Eye;
         return readers;
     }
-    /// All that is reached from `states` by reading nothing, without those that neither read nor end an expression.
+    /// Adds everything reachable from `states` by empty transitions, without states that neither read nor end an
+    /// expression.
     void close(StateSet& states) {
         close_over_empty(nfa_, states, seen_);
         spend(states.size());
@@ -99,7 +100,7 @@ public:
         close(to);
         return to;
     }
-    /// Adds the layers whose expressions end in `states`.
+    /// Appends the layers whose expressions end in `states`.
     void append_layers(const StateSet& states, std::vector<uint32_t>& sets) const {
         const std::size_t first = sets.size();
         sets.resize(first + words());
@@ -122,14 +123,14 @@ private:
 
     LightPathNfa nfa_;
     std::vector<const LightPathLetter*> letters_;
-    std::vector<uint32_t> first_filter_;  // [letters]: of its expression
-    std::vector<uint32_t> layer_of_last_; // [states of nfa_]; kNone: no expression ends there
+    std::vector<uint32_t> first_filter_;  // [letters] first filter of its expression
+    std::vector<uint32_t> layer_of_last_; // [states of nfa_] layer, or kNone if no expression ends there
     uint32_t layers_ = 0;
-    std::vector<bool> seen_; // close_over_empty's
+    std::vector<bool> seen_; // scratch memory of close_over_empty
     uint64_t steps_left_;
 };
 
-/// Sets of letters, each once, in the order in which they came.
+/// Distinct sets of letters in the order of their first appearance.
 class ReaderSets {
 public:
     uint16_t number_of(std::vector<bool> readers) {
@@ -154,7 +155,7 @@ struct HashOfStates {
     }
 };
 
-/// Subsets of states as states, of which 0 is the empty one and 1 the first.
+/// Subset construction. State 0 is the empty set and state 1 the first one.
 LightPathAutomaton determinise(AllExpressions& all, StateSet firsts, const LightPathTags& tags) {
     LightPathAutomaton automaton;
     ReaderSets scatterings, lights;

@@ -1,8 +1,7 @@
 #pragma once
 
-// All expressions of a render as one deterministic automaton, which reads a path from the eye and says of each place
-// where light comes in which layers take it. One, and not one each: a path then has one state, whatever the number of
-// layers.
+// All expressions of a render as one deterministic automaton, which reads a path from the eye and yields, wherever
+// light enters, the layers that take it. With a single automaton a path has one state, whatever the number of layers.
 //
 // Source: Rabin, Scott, "Finite Automata and Their Decision Problems", IBM Journal 3(2), 1959 (subsets of states).
 
@@ -14,13 +13,14 @@
 
 namespace pertev {
 
-/// What names and filters have to do with each other in a scene. A tag stands for all things that the same filters let
-/// through: [tag][filter of all expressions, one expression's after the other's]. At least one tag each.
+/// Classes of a scene's objects and lights with respect to the name filters. A tag stands for everything that the
+/// same filters accept: [tag][filter of all expressions, one expression after the other]. Each kind has at least one
+/// tag.
 struct LightPathTags {
     std::vector<std::vector<bool>> surfaces, lights;
 };
 
-/// The column of a scattering among the six of its surface's tag.
+/// Column of a scattering among the six of its surface's tag.
 HD inline constexpr uint32_t scattering_column(LobeClass lobe_class, bool is_transmission) {
     return 2 * static_cast<uint32_t>(lobe_class) + (is_transmission ? 1 : 0);
 }
@@ -29,13 +29,13 @@ inline constexpr uint32_t kScatteringColumns = 6;
 struct LightPathAutomaton {
     static constexpr uint16_t kNothing = 0; // a state from which no layer takes any light
 
-    uint16_t start = kNothing;     // after the eye
-    uint32_t column_count = 0;     // scatterings that differ to some expression
+    uint16_t start = kNothing;     // state after the eye
+    uint32_t column_count = 0;     // number of scatterings that some expression distinguishes
     std::vector<uint16_t> columns; // [surface tag * kScatteringColumns + scattering_column]
     std::vector<uint16_t> next;    // [state * column_count + column]
-    uint32_t light_count = 0;      // lights that differ
-    std::vector<uint16_t> lights;  // [light tag], of light_count
-    uint32_t words = 0;            // of a set of layers: 32 of them each, the first in the lowest bit of the first
+    uint32_t light_count = 0;      // number of lights that some expression distinguishes
+    std::vector<uint16_t> lights;  // [light tag], below light_count
+    uint32_t words = 0;            // words per set of layers: 32 layers each, the first in the lowest bit
     std::vector<uint32_t> layers;  // [(state * light_count + light) * words]: sets
 
     uint32_t state_count() const { return static_cast<uint32_t>(layers.size() / (std::size_t(light_count) * words)); }
@@ -51,16 +51,17 @@ struct LightPathAutomaton {
     }
 };
 
-/// States of an automaton: their tables stay small.
+/// Maximum number of states, which keeps the tables small.
 inline constexpr uint32_t kMaxLightPathStates = 16384;
-/// Entries of its tables: states times all that a path may do in one.
+/// Maximum number of table entries: states times all inputs.
 inline constexpr uint64_t kMaxLightPathEntries = 1u << 24;
-/// States of the expressions' own automata, together, and how many of them may be read while they become one.
+/// Maximum number of states of the expressions' own automata together, and of states that may be visited while they
+/// are combined.
 inline constexpr uint64_t kMaxLightPathParts = 1u << 22, kMaxLightPathSteps = 1u << 29;
 
-/// Layer i is that of expression i; one at least. It has as few states as possible, unless finding which takes more
-/// than `most_steps`. Throws Error(OverLimit) past one of these limits: expressions that tell many pasts of a path
-/// apart may need as many states as there are pasts.
+/// Makes the automaton in which layer i belongs to expression i; there is at least one. It has as few states as
+/// possible, unless minimization takes more than `most_steps`. Throws Error(OverLimit) beyond one of these limits:
+/// expressions that distinguish many pasts of a path may need as many states.
 LightPathAutomaton make_automaton(std::span<const LightPathExpression> expressions, const LightPathTags& tags,
                                   uint64_t most_steps = kMaxLightPathSteps);
 

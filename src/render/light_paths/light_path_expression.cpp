@@ -15,7 +15,7 @@ constexpr uint32_t kMostNesting = 200;
 constexpr uint32_t kMostRepeats = 255;
 constexpr std::string_view kBlanks = " \t";
 
-/// Of a letter that begins nothing; what others write for it, or what was forgotten, where that is known.
+/// Explains why a letter begins nothing, with the letter that others write for it or that is missing, if known.
 std::string_view why_no_atom(char letter) {
     switch (letter) {
     case '*':
@@ -58,7 +58,7 @@ private:
     [[noreturn]] void fail(std::size_t place, std::string_view why) const {
         throw Error(ErrorCode::BadInput, point_at(expression_, place, why));
     }
-    /// The next letter that is no blank; 0 at the end.
+    /// Returns the next letter that is not blank; 0 at the end.
     char peek() {
         at_ = std::min(text_.find_first_not_of(kBlanks, at_), text_.size());
         return at_ < text_.size() ? text_[at_] : '\0';
@@ -158,7 +158,7 @@ private:
         if (const auto term = parse_term()) return add(LightPathLetter{.terms = {*term}});
         fail(place, why_no_atom(letter));
     }
-    /// D, G, S or . with what is said of it.
+    /// Parses D, G, S or . with its filter.
     std::optional<ScatteringTerm> parse_term() {
         ScatteringTerm term;
         switch (peek()) {
@@ -197,7 +197,7 @@ private:
         ++at_;
         return add(std::move(set));
     }
-    /// kNoNames where none are said; `ways` stays where none is.
+    /// Parses a filter. Returns kNoNames if it has no names, and leaves `ways` if it has none.
     uint32_t parse_filter(uint8_t& ways) {
         const std::size_t open = at_;
         take('<');
@@ -245,7 +245,7 @@ bool is_name(std::string_view name) {
     return !name.empty() && name.size() <= 64 && std::ranges::all_of(name, is_letter);
 }
 
-/// Letters that are seen before byte `place`: UTF-8 takes up to four bytes for one.
+/// Number of visible letters before byte `place`; UTF-8 has up to four bytes per letter.
 std::size_t letters_before(std::string_view text, std::size_t place) {
     return static_cast<std::size_t>(
         std::ranges::count_if(text.substr(0, place), [](char c) { return (static_cast<uint8_t>(c) & 0xc0) != 0x80; }));

@@ -1,7 +1,7 @@
 #pragma once
 
-// Light-path expressions: which light a layer shows, in Heckbert's letters from the light to the eye, as LS+DE. Plain
-// text to a tree; light_path_automaton.h makes of trees what devices read.
+// Light-path expressions, which define the light of a layer in Heckbert's letters from the light to the eye, such as
+// LS+DE. This parses text to a tree; light_path_automaton.h turns trees into device tables.
 //
 // Source: Heckbert, "Adaptive Radiosity Textures for Bidirectional Ray Tracing", SIGGRAPH 1990, for the letters. The
 // grammar (docs/transport.md shows it by examples):
@@ -12,7 +12,7 @@
 //   scattering = ( 'D' | 'G' | 'S' | '.' ) [ filter ]
 //   filter     = '<' [ 'R' | 'T' ] [ [ '^' ] name { name } ] '>'
 //   name       = text between ' or ", in which * stands for any letters, ? for one, \ takes the next as it is
-// Blanks between these say nothing.
+// Blanks between these have no meaning.
 
 #include <cstdint>
 #include <string>
@@ -28,18 +28,18 @@ namespace pertev {
 struct NameFilter {
     struct Name {
         std::string pattern;
-        std::size_t place; // of its first letter, in the expression
+        std::size_t place; // position of its first letter in the expression
     };
     std::vector<Name> names = {};
-    bool is_negated = false; // all but these
+    bool is_negated = false; // matches all names but these
 };
 
 inline constexpr uint32_t kNoNames = 0xffffffffu;
 
-/// Which way light goes on at a surface, of scatterings.
+/// Directions in which light leaves a surface.
 enum WayBits : uint8_t { kWayReflected = 1, kWayTransmitted = 2, kAnyWay = 3 };
 
-/// A set of scatterings: one of `classes`, one of `ways`, at something that `names` lets through.
+/// A set of scatterings: one of `classes`, in one of `ways`, at an object that `names` accepts.
 struct ScatteringTerm {
     LobeClasses classes = kAllLobeClasses;
     uint8_t ways = kAnyWay;
@@ -50,23 +50,23 @@ struct ScatteringTerm {
 struct LightPathLetter {
     enum class Kind : uint8_t { Light, Eye, Scattering };
     Kind kind = Kind::Scattering;
-    std::vector<ScatteringTerm> terms = {}; // of scatterings: any of them
-    bool is_negated = false;                // none of them
-    uint32_t names = kNoNames;              // of lights
+    std::vector<ScatteringTerm> terms = {}; // for Scattering: any of these
+    bool is_negated = false;                // none of the terms
+    uint32_t names = kNoNames;              // for Light
 };
 
-/// A piece of the tree: a letter, pieces one after the other, one of several, or one again and again.
+/// A node of the tree: a letter, a sequence, a choice or a repetition.
 struct LightPathNode {
     enum class Kind : uint8_t { Letter, Sequence, Choice, Repeat };
     Kind kind = Kind::Sequence;
     uint32_t letter = 0;              // index into LightPathExpression::letters
-    std::vector<uint32_t> parts = {}; // indices into LightPathExpression::nodes; of Repeat one
-    uint32_t least = 0, most = kAny;  // of Repeat
+    std::vector<uint32_t> parts = {}; // indices into LightPathExpression::nodes; one for Repeat
+    uint32_t least = 0, most = kAny;  // for Repeat
     static constexpr uint32_t kAny = 0xffffffffu;
 };
 
 struct LightPathExpression {
-    std::string name; // of the layer
+    std::string name; // name of the layer
     std::string text;
     std::vector<NameFilter> filters;
     std::vector<LightPathLetter> letters;
@@ -74,17 +74,17 @@ struct LightPathExpression {
     uint32_t root = 0;
 };
 
-/// Of one expression, as it is written.
+/// Maximum length of an expression's text.
 inline constexpr std::size_t kMaxLightPathText = 4096;
-/// Of one expression, in letters, each counted as often as {n} asks for it.
+/// Maximum number of letters of an expression, each counted as often as {n} repeats it.
 inline constexpr uint64_t kMaxLightPathLetters = 4096;
 
-/// Of NAME=EXPR, as `lpe` takes it. NAME: letters, digits, - and _, at most 64. Throws Error(BadInput) with the
-/// expression and a caret under the character that is wrong, also for one that no light path can match;
-/// Error(OverLimit) past kMaxLightPathText and kMaxLightPathLetters.
+/// Parses NAME=EXPR, the syntax of the setting `lpe`. NAME has letters, digits, - and _, at most 64. Throws
+/// Error(BadInput) with the expression and a caret under the wrong character, also for an expression that no light
+/// path can match; Error(OverLimit) beyond kMaxLightPathText and kMaxLightPathLetters.
 LightPathExpression parse_light_path(std::string_view text);
 
-/// A remark on the setting `lpe`: why, the expression, and a caret under the letter at `place`.
+/// A remark on the setting `lpe`: the reason, the expression, and a caret under the letter at `place`.
 Remark point_at(const LightPathExpression& expression, std::size_t place, std::string_view why);
 
 } // namespace pertev

@@ -11,10 +11,10 @@
 namespace pertev {
 namespace {
 
-/// The things that a kind of filter chooses among.
+/// The objects that a kind of filter chooses among.
 struct Things {
     std::vector<Names> names;
-    const char* kind; // as messages name it
+    const char* kind; // name in messages
 };
 
 Things surfaces_of(const Scene& scene) {
@@ -23,7 +23,7 @@ Things surfaces_of(const Scene& scene) {
     return things;
 }
 
-/// First all instances, of which those that emit nothing have no names here; then the lights, then the environment.
+/// Lists all instances, of which those without emission have no names here; then the lights, then the environment.
 Things lights_of(const Scene& scene) {
     Things things = {{}, "light of the scene"};
     for (const Instance& instance : scene.instances) {
@@ -36,7 +36,7 @@ Things lights_of(const Scene& scene) {
     return things;
 }
 
-/// Which of all filters let a thing through, thing by thing. Filters of the other kind let nothing through.
+/// Finds for each object which of all filters accept it. Filters of the other kind accept nothing.
 class Chooser {
 public:
     Chooser(std::span<const LightPathExpression> expressions, const Things& things, LightPathLetter::Kind kind) {
@@ -73,10 +73,10 @@ public:
     }
 
 private:
-    std::vector<const NameFilter*> filters_; // of all expressions; null where it is of the other kind
+    std::vector<const NameFilter*> filters_; // filters of all expressions; null for the other kind
 };
 
-/// Gives each thing the number of its tag.
+/// Assigns each object the number of its tag.
 std::vector<uint16_t> tag(const Things& things, const Chooser& chooser, std::vector<std::vector<bool>>& tags) {
     std::unordered_map<std::vector<bool>, uint16_t> numbers;
     std::vector<uint16_t> of_things;

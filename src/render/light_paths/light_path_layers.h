@@ -1,7 +1,7 @@
 #pragma once
 
-// Expressions put to a scene: which of its objects and lights their names mean, and the automaton over these. On the
-// host; light_path_view.h is what devices read.
+// Binds expressions to a scene: resolves their names to objects and lights, and makes the automaton over these. It
+// runs on the host; light_path_view.h is the device form.
 
 #include <cstdint>
 #include <span>
@@ -12,23 +12,24 @@
 
 namespace pertev {
 
-/// Layers of a render, and all that says what goes into them. It counts for the scene at every time of its animations.
+/// The layers of a render and everything that decides their content. They are valid at every time of the scene's
+/// animations.
 struct LightPathLayers {
     std::vector<LightPathExpression> expressions; // [layers]
     LightPathAutomaton automaton;
     std::vector<uint16_t> surface_tags;    // [instances]
-    std::vector<uint16_t> instance_lights; // [instances]: of LightPathAutomaton::light_count
-    std::vector<uint16_t> scene_lights;    // [Scene::lights], likewise
-    uint16_t environment_light = 0;        // likewise
+    std::vector<uint16_t> instance_lights; // [instances], below LightPathAutomaton::light_count
+    std::vector<uint16_t> scene_lights;    // [Scene::lights], in the same numbering
+    uint16_t environment_light = 0;        // in the same numbering
 
     uint32_t count() const { return static_cast<uint32_t>(expressions.size()); }
 };
 
-/// Throws Error(BadInput) for two layers of one name.
+/// Throws Error(BadInput) if two layers have the same name.
 void check_layers(std::span<const LightPathExpression> expressions);
 
-/// Names are those of scene/names.h. Throws Error(BadInput), with a caret, for a name
-/// that nothing has; and what check_layers and make_automaton do.
+/// Resolves names as scene/names.h lists them. Throws Error(BadInput) with a caret for a name that nothing has, and
+/// as check_layers and make_automaton.
 LightPathLayers put_to_scene(std::vector<LightPathExpression> expressions, const Scene& scene);
 
 } // namespace pertev

@@ -25,7 +25,7 @@ public:
 
 private:
     struct Part {
-        uint32_t first, last; // `last` leads nowhere yet
+        uint32_t first, last; // `last` has no transition yet
     };
 
     uint32_t add_state(State state = {}) {
@@ -56,7 +56,7 @@ private:
         }
         return {};
     }
-    /// From the end, as the path is read.
+    /// Built from its end, in the order in which a path is read.
     Part add_sequence(const LightPathNode& node) {
         const uint32_t first = add_state();
         uint32_t last = first;
@@ -115,7 +115,8 @@ private:
     LightPathNfa nfa_;
 };
 
-/// Whether the automaton takes a path of the eye, any scatterings and a light; `reads_eye` likewise of its beginning.
+/// Whether the automaton accepts a path of the eye, any scatterings and a light. `reads_eye` is set to whether it
+/// reads the eye.
 bool takes_a_path(const LightPathExpression& expression, const LightPathNfa& nfa, bool& reads_eye) {
     using Kind = LightPathLetter::Kind;
     enum Phase : uint32_t { Before, Between, After };

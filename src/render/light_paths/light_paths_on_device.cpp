@@ -18,7 +18,7 @@ LightPathsOnDevice::LightPathsOnDevice(Queue& queue, const LightPathLayers& laye
     view_.words = layers.automaton.words;
     view_.start = layers.automaton.start;
     view_.environment_light = layers.environment_light;
-    queue.wait(); // the copies may go
+    queue.wait(); // the host copies may be freed now
 }
 
 LightPathView LightPathsOnDevice::view(uint32_t aovs) const {

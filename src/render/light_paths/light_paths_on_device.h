@@ -1,6 +1,6 @@
 #pragma once
 
-// LightPathLayers in the device's memory.
+// Device copy of LightPathLayers.
 
 #include "device/buffer.h"
 #include "render/light_paths/light_path_layers.h"
@@ -13,7 +13,7 @@ public:
     /// `queue` outlives it. Throws Error(OutOfMemory).
     LightPathsOnDevice(Queue& queue, const LightPathLayers& layers);
 
-    /// For a film of the auxiliary groups `aovs`.
+    /// View for a film with the auxiliary groups `aovs`.
     LightPathView view(uint32_t aovs) const;
 
 private:

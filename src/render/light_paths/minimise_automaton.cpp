@@ -5,10 +5,11 @@
 namespace pertev {
 
 LightPathAutomaton minimise(LightPathAutomaton all, uint64_t most_steps) {
-    const uint32_t states = all.state_count(), sets = all.light_count * all.words; // [layers] of a state
+    const uint32_t states = all.state_count(), sets = all.light_count * all.words; // `sets` is the size of a state's
+                                                                                   // table of layers
     std::vector<uint16_t> group(states);
     std::size_t groups = 0;
-    const uint64_t steps = uint64_t(states) * (all.column_count + 1); // of a round
+    const uint64_t steps = uint64_t(states) * (all.column_count + 1); // steps per round
     for (bool is_first = true;; is_first = false) {
         if (steps > most_steps) return all;
         most_steps -= steps;
@@ -25,7 +26,7 @@ LightPathAutomaton minimise(LightPathAutomaton all, uint64_t most_steps) {
                 }
             }
             finer[s] = of_signature.try_emplace(std::move(signature), static_cast<uint16_t>(of_signature.size()))
-                           .first->second; // state 0 comes first: its group is 0
+                           .first->second; // state 0 comes first, so its group is 0
         }
         group = std::move(finer);
         if (!is_first && of_signature.size() == groups) break;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The least automaton that says the same.
+// Minimization of the automaton.
 //
 // Source: Moore, "Gedanken-Experiments on Sequential Machines", 1956.
 
@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-/// States are one where no path tells them apart. kNothing stays 0. `all` itself, where that is not known after
+/// Merges states that no path distinguishes; kNothing stays 0. Returns `all` unchanged if that takes more than
 /// `most_steps`.
 LightPathAutomaton minimise(LightPathAutomaton all, uint64_t most_steps);
 

@@ -1,10 +1,10 @@
 #pragma once
 
-// Primary visibility by rasterisation: begin() puts the scene's triangles on lists by tiles of the picture
-// (render/raster/tile_lists.h), and every sample's ray looks at its tile's list alone. The ray's own test decides, so
-// hits are those of any tracer, to the bit.
+// Primary visibility by rasterization: begin() sorts the scene's triangles into lists per tile of the picture
+// (render/raster/tile_lists.h), and the ray of every sample tests only its tile's list. The ray-triangle test
+// decides, so hits equal those of any tracer to the bit.
 //
-// Memory is known before: where the lists of tiles of 8 x 8 pixels would not fit, tiles are larger.
+// Memory is known in advance: if the lists of 8 x 8 pixel tiles do not fit, tiles are larger.
 
 #include <cstdint>
 
@@ -20,14 +20,13 @@ public:
     /// `queue` outlives it.
     explicit CameraRaster(Queue& queue) : queue_(queue) {}
 
-    /// Takes the memory for a picture of this size if it is not held yet. begin() calls it. Throws Error(OutOfMemory).
+    /// Allocates memory for a picture of this size if needed; begin() calls it. Throws Error(OutOfMemory).
     void reserve(uint64_t triangles, uint32_t width, uint32_t height);
-    /// From now on of this picture, whose camera has no lens (why_no_raster).
-    /// Throws Error(OutOfMemory, DeviceFault), and Error(OverLimit) for a scene with too many triangles, or too many in
-    /// view.
+    /// Makes the lists for this picture, whose camera has no lens (why_no_raster). Throws Error(OutOfMemory,
+    /// DeviceFault), and Error(OverLimit) for a scene with too many triangles, or too many in view.
     void begin(const PictureView& picture);
     const TileRasterView& view() const { return view_; }
-    /// Of rays [0, count) of its picture as FindInTiles has them. Queued.
+    /// Finds the hits of rays [0, count) of its picture, in the form of FindInTiles. The work is queued.
     void find_hits(const RayQueueView& rays, WorkCount count, const HitQueueView& hits);
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
 
-// A triangle cut by planes in the homogeneous space of a Pinhole, before anything is divided.
+// Clips a triangle by planes in the homogeneous space of a Pinhole, before any division.
 //
 // Source: Sutherland, Hodgman, "Reentrant Polygon Clipping", CACM 17(1), 1974.
 
@@ -8,14 +8,14 @@
 
 namespace pertev {
 
-inline constexpr int kMostCorners = 12; // eight after five planes, but for corners that rounding puts on both sides
+inline constexpr int kMostCorners = 12; // eight after five planes, plus corners that rounding puts on both sides
 
 struct ClippedTriangle {
     PinholePoint corners[kMostCorners];
     int count;
 };
 
-/// Keeps where a . p + constant >= 0; all where that took too many corners.
+/// Keeps the part with a . p + constant >= 0, or everything if that takes too many corners.
 HD inline void clip(ClippedTriangle& polygon, PinholePoint a, double constant) {
     const auto side = [&](const PinholePoint& p) {
         return a.x * p.x + a.y * p.y + a.w * p.w + a.depth * p.depth + constant;
@@ -30,7 +30,8 @@ HD inline void clip(ClippedTriangle& polygon, PinholePoint a, double constant) {
         const double side_p = side(p);
         if (kept.count > kMostCorners - 2) return;
         if ((side_p < 0) != (side_before < 0)) {
-            // From the point that is kept, whichever comes first: neighbours find the same point of their edge.
+            // Computed from the point that is kept, in either direction, so that neighbours get the same point on
+            // their edge.
             const bool leaves = side_p < 0;
             const PinholePoint from = leaves ? before : p, to = leaves ? p : before;
             const double t = leaves ? side_before / (side_before - side_p) : side_p / (side_p - side_before);

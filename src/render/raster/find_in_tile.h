@@ -1,7 +1,7 @@
 #pragma once
 
-// What a ray of the camera meets first, by the list of its pixel's tile: the same triangle test, the same rules of what
-// counts and the same choice among candidates as a walk of trees has (trace/trace_closest.h), so the same bits.
+// Finds the first hit of a camera ray in its tile's list, with the same triangle test, acceptance rules and choice
+// among candidates as tree traversal (trace/trace_closest.h), thus with the same bits.
 
 #include "device_scene/accept_hit.h"
 #include "device_scene/ray_queue.h"
@@ -15,9 +15,9 @@ namespace pertev {
 /// A scene as a camera sees it, made by CameraRaster (render/raster/camera_raster.h).
 struct TileRasterView {
     const BvhTriangle* triangles;
-    const uint64_t* codes; // TileListsView's, sorted
-    const uint32_t* order; // entry: place in `triangles`
-    const Uint2* tiles;    // FinishTileLists's
+    const uint64_t* codes; // sorted codes of TileListsView
+    const uint32_t* order; // [entry] index into `triangles`
+    const Uint2* tiles;    // result of FinishTileLists
     uint32_t width, shift, tiles_x;
 
     HD Uint2 list_of(uint32_t pixel) const {
@@ -27,7 +27,7 @@ struct TileRasterView {
     HD float least_t(uint32_t entry) const { return float_of(static_cast<uint32_t>(codes[entry])); }
 };
 
-/// `ray` is the camera's, of a sample of `pixel`; `key` of its coin.
+/// `ray` is a camera ray of a sample of `pixel`; `key` belongs to the coin of that ray.
 HD inline Hit find_in_tile(const TileRasterView& raster, const SceneView& scene, const Ray& ray, uint32_t pixel,
                            uint32_t key) {
     const AcceptCameraHit accept = {{scene, {}, {}, key}, ray.direction};
@@ -37,7 +37,7 @@ HD inline Hit find_in_tile(const TileRasterView& raster, const SceneView& scene,
     const RayShear world_shear = make_ray_shear(ray.direction);
     Ray local = ray;
     RayShear local_shear = world_shear;
-    uint32_t space = kNoHit; // the instance of `local`
+    uint32_t space = kNoHit; // the instance whose space `local` is in
     for (uint32_t i = list.x; i < list.y && raster.least_t(i) <= visitor.best.t; ++i) {
         const BvhTriangle triangle = load_aligned(raster.triangles + raster.order[i]);
         const bool is_baked = (triangle.flags & kIsBaked) != 0;
@@ -55,7 +55,7 @@ HD inline Hit find_in_tile(const TileRasterView& raster, const SceneView& scene,
     return visitor.best;
 }
 
-/// Of queued rays of the camera, which are endless; the pixel's number stands in the place of t_min.
+/// One call per queued camera ray. The rays are endless; t_min holds the pixel's index.
 struct FindInTiles {
     TileRasterView raster;
     SceneView scene;

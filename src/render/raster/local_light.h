@@ -1,7 +1,7 @@
 #pragma once
 
-// How a picture without rays is lit: by what a surface emits, an ambient light, and of each point, spot and directional
-// light what the diffuse and glossy lobes of its BSDF scatter. No shadow is cast; mirrors and glass are black.
+// Local illumination without rays: emission, an ambient light, and light of each point, spot and directional light
+// that the diffuse and glossy lobes of the BSDF scatter. There are no shadows; mirrors and glass are black.
 
 #include "device_scene/surface.h"
 #include "render/picture_view.h"
@@ -9,11 +9,11 @@
 namespace pertev {
 
 struct LocalLight {
-    Rgb ambient;        // radiance from all around that diffuse surfaces reflect, W/(sr m2)
-    uint32_t max_depth; // 0: what emits alone
+    Rgb ambient;        // radiance from all directions that diffuse surfaces reflect, W/(sr m2)
+    uint32_t max_depth; // 0: emission only
 };
 
-/// From `surface` towards `wo` (unit), W/(sr m2).
+/// Radiance from `surface` towards `wo` (unit), W/(sr m2).
 HD inline Rgb local_light(const LightSetView& lights, const Surface& surface, Vec3 wo, const LocalLight& asked) {
     Rgb sum = surface.emission;
     if (surface.is_unlit || asked.max_depth == 0) return sum;
@@ -27,7 +27,7 @@ HD inline Rgb local_light(const LightSetView& lights, const Surface& surface, Ve
     return sum;
 }
 
-/// What is seen along `direction` (unit) where there is nothing, W/(sr m2).
+/// Radiance of the background along `direction` (unit), W/(sr m2).
 HD inline Rgb seen_background(const PictureView& picture, Vec3 direction) {
     const LightSetView& lights = picture.scene.lights;
     if (!lights.has_environment() || picture.hide_background) return {};

@@ -23,8 +23,9 @@ Pinhole make_pinhole(const CameraRays& camera) {
     p.half_height = static_cast<double>(camera.view.half_height);
     p.filter_radius = static_cast<double>(camera.filter.radius) * (1 + 0x1p-10) + 0x1p-10;
 
-    // What rounding turns a ray by, u = 2^-24 and M the linear part: place and view at most 10 u of the view, the
-    // direction's product with M and its length 8 u |M| |direction|, which is at most |M^-1| times that much here.
+    // Bound on the ray's rotation by rounding, with u = 2^-24 and M the linear part: position and view contribute at
+    // most 10 u of the view, and the direction's product with M and its length 8 u |M| |direction|, which is at most
+    // |M^-1| times that much here.
     const double norm = std::max(size(m.row0), std::max(size(m.row1), size(m.row2)));
     p.error_scale = std::max(size_of(p.row_x), std::max(size_of(p.row_y), size_of(p.row_depth)));
     const double condition = norm * p.error_scale;
@@ -37,7 +38,7 @@ Pinhole make_pinhole(const CameraRays& camera) {
     p.origin_max = max_component(abs(m.translation));
     if (!p.is_perspective) p.origin_max += static_cast<float>(2 * norm * view);
 
-    // t is depth times the length of M (x, y, -1): for a rotation at least 1, less what M is off one.
+    // t is depth times the length of M (x, y, -1): for a rotation at least 1, less the deviation of M from one.
     double off = 0;
     for (const DoubleVec3 a : {c0, c1, c2}) {
         double row = -1; // sum of |M^T M - 1| along a row; its diagonal is positive

@@ -1,12 +1,12 @@
 #pragma once
 
-// A camera without a lens as the rasteriser sees it: triangles in its own space, in double, and which pixels' rays can
-// meet what. Its rays are those of render/camera_rays.h, wherever in the pixel filter they lie.
+// A camera without a lens as the rasterizer sees it: triangles in its own space, in double, and the pixels whose rays
+// may hit them. Its rays are those of render/camera_rays.h, anywhere in the pixel filter.
 //
-// Space: x to the right and y down in the picture, at distance 1 from the camera (perspective) or in metres
-// (orthographic), so that pixels go with both; depth along the camera's axis, metres. A point is homogeneous: it is
-// seen at (x / w, y / w), with w = depth or w = 1. So nothing is divided before it is clipped (Olano, Greer, "Triangle
-// Scan Conversion Using 2D Homogeneous Coordinates", 1997).
+// Its space has x to the right and y down in the picture, at distance 1 from the camera (perspective) or in metres
+// (orthographic), so that both increase with pixels, and depth along the camera's axis in metres. A point is
+// homogeneous: it appears at (x / w, y / w), with w = depth or w = 1. Thus nothing is divided before clipping (Olano,
+// Greer, "Triangle Scan Conversion Using 2D Homogeneous Coordinates", 1997).
 
 #include <cstdint>
 #include <string>
@@ -23,15 +23,15 @@ struct PinholePoint {
 };
 
 struct Pinhole {
-    DoubleVec3 row_x, row_y, row_depth; // of camera-from-world
+    DoubleVec3 row_x, row_y, row_depth; // rows of camera-from-world
     DoubleVec3 eye;                     // world space, metres
     bool is_perspective;
     uint32_t width, height;         // pixels
-    double half_width, half_height; // of the view, x and y
-    double filter_radius;           // pixels by which a sample may lie off its pixel's centre, rounding included
-    double margin_x, margin_y;      // by which rounding may turn a ray, pixels
-    float origin_max;               // no coordinate of a ray's origin is larger, metres
-    double error_scale;             // a world error of 1 m in each coordinate is at most this much here, metres
+    double half_width, half_height; // x and y of the view
+    double filter_radius;           // maximum offset of a sample from its pixel's centre, pixels, including rounding
+    double margin_x, margin_y;      // maximum displacement of a ray by rounding, pixels
+    float origin_max;               // maximum |coordinate| of a ray's origin, metres
+    double error_scale;             // maximum error here, in metres, for a world error of 1 m in each coordinate
     double distance_scale;          // a ray's t is at least depth times this
 
     HD PinholePoint see(DoubleVec3 world) const {
@@ -39,17 +39,17 @@ struct Pinhole {
         const double depth = dot(row_depth, p);
         return {dot(row_x, p), dot(row_y, p), is_perspective ? depth : 1.0, depth};
     }
-    /// x (y) of a place in the picture, pixels from its left (upper) edge; and back.
+    /// Converts a position in the picture, in pixels from its left (upper) edge, to x (y), and back.
     HD double x_of(double place) const { return (2 * place / width - 1) * half_width; }
     HD double y_of(double place) const { return (2 * place / height - 1) * half_height; }
     HD double column_of(double x) const { return (x / half_width + 1) * 0.5 * width; }
     HD double row_of(double y) const { return (y / half_height + 1) * 0.5 * height; }
 };
 
-/// Of a camera that why_no_raster has nothing against; its transform is finite and has an inverse.
+/// Makes the pinhole of a camera that why_no_raster accepts; its transform is finite and invertible.
 Pinhole make_pinhole(const CameraRays& camera);
 
-/// Why no rasteriser can see by this camera; empty where one can.
+/// Why this camera cannot be rasterized; empty if it can.
 std::string why_no_raster(const Camera& camera);
 
 } // namespace pertev

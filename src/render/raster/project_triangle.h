@@ -1,8 +1,8 @@
 #pragma once
 
-// From a triangle of a mesh to the picture: modelling and viewing transforms, clipping, projection to fixed point. The
-// corners' places are rounded to 1/256 of a pixel, once for each corner of the mesh and for each point where an edge is
-// clipped, so triangles that share an edge have the very same one.
+// Projects a mesh's triangle to the picture: modelling and viewing transforms, clipping, conversion to fixed point.
+// Vertex positions are rounded to 1/256 of a pixel once for each vertex of the mesh and each point where an edge is
+// clipped, so triangles that share an edge have identical ends of it.
 
 #include <cstdint>
 
@@ -12,14 +12,14 @@
 namespace pertev {
 
 inline constexpr int32_t kSubpixels = 256;
-inline constexpr double kNearest = 0x1p-20; // metres; what is nearer is cut off
+inline constexpr double kNearest = 0x1p-20; // metres; anything nearer is clipped
 
 struct TriangleCorners {
-    PinholePoint p[3]; // in the camera's space
+    PinholePoint p[3]; // in camera space
     uint32_t instance, primitive;
 };
 
-/// Triangle `number` of the scene. False where it is hidden.
+/// Corners of triangle `number` of the scene. Returns false if it is hidden.
 HD inline bool triangle_corners(const Pinhole& camera, const SceneView& scene, uint32_t number,
                                 TriangleCorners& corners) {
     corners.instance = instance_of(scene, number);
@@ -35,7 +35,7 @@ HD inline bool triangle_corners(const Pinhole& camera, const SceneView& scene, u
     return true;
 }
 
-/// Where a triangle's plane is seen at (x, y) of the camera's space.
+/// The plane of a triangle, and its depth at (x, y) in camera space.
 struct SeenPlane {
     double x, y, depth, constant; // x px + y py + depth pd = constant
     bool is_perspective;
@@ -54,13 +54,12 @@ HD inline SeenPlane plane_of(const PinholePoint (&corners)[3], bool is_perspecti
 
 struct ProjectedTriangle {
     int32_t x[kMostCorners], y[kMostCorners]; // 1/256 pixels from the picture's upper left corner
-    int count;                                // of a convex polygon's corners
+    int count;                                // number of corners of a convex polygon
     SeenPlane plane;
     double nearest = 0, farthest = 0; // depth of its corners, metres
 };
 
-/// What of a triangle (or of a line, whose third corner is its second) lies in the picture, widened by the pixel
-/// filter.
+/// Clips a triangle (or a line, whose third corner equals the second) to the picture widened by the pixel filter.
 HD inline ClippedTriangle clip_to_picture(const Pinhole& camera, const PinholePoint (&corners)[3]) {
     const double beyond = camera.filter_radius + 2; // pixels
     const double x = camera.x_of(camera.width + beyond), y = camera.y_of(camera.height + beyond);
@@ -80,10 +79,10 @@ HD inline ClippedTriangle clip_to_picture(const Pinhole& camera, const PinholePo
     return seen;
 }
 
-/// Rounded to 1/256 of a pixel.
+/// Rounds to 1/256 of a pixel.
 HD inline int32_t to_subpixels(double place) { return pixel_of(place * kSubpixels + 0.5, -(1 << 28), 1 << 28); }
 
-/// False where nothing of it is seen.
+/// Returns false if no part of the triangle is visible.
 HD inline bool project_triangle(const Pinhole& camera, const PinholePoint (&corners)[3], ProjectedTriangle& out) {
     const ClippedTriangle seen = clip_to_picture(camera, corners);
     out.count = seen.count;
@@ -99,8 +98,8 @@ HD inline bool project_triangle(const Pinhole& camera, const PinholePoint (&corn
     return true;
 }
 
-/// Weights of the second and third corner at (x, y) of the camera's space, where the plane is seen there: at least 0, 1
-/// together at most.
+/// Weights of the second and third corner at (x, y) in camera space, where the plane is seen; each at least 0, their
+/// sum at most 1.
 HD inline Vec2 weights_at(const PinholePoint (&corners)[3], double x, double y) {
     double b[3];
     for (int i = 0; i < 3; ++i) {

@@ -1,8 +1,8 @@
 #pragma once
 
-// Scan conversion by exact integers: a sample belongs to a triangle where it lies on the inner side of all three edges,
-// or on an edge that is a left or an upper one. So of triangles that share an edge just one has each sample, and a
-// closed mesh has neither gaps nor samples drawn twice. Of a row of pixels the first and the last are divided out.
+// Scan conversion in exact integers: a sample belongs to a triangle if it lies on the inner side of all three edges,
+// or on a left or upper edge. Thus exactly one of the triangles that share an edge has each sample, and a closed mesh
+// has neither gaps nor duplicate samples. The first and last pixel of a row are computed by division.
 //
 // Source: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988, for the edge functions.
 
@@ -10,13 +10,13 @@
 
 namespace pertev {
 
-/// Where in every pixel a sample lies, 1/256 pixels from the pixel's upper left corner; outside of it by the filter.
+/// Position of the sample in every pixel, in 1/256 pixels from its upper left corner; the filter may move it outside.
 struct SamplePlace {
     int32_t x, y;
 };
 
 struct PixelSpan {
-    int32_t first, last; // inclusive; none where last < first
+    int32_t first, last; // inclusive; empty if last < first
 };
 
 HD inline int64_t floor_divide(int64_t a, int64_t b) { // b > 0
@@ -24,7 +24,7 @@ HD inline int64_t floor_divide(int64_t a, int64_t b) { // b > 0
     return q * b > a ? q - 1 : q;
 }
 
-/// Columns between its first and its last corner, at least.
+/// Lower bound on the columns between its first and its last corner.
 HD inline int32_t columns_of(const ProjectedTriangle& t) {
     int32_t left = t.x[0], right = t.x[0];
     for (int i = 1; i < t.count; ++i) left = min(left, t.x[i]), right = max(right, t.x[i]);
@@ -39,7 +39,7 @@ HD inline PixelSpan rows_of(const ProjectedTriangle& t, SamplePlace place, uint3
     return {max(row(top - 1) + 1, 0), min(row(bottom), static_cast<int32_t>(height) - 1)};
 }
 
-/// The triangle of corners 0, k and k + 1, wound so that its area is positive. False where it has none.
+/// The triangle of corners 0, k and k + 1, oriented so that its area is positive. False if it has no area.
 struct WoundTriangle {
     int64_t x[3], y[3];
 
@@ -47,7 +47,7 @@ struct WoundTriangle {
         x[0] = t.x[0], x[1] = t.x[k], x[2] = t.x[k + 1];
         y[0] = t.y[0], y[1] = t.y[k], y[2] = t.y[k + 1];
         const int64_t area = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]);
-        if (area < 0) { // the other way round
+        if (area < 0) { // reverses the orientation
             const int64_t column = x[1], row = y[1];
             x[1] = x[2], y[1] = y[2];
             x[2] = column, y[2] = row;
@@ -56,7 +56,7 @@ struct WoundTriangle {
     }
 };
 
-/// Whether a triangle has the samples on an edge that goes by (dx, dy): a left one, or an upper one.
+/// Whether a triangle owns the samples on an edge in direction (dx, dy): a left edge or an upper one.
 HD inline bool has_edge(int64_t dx, int64_t dy) { return dy < 0 || (dy == 0 && dx > 0); }
 
 /// Pixels of row `y` whose samples lie in the triangle of corners 0, k and k + 1.
@@ -83,7 +83,8 @@ HD inline PixelSpan span_of(const ProjectedTriangle& t, int k, int32_t y, Sample
     return span;
 }
 
-/// Whether the polygon has the one sample at `at`, from the picture's upper left corner: what span_of says of it.
+/// Whether the polygon contains the single sample at `at`, from the picture's upper left corner; consistent with
+/// span_of.
 HD inline bool has_sample(const ProjectedTriangle& t, SamplePlace at) {
     for (int k = 1; k + 1 < t.count; ++k) {
         WoundTriangle wound;

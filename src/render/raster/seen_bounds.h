@@ -1,14 +1,14 @@
 #pragma once
 
-// The part of the picture where rays may meet a triangle: a bound that is never too small, by clipping the triangle in
-// homogeneous coordinates to the cone of rays and nothing else, so that triangles behind the camera, across it and
-// through it need no case of their own.
+// Conservative bounds of the part of the picture where rays may hit a triangle. The triangle is clipped in
+// homogeneous coordinates to the cone of rays only, so that triangles behind, across or through the camera need no
+// special case.
 //
-// Why it holds all rays that the ray's own test accepts: that test (trace/intersect/intersect_triangle.h) decides as an
-// exact one does for a triangle whose corners are moved by less than e in each coordinate. So of the triangle as it is
-// there is a point q within e of a point q' of the ray, and q' lies in the cone of the ray's pixels. Every plane of the
-// cone that the triangle is clipped to is therefore moved out by e, in its own measure, and so are the bounds of what
-// is left. Doubles round by 2^-53 of the sizes at hand; e is 2^-18 of them (triangle_error), four times what boxes
+// Proof that it covers all rays that the ray-triangle test accepts: that test (trace/intersect/intersect_triangle.h)
+// decides as an exact test of a triangle whose corners have moved by less than e in each coordinate. So a point q of
+// the original triangle lies within e of a point q' of the ray, and q' lies in the cone of the ray's pixels.
+// Therefore every clipping plane of the cone is moved out by e in its own measure, and so are the bounds of the
+// result. Doubles round by 2^-53 of the sizes involved; e is 2^-18 of them (triangle_error), four times what boxes
 // need.
 
 #include "render/raster/clip_triangle.h"
@@ -17,16 +17,16 @@ namespace pertev {
 
 struct SeenTriangle {
     PinholePoint corners[3];
-    double error; // e, in the camera's space, metres
+    double error; // e, in camera space, metres
 };
 
-/// Columns and rows of pixels, and how near.
+/// Columns and rows of pixels, and the least depth.
 struct SeenBounds {
     int32_t left, right, top, bottom; // inclusive
-    double depth;                     // of nothing that is met less, metres
+    double depth;                     // lower bound of the depth of any hit, metres
 };
 
-/// `x` in [lo, hi], NaN as lo; rounded down.
+/// Clamps `x` to [lo, hi], NaN to lo, and rounds down.
 HD inline int32_t pixel_of(double x, int32_t lo, int32_t hi) {
     if (!(x > static_cast<double>(lo))) return lo;
     if (!(x < static_cast<double>(hi))) return hi;
@@ -34,14 +34,14 @@ HD inline int32_t pixel_of(double x, int32_t lo, int32_t hi) {
     return static_cast<double>(i) > x ? i - 1 : i;
 }
 
-/// Where rays of pixels in rows [top, bottom] may meet the triangle. False where none may.
+/// Bounds where rays of pixels in rows [top, bottom] may hit the triangle. Returns false if none may.
 HD inline bool seen_bounds(const Pinhole& camera, const SeenTriangle& triangle, uint32_t top, uint32_t bottom,
                            SeenBounds& bounds) {
     const double reach_x = camera.filter_radius + camera.margin_x, reach_y = camera.filter_radius + camera.margin_y;
     const double x_lo = camera.x_of(0.5 - reach_x), x_hi = camera.x_of(camera.width - 0.5 + reach_x);
     const double y_lo = camera.y_of(top + 0.5 - reach_y), y_hi = camera.y_of(bottom + 0.5 + reach_y);
     const double e = triangle.error;
-    // What e is across a plane x = s w: e (1 + |s|), and e where w is 1.
+    // Size of e across a plane x = s w: e (1 + |s|), and e if w is 1.
     const double per_w = camera.is_perspective ? e : 0.0;
     const double e_x = e + per_w * x_hi, e_y = e + per_w * max(::fabs(y_lo), ::fabs(y_hi));
 
@@ -59,7 +59,7 @@ HD inline bool seen_bounds(const Pinhole& camera, const SeenTriangle& triangle, 
     for (int i = 0; i < seen.count; ++i) {
         const PinholePoint& p = seen.corners[i];
         depth = p.depth < depth ? p.depth : depth;
-        if (!(p.w > 4 * e) && camera.is_perspective) { // so near to the eye that it may be seen anywhere
+        if (!(p.w > 4 * e) && camera.is_perspective) { // so near to the eye that it may appear anywhere
             left = x_lo, right = x_hi, up = y_lo, down = y_hi;
             continue;
         }
@@ -74,7 +74,7 @@ HD inline bool seen_bounds(const Pinhole& camera, const SeenTriangle& triangle, 
     if (!(to_x >= 0 && from_x < columns && to_y >= first && from_y < last + 1)) return false;
     bounds.left = pixel_of(from_x, 0, columns - 1), bounds.right = pixel_of(to_x, 0, columns - 1);
     bounds.top = pixel_of(from_y, first, last), bounds.bottom = pixel_of(to_y, first, last);
-    bounds.depth = depth - 2 * e; // one for the place, one for what t is rounded by
+    bounds.depth = depth - 2 * e; // one e for the position, one for the rounding of t
     return true;
 }
 

@@ -1,12 +1,12 @@
 #pragma once
 
-// Which triangles the rays of a tile of pixels can meet: a list for each tile, the nearest first. Made once for a scene
-// and a camera, by passes over triangles, and read by every sample (render/raster/find_in_tile.h).
+// Lists of the triangles that rays of each tile of pixels can hit, nearest first. They are made once per scene and
+// camera by passes over triangles, and every sample reads them (render/raster/find_in_tile.h).
 //
-// A triangle is put on the lists of all tiles that its bounds touch, a row of tiles at a time, since a long one is seen
-// in few tiles of each row. What spans many rows waits for a second pass, so that no thread has much more to do than
-// another. Places come from counters, so the order before sorting is any; after it, only triangles that are equally
-// near may change places, and which one a ray meets first does not depend on the order.
+// A triangle is added to the lists of all tiles that its bounds overlap, one row of tiles at a time, because a long
+// triangle covers few tiles of each row. A triangle that spans many rows is deferred to a second pass, which balances
+// the threads. Counters assign the positions, so the order before sorting is arbitrary. After it only triangles at
+// equal depth may be swapped, and the first hit does not depend on their order.
 
 #include <cstdint>
 
@@ -18,39 +18,40 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kIsBaked = 2; // BvhTriangle::flags: it lies in world space, else in its instance's
+inline constexpr uint32_t kIsBaked = 2; // in BvhTriangle::flags: the triangle is in world space, else in its
+                                        // instance's
 
 struct TileCounts {
-    uint64_t triangles; // that are seen
-    uint64_t entries;   // of all lists
-    uint64_t rows;      // that wait for the second pass
+    uint64_t triangles; // visible triangles
+    uint64_t entries;   // entries of all lists
+    uint64_t rows;      // rows deferred to the second pass
 };
 
-/// Where lists are made. What does not fit is counted and left out.
+/// Memory in which lists are made. Overflow is counted and dropped.
 struct TileListsView {
-    BvhTriangle* triangles;    // seen, as walks have them, with their instance
-    uint64_t* codes;           // of entries: tile in the upper half; bits of the least t at which it is met
+    BvhTriangle* triangles;    // visible ones in the traversal's format, with their instance
+    uint64_t* codes;           // sort key of entries: tile in the upper half; bits of the least possible t of a hit
     uint32_t* order;           // [i] is i
-    uint32_t* entry_triangles; // place in `triangles`
-    Uint2* rows;               // place in `triangles`, row of tiles
+    uint32_t* entry_triangles; // index into `triangles`
+    Uint2* rows;               // index into `triangles`, row of tiles
     TileCounts* counts;
     uint64_t most_triangles, most_entries, most_rows;
     uint32_t shift;   // tiles have 2^shift pixels a side
-    uint32_t tiles_x; // tiles a row
+    uint32_t tiles_x; // tiles per row
 };
 
-/// Of the float instance transform, exact but for a double's rounding.
+/// Applies the float transform of an instance, exact up to rounding of a double.
 HD inline DoubleVec3 transform_in_double(const Transform& m, Vec3 p) {
     const DoubleVec3 d = to_double(p), t = to_double(m.translation);
     return {dot(to_double(m.row0), d) + t.x, dot(to_double(m.row1), d) + t.y, dot(to_double(m.row2), d) + t.z};
 }
 
-/// Largest sum of sizes along a row.
+/// Maximum absolute row sum.
 HD inline float row_norm(const Transform& m) { return max_component(transform_sizes(m, {1, 1, 1})); }
 
 /// The instance that a triangle of the scene belongs to.
 HD inline uint32_t instance_of(const SceneView& scene, uint32_t triangle) {
-    uint32_t lo = 0, hi = scene.instance_count; // the last whose first triangle is not beyond
+    uint32_t lo = 0, hi = scene.instance_count; // finds the last instance whose first triangle is not beyond
     while (hi - lo > 1) {
         const uint32_t mid = lo + (hi - lo) / 2;
         (scene.first_triangle[mid] <= triangle ? lo : hi) = mid;
@@ -63,7 +64,7 @@ struct BinTriangles {
     SceneView scene;
     TileListsView lists;
 
-    /// Triangle `number` of the scene.
+    /// Bins triangle `number` of the scene.
     HD void operator()(uint32_t number) const {
         const uint32_t instance = instance_of(scene, number);
         const InstanceView& placed = scene.instances[instance];
@@ -96,9 +97,9 @@ struct BinTriangles {
         }
     }
 
-    /// In the camera's space, with the bound of what rounding does to it (render/raster/seen_bounds.h): in world space
-    /// 2^-18 (|o| + |p|), and where the ray goes into an instance's space, of condition K, 2 K times that, as the top
-    /// level's boxes have it (accel/bvh/top_level_bvh.h).
+    /// Triangle in camera space with its error bound (render/raster/seen_bounds.h): in world space 2^-18 (|o| + |p|),
+    /// and for a ray in an instance's space with condition K, 2 K times that, as for the top level's boxes
+    /// (accel/bvh/top_level_bvh.h).
     HD static SeenTriangle see(const Pinhole& camera, const SceneView& scene, const BvhTriangle& triangle) {
         SeenTriangle seen;
         const Vec3 corners[] = {triangle.a, triangle.b, triangle.c};
@@ -122,7 +123,7 @@ struct BinTriangles {
         return seen;
     }
 
-    /// Puts a triangle on the lists of its tiles of a row.
+    /// Adds a triangle to the lists of its tiles in a row.
     HD static void add_row(const TileListsView& lists, const Pinhole& camera, uint32_t place, uint32_t row,
                            const SeenBounds& bounds) {
         const auto from = static_cast<uint32_t>(bounds.left) >> lists.shift,
@@ -130,7 +131,7 @@ struct BinTriangles {
         const uint64_t first_entry = atomic_add(&lists.counts->entries, uint64_t(to - from + 1));
         if (first_entry + (to - from) >= lists.most_entries) return;
         const double least_t = max(bounds.depth * camera.distance_scale, 0.0);
-        // The float below: it is only compared with a t that a ray has.
+        // The float below, because it is only compared with a ray's t.
         const float nearest = static_cast<float>(least_t * (1 - 0x1p-20));
         for (uint32_t tile = from; tile <= to; ++tile) {
             const uint64_t entry = first_entry + (tile - from);
@@ -158,11 +159,11 @@ struct BinRows {
     }
 };
 
-/// After the entries have been sorted: entry i of all lists, in their order.
+/// One call per entry i of all lists after sorting.
 struct FinishTileLists {
     const uint64_t* codes; // sorted
     const uint32_t* entry_triangles;
-    uint32_t* order; // place of the entry before sorting; becomes its triangle's place
+    uint32_t* order; // index of the entry before sorting; becomes its triangle's index
     Uint2* tiles;    // first entry of each tile's list, and one past its last; zero before
     uint32_t count;
 

@@ -20,7 +20,7 @@
 namespace pertev {
 namespace {
 
-// Splines may lead out of the range.
+// Splines may overshoot the valid range.
 constexpr float kLeastFov = 0x1p-12f;    // radians
 constexpr float kLeastLength = 0x1p-20f; // metres
 
@@ -32,7 +32,7 @@ std::vector<uint32_t> numbers_of(const std::vector<bool>& flags) {
     return numbers;
 }
 
-/// Zeros of two signs are two, as what is computed from them may be.
+/// Zeros of different sign count as different, because results computed from them may differ.
 template <class T>
 bool same_bits(const T& a, const T& b) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -61,7 +61,7 @@ PosedScene::PosedScene(Scene rest, bool leaves_vertices)
     for (const Mesh& mesh : scene_.meshes) bounds_.push_back(bounds_of(mesh));
 }
 
-/// Those of meshes that no animation changes: they have done what they are for.
+/// Removes the shapes of meshes that no animation changes, which are no longer needed.
 void PosedScene::drop_shapes_at_rest() {
     std::vector<bool> moves(scene_.meshes.size());
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
@@ -70,8 +70,8 @@ void PosedScene::drop_shapes_at_rest() {
     std::erase_if(scene_.shapes, [&](const MeshShape& shape) { return !moves[shape.mesh]; });
 }
 
-/// Meshes that give no light, of which every instance may move: the others are the lights' and the baked tree's too. At
-/// rest their triangles are wound as at the times at which no joint mirrors.
+/// Selects meshes without emission all of whose instances may move; others are needed by the lights or the baked
+/// tree. At rest the winding of their triangles is that of times without a mirroring joint.
 void PosedScene::find_shapes_to_leave() {
     std::vector<bool> stays(scene_.meshes.size());
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
@@ -174,7 +174,7 @@ void PosedScene::read_channels(double time_s) {
 
 void PosedScene::place_nodes() {
     for (const uint32_t node : parents_first_) {
-        if (!node_moves_[node]) continue; // stands as at rest
+        if (!node_moves_[node]) continue; // stays at rest
         const DoubleTransform* matrix = std::get_if<DoubleTransform>(&scene_.nodes[node].pose);
         const NodePlace local = matrix == nullptr ? place_of(node_poses_[node]) : place_of(*matrix);
         const uint32_t parent = scene_.nodes[node].parent;

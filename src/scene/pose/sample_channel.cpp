@@ -11,7 +11,7 @@ namespace {
 
 float length(Vec4 q) { return sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w); }
 
-/// At unit length; not finite for 0.
+/// Normalizes a quaternion; not finite for 0.
 Vec4 unit(Vec4 q) {
     const auto squared = [](float x) { return static_cast<double>(x) * static_cast<double>(x); };
     const double size = std::sqrt(squared(q.x) + squared(q.y) + squared(q.z) + squared(q.w));
@@ -27,17 +27,17 @@ Vec4 quaternion(std::span<const float> v) { return {v[0], v[1], v[2], v[3]}; }
 
 void put(Vec4 q, std::span<float> value) { value[0] = q.x, value[1] = q.y, value[2] = q.z, value[3] = q.w; }
 
-/// Section C.5. `seconds`: between the two keys, whose tangents are a second.
+/// Evaluates the cubic of section C.5. `seconds` is the time between the two keys; tangents are per second.
 double cubic(double before, double out, double in, double after, double t, double seconds) {
     const double t2 = t * t, t3 = t2 * t;
     return (2 * t3 - 3 * t2 + 1) * before + seconds * (t3 - 2 * t2 + t) * out + (3 * t2 - 2 * t3) * after +
            seconds * (t3 - t2) * in;
 }
 
-/// The keys of a channel, each as its one or three values.
+/// The keys of a channel, each with its one or three values.
 struct Keys {
     const AnimationChannel& channel;
-    std::size_t numbers; // in a value
+    std::size_t numbers; // components of a value
 
     std::span<const float> at(std::size_t key, std::size_t part) const {
         const std::size_t parts = channel.interpolation == Interpolation::CubicSpline ? 3 : 1;
@@ -53,10 +53,10 @@ struct Keys {
 Vec4 slerp(Vec4 a, Vec4 b, float t) {
     const float sign = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w < 0 ? -1.0f : 1.0f;
     b = sign * b;
-    // Kahan's angle between two unit vectors: as exact for small ones as for large.
+    // Kahan's angle between two unit vectors, which is precise for small and large angles.
     const float angle = 2 * atan2(length(a + -1.0f * b), length(a + b));
     float of_a = 1 - t, of_b = t;
-    if (angle > 0x1p-12f) { // else the chord is the arc
+    if (angle > 0x1p-12f) { // otherwise the chord equals the arc
         const float inv = 1 / sin(angle);
         of_a = sin((1 - t) * angle) * inv;
         of_b = sin(t * angle) * inv;

@@ -49,11 +49,11 @@ float angle_of_cosine(float x) {
     return static_cast<float>(x > 0 ? angle : pi - angle);
 }
 
-/// One triangle's part of the mean at one of its corners.
+/// One triangle's contribution to the mean at one of its corners.
 struct Share {
-    Vec3 along_u, along_v; // across the normal, unit or zero
-    float angle;           // radians, between the triangle's edges as they lie across the normal
-    bool is_known;         // else it adds nothing
+    Vec3 along_u, along_v; // perpendicular to the normal, unit or zero
+    float angle;           // radians, between the triangle's edges after projection along the normal
+    bool is_known;         // otherwise it contributes nothing
 };
 
 Share share_of(const TangentMesh& mesh, const UvDirections& directions, uint32_t corner) {
@@ -120,7 +120,7 @@ public:
     }
 
 private:
-    /// Up to so many triangles of a group are compared pair by pair; in a larger group all take part.
+    /// Groups with up to this many triangles are compared pair by pair; in a larger group all take part.
     static constexpr std::size_t kMostCompared = 256;
     using Members = std::array<uint64_t, kMostCompared / 64>; // a bit for each
 

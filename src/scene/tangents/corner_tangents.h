@@ -12,9 +12,9 @@
 
 namespace pertev {
 
-/// Returns a unit tangent for each corner. Its w is glTF's handedness: the bitangent cross(normal, tangent) * w points
-/// against growing v. A corner without any direction gets (1, 0, 0, 1). `groups` belong to a mesh with these indices
-/// and texture coordinates; its vertices may have moved since.
+/// Returns a unit tangent for each corner. Its w is glTF's handedness: the bitangent cross(normal, tangent) * w
+/// points against growing v. A corner without a direction gets (1, 0, 0, 1). `groups` belong to a mesh with these
+/// indices and texture coordinates; its vertices may have moved since.
 std::vector<Vec4> corner_tangents(const TangentMesh& mesh, const TangentGroups& groups);
 
 } // namespace pertev

@@ -15,11 +15,11 @@
 namespace pertev {
 namespace {
 
-/// The vertices of a mesh, or each of its corners by itself where it has no normals: those of its triangles are taken
-/// then.
+/// The vertices of a mesh, or each of its corners separately if it has no normals, which then come from the
+/// triangles.
 class Vertices {
 public:
-    /// `indices` as the file winds them. Both outlive this object.
+    /// `indices` have the file's winding. Both outlive this object.
     Vertices(std::span<const uint32_t> indices, std::span<const Vec2> uv, bool has_normals)
         : has_normals_(has_normals), indices_(indices), uv_(uv) {
         if (has_normals) return;
@@ -28,8 +28,8 @@ public:
         for (std::size_t i = 0; i < indices.size(); ++i) corner_numbers_[i] = static_cast<uint32_t>(i);
     }
 
-    /// The mesh with its vertices at these places; normals are of any length but 0. Valid until the next call, and as
-    /// long as `positions` are.
+    /// The mesh with its vertices at these positions; normals have any length but 0. Valid until the next call, and
+    /// as long as `positions`.
     TangentMesh at(std::span<const Vec3> positions, std::span<const Vec3> normals) {
         if (has_normals_) {
             normals_.resize(normals.size());
@@ -97,8 +97,7 @@ std::vector<Vec3> sum(const std::vector<Vec3>& values, const std::vector<Vec3>& 
     return sums;
 }
 
-/// Returns the differences between the tangents of the mesh that is moved to a target and those at rest; empty if there
-/// are none.
+/// Returns the differences between the tangents of the mesh at a target and those at rest; empty if there are none.
 std::vector<Vec3> tangent_offsets(const std::vector<Vec4>& at_target, const std::vector<Vec4>& tangents) {
     std::vector<Vec3> offsets;
     offsets.reserve(tangents.size());
@@ -115,7 +114,7 @@ void wind_other_way(std::vector<uint32_t>& indices) {
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
 }
 
-/// `shape` is null where nothing moves the vertices; else the caller makes the mesh's vertices of the shape's.
+/// `shape` is null if nothing moves the vertices; otherwise the caller makes the mesh's vertices from the shape's.
 void add_tangents(Mesh& mesh, MeshShape* shape, uint8_t uv_set) {
     const bool is_turned_over = shape != nullptr && shape->is_turned_over;
     if (is_turned_over) wind_other_way(mesh.indices);
@@ -157,11 +156,11 @@ void add_tangents(Mesh& mesh, MeshShape* shape, uint8_t uv_set) {
 
 constexpr uint32_t kNone = 0xffffffffu;
 
-/// The mesh that instances with a normal map over either set of coordinates get in place of their own; kNone: there are
-/// none.
+/// The meshes that replace an instance's mesh if its normal map uses the one or the other set of coordinates; kNone
+/// if there is none.
 using MeshBySet = std::array<uint32_t, 2>;
 
-/// Adds copies of meshes that need tangents over both sets, and points instances to theirs.
+/// Adds copies of meshes that need tangents for both sets, and redirects instances to theirs.
 std::vector<MeshBySet> choose_meshes(Scene& scene) {
     std::vector<MeshBySet> chosen(scene.meshes.size(), {kNone, kNone});
     for (Instance& instance : scene.instances) {

@@ -11,7 +11,7 @@ SplitVertices split_vertices(std::span<const uint32_t> indices, std::size_t vert
     SplitVertices split;
     split.indices.assign(indices.begin(), indices.end());
     split.first_corner.assign(vertex_count, kNoCornerShows);
-    std::vector<uint32_t> others; // corners whose tangent is not that of their vertex's first
+    std::vector<uint32_t> others; // corners whose tangent differs from that of their vertex's first corner
     for (uint32_t corner = 0; corner < indices.size(); ++corner) {
         uint32_t& first = split.first_corner[indices[corner]];
         if (first == kNoCornerShows) first = corner;

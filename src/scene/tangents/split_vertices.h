@@ -1,6 +1,6 @@
 #pragma once
 
-// Splits the vertices of a mesh whose corners have tangents of their own.
+// Splits the vertices of a mesh whose corners have different tangents.
 
 #include <cstdint>
 #include <span>
@@ -11,15 +11,15 @@
 namespace pertev {
 
 struct SplitVertices {
-    std::vector<uint32_t> indices;      // [corners] of the new vertices
-    std::vector<uint32_t> copied_from;  // [vertices added] each a copy of that old one; they follow the old ones
-    std::vector<uint32_t> first_corner; // [old and added vertices] that shows it, or kNoCornerShows
+    std::vector<uint32_t> indices;      // [corners] new vertices
+    std::vector<uint32_t> copied_from;  // [added vertices] the old vertex that each copies; they follow the old ones
+    std::vector<uint32_t> first_corner; // [old and added vertices] first corner that uses it, or kNoCornerShows
 };
 
 inline constexpr uint32_t kNoCornerShows = 0xffffffffu;
 
-/// `indices`: [corners] of `vertex_count` vertices; `tangents`: [corners]. The first tangent of a vertex keeps its
-/// number.
+/// `indices`: [corners] of `vertex_count` vertices; `tangents`: [corners]. The first tangent of a vertex keeps the
+/// vertex's number.
 SplitVertices split_vertices(std::span<const uint32_t> indices, std::size_t vertex_count,
                              std::span<const Vec4> tangents);
 

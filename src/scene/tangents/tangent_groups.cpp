@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kNoCorner = 0xffffffffu;
 
-/// Equal numbers have equal results: both zeros give one.
+/// Bits of a float; both zeros give the same.
 uint32_t bits_of_number(float x) { return std::bit_cast<uint32_t>(x + 0.0f); }
 
 std::vector<uint32_t> weld(const TangentMesh& mesh) {
@@ -32,7 +32,7 @@ std::vector<uint32_t> weld(const TangentMesh& mesh) {
 }
 
 enum class TriangleKind : uint8_t {
-    TwoEqual, // two of its positions are the same: no triangle
+    TwoEqual, // two of its positions are equal, so it has no area
     Unknown,  // its texture coordinates have no direction
     Known,
 };
@@ -58,7 +58,7 @@ Triangles sort_out(const TangentMesh& mesh) {
     return triangles;
 }
 
-/// An edge is listed at its vertex of the lower number; `corner` is where its triangle begins it.
+/// An edge is listed at the vertex with the lower number; `corner` is where its triangle begins the edge.
 struct Edge {
     uint32_t higher, corner;
     auto operator<=>(const Edge&) const = default;
@@ -95,7 +95,7 @@ EdgeLists list_edges(const std::vector<uint32_t>& welded, const Triangles& trian
 std::vector<uint32_t> find_neighbours(const std::vector<uint32_t>& welded, const Triangles& triangles) {
     EdgeLists lists = list_edges(welded, triangles);
     std::vector<uint32_t> neighbour(welded.size(), kNoCorner);
-    std::deque<uint32_t> waiting; // corners of one edge, all in one direction
+    std::deque<uint32_t> waiting; // corners of one edge, all in the same direction
     for (std::size_t lower = 0; lower + 1 < lists.first.size(); ++lower) {
         const std::span<Edge> edges =
             std::span(lists.edges).subspan(lists.first[lower], lists.first[lower + 1] - lists.first[lower]);
@@ -116,7 +116,7 @@ std::vector<uint32_t> find_neighbours(const std::vector<uint32_t>& welded, const
     return neighbour;
 }
 
-/// Spreads each group over the corners that are connected.
+/// Extends each group over connected corners.
 class Grouping {
 public:
     Grouping(const std::vector<uint32_t>& neighbour, Triangles& triangles, TangentGroups& groups)
@@ -153,7 +153,7 @@ private:
     void take(uint32_t corner) {
         groups_.group[corner] = static_cast<uint32_t>(groups_.count() - 1);
         const uint32_t before = neighbour_[previous_corner(corner)], after = neighbour_[corner];
-        if (before != kNoCorner) open_.push_back(before); // begins its edge at this vertex
+        if (before != kNoCorner) open_.push_back(before); // its edge begins at this vertex
         if (after != kNoCorner) open_.push_back(static_cast<uint32_t>(next_corner(after)));
     }
 
@@ -180,7 +180,7 @@ void list_corners(TangentGroups& groups) {
 std::vector<BorrowedTangent> find_lenders(const std::vector<uint32_t>& welded, const Triangles& triangles) {
     std::vector<BorrowedTangent> borrowed;
     const auto is_two_equal = [&](std::size_t corner) { return triangles.kind[corner / 3] == TriangleKind::TwoEqual; };
-    std::vector<uint32_t> first; // corner of a triangle with three positions, by vertex
+    std::vector<uint32_t> first; // [vertex] a corner of a triangle with three positions
     for (uint32_t corner = 0; corner < welded.size(); ++corner) {
         if (!is_two_equal(corner)) continue;
         if (first.empty()) {

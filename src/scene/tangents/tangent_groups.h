@@ -25,12 +25,13 @@ struct BorrowedTangent {
 
 struct TangentGroups {
     std::vector<uint32_t> group;           // [corners] or kNoTangentGroup
-    std::vector<BorrowedTangent> borrowed; // corners of triangles without area, and corners of others at their vertices
+    std::vector<BorrowedTangent> borrowed; // corners of triangles without area, and corners of others at their
+                                           // vertices
 
     // By group:
-    std::vector<uint32_t> first;               // [groups + 1] places in `corners`
-    std::vector<uint32_t> corners;             // of one group after the other, rising within each
-    std::vector<uint8_t> is_counter_clockwise; // [groups], as of UvDirections
+    std::vector<uint32_t> first;               // [groups + 1] index into `corners`
+    std::vector<uint32_t> corners;             // one group after the other, ascending within each
+    std::vector<uint8_t> is_counter_clockwise; // [groups], as in UvDirections
 
     std::size_t count() const { return is_counter_clockwise.size(); }
     std::span<const uint32_t> corners_of(std::size_t i) const {
@@ -38,7 +39,7 @@ struct TangentGroups {
     }
 };
 
-/// Takes time in proportion to the corners times the logarithm of how many meet in a vertex.
+/// Takes time proportional to the corners times the logarithm of the number that meet in a vertex.
 TangentGroups make_tangent_groups(const TangentMesh& mesh);
 
 } // namespace pertev

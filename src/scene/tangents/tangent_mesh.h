@@ -17,7 +17,7 @@ namespace pertev {
 struct TangentMesh {
     std::span<const Vec3> positions, normals; // [vertices]; normals are unit
     std::span<const Vec2> uv;                 // [vertices]
-    std::span<const uint32_t> indices;        // [3 * triangles]; they number these vertices
+    std::span<const uint32_t> indices;        // [3 * triangles]; indices of these vertices
 
     std::size_t corner_count() const { return indices.size(); }
     Vec3 position(std::size_t corner) const { return positions[indices[corner]]; }
@@ -25,13 +25,13 @@ struct TangentMesh {
     Vec2 coordinate(std::size_t corner) const { return uv[indices[corner]]; }
 };
 
-/// Both stay within the corner's triangle.
+/// Next and previous corner of the same triangle.
 inline std::size_t next_corner(std::size_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
 inline std::size_t previous_corner(std::size_t corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
 
 struct UvDirections {
-    Vec3 along_u, along_v;     // unit; zero where the coordinates do not say
-    bool is_counter_clockwise; // as the triangle lies in the plane of (u, v), u right and v up
+    Vec3 along_u, along_v;     // unit; zero if the coordinates define no direction
+    bool is_counter_clockwise; // orientation in the plane of (u, v), u right and v up
     bool is_known;             // both directions have a length
 };
 
@@ -43,7 +43,7 @@ inline UvDirections uv_directions(const TangentMesh& mesh, std::size_t triangle)
     const std::size_t a = 3 * triangle;
     const Vec3 ab = mesh.position(a + 1) - mesh.position(a), ac = mesh.position(a + 2) - mesh.position(a);
     const Vec2 uv_ab = mesh.coordinate(a + 1) - mesh.coordinate(a), uv_ac = mesh.coordinate(a + 2) - mesh.coordinate(a);
-    const float area = uv_ab.x * uv_ac.y - uv_ab.y * uv_ac.x; // twice, with its sign
+    const float area = uv_ab.x * uv_ac.y - uv_ab.y * uv_ac.x; // twice the signed area
     UvDirections result = {.along_u = {}, .along_v = {}, .is_counter_clockwise = area > 0, .is_known = false};
     if (!is_not_zero(area)) return result;
     const Vec3 by_u = uv_ac.y * ab - uv_ab.y * ac, by_v = uv_ab.x * ac - uv_ac.x * ab;

@@ -164,7 +164,7 @@ private:
         moves_ = may_move(scene_);
     }
 
-    /// A scale of 0 is how glTF hides a node. What may move stays, hidden: at a time it may be there.
+    /// glTF hides a node by a scale of 0. An instance that may move stays hidden, because it may appear at a time.
     void drop_singular_instances() {
         std::vector<Bounds3> bounds;
         for (const Mesh& mesh : scene_.meshes) bounds.push_back(bounds_of(mesh));
@@ -198,13 +198,13 @@ private:
                                        counted(dropped, "instance"), first_singular_)});
     }
 
-    /// Whether a surface would be left of what is placed so.
+    /// Whether a transform removes all area of surfaces.
     static bool is_flat(const Transform& m) {
         const Vec3 a = column(m, 0), b = column(m, 1), c = column(m, 2);
         return max_component(abs(cross(a, b)) + abs(cross(b, c)) + abs(cross(c, a))) > 0;
     }
 
-    /// Empty where it can be placed so.
+    /// Returns why an instance cannot be placed there; empty if it can.
     static std::string fault_of_place(const Instance& instance, const Bounds3& local) {
         const Transform& m = instance.world_from_local;
         if (!is_finite(m)) return "has a transform that is not finite";
@@ -266,8 +266,8 @@ private:
     const std::string& file_;
     Messages& messages_;
     MeshRepairs repairs_;
-    std::vector<bool> moves_;                                         // may_move of the instances there are
-    std::string first_empty_mesh_, first_singular_, first_misplaced_; // where they are described
+    std::vector<bool> moves_;                                         // may_move of the instances
+    std::string first_empty_mesh_, first_singular_, first_misplaced_; // locations in the file
 };
 
 } // namespace

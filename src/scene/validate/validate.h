@@ -1,8 +1,8 @@
 #pragma once
 
-// The gate between readers and the renderer: after it, every index is in range, every number finite and within
-// base/limits.h, every transform invertible, nodes without circles, key times rising. Readers may leave any of that
-// wrong.
+// The validation between readers and the renderer: after it, every index is in range, every number finite and within
+// base/limits.h, every transform invertible, nodes are without cycles, key times ascend. Readers need not check any
+// of that.
 
 #include <string>
 
@@ -11,10 +11,10 @@
 
 namespace pertev {
 
-/// Repairs what can be repaired (triangles with vertices that are not finite or without area are dropped, each kind
-/// with one warning that counts them; so are instances that a scale of 0 hides at all times) and throws Error(BadInput
-/// or OverLimit) for the rest. `file` names the source in messages. A scene without any triangle left is an error.
-/// Meshes with a normal map and without tangents get them (scene/tangents/make_tangents.h).
+/// Repairs what can be repaired: triangles with vertices that are not finite, or without area, are removed, with one
+/// warning per kind that counts them, and so are instances that a scale of 0 always hides. Throws Error(BadInput or
+/// OverLimit) for everything else. `file` names the source in messages. A scene without any triangle left is an
+/// error. Meshes with a normal map and without tangents get them (scene/tangents/make_tangents.h).
 void validate(Scene& scene, const std::string& file, Messages& messages);
 
 } // namespace pertev

@@ -43,7 +43,7 @@ private:
         }
     }
 
-    /// Sets what is not finite, and what is below `least`, to 0.
+    /// Replaces values that are not finite or below `least` by 0.
     void clean(std::vector<float>& pixels, float least, const std::string& of) {
         std::size_t bad_values = 0;
         for (float& value : pixels) {
@@ -115,7 +115,7 @@ private:
     Scene& scene_;
     const std::string& file_;
     Messages& messages_;
-    std::string of_; // the material being looked at
+    std::string of_; // the current material
     std::size_t clamped_ = 0;
     std::string first_clamped_;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-// validate()'s part for materials, images and the environment.
+// The part of validate() for materials, images and the environment.
 
 #include <string>
 
@@ -9,8 +9,9 @@
 
 namespace pertev {
 
-/// Clamps what has a range, with a warning; throws Error(BadInput or OverLimit) for what is not finite or out of range
-/// as an index. Pixels that are not finite, or negative light, become 0, with a warning that counts them.
+/// Clamps values to their ranges with a warning; throws Error(BadInput or OverLimit) for numbers that are not finite
+/// and for indices out of range. Pixels that are not finite, or negative light, become 0, with a warning that counts
+/// them.
 void validate_materials(Scene& scene, const std::string& file, Messages& messages);
 
 } // namespace pertev

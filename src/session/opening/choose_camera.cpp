@@ -20,7 +20,7 @@ namespace {
 std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 std::string text_of(DoubleVec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
-/// `x` as a notice writes it, and no more exactly, so that the settings of the notice make the same picture.
+/// Rounds `x` exactly as a notice prints it, so that the settings in the notice give the same picture.
 float rounded(float x, int digits) {
     const std::string text = fmt::format("{:.{}g}", x, digits);
     float value = x;
@@ -45,10 +45,10 @@ void place_camera(const CameraChoice& choice, const Scene& scene, Camera& camera
     if (choice.target) camera.focus_distance = length(target - eye);
 }
 
-/// For a scene without a camera and a choice without an eye.
+/// Makes the camera for a scene without one and a choice without an eye.
 Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect, Messages& messages) {
     if (!choice.target) return make_default_camera(scene, aspect, messages);
-    Messages unsaid; // of a view that is not to be: it looks elsewhere
+    Messages unsaid; // discards messages about a view that is not used
     const Camera camera = make_default_camera(scene, aspect, unsaid);
     const Vec3 eye = camera.world_from_camera.translation;
     messages.make_up(fmt::format("no camera in the scene: a made-up eye looks at the target (`eye={}` `target={}`)",
@@ -56,7 +56,7 @@ Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect,
     return camera;
 }
 
-/// Gives a perspective camera the height of an orthographic view that shows as much of what it looks at.
+/// Replaces a perspective camera by an orthographic one whose height shows as much at its target.
 void flatten(const CameraChoice& choice, const Scene& scene, Camera& camera) {
     const Vec3 eye = camera.world_from_camera.translation, forward = -column(camera.world_from_camera, 2);
     const Bounds3 bounds = bounds_of(scene);
@@ -66,8 +66,8 @@ void flatten(const CameraChoice& choice, const Scene& scene, Camera& camera) {
     if (distance > 0) camera.ortho_height = min(2 * tan(0.5f * camera.fov_y) * distance, kMaxCoordinate);
 }
 
-/// Where there is an aperture, but neither a focus nor a target that was said: focuses `camera`, which is placed, on
-/// what is in the middle of its picture, or else on the distance of the scene's middle, with a notice.
+/// If there is an aperture, but neither focus nor target was given, focuses the placed `camera` on what is in the
+/// middle of its picture, or else on the distance of the scene's middle, with a notice.
 void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera& camera, Messages& messages) {
     const bool has_target = choice.target && !choice.is_aimed;
     if (!(choice.aperture.value_or(0) > 0) || choice.focus || has_target) return;
@@ -148,7 +148,7 @@ Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Mess
         camera = make_camera(choice, scene, aspect, messages);
     }
     Vec3& place = camera.world_from_camera.translation;
-    place = told_in_file(scene, place); // so that numbers in the coordinates of the file say it to the bit
+    place = told_in_file(scene, place); // so that numbers in the coordinates of the file state it to the bit
     place_camera(choice, scene, camera);
     if (choice.fov_deg) camera.fov_y = *choice.fov_deg * kRadiansPerDegree;
     if (choice.aperture) camera.aperture_radius = *choice.aperture;

@@ -1,7 +1,7 @@
 #pragma once
 
-// From what is said of a camera (a name, an eye, a lens) to a camera: what is left open comes from the scene's own, or
-// from what there is to see. The fields below are called after the settings.
+// Makes a camera from the settings (a name, an eye, a lens). What these leave open comes from the scene's own camera,
+// or from the scene's contents. The fields below have the names of the settings.
 
 #include <string>
 
@@ -11,20 +11,21 @@
 
 namespace pertev {
 
-/// What can be told before the scene is read. Throws Error(BadInput) for a part of the choice that another one makes
-/// useless.
+/// Checks what can be checked before the scene is read. Throws Error(BadInput) for a part of the choice that another
+/// one overrides.
 void check_camera_choice(const CameraChoice& choice);
 
-/// The scene's own camera: the one that is named, else the first, else null. Throws Error(BadInput) that lists those
-/// there are when none is named so.
+/// The scene's own camera: the named one, else the first, else null. Throws Error(BadInput) with a list of the
+/// cameras if none has that name.
 const Camera* scene_camera(const std::string& name, const Scene& scene);
 
-/// Gives an eye without a target one, the middle of the scene, with a notice. choose_camera() does so, too; this is for
-/// those who record what was looked at.
+/// Gives an eye without a target the middle of the scene as its target, with a notice. choose_camera() does so too;
+/// this is for those who record the target.
 void aim_eye(CameraChoice& choice, const Scene& scene, Messages& messages);
 
-/// The camera that the choice or the scene or the defaults give, for a picture of this width / height. A part of the
-/// choice that this camera makes useless is a warning. The scene has been through validate(). Throws Error(BadInput).
+/// The camera from the choice, the scene or the defaults, for a picture with the aspect ratio width / height. A part
+/// of the choice without effect on this camera gives a warning. The scene has passed validate(). Throws
+/// Error(BadInput).
 Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Messages& messages);
 
 } // namespace pertev

@@ -22,7 +22,7 @@
 namespace pertev {
 namespace {
 
-/// Nothing where the options give none.
+/// Returns nothing if the options set no environment.
 std::optional<Environment> environment_of(const OpenOptions& options, Messages& messages) {
     Environment environment;
     if (options.environment_radiance) {
@@ -55,8 +55,8 @@ void turn_and_scale(const OpenOptions& options, Scene& scene, Messages& messages
     if (options.environment_scale != 1) warn("environment_scale");
 }
 
-/// Whether such a lamp is set before anything is made up. An environment is set last, after it was scaled, and so are
-/// lamps that have been made up.
+/// Whether such a lamp is set before light is added. An environment is set last, after scaling, and so are added
+/// lamps.
 bool names_lamp_of_file(const Scene& scene, const LampStrength& lamp) {
     if (scene.environment) return false;
     const auto is_called_so = [&](const auto& thing) { return has_name(names_of(scene, thing), lamp.name); };
@@ -72,7 +72,7 @@ void show_back_faces(Scene& scene, Messages& messages) {
     if (!any_hidden) messages.warn({"show_back_faces", "", "no surface of the scene hides its back"});
 }
 
-/// `light`: what was made up. `around`: of the scene, where that is a sky.
+/// `light` is the light that was added. `around` describes the scene if that is a sky.
 bool wants_ground(const OpenOptions& options, const Scene& scene, DefaultLight light, const Surroundings& around) {
     switch (options.ground) {
     case Ground::Off:
@@ -85,7 +85,7 @@ bool wants_ground(const OpenOptions& options, const Scene& scene, DefaultLight l
     return false;
 }
 
-/// Texts of a list as a message repeats them, one after the other.
+/// Joins the texts of a list for a message.
 std::string in_a_row(const std::vector<std::string>& list) {
     constexpr std::size_t kMost = 8;
     std::string text;
@@ -93,7 +93,7 @@ std::string in_a_row(const std::vector<std::string>& list) {
     return list.size() > kMost ? fmt::format("{} and {} more (pertev info)", text, list.size() - kMost) : text;
 }
 
-/// Says which animation plays where the file has several and nobody has chosen one.
+/// Says which animation plays if the file has several and none was chosen.
 void say_which_clip(const Scene& scene, const std::string& file, Messages& messages) {
     if (scene.clips.size() < 2) return;
     const std::vector<std::string> clips = list_clips(scene.clips);
@@ -196,7 +196,7 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
                                 [&](const LampStrength& lamp) { return names_lamp_of_file(scene, lamp); });
     set_lamps(scene, of_file, efficacy);
     Surroundings around;
-    // Who turns the last lamp of a file off wants it dark.
+    // Someone who switches off the last lamp of a file wants it dark.
     const bool is_turned_off = has_light && lacks_light(scene);
     const DefaultLight light =
         is_turned_off ? DefaultLight::None : add_default_light(scene, options.use, messages, &around);

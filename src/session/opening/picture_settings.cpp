@@ -18,7 +18,7 @@ bool is_layer_of_files(const std::string& name) {
            std::ranges::any_of(kAovTable, [&](const AovGroup& group) { return name == group.layer; });
 }
 
-/// Returns the layers of light paths without a scene. It checks what can be told before one is read.
+/// Returns the layers of light paths without a scene, after the checks that need none.
 LightPathLayers light_paths(const PictureOptions& options) {
     LightPathLayers layers;
     for (const std::string& text : options.lpe) layers.expressions.push_back(parse_light_path(text));
@@ -40,7 +40,7 @@ std::vector<HeightMapText> height_maps(const PictureOptions& options) {
 
 RenderSettings light_settings(const PictureOptions& options) {
     RenderSettings settings = options.render;
-    for (const std::string& name : options.aovs) settings.aovs |= *aov_named(name); // which has been checked
+    for (const std::string& name : options.aovs) settings.aovs |= *aov_named(name); // names have been checked
     settings.irradiance = options.false_color == "illuminance";
     if (!options.lpe.empty()) settings.light_paths = std::make_shared<const LightPathLayers>(light_paths(options));
     check_integrator(settings);

@@ -1,6 +1,6 @@
 #pragma once
 
-// From what is asked for in words to the settings of a render.
+// Converts options from text to the settings of a render.
 
 #include "scene/scene.h"
 #include "settings/picture_options.h"

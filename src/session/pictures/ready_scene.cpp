@@ -18,8 +18,8 @@
 namespace pertev {
 namespace {
 
-/// Auto where the view is made up, too, and shows a background: an alpha channel leaves it out, and integrators that
-/// find a part of the light alone show a ground that differs from the studio's floor.
+/// Returns Auto if the view is a default one too and shows a background. An alpha channel removes the ground, and
+/// integrators with only a part of the light would show a ground that differs from the studio's floor.
 Ground ground_of(const PictureOptions& options) {
     if (options.scene.ground == "on" && options.render.transparent) {
         throw Error(ErrorCode::BadInput, "ground", "on",
@@ -33,12 +33,12 @@ Ground ground_of(const PictureOptions& options) {
     return is_off ? Ground::Off : Ground::Auto;
 }
 
-/// Says all that was asked for, and what asked for it, with the size and the number of samples that came of it.
+/// Reports all given settings and their sources, with the resulting size and number of samples.
 void tell_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source) {
     const CameraChoice& choice = options.scene.camera;
     const Camera* const own = scene_camera(choice.camera, scene);
     const bool is_own = own != nullptr && !choice.eye && options.camera_path.empty();
-    auto told = options.given; // the scene's own camera has no value that a file of settings could give
+    auto told = options.given; // the scene's own camera has no value that a settings file could contain
     if (is_own) told.try_emplace("camera", SettingOrigin::Scene);
     if (own != nullptr && own->aspect > 0) told.try_emplace("size", SettingOrigin::Scene);
     for (const auto& [name, origin] : told) {
@@ -62,7 +62,7 @@ std::unique_ptr<ReadyScene> make_ready(PictureOptions& options, uint32_t verbs, 
     std::optional<CameraPath> path;
     if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
     ComingMachine machine(options.machine, messages);
-    std::optional<TracerChoice> tracers; // what does not fit the device is refused before the scene is read
+    std::optional<TracerChoice> tracers; // a tracer that does not fit the device is refused before the scene is read
     if (!options.tracer.are_empty()) tracers = tracer_choice(options.tracer, machine.is_cuda());
     sink.say_messages();
     sink.set_work(fmt::format("loading {}", options.scene.scene));
@@ -72,7 +72,7 @@ std::unique_ptr<ReadyScene> make_ready(PictureOptions& options, uint32_t verbs, 
     open.ground = ground_of(options);
     const bool shows_solution =
         options.render.integrator == IntegratorKind::Radiosity && !options.radiosity.solution.empty();
-    if (shows_solution) open.use = SceneUse::Measurement; // as it was solved
+    if (shows_solution) open.use = SceneUse::Measurement; // opened as for the solution
     Scene scene = open_scene(open, messages);
     take_suggestions(scene, verbs, options, messages);
     if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
@@ -83,7 +83,7 @@ std::unique_ptr<ReadyScene> make_ready(PictureOptions& options, uint32_t verbs, 
     ready->camera.emplace(options.scene.camera, path, scene, aspect_of(settings.width, settings.height), messages);
     check_camera(settings, ready->camera->at(scene, std::nullopt));
     ready->load_s = watch.seconds();
-    // Where it is none after all, the session makes what is missing.
+    // If it turns out not to be a GPU, the session makes what is missing.
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
     prepare.may_be_better = may_be_better(options.tracer);
     if (!options.no_cache) prepare.bvh_cache = bvh_cache_folder();

@@ -1,7 +1,7 @@
 #pragma once
 
-// From what is asked for to all that a picture needs before its first sample: the scene read and put to its time, its
-// camera chosen, its trees built, the device's queue.
+// Prepares everything that a picture needs before its first sample: reads the scene and sets its time, chooses its
+// camera, builds its trees, takes the device's queue.
 
 #include <functional>
 #include <memory>
@@ -18,25 +18,25 @@ namespace pertev {
 
 struct ReadyScene {
     RenderSettings settings;
-    FrameRange sequence;                // the one asked for, else a single frame; the scene is at its first
-    std::optional<MovingCamera> camera; // always there, as the next
+    FrameRange sequence;                // the requested frames, else a single one; the scene is at the first
+    std::optional<MovingCamera> camera; // Never empty after make_ready().
     std::optional<MovingScene> moving;
-    double load_s = 0; // to read it
+    double load_s = 0; // seconds of reading
     std::unique_ptr<Queue> queue;
 
     const Scene& scene() const { return moving->scene(); }
     const PreparedScene& prepared() const { return moving->prepared(); }
 };
 
-/// Finds the light that radiosity shows of a scene.
+/// Computes the radiosity solution of a scene.
 using SolveRadiosity = std::function<RadiosityLook(ReadyScene& ready)>;
 
-/// Makes all of it ready, and tells `sink` what goes on. Gives `options` what the scene's file suggests of the settings
-/// of `verbs`. `solve` is asked for if the integrator is radiosity. Throws Error.
+/// Prepares everything and reports progress to `sink`. Adds to `options` what the scene's file suggests for the
+/// settings of `verbs`. Calls `solve` if the integrator is radiosity. Throws Error.
 std::unique_ptr<ReadyScene> make_ready(PictureOptions& options, uint32_t verbs, Sink& sink,
                                        const SolveRadiosity& solve);
 
-/// Returns how the picture of the first frame is made, with its camera, but without its display.
+/// Returns the record of the first frame's picture, with its camera but without its display.
 PictureRecord picture_record(const PictureOptions& options, ReadyScene& ready, const Messages& messages);
 
 } // namespace pertev

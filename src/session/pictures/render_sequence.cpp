@@ -8,7 +8,7 @@ namespace {
 /// Lets the camera of `frame` move while the shutter is open.
 void move_in_shutter(uint32_t frame, MovingScene& moving, const FrameCamera& camera, Camera& moved) {
     const FrameRange& sequence = camera.sequence;
-    // As large as what it looks at is far, or the scene is small: by that it may be off.
+    // Scale of the permitted error: the distance to what it looks at, or the scene's size if that is smaller.
     const Bounds3 bounds = bounds_of(moving.scene());
     const float size = bounds.is_empty() ? 1.0f : 0.5f * max_component(bounds.size());
     const float half = max(0x1p-30f, min(1.0f, min(moved.focus_distance, size)));
@@ -24,7 +24,7 @@ void move_in_shutter(uint32_t frame, MovingScene& moving, const FrameCamera& cam
     moved.motion = fitted.motions.front().keys;
 }
 
-/// Shows the frame that motion vectors of `frame` are from.
+/// Goes to the frame to which motion vectors of `frame` refer.
 void show_frame_before(uint32_t frame, const FrameCamera& camera, MovingScene& moving, Session& session,
                        Messages& messages) {
     const std::optional<double> time_s = camera.sequence.time_before(frame);
@@ -45,7 +45,7 @@ CameraSource camera_at(const MovingCamera& camera, const Scene& scene, std::opti
     CameraSource source = source_of(choice, camera.at(scene, time_s), scene.origin_in_file);
     if (turn == 0) return source;
     source.camera = camera.turned(source.camera, turn);
-    source.target.reset(); // its words say where the camera began
+    source.target.reset(); // its text describes the camera's start
     source.up.reset();
     return source;
 }

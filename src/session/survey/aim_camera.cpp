@@ -6,9 +6,9 @@ namespace pertev {
 
 Target target_from(const Scene& scene, Vec3 eye) {
     const Bounds3 box = bounds_of(scene);
-    if (box.is_empty()) return {}; // all is hidden at rest
+    if (box.is_empty()) return {}; // everything is hidden at rest
     const Vec3 centre = box.centre(), size = box.size();
-    // Nearer than this the direction would be one of rounding.
+    // At a smaller distance rounding would determine the direction.
     if (length(centre - eye) > 1e-4f * max_component(size)) return {centre, true};
     return {size.x >= size.z ? Vec3{box.lo.x, centre.y, centre.z} : Vec3{centre.x, centre.y, box.lo.z}, false};
 }

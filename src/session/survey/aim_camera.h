@@ -1,6 +1,6 @@
 #pragma once
 
-// Where a camera looks, and where it focuses, when nothing says so.
+// Default target and focus of a camera.
 
 #include <optional>
 
@@ -13,13 +13,13 @@ struct Target {
     bool is_middle = true;
 };
 
-/// What to look at from `eye`: the middle of the scene's box; for an eye that is there itself, the middle of a side of
-/// the box, along the longer of x and z. The scene has been through validate().
+/// Target for `eye`: the middle of the scene's box; if the eye is there, the middle of a side of the box, along the
+/// longer of x and z. The scene has passed validate().
 Target target_from(const Scene& scene, Vec3 eye);
 
-/// Distance along the camera's axis to what stands in the middle of its picture, metres; none where that is the
-/// background. Any surface stands in the way, holes and what is half transparent too, but for backs that the camera
-/// looks through (Material::double_sided). The scene has been through validate().
+/// Distance along the camera's axis to the surface in the middle of its picture, metres; none if that is the
+/// background. Every surface counts, even with holes or transparency, except for culled backs
+/// (Material::double_sided). The scene has passed validate().
 std::optional<float> distance_in_the_middle(const Scene& scene, const Camera& camera);
 
 } // namespace pertev

@@ -16,7 +16,7 @@ Aisle find_aisle(const Scene& scene, const Surroundings& room) {
     Aisle aisle;
     aisle.floor = room.inside.y - distance_along(scene, room.inside, {0, -1, 0}, room.inside.y - room.bounds.lo.y);
     aisle.height = room.bounds.hi.y - aisle.floor;
-    // In metres where the room is of a house's size, else in proportion: the unit is unknown.
+    // In metres if the room has the size of a house, else in proportion, because the unit is unknown.
     const float eye = aisle.height > 2.2f && aisle.height < 12 ? 1.7f : 0.14f * aisle.height;
     const Vec3 from = {room.inside.x, aisle.floor + eye, room.inside.z};
     for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 0, 1}}) {

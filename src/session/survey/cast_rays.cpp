@@ -11,14 +11,14 @@ constexpr uint64_t kGrain = 4096;
 
 struct LocalRay {
     Vec3 origin, direction;
-    std::size_t index; // of the world ray; the direction keeps the world's unit of distance
+    std::size_t index; // index of the world ray; the direction keeps the world's unit of distance
 };
 
-/// Rays side by side, eight to a vector register, and the nearest hit of each.
+/// Rays in structure-of-arrays form, eight per vector register, and the nearest hit of each.
 struct RayPack {
     static constexpr std::size_t kWidth = 8;
     float ox[kWidth], oy[kWidth], oz[kWidth], dx[kWidth], dy[kWidth], dz[kWidth];
-    float distance[kWidth], facing[kWidth]; // facing: above 0 on the front side
+    float distance[kWidth], facing[kWidth]; // `facing` is above 0 on the front
 };
 
 bool meets(const Bounds3& box, const LocalRay& ray) {
@@ -36,13 +36,13 @@ bool meets(const Bounds3& box, const LocalRay& ray) {
     return from <= to * 1.0001f; // boxes may be flat
 }
 
-/// Branchless, so that the compiler makes one loop of vector instructions of it. Of two sides at one distance the front
-/// counts, so that the order in which threads come by does not.
+/// Branchless, so that the compiler vectorizes it. Of two sides at one distance the front counts, so that the order
+/// of threads does not matter.
 void meet_triangle(Vec3 a, Vec3 ab, Vec3 ac, bool has_back, RayPack& rays) {
     for (std::size_t k = 0; k < RayPack::kWidth; ++k) {
         const Vec3 direction = {rays.dx[k], rays.dy[k], rays.dz[k]};
         const Vec3 p = cross(direction, ac);
-        const float det = dot(ab, p), inv = 1.0f / det; // not finite for det = 0: no comparison below holds
+        const float det = dot(ab, p), inv = 1.0f / det; // not finite for det = 0, when no comparison below holds
         const Vec3 s = Vec3{rays.ox[k], rays.oy[k], rays.oz[k]} - a, q = cross(s, ab);
         const float u = dot(s, p) * inv, v = dot(direction, q) * inv, t = dot(ac, q) * inv;
         const bool is_first = (t < rays.distance[k]) | ((t == rays.distance[k]) & (det > 0));
@@ -55,7 +55,7 @@ void meet_triangle(Vec3 a, Vec3 ab, Vec3 ac, bool has_back, RayPack& rays) {
 std::vector<RayPack> pack(const std::vector<LocalRay>& rays) {
     std::vector<RayPack> packs((rays.size() + RayPack::kWidth - 1) / RayPack::kWidth);
     for (std::size_t i = 0; i < packs.size() * RayPack::kWidth; ++i) {
-        const LocalRay& ray = rays[min(i, rays.size() - 1)]; // the last fills up its pack
+        const LocalRay& ray = rays[min(i, rays.size() - 1)]; // the last one fills up its pack
         RayPack& to = packs[i / RayPack::kWidth];
         const std::size_t k = i % RayPack::kWidth;
         to.ox[k] = ray.origin.x, to.oy[k] = ray.origin.y, to.oz[k] = ray.origin.z;

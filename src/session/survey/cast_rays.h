@@ -1,8 +1,8 @@
 #pragma once
 
-// A few dozen rays against every triangle of a scene, without any acceleration structure: to look around in it before
-// one is built. Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", JGT 2(1), 1997. Not watertight
-// and not exact: for guesses, never for the picture.
+// Casts a few dozen rays against every triangle of a scene without an acceleration structure, to survey it before one
+// is built. Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", JGT 2(1), 1997. It is neither
+// watertight nor exact: only for heuristics, never for the picture.
 
 #include <span>
 #include <vector>
@@ -16,18 +16,19 @@ struct LookRay {
 };
 
 struct LookHit {
-    float distance = kInfinity; // metres; infinite: nothing there
-    bool is_front = false;      // the mesh's front side is met: a mirroring transform does not turn it round
+    float distance = kInfinity; // metres; infinite if nothing is hit
+    bool is_front = false;      // whether the mesh's front is hit, even under a mirroring transform
     bool is_hit() const { return distance < kInfinity; }
 };
 
-/// Which backs rays meet: all, or those alone that the camera sees (Material::double_sided).
+/// Which backs rays hit: all, or only those that the camera sees (Material::double_sided).
 enum class Backs { All, Shown };
-/// Whether panes of glass stop rays. (Surfaces of blended alpha always do.)
+/// Whether panes of glass stop rays. (Alpha-blended surfaces always do.)
 enum class Glass { Stops, LetsThrough };
 
-/// The nearest hit of each ray; the front where a front and a back lie at one distance. A made-up ground is not met.
-/// Time: rays times triangles of all instances whose box some ray meets. The scene has been through validate().
+/// The nearest hit of each ray; the front if a front and a back have the same distance. A generated ground is
+/// ignored. The time is proportional to rays times triangles of all instances whose box is hit. The scene has passed
+/// validate().
 std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays, Backs backs = Backs::All,
                                Glass glass = Glass::Stops);
 

@@ -14,11 +14,11 @@
 namespace pertev {
 namespace {
 
-constexpr float kFovOutside = 0.6981317f, kFovInside = 1.1344640f; // 40 and 65 degrees, of the smaller side
-constexpr float kAside = 28, kAbove = 18;                          // degrees, of a view from outside
-constexpr float kAboveFlat = 38;                                   // degrees, of what lies flat
+constexpr float kFovOutside = 0.6981317f, kFovInside = 1.1344640f; // 40 and 65 degrees, for the smaller side
+constexpr float kAside = 28, kAbove = 18;                          // degrees, for a view from outside
+constexpr float kAboveFlat = 38;                                   // degrees, for flat objects
 constexpr uint64_t kMostTrianglesSeen = 8'000'000;                 // a second on one core
-constexpr int kLooks = 8;                                          // rays along each side of a view that is tried
+constexpr int kLooks = 8;                                          // rays along each side of a candidate view
 
 Camera look(Vec3 eye, Vec3 target, float fov_y, const char* name) {
     Camera camera;
@@ -29,7 +29,8 @@ Camera look(Vec3 eye, Vec3 target, float fov_y, const char* name) {
     return camera;
 }
 
-/// The vertical angle at which the smaller side of the picture spans `fov`; its tangent's half for both sides.
+/// The vertical field of view at which the smaller side of the picture spans `fov`, and tangents of the half angles
+/// of both sides.
 struct Opening {
     float fov_y, half_x, half_y;
 };
@@ -40,8 +41,8 @@ Opening opening(float fov, float aspect) {
     return {2 * atan2(half_y, 1.0f), half_y * aspect, half_y};
 }
 
-/// From `direction` (unit, towards the eye), as near as shows all of the scene (of large meshes a part of the
-/// vertices).
+/// A camera in `direction` (unit, towards the eye), as near as it can be while it shows all of the scene (of large
+/// meshes only some vertices are tested).
 Camera fitted(const Scene& scene, const Bounds3& box, Vec3 direction, float aspect, const char* name) {
     const Opening o = opening(kFovOutside, aspect);
     const Vec3 centre = box.centre();
@@ -61,13 +62,14 @@ Camera fitted(const Scene& scene, const Bounds3& box, Vec3 direction, float aspe
     return look(centre + (1.08f * distance) * direction, centre, o.fov_y, name);
 }
 
-/// Unit, towards the eye: `aside` degrees to the right of +z, seen from there, and `above` the horizon.
+/// Unit direction towards the eye: `aside` degrees to the right of +z as seen from there, and `above` degrees above
+/// the horizon.
 Vec3 way(float aside, float above) {
     const float a = aside * (kPi / 180), b = above * (kPi / 180);
     return {sin(a) * cos(b), sin(b), cos(a) * cos(b)};
 }
 
-/// Of the rays of a view from `direction` (unit, towards the eye), those that meet something.
+/// Counts the rays of a view from `direction` (unit, towards the eye) that hit something.
 int count_hits(const Scene& scene, const Bounds3& box, Vec3 direction, Backs backs) {
     const Transform view = look_at(direction, {}, {0, 1, 0}); // columns: right, up, back
     const Vec3 size = box.size(), right = column(view, 0), up = column(view, 1);
@@ -82,11 +84,11 @@ int count_hits(const Scene& scene, const Bounds3& box, Vec3 direction, Backs bac
     return static_cast<int>(std::ranges::count_if(cast_rays(scene, rays, backs), &LookHit::is_hit));
 }
 
-/// Where to look from: a little to the side of +z, the front of glTF's models, and above; or, where hardly anything but
-/// hidden backs would be seen from there, from the first other direction that shows at least half of the most.
+/// Viewing direction: a little to the side of +z, the front of glTF models, and above. If hardly anything but culled
+/// backs were visible from there, it is the first other direction that shows at least half of the maximum.
 Vec3 way_to_look_from(const Scene& scene, const Bounds3& box) {
     const Vec3 size = box.size();
-    const float flat = clamp(1 - 4 * size.y / max(size.x, size.z), 0.0f, 1.0f); // NaN, of a point, becomes a bound
+    const float flat = clamp(1 - 4 * size.y / max(size.x, size.z), 0.0f, 1.0f); // NaN, for a point, becomes a bound
     const float above = kAbove + (kAboveFlat - kAbove) * flat;
     const Vec3 front = way(kAside, above);
     uint64_t triangles = 0;
@@ -122,7 +124,7 @@ Camera inside(const Scene& scene, const Surroundings& room, float aspect) {
 
 Camera make_default_camera(const Scene& scene, float aspect, Messages& messages) {
     Surroundings around = look_around(scene);
-    if (around.bounds.is_empty()) around.bounds = {{-1, -1, -1}, {1, 1, 1}}; // all is hidden at rest
+    if (around.bounds.is_empty()) around.bounds = {{-1, -1, -1}, {1, 1, 1}}; // everything is hidden at rest
     const char* what = "a view from outside";
     Camera camera;
     switch (around.kind) {

@@ -1,15 +1,15 @@
 #pragma once
 
-// The camera of a scene that has none.
+// The default camera of a scene without one.
 
 #include "base/messages.h"
 #include "scene/scene.h"
 
 namespace pertev {
 
-/// A camera that shows the scene: from outside, a little to the side of +z and above, or from where most is seen of
-/// what hides its backs; through the open side of a stage; or inside a room, at one end, looking along it; with a
-/// notice. `aspect` = width / height of the picture. The scene has been through validate().
+/// Makes a camera that shows the scene, with a notice: from outside, a little to the side of +z and above, or from
+/// where most of an object with culled backs is visible; through the open side of a stage; or inside a room, from one
+/// end along it. `aspect` is width / height of the picture. The scene has passed validate().
 Camera make_default_camera(const Scene& scene, float aspect, Messages& messages);
 
 } // namespace pertev

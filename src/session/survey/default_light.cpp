@@ -13,7 +13,7 @@
 namespace pertev {
 namespace {
 
-/// Whether any pixel of a lamp's texture gives light.
+/// Whether any pixel of an emission texture is above 0.
 bool has_light(const TextureImage& image) {
     const std::vector<uint8_t>& bytes = image.rgba8.pixels;
     for (std::size_t i = 0; i < bytes.size(); i += 4) {
@@ -27,13 +27,13 @@ bool has_light(const TextureImage& image) {
 }
 
 enum class OwnLight {
-    Enough,   // an environment, or all is unlit and shows without light
-    Punctual, // lights without a size
-    Glowing,  // surfaces alone
+    Enough,   // an environment, or unlit surfaces only, which need no light
+    Punctual, // only lights without extent
+    Glowing,  // only emissive surfaces
     None,
 };
 
-/// Whether an animation that plays gives a light an intensity above 0 at some time.
+/// Whether an animation that plays raises a light's intensity above 0 at some time.
 bool brightens_a_light(const Animation& animation) {
     return std::ranges::any_of(animation.channels, [](const AnimationChannel& channel) {
         return channel.part == AnimatedPart::LightIntensity &&
@@ -47,7 +47,9 @@ OwnLight own_light(const Scene& scene) {
         std::ranges::any_of(scene.lights, [](const Light& light) { return max_component(light.intensity) > 0; });
     if (is_lit || std::ranges::any_of(scene.animations, brightens_a_light)) return OwnLight::Punctual;
     std::vector<bool> is_used(scene.materials.size());
-    for (const Instance& instance : scene.instances) is_used[instance.material] = true; // hidden or not: it may come
+    for (const Instance& instance : scene.instances)
+        is_used[instance.material] = true; // hidden or not, because it may appear
+                                           // later
     bool is_all_unlit = true;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
@@ -72,7 +74,7 @@ void add_lamps(Scene& scene, const Surroundings& room) {
         Light lamp;
         lamp.name = fmt::format("default lamp {}", i);
         lamp.position = below + Vec3{0, 0.6f * up, 0};
-        // About 1 W/(sr m2) off a white floor below one.
+        // About 1 W/(sr m2) from a white floor below one.
         lamp.intensity = (kPi * square(0.6f * up)) * Rgb{1.0f, 0.93f, 0.82f};
         scene.lights.push_back(std::move(lamp));
     }
@@ -98,7 +100,7 @@ DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages, S
         messages.make_up(fmt::format("{}, a closed room: it gets a row of lamps", why));
         return DefaultLight::Lamps;
     }
-    // Through the openings of a room the clear sky's narrow sun shows more than soft boxes do.
+    // Through the openings of a room, the clear sky's narrow sun shows more than soft boxes do.
     const bool is_thing = around.kind == SurroundingsKind::Object && use != SceneUse::Benchmark;
     scene.environment = is_thing ? make_studio() : make_clear_sky();
     messages.make_up(fmt::format("{}: it gets a sky{}", why, is_weak ? " (`environment=0,0,0`: none)" : ""));

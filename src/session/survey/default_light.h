@@ -1,6 +1,6 @@
 #pragma once
 
-// The light of a scene that has none, or too little to see by.
+// Default light for a scene that has none, or too little to see by.
 
 #include "base/messages.h"
 #include "scene/scene.h"
@@ -11,14 +11,14 @@ namespace pertev {
 
 enum class DefaultLight { None, Sky, Lamps }; // None: the scene has light, or nothing to be lit
 
-/// Whether a scene with something to be lit has no lights (above 0, at rest or at a time), no emitters and no
+/// Whether a scene with surfaces to be lit has no lights (above 0, at rest or at a time), no emitters and no
 /// environment.
 bool lacks_light(const Scene& scene);
 
-/// Gives a scene that lacks light a sky (made_up_sky.h); for pictures also where its emitters light too little to see
-/// by, or its lights without a size reach nothing that is seen (weak_light.h). In a closed room, where no light comes
-/// in, it is a row of lamps instead. A notice tells of it. The scene has been through validate(). Throws
-/// Error(OverLimit) as prepare_scene() does. Where it adds light, it writes what look_around() says to `seen`.
+/// Adds a sky (made_up_sky.h) to a scene that lacks light; for pictures also if its emitters light too little to see
+/// by, or its lights without extent reach nothing visible (weak_light.h). In a closed room, which no outside light
+/// enters, it adds a row of lamps instead. A notice reports it. The scene has passed validate(). Throws
+/// Error(OverLimit) as prepare_scene() does. If it adds light, it writes the result of look_around() to `seen`.
 DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages, Surroundings* seen = nullptr);
 
 } // namespace pertev

@@ -8,11 +8,12 @@ namespace {
 
 constexpr uint32_t kSpokes = 64;
 constexpr int kFadingRings = 12;
-constexpr float kShadowOfHeight = 1.5f; // the key light stands 39 degrees high
-constexpr float kRim = 2.4f;            // radius of the disc over that of its opaque part
-constexpr float kGap = 0x1p-11f;        // of the thing's size: a face that lies on the ground is not in it
+constexpr float kShadowOfHeight = 1.5f; // the key light is 39 degrees high
+constexpr float kRim = 2.4f;            // radius of the disc relative to its opaque part
+constexpr float kGap = 0x1p-11f;        // fraction of the object's size, so that a face on the ground does not
+                                        // coincide with it
 
-/// Rings of vertices around the middle, the first of them at the end of the opaque part.
+/// Makes rings of vertices around the middle; the first one bounds the opaque part.
 Mesh make_disc(float opaque_radius) {
     Mesh mesh;
     mesh.name = "ground";

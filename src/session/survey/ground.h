@@ -1,15 +1,14 @@
 #pragma once
 
-// A ground under a thing that stands in the made-up studio: it catches the thing's soft shadow and is not seen
-// otherwise.
+// A ground under an object in the generated studio: it receives the object's soft shadow and is invisible otherwise.
 
 #include "scene/scene.h"
 
 namespace pertev {
 
-/// Adds a disc beneath the scene's box, as the last instance (Instance::is_background), mesh and material. Where
-/// nothing stands in its light it looks as the studio's floor does, and it fades out towards its rim. Its lower side
-/// lets rays of the camera pass. Does nothing where the box is empty. The scene has been through validate().
+/// Adds a disc beneath the scene's box, as the last instance (Instance::is_background), mesh and material. Unshadowed
+/// it looks like the studio's floor, and it fades out towards its rim. Camera rays pass through its lower side. Does
+/// nothing if the box is empty. The scene has passed validate().
 void add_ground(Scene& scene);
 
 /// Whether the scene has such a ground.

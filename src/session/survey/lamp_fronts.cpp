@@ -12,14 +12,14 @@ namespace pertev {
 namespace {
 
 constexpr std::size_t kMostNames = 5;
-constexpr std::size_t kMostLamps = 16;              // that are looked at
-constexpr std::size_t kMostOfLamp = 4;              // triangles that are looked at, spread over the lamp's list
+constexpr std::size_t kMostLamps = 16;              // maximum number of tested lamps
+constexpr std::size_t kMostOfLamp = 4;              // tested triangles per lamp, spread over its list
 constexpr uint64_t kMostSceneTriangles = 2'000'000; // a tenth of a second for 128 rays on one core
-constexpr float kMuchMore = 20;                     // room behind for each metre before
+constexpr float kMuchMore = 20;                     // room behind per metre in front
 
 bool is_one_sided_lamp(const Material& material) { return material.is_lamp() && !material.two_sided_emission; }
 
-/// Two rays from the middle of each triangle that is looked at: straight out of its front, and out of its back.
+/// Two rays from the middle of each tested triangle: along its front normal, and along its back normal.
 std::vector<LookRay> rays_from(const Scene& scene, const Instance& lamp) {
     const Mesh& mesh = scene.meshes[lamp.mesh];
     std::vector<LookRay> rays;
@@ -39,7 +39,7 @@ std::vector<LookRay> rays_from(const Scene& scene, const Instance& lamp) {
     return rays;
 }
 
-/// How far `box` reaches along the unit `direction` from `from`, metres; 0 where less than half of it lies there.
+/// Extent of `box` along the unit `direction` from `from`, metres; 0 if less than half of it lies there.
 float reach_of(const Bounds3& box, Vec3 from, Vec3 direction) {
     const float middle = dot(direction, box.centre() - from);
     return middle > 0 ? middle + 0.5f * dot(abs(direction), box.size()) : 0;
@@ -56,18 +56,18 @@ void warn_of_turned_lamps(const Scene& scene, const std::vector<const Instance*>
         if (rays.empty()) continue;
         const std::vector<LookHit> hits = cast_rays(scene, rays);
         std::size_t turned = 0;
-        float before = kInfinity, behind = kInfinity; // behind: of those that have a surface there
+        float before = kInfinity, behind = kInfinity; // `behind` is the least distance to a surface there
         for (std::size_t k = 0; k < hits.size(); k += 2) {
             const float off = 0.5f * length(rays[k].origin - rays[k + 1].origin);
             const float front = off + hits[k].distance, back = off + hits[k + 1].distance;
-            // Nothing behind may be the sky over a lamp that shines down as it should: what counts is the scene's room.
+            // No hit behind may mean the sky above a lamp that correctly shines down; then the scene's extent counts.
             const float room = back < kInfinity ? back : reach_of(box, rays[k + 1].origin, rays[k + 1].direction);
             if (!(kMuchMore * front < room)) continue;
             ++turned;
             before = min(before, front);
             behind = min(behind, back);
         }
-        if (2 * turned <= hits.size() / 2) continue; // most of those looked at
+        if (2 * turned <= hits.size() / 2) continue; // most of the tested triangles
         const std::string room = behind < kInfinity ? fmt::format("{:.3g} m", behind) : "most of the scene";
         messages.warn(
             {Place{file},

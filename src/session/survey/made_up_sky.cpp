@@ -8,9 +8,9 @@ namespace {
 
 constexpr uint32_t kSkyWidth = 256, kSkyHeight = 128;
 
-/// A rectangle far away that shines evenly but for its soft edges.
+/// A distant rectangle of uniform radiance with soft edges.
 struct SoftBox {
-    Vec3 direction, right, up;     // unit; its middle, and its sides
+    Vec3 direction, right, up;     // unit vectors: its middle, and its sides
     float half_width, half_height; // tangents of half the angles
     Rgb radiance;                  // W/(sr m2)
 };
@@ -25,19 +25,19 @@ float smoothstep(float t) {
     return x * x * (3 - 2 * x);
 }
 
-/// How much of the box's radiance comes from the unit direction `d`, [0, 1].
+/// Fraction of the box's radiance from the unit direction `d`, [0, 1].
 float share_of(const SoftBox& box, Vec3 d) {
     const float ahead = dot(d, box.direction);
     if (!(ahead > 0)) return 0;
     const float x = square(dot(d, box.right) / (ahead * box.half_width));
     const float y = square(dot(d, box.up) / (ahead * box.half_height));
-    const float out = sqrt(sqrt(x * x + y * y)); // 1: on the edge, a rectangle with round corners
+    const float out = sqrt(sqrt(x * x + y * y)); // 1 on the edge of a rectangle with rounded corners
     return smoothstep(2 * (1.25f - out));
 }
 
-// Of the studio's light a seventh comes from the key. More of it, darker walls or narrower boxes would show in mirrors
-// better, and cost noise: it was chosen so that relMSE is that under the clear sky (over seven of Khronos' models at 16
-// spp, as the geometric mean 0.98 times; 0.65 times on metal, 1.2 times on what is diffuse).
+// A seventh of the studio's light comes from the key. More of it, darker walls or narrower boxes would look better in
+// mirrors but cost noise. It was chosen so that relMSE equals that under the clear sky (over seven of Khronos' models
+// at 16 spp, geometric mean 0.98 times; 0.65 times on metal, 1.2 times on diffuse surfaces).
 struct Studio {
     SoftBox key = make_soft_box({-0.45f, 0.62f, 0.62f}, 0.22f, 0.19f, {8.0f, 7.7f, 7.2f});
     SoftBox fill = make_soft_box({0.95f, 0.22f, 0.20f}, 0.30f, 0.80f, {1.30f, 1.35f, 1.42f});
@@ -56,9 +56,9 @@ Rgb clear_sky(Vec3 d) {
     const Rgb zenith = {0.32f, 0.46f, 0.72f}, horizon = {0.84f, 0.89f, 0.95f}, ground = {0.30f, 0.28f, 0.26f};
     const float up = d.y > 0 ? d.y : 0.0f;
     Rgb colour = lerp(horizon, zenith, up * (2 - up));
-    // The ground rises into the horizon within a few degrees: a hard edge would show in every mirror.
+    // The ground blends into the horizon within a few degrees, because a hard edge would show in every mirror.
     if (d.y < 0) colour = lerp(horizon, ground, min(-8 * d.y, 1.0f));
-    // A lobe cos^64, in squarings: soft shadows, and few samples find it.
+    // A lobe cos^64 by repeated squaring: its shadows are soft, and few samples find it.
     const Vec3 sun = normalize({-0.45f, 0.72f, 0.53f});
     float lobe = max(dot(d, sun), 0.0f);
     for (int i = 0; i < 6; ++i) lobe = lobe * lobe;

@@ -11,14 +11,15 @@ namespace {
 constexpr uint64_t kMostTriangles = 8'000'000; // half a second on one core
 constexpr int kAxes = 6;                       // +x -x +y -y +z -z
 constexpr int kUp = 2;
-constexpr float kMostOfRoom = 0.12f; // seen from outside: of Sponza 0.00, Sibenik 0.03, a shoe 0.23
+constexpr float kMostOfRoom = 0.12f; // share seen from outside: Sponza 0.00, Sibenik 0.03, a shoe 0.23
 
 Vec3 axis_direction(int axis) {
     const float sign = axis % 2 == 0 ? 1.0f : -1.0f;
     return {axis / 2 == 0 ? sign : 0, axis / 2 == 1 ? sign : 0, axis / 2 == 2 ? sign : 0};
 }
 
-/// Along the axis, and half-way to its four neighbours, a little turned so that no ray runs along an edge of a box.
+/// Five directions: the axis, and half-way to its four neighbours, slightly rotated so that no ray runs along an edge
+/// of a box.
 std::array<Vec3, 5> bundle(int axis) {
     const Vec3 d = axis_direction(axis);
     const Vec3 side = {d.y, d.z, d.x}, up = {d.z, d.x, d.y};
@@ -27,9 +28,9 @@ std::array<Vec3, 5> bundle(int axis) {
             normalize(d - 0.37f * up + 0.04f * side)};
 }
 
-/// What a point sees along each axis.
+/// Hits from a point along each axis.
 struct Sight {
-    std::array<int, kAxes> hits = {}; // of 5 rays
+    std::array<int, kAxes> hits = {}; // out of 5 rays
     int all = 0, front = 0;
 
     bool is_closed(int axis) const { return hits[static_cast<std::size_t>(axis)] >= 4; }
@@ -39,7 +40,7 @@ struct Sight {
         for (int axis = 0; axis < kAxes; ++axis) count += is_closed(axis);
         return count;
     }
-    /// Within something solid every surface shows its back.
+    /// Inside a solid every surface shows its back.
     bool is_in_the_open() const { return 2 * front >= all; }
 };
 
@@ -62,19 +63,19 @@ std::vector<Sight> look_from(const Scene& scene, const std::vector<Vec3>& points
     return sights;
 }
 
-/// Thinner than any room: a panel, whose two sheets see each other.
+/// Whether it is thinner than any room: a panel, whose two sheets see each other.
 bool is_flat(Vec3 size) { return min(size.x, min(size.y, size.z)) < 0.04f * max_component(size); }
 
 bool is_long(Vec3 size) { return max(size.x, size.z) > 1.25f * min(size.x, size.z); }
 
-/// Of rays that leave the fronts of some triangles, a little upwards to all sides, the share that meets nothing. Of a
-/// room it is small, since most that there is to see lies within; of a shoe or a boat, which is hollow too, it is not.
+/// Share of rays that hit nothing, among rays that leave the fronts of some triangles, slightly upwards to all sides.
+/// It is small for a room, most of whose surfaces face inwards, but not for a shoe or a boat, which are hollow too.
 float share_seen_from_outside(const Scene& scene, uint64_t triangles) {
     constexpr uint64_t kLookedAt = 24;
     constexpr int kWays = 8;
     const float size = max_component(bounds_of(scene).size());
     std::vector<LookRay> rays;
-    uint64_t before = 0, next = 0; // triangles of the instances before this one; the next one that is looked at
+    uint64_t before = 0, next = 0; // triangles of the previous instances; the next triangle to test
     int all = 0;
     for (const Instance& instance : scene.instances) {
         const Mesh& mesh = scene.meshes[instance.mesh];

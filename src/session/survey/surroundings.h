@@ -1,27 +1,27 @@
 #pragma once
 
-// Is a scene a thing to be looked at from outside, or a place to be in? Told by rays from points around its middle, in
-// bundles along the six axes: what bundles hit, and whether they meet the surfaces' front sides.
+// Classifies a scene as an object to be viewed from outside or a place to be in, by rays from points around its
+// middle, in bundles along the six axes: what bundles hit, and whether they hit fronts of surfaces.
 
 #include "scene/scene.h"
 
 namespace pertev {
 
 enum class SurroundingsKind {
-    Object, // seen from outside
-    Stage,  // a room that one horizontal side is open of, as a Cornell box: seen through it
-    Room,   // walls all around; perhaps open at the top, as a courtyard
+    Object, // viewed from outside
+    Stage,  // a room with one open horizontal side, such as a Cornell box, through which it is viewed
+    Room,   // walls all around; perhaps open at the top, like a courtyard
 };
 
 struct Surroundings {
     SurroundingsKind kind = SurroundingsKind::Object;
-    Bounds3 bounds;       // of the scene, world space
-    Vec3 inside;          // Room: a point with free sight
-    Vec3 open_side;       // Stage: unit, horizontal, the way out
-    bool is_dark = false; // Room: no ray finds a way out, so no light from outside comes in
+    Bounds3 bounds;       // bounds of the scene, world space
+    Vec3 inside;          // Room: a point with a free view
+    Vec3 open_side;       // Stage: unit, horizontal, outwards through the open side
+    bool is_dark = false; // Room: no ray finds a way out, so no outside light enters
 };
 
-/// The scene has been through validate(). Scenes of very many triangles are called Object unseen.
+/// Surveys a scene that has passed validate(). Scenes with very many triangles count as Object without a test.
 Surroundings look_around(const Scene& scene);
 
 } // namespace pertev

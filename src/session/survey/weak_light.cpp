@@ -11,8 +11,8 @@ namespace {
 
 constexpr uint32_t kWidth = 64, kHeight = 36, kBlock = 4, kSamples = 16, kDepth = 6;
 constexpr float kVisible = 0.18f / 16;                      // four stops below middle grey
-constexpr float kBurnt = 16;                                // agx makes white of it
-constexpr double kShareToSeeBy = 0.75, kMostBurnt = 0.0625; // of the surfaces in the picture
+constexpr float kBurnt = 16;                                // agx maps it to white
+constexpr double kShareToSeeBy = 0.75, kMostBurnt = 0.0625; // shares of the surfaces in the picture
 constexpr double kNextToNothing = 0.03125;
 
 SeenShares look_from(const Camera& camera, const Scene& scene) {
@@ -21,14 +21,14 @@ SeenShares look_from(const Camera& camera, const Scene& scene) {
     settings.width = kWidth, settings.height = kHeight, settings.samples = kSamples;
     settings.filter = PixelFilter::Box;
     settings.transparent = true;
-    settings.tracers = default_tracers(false, TreeBuild::Fast); // the trees of so few rays must be there soon
+    settings.tracers = default_tracers(false, TreeBuild::Fast); // few rays need trees that are built quickly
     Messages unsaid;
     const PreparedScene prepared = prepare_scene(scene, prepare_options(settings, false), unsaid);
     settings.path.max_depth = kDepth;
     Session session(queue, prepared, camera, settings);
     session.render(kSamples);
     const Image picture = session.picture();
-    // The meter asks for the same light, and for what lamps alone show of it: pictures of this size are enough here.
+    // The meter requests the full light, and that of emitters alone; pictures of this size suffice here.
     const float scale = exposure_scale(meter_exposure(settings, ToneMap::Agx, [&](RenderSettings asked) {
         asked.width = kWidth, asked.height = kHeight;
         if (asked.path.max_depth > 0 && asked.transparent) return picture;
@@ -37,7 +37,7 @@ SeenShares look_from(const Camera& camera, const Scene& scene) {
         session.render(asked.samples);
         return session.picture();
     }));
-    // Means of blocks, since single pixels of so few samples are dark by chance.
+    // Means of blocks, because single pixels with so few samples are dark by chance.
     double lit = 0, burnt = 0, all = 0;
     for (uint32_t top = 0; top < kHeight; top += kBlock) {
         for (uint32_t left = 0; left < kWidth; left += kBlock) {

@@ -10,7 +10,7 @@
 namespace pertev {
 namespace {
 
-/// Entries whose text is numbers between commas. Other texts may look so by chance, as the name of a camera.
+/// Entries whose text is a list of numbers. Other texts may look like one by chance, such as the name of a camera.
 constexpr std::string_view kVectors[] = {
     "pertev.eye",     "pertev.target",  "pertev.up",          "pertev.world_from_camera",
     "pertev.ambient", "pertev.shutter", "pertev.environment", "pertev.position_origin"};

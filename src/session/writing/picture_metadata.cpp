@@ -22,7 +22,7 @@ std::string comma_separated(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v
 
 std::string comma_separated(DoubleVec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
-/// A place of the scene in the coordinates of its file, with the digits that lead back to it.
+/// A position in the coordinates of the file, with enough digits to convert back to the same bits.
 std::string place_in_file(Vec3 p, DoubleVec3 origin) {
     return origin == DoubleVec3{0, 0, 0} ? comma_separated(p) : comma_separated(origin + to_double(p));
 }
@@ -47,7 +47,7 @@ std::string names_as_json(const std::set<uint32_t>& ids, const std::vector<std::
     return text.empty() ? "{}" : text + "}";
 }
 
-/// A whole number that needs not fit an int32_t is text.
+/// A whole number is stored as text if it need not fit an int32_t.
 MetadataValue metadata_value(const PictureOptions& options, const Setting& setting) {
     const std::string text = texts_of(options, setting).front();
     const bool is_text = setting.high > double(INT32_MAX);
@@ -177,7 +177,7 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
         metadata.emplace_back("pertev.lpe", lines);
     }
     if (settings.integrator == IntegratorKind::Reyes) {
-        std::set<std::string> heights; // of several materials where a name stands for more than one
+        std::set<std::string> heights; // several materials if a name matches more than one
         if (settings.heights) {
             for (const HeightMap& map : *settings.heights) heights.insert(map.text);
         }

@@ -14,7 +14,7 @@
 namespace pertev {
 namespace {
 
-/// Texts by name, as they stand in the record: what a string of JSON gives back.
+/// JSON object of texts by name; values are JSON strings.
 std::string json_object(const auto& entries) {
     std::string text = "{";
     for (const auto& [name, value] : entries) {

@@ -1,10 +1,10 @@
 #pragma once
 
-// Which frames of a sequence are done: a small JSON file beside them that holds what all of them were asked for with,
-// of each file that was written whole the hash of its bytes, and of each frame that of its picture. By it an
-// interrupted sequence goes on: what is there with the very bytes that were written is kept, all else is rendered.
-// Since pictures do not depend on each other they are those of an undisturbed run; frames in real time do, and those
-// before are rendered again for them, and compared with what is known of their pictures.
+// Records the finished frames of a sequence in a small JSON file beside them: the settings of all frames, the hash of
+// the bytes of each completely written file, and the hash of each frame's picture. With it an interrupted sequence
+// continues: files that still have the recorded bytes are kept, and everything else is rendered. Pictures do not
+// depend on each other, so they equal those of an uninterrupted run. Real-time frames do, so earlier frames are
+// rendered again and compared with the recorded hashes.
 
 #include <cstdint>
 #include <filesystem>
@@ -19,21 +19,22 @@ class SequenceRecord {
 public:
     using Settings = std::vector<std::pair<std::string, std::string>>; // names and values
 
-    /// `outputs`: names with '#' (session/frame_range.h). `settings`: all that decides the frames' pictures.
+    /// `outputs` are names with '#' (session/frame_range.h). `settings` is everything that determines the frames'
+    /// pictures.
     SequenceRecord(std::vector<std::string> outputs, Settings settings);
 
-    /// "frame-####.png" has its record in "frame-####.json".
+    /// Path of the record: "frame-####.json" for "frame-####.png".
     const std::filesystem::path& path() const { return path_; }
 
-    /// Takes over the record of an earlier run; false where there is none. Throws Error(BadInput) for a file that is no
-    /// such record, and for one of other settings, the first of which it names.
+    /// Loads the record of an earlier run and returns false if there is none. Throws Error(BadInput) for a file that
+    /// is no such record, and for one with other settings, of which it names the first.
     bool load();
-    /// Whether all files of the frame are there, with the bytes that the record knows.
+    /// Whether all files of the frame exist with the recorded bytes.
     bool has(uint32_t frame) const;
-    /// Notes the frame's files, which have just been written, and the hash of its picture, and writes the record.
+    /// Records the frame's files, which have just been written, and the hash of its picture, and writes the record.
     /// Throws Error(BadInput, FileWrite).
     void add(uint32_t frame, const std::string& picture);
-    /// Throws Error(BadInput) where the record knows the frame with another picture than that of this hash.
+    /// Throws Error(BadInput) if the frame is recorded with another hash of its picture.
     void check_picture(uint32_t frame, const std::string& picture) const;
 
 private:

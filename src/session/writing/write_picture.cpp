@@ -11,14 +11,14 @@
 namespace pertev {
 namespace {
 
-/// Bytes of PNG and JPEG that show numbers.
+/// Pixels of a false-colour picture for PNG and JPEG.
 Rgba8Image draw(const Image& picture, const FalseColors& colors) {
     FalseColorScale scale = {colors.least, colors.most, colors.unit};
     if (!(scale.most > 0)) scale = fitting_scale(picture, colors.factor, colors.unit);
     return draw_false_colors(picture, colors.factor, scale);
 }
 
-/// False where the format shows no colours.
+/// Returns false if the format has no false colours.
 bool write_false_colors(const std::string& path, const Image& picture, const FalseColors& colors) {
     const ImageFormat format = image_format_for(path);
     if (format == ImageFormat::Png) write_png(path, draw(picture, colors));
@@ -26,7 +26,7 @@ bool write_false_colors(const std::string& path, const Image& picture, const Fal
     return format == ImageFormat::Png || format == ImageFormat::Jpeg;
 }
 
-/// What is shown of a result: reconstructed where that was asked for.
+/// The picture of a result that is shown: reconstructed or denoised if requested.
 const Image& beauty_of(const RenderResult& result) { return result.denoised ? *result.denoised : result.picture; }
 
 std::vector<ExrLayer> take_layers(RenderResult& result) {
@@ -50,8 +50,7 @@ std::vector<ExrLayer> take_layers(RenderResult& result) {
     return layers;
 }
 
-/// Hash of the layers, one after the other: of name, channels' names and the bits of all values. Empty where there are
-/// none.
+/// Hash of the layers in order: names, channel names and the bits of all values. Empty if there are none.
 std::string hash_of_layers(const std::vector<ExrLayer>& layers) {
     if (layers.empty()) return {};
     Hasher hasher;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The files of a finished picture: what each format can hold of its layers, its display and how it was made.
+// Writes the files of a finished picture, with as many of its layers, display and metadata as each format can hold.
 
 #include <span>
 #include <string>
@@ -13,23 +13,23 @@ namespace pertev {
 
 struct WrittenFile {
     std::string path;
-    std::string failure; // why it could not be written; empty where it was
+    std::string failure; // why it could not be written; empty on success
 };
 
 struct WrittenPicture {
-    std::string hash;          // of the film's picture (image/picture_hash.h)
-    std::string layers_hash;   // of all else that an EXR holds of it (hash_of_layers); empty: nothing
-    std::string denoised_hash; // of what files show in its place, as of the film's picture; empty: they show that
+    std::string hash;          // hash of the film's picture (image/picture_hash.h)
+    std::string layers_hash;   // hash of everything else in an EXR (hash_of_layers); empty if there is nothing
+    std::string denoised_hash; // hash of the picture that files show in its place; empty if they show the film's
     std::vector<WrittenFile> files;
 };
 
-/// Where a result has been denoised, files show that; EXR keeps the film's picture beside it, as the layer `noisy`.
+/// If a result has been denoised, files show that; EXR keeps the film's picture as the layer `noisy`.
 
-/// The bytes of such a file, PNG or EXR. Takes the layers out of `result`.
+/// Encodes a PNG or EXR file. Takes the layers out of `result`.
 std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& record, RenderResult& result);
 
-/// Writes `result` to each of `paths`, whose extensions say the format (image/write_image.h), each all or nothing; one
-/// that fails does not keep the others from being written. Takes the layers out of `result`.
+/// Writes `result` to each of `paths`, whose extensions select the format (image/write_image.h), each atomically. A
+/// failure does not prevent the others from being written. Takes the layers out of `result`.
 WrittenPicture write_picture(std::span<const std::string> paths, const PictureRecord& record, RenderResult& result);
 
 } // namespace pertev

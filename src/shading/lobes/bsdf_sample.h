@@ -1,12 +1,12 @@
 #pragma once
 
-// What sampling and evaluating a BSDF give. Local frame: +z is the shading normal; wo and wi point away from the
-// surface, unit length; either may lie on the back (z < 0).
+// Results of sampling and evaluating a BSDF. In the local frame +z is the shading normal; wo and wi point away from
+// the surface and have unit length; either may lie on the back (z < 0).
 //
 // Refraction carries radiance over the square of the refractive index, L / n^2, which does not change at an interface
-// (Veach 1997, section 5.2). So no factor 1 / eta^2 appears: in a closed furnace the mean weight is 1 on both sides,
-// light and importance are transported by the same numbers, and Russian roulette sees no jump. Seen from the medium
-// in which a lamp stands its radiance is its own; a lamp inside glass counts as emitting n^2 times what it states.
+// (Veach 1997, section 5.2). So there is no factor 1 / eta^2: in a closed furnace the mean weight is 1 on both sides,
+// light and importance are transported by the same numbers, and Russian roulette sees no jump. Emission is added to L
+// / n^2 unchanged, so an emitter inside glass counts as emitting n^2 times its stated radiance.
 
 #include <cstdint>
 
@@ -16,10 +16,10 @@
 
 namespace pertev {
 
-/// What kind of light a lobe scatters, as light-path layers and denoisers tell it apart.
+/// Kind of scattering of a lobe, which light-path layers and denoisers distinguish.
 enum class LobeClass : uint8_t {
     Diffuse,  // smooth over the hemisphere: bases, sheen
-    Glossy,   // gathered about the mirror or the refracted direction
+    Glossy,   // concentrated around the mirror or the refracted direction
     Specular, // delta: one direction only
 };
 
@@ -33,15 +33,16 @@ HD inline constexpr LobeClasses only(LobeClass c) { return {static_cast<uint8_t>
 
 struct BsdfSample {
     Vec3 wi = {};
-    Rgb weight = {}; // eval / pdf, |cos| included; of a delta lobe the factor of throughput, probability divided out
-    float pdf = 0;   // 1/sr; of a delta lobe its probability (no use for MIS); 0: nothing sampled, all absorbed
-    LobeClass lobe_class = LobeClass::Diffuse; // of the lobe that drew wi; weight and pdf are those of all lobes
-    bool is_transmission = false;              // wi and wo on different sides
+    Rgb weight = {}; // eval / pdf, |cos| included; for a delta lobe the throughput factor divided by the probability
+    float pdf = 0;   // 1/sr; for a delta lobe its probability (unusable for MIS); 0: no sample, all is absorbed
+    LobeClass lobe_class = LobeClass::Diffuse; // class of the lobe that sampled wi; weight and pdf are those of all
+                                               // lobes
+    bool is_transmission = false;              // wi and wo are on different sides
 
     HD bool is_delta() const { return lobe_class == LobeClass::Specular; }
 };
 
-/// eval() and pdf() of one pair of directions, which share most of their work.
+/// Results of eval() and pdf() for one pair of directions, which share most of their work.
 struct BsdfValue {
     Rgb f = {};    // f(wo, wi) |cos(wi)|, 1/sr; without delta lobes
     float pdf = 0; // density of sample() at wi, 1/sr; without delta lobes
@@ -49,7 +50,7 @@ struct BsdfValue {
 
 HD inline BsdfValue operator+(BsdfValue a, BsdfValue b) { return {a.f + b.f, a.pdf + b.pdf}; }
 
-/// The sample of lobes that are not delta. A density so small that 1 / pdf would overflow (wi within 1e-30 of the
+/// Makes the sample of non-delta lobes. A density so small that 1 / pdf would overflow (wi within 1e-30 of the
 /// horizon) counts as no sample.
 HD inline BsdfSample make_bsdf_sample(Vec3 wi, BsdfValue value, LobeClass lobe_class, bool is_transmission = false) {
     if (!(value.pdf > 1e-30f)) return {};

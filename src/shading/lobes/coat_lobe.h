@@ -1,10 +1,10 @@
 #pragma once
 
-// A clear varnish on anything: a second dielectric interface of its own roughness, colourless. A layer; what lies
-// beneath gets at most what the coat leaves, from either side (Passage::pass).
+// A clear coat on anything: a second, colourless dielectric interface with its own roughness. It is a layer; what
+// lies beneath gets at most the light that the coat transmits, from either side (Passage::pass).
 //
-// Source: KHR_materials_clearcoat, whose layering by Fresnel's term of the viewer alone is not reciprocal: here the
-// coat's directional albedo takes that place, of both directions.
+// Source: KHR_materials_clearcoat, whose layering by Fresnel's term of the view direction alone is not reciprocal;
+// here the coat's directional albedo for both directions replaces it.
 
 #include "shading/lobes/schlick_lobe.h"
 

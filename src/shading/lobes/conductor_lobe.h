@@ -1,9 +1,9 @@
 #pragma once
 
-// Metal: exact Fresnel reflectance of a complex index, GGX microfacets, perfectly smooth below kSmoothAlpha. What
-// single scattering loses comes back through a reciprocal second lobe (energy_tables.h). Both sides reflect alike.
-// draw() takes a visible normal with the probability of the share that one bounce returns, else the
-// grazing lobe.
+// Metal: exact Fresnel reflectance of a complex index, GGX microfacets, perfectly smooth below kSmoothAlpha. A
+// reciprocal second lobe compensates the loss of single scattering (energy_tables.h). Both sides reflect equally.
+// draw() samples a visible normal with the probability of the share that single scattering returns, else the grazing
+// lobe.
 
 #include "base/host_device.h"
 #include "shading/lobes/energy_tables.h"
@@ -47,7 +47,7 @@ struct ConductorLobe {
         } else {
             const Vec3 o = {wo.x, wo.y, abs(wo.z)};
             wi = normalize(reflect(o, sample_ggx_visible_normal(o, alpha, u)));
-            if (!(wi.z > 0)) return {}; // into the surface: lost, and part of what the second lobe returns
+            if (!(wi.z > 0)) return {}; // into the surface: lost, and part of the energy that the second lobe returns
         }
         wi.z = copysign(wi.z, wo.z);
         return draw_direction(wi);

@@ -2,11 +2,11 @@
 
 // Glass, water: reflection and refraction at GGX microfacets, a perfectly smooth interface below kSmoothAlpha.
 //
-// Source: Walter et al. 2007 (section 5; refraction's Jacobian is equation 17), in the units of bsdf_sample.h: radiance
-// over n^2, so f(wo, wi) / n_i^2 = f(wi, wo) / n_o^2. Lost energy comes back through lobes after Kulla & Conty 2017,
-// to the near side with share 1 - T and to the far side with share T; reciprocity asks that T of the two sides be as
-// n^2 times their average loss, which transmitted_share() sees to.
-// wo.z > 0 is the outside, where the index is 1; the inside has index `ior`.
+// Source: Walter et al. 2007 (section 5; refraction's Jacobian is equation 17), in the units of bsdf_sample.h:
+// radiance over n^2, so f(wo, wi) / n_i^2 = f(wi, wo) / n_o^2. Lobes after Kulla & Conty 2017 compensate the lost
+// energy, on the near side with share 1 - T and on the far side with share T; reciprocity requires that T of the two
+// sides have the ratio of n^2 times their average loss, which transmitted_share() ensures. wo.z > 0 is the outside,
+// where the index is 1; the inside has index `ior`.
 
 #include "base/host_device.h"
 #include "shading/lobes/energy_tables.h"
@@ -18,11 +18,11 @@
 namespace pertev {
 
 struct DielectricLobe {
-    Rgb tint;    // factor on what is transmitted, [0, 1]
+    Rgb tint;    // factor on transmitted light, [0, 1]
     float alpha; // GGX width = roughness^2, [0, 1]
-    float ior;   // inside over outside; where rough within [1.1, 3] or its inverse (usable_ior)
+    float ior;   // inside over outside; if rough, within [1.1, 3] or its inverse (usable_ior)
 
-    /// What a rough surface can use of an index: the range of the energy tables. 1 is kept: no interface at all.
+    /// Clamps a rough surface's index to the range of the energy tables. 1 stays: no interface at all.
     HD static float usable_ior(float ior, float alpha) {
         using energy_table::kIorMax, energy_table::kIorMin;
         if (!(alpha >= kSmoothAlpha) || ior == 1) return ior;
@@ -67,8 +67,9 @@ struct DielectricLobe {
         }
         float f = share * lost_o * glass_lost(cos_i, alpha, 1.0f / eta) / average_far * cosine;
         float pdf = lost_o * share * grazing;
-        // All of refraction is computed from the outside's direction a and the inside's b, whichever of them is wo: the
-        // two ways then round alike, and near the critical angle, where a . h cancels, the lobe stays reciprocal.
+        // All of refraction is computed from the outside's direction a and the inside's b, whichever of them is wo.
+        // The two ways then round equally, and near the critical angle, where a . h cancels, the lobe stays
+        // reciprocal.
         const bool outside = wo.z > 0;
         const Vec3 a = outside ? wo : wi, b = outside ? wi : wo;
         const Vec3 sum = a + ior * b; // the half vector; its length is |a . h + ior b . h|
@@ -86,7 +87,7 @@ struct DielectricLobe {
     }
     HD LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
         const float eta = eta_from(wo);
-        const Vec3 o = {wo.x, wo.y, abs(wo.z)}; // mirrored to the upper side, and i with it
+        const Vec3 o = {wo.x, wo.y, abs(wo.z)}; // mirrored to the upper side, together with i
         if (is_smooth()) return draw_smooth(wo, u_lobe, eta);
 
         Vec3 i;
@@ -112,7 +113,7 @@ struct DielectricLobe {
     }
 
 private:
-    /// Share of the light lost from the near side that ends on the far side.
+    /// Fraction of the light lost on the near side that is returned on the far side.
     HD static float transmitted_share(float eta, float average_near, float average_far) {
         return (1.0f - fresnel_dielectric_average(eta)) * min(1.0f, average_far / average_near);
     }

@@ -1,8 +1,8 @@
 #pragma once
 
-// Ideal diffuse reflection, on the side of wo. The lobe to read first: passage.h says what every lobe has.
-// tests/statistical/bsdf_*_test.cpp hold all of them to it: chi-square of sample against pdf, mean of weight against
-// the integral of eval, no energy gained, reciprocity.
+// Ideal diffuse reflection, on the side of wo. This is the lobe to read first: passage.h defines the interface of
+// lobes, and tests/statistical/bsdf_*_test.cpp check it for all: chi-square of sample against pdf, mean of weight
+// against the integral of eval, energy conservation, reciprocity.
 
 #include "base/host_device.h"
 #include "math/sampling.h"
@@ -13,7 +13,7 @@ namespace pertev {
 
 struct DiffuseLobe {
     Rgb albedo;      // [0, 1] per channel, linear Rec. 709
-    float share = 1; // factor on it, [0, 1]
+    float share = 1; // factor on albedo, [0, 1]
 
     HD LobeClass lobe_class() const { return LobeClass::Diffuse; }
     HD float energy() const { return share * max_component(albedo); }

@@ -1,13 +1,13 @@
 #pragma once
 
-// Energy that GGX microfacets lose because light meets them once only, tabulated; and the lobes that give it back.
+// Tabulated energy loss of single-scattering GGX microfacets, and the lobes that compensate it.
 //
 // Source: Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH course 2017.
-// With e(mu) the lost share seen from a direction of cosine mu, and its average e_avg = 2 int e(mu) mu dmu, the lobe
-// e(o) e(i) / (pi e_avg) is reciprocal and carries e(o), exactly what is missing, whatever e is, as long as e_avg
-// belongs to the interpolated e. Linear interpolation; the tables err, where they must, towards too little light.
-// Axes: x = a / (a + b), a^2 = mu, b^2 = alpha (1 - mu), since e is a function of mu / alpha where both are small;
-// roughness sqrt(alpha) from alpha = 1e-3 to 1; sqrt((ior - 1) / (ior + 1)) for ior from 1.1 to 3.
+// With the lost fraction e(mu) for a direction of cosine mu, and its average e_avg = 2 int e(mu) mu dmu, the lobe
+// e(o) e(i) / (pi e_avg) is reciprocal and carries e(o), exactly the missing energy, for any e whose interpolated
+// form has the average e_avg. Interpolation is linear; where the tables are inexact, they err towards too little
+// light. Axes: x = a / (a + b), a^2 = mu, b^2 = alpha (1 - mu), because e is a function of mu / alpha where both are
+// small; roughness sqrt(alpha) from alpha = 1e-3 to 1; sqrt((ior - 1) / (ior + 1)) for ior from 1.1 to 3.
 
 #include "base/host_device.h"
 #include "math/rgb.h"
@@ -24,7 +24,7 @@ struct Cell {
     float fraction; // [0, 1] towards the next
 };
 
-/// `x` in [0, 1] along an axis of `nodes` nodes; clamped.
+/// Cell of `x` in [0, 1] along an axis with `nodes` nodes; clamped.
 HD inline Cell make_cell(float x, int nodes) {
     const float p = clamp(x, 0.0f, 1.0f) * static_cast<float>(nodes - 1);
     const int node = to_int(p, 0, nodes - 2);
@@ -34,30 +34,30 @@ HD inline Cell make_cell(float x, int nodes) {
 HD inline Cell mu_cell(float mu, float alpha) {
     const float root = sqrt(mu);
     Cell cell = make_cell(root / (root + safe_sqrt(alpha * (1.0f - mu))), kMuNodes);
-    if (cell.node == 0) cell.fraction *= cell.fraction; // there the curves are linear in mu
+    if (cell.node == 0) cell.fraction *= cell.fraction; // the curves are linear in mu there
     return cell;
 }
-/// Share of the way from the least roughness to 1.
+/// Position between the least roughness and 1, in [0, 1].
 HD inline float roughness_position(float alpha) {
     constexpr float lowest = 0.031622776f; // sqrt(kAlphaMin)
     return (sqrt(alpha) - lowest) * (1.0f / (1.0f - lowest));
 }
 HD inline Cell roughness_cell(float alpha) { return make_cell(roughness_position(alpha), kRoughnessNodes); }
-/// Of the averages, which change the fastest where roughness is least.
+/// Cell of the averages, which change fastest at the least roughness.
 HD inline Cell average_cell(float alpha) { return make_cell(safe_sqrt(roughness_position(alpha)), kAverageNodes); }
 HD inline Cell ior_cell(float ior) {
-    constexpr float lowest = 0.21821789f, highest = 0.70710678f; // of kIorMin and kIorMax
+    constexpr float lowest = 0.21821789f, highest = 0.70710678f; // values for kIorMin and kIorMax
     return make_cell((safe_sqrt((ior - 1.0f) / (ior + 1.0f)) - lowest) * (1.0f / (highest - lowest)), kIorNodes);
 }
 
 inline constexpr float kUnit = 1.0f / 65535.0f;
 
-/// Linear along the last axis, from node `i` of the flattened table.
+/// Interpolates along the last axis, from node `i` of the flattened table.
 template <class Table>
 HD inline float along(Table table, int i, float fraction) {
     return lerp(static_cast<float>(table(i)), static_cast<float>(table(i + 1)), fraction);
 }
-/// Linear along the last two axes.
+/// Interpolates along the last two axes.
 template <class Table>
 HD inline float along(Table table, int first, Cell row, Cell column, int columns) {
     const int i = first + row.node * columns + column.node;
@@ -66,35 +66,37 @@ HD inline float along(Table table, int first, Cell row, Cell column, int columns
 
 } // namespace energy_table
 
-/// Share lost by a reflector with F = 1, seen at cosine `mu` in [0, 1]. alpha in [kSmoothAlpha, 1] here and below.
+/// Fraction lost by a reflector with F = 1, seen at cosine `mu` in [0, 1]. alpha is in [kSmoothAlpha, 1], here and
+/// below.
 HD inline float metal_lost(float mu, float alpha) {
     using namespace energy_table;
     return kUnit *
            along([](int i) { return metal_lost_at(i); }, 0, roughness_cell(alpha), mu_cell(mu, alpha), kMuNodes);
 }
-/// 2 int metal_lost(mu) mu dmu
+/// Average loss, 2 int metal_lost(mu) mu dmu.
 HD inline float metal_average_lost(float alpha) {
     using namespace energy_table;
     const Cell c = average_cell(alpha);
     return alpha * along([](int i) { return metal_average_lost_at(i); }, c.node, c.fraction);
 }
 
-/// Average of (1 - cos)^5, Schlick's weight, over what a reflector with F = 1 reflects at cosine `mu`.
+/// Average of (1 - cos)^5, Schlick's weight, over the light that a reflector with F = 1 reflects at cosine `mu`.
 HD inline float metal_schlick(float mu, float alpha) {
     using namespace energy_table;
     const float beyond =
         along([](int i) { return metal_schlick_at(i); }, 0, roughness_cell(alpha), mu_cell(mu, alpha), kMuNodes);
     return max(schlick_weight(mu) + (2.0f * kUnit * beyond - 1.0f), 0.0f);
 }
-/// 2 int (1 - metal_lost(mu)) metal_schlick(mu) mu dmu
+/// Average of that weight, 2 int (1 - metal_lost(mu)) metal_schlick(mu) mu dmu.
 HD inline float metal_average_schlick(float alpha) {
     using namespace energy_table;
     const Cell c = average_cell(alpha);
     return along([](int i) { return metal_average_schlick_at(i); }, c.node, c.fraction);
 }
 
-/// Share lost by a dielectric, reflection and refraction together, seen at cosine `mu` from the side whose index is 1
-/// when the other's is `eta`: in [kIorMin, kIorMax] from outside, in [1 / kIorMax, 1 / kIorMin] from inside.
+/// Fraction lost by a dielectric, reflection and refraction together, seen at cosine `mu`. `eta` is the index of the
+/// far side over that of the near side: in [kIorMin, kIorMax] from outside, in [1 / kIorMax, 1 / kIorMin] from
+/// inside.
 HD inline float glass_lost(float mu, float alpha, float eta) {
     using namespace energy_table;
     const Cell ior = ior_cell(eta > 1 ? eta : 1.0f / eta), row = roughness_cell(alpha), column = mu_cell(mu, alpha);
@@ -104,7 +106,7 @@ HD inline float glass_lost(float mu, float alpha, float eta) {
     return kUnit * lerp(along(table, first, row, column, kMuNodes), along(table, first + stride, row, column, kMuNodes),
                         ior.fraction);
 }
-/// 2 int glass_lost(mu) mu dmu
+/// Average loss, 2 int glass_lost(mu) mu dmu.
 HD inline float glass_average_lost(float alpha, float eta) {
     using namespace energy_table;
     const int first = (eta > 1 ? 0 : kIorNodes) * kAverageNodes;
@@ -112,8 +114,8 @@ HD inline float glass_average_lost(float alpha, float eta) {
                          average_cell(alpha), kAverageNodes);
 }
 
-/// Colour of the light that comes back after more than one bounce off facets of average reflectance `f_average`, when
-/// a bounce loses `average_lost` of it to the next.
+/// Colour of the light that is returned after several bounces off facets with average reflectance `f_average`, if a
+/// bounce loses `average_lost` of it to the next.
 HD inline float multiple_scattering_tint(float f_average, float average_lost) {
     return f_average * f_average * (1.0f - average_lost) / (1.0f - f_average * average_lost);
 }

@@ -17,9 +17,9 @@ struct DielectricFresnel {
     float cos_t;       // cosine of refraction, >= 0; 0 under total reflection
 };
 
-/// `cos_o` in [0, 1]; `eta` is the refractive index of the far side over that of the near side.
+/// `cos_o` is in [0, 1]; `eta` is the refractive index of the far side over that of the near side.
 HD inline DielectricFresnel fresnel_dielectric(float cos_o, float eta) {
-    // 1 - sin^2 / eta^2, written so that nothing cancels at grazing.
+    // 1 - sin^2 / eta^2, written so that nothing cancels at grazing angles.
     const float c2 = cos_o * cos_o, e2 = eta * eta;
     const float cos2_t = ((e2 - 1.0f) + c2) / e2;
     if (!(cos2_t > 0)) return {1.0f, 0.0f};
@@ -29,8 +29,8 @@ HD inline DielectricFresnel fresnel_dielectric(float cos_o, float eta) {
     return {min(0.5f * (s * s + p * p), 1.0f), cos_t};
 }
 
-/// 1 - reflectance, of cosines that obey Snell's law; nothing cancels near total reflection, and from the other side
-/// (cosines exchanged, 1 / eta) it is the same.
+/// Returns 1 - reflectance for cosines that obey Snell's law. Nothing cancels near total reflection, and the result
+/// from the other side (exchanged cosines, 1 / eta) is equal.
 HD inline float transmittance_dielectric(float cos_o, float cos_t, float eta) {
     const float s = cos_o + eta * cos_t, p = eta * cos_o + cos_t;
     return 2.0f * eta * cos_o * cos_t * (1.0f / (s * s) + 1.0f / (p * p));
@@ -39,9 +39,9 @@ HD inline float transmittance_dielectric(float cos_o, float cos_t, float eta) {
 /// Average of the reflectance over a cosine-weighted hemisphere of the near side.
 HD inline float fresnel_dielectric_average(float eta) {
     if (eta == 1) return 0;
-    const float up = eta > 1 ? eta : 1.0f / eta; // seen from the thinner side
+    const float up = eta > 1 ? eta : 1.0f / eta; // from the thinner side
     const float from_thin = (up - 1.0f) / (4.08567f + 1.00071f * up);
-    // What gets in one way gets out the other: (1 - F) n^2 is the same from both sides.
+    // Light that enters can leave: (1 - F) n^2 is equal from both sides.
     return eta > 1 ? from_thin : 1.0f - (1.0f - from_thin) / (up * up);
 }
 
@@ -53,7 +53,7 @@ HD inline float fresnel_conductor(float cos_o, float eta, float k) {
     const float a2_plus_b2 = sqrt(t0 * t0 + 4.0f * eta2 * k2);
     const float a = safe_sqrt(0.5f * (a2_plus_b2 + t0));
     const float t1 = a2_plus_b2 + c2, t2 = 2.0f * a * cos_o;
-    if (!(t1 + t2 > 0)) return 1; // grazing on an index of 1
+    if (!(t1 + t2 > 0)) return 1; // grazing with an index of 1
     const float s = (t1 - t2) / (t1 + t2);
     const float t3 = c2 * a2_plus_b2 + s2 * s2, t4 = t2 * s2;
     const float p = t3 + t4 > 0 ? s * (t3 - t4) / (t3 + t4) : s;
@@ -65,17 +65,17 @@ HD inline Rgb fresnel_conductor(float cos_o, Rgb eta, Rgb k) {
             fresnel_conductor(cos_o, eta.b, k.b)};
 }
 
-/// Average of the reflectance over a cosine-weighted hemisphere: two-point Gauss rule for the weight 2 cos.
+/// Average reflectance over a cosine-weighted hemisphere: two-point Gauss rule for the weight 2 cos.
 HD inline Rgb fresnel_conductor_average(Rgb eta, Rgb k) {
     return 0.36391724f * fresnel_conductor(0.35505103f, eta, k) + 0.63608276f * fresnel_conductor(0.84494897f, eta, k);
 }
 
-/// (1 - cos_o)^5
+/// Schlick's weight, (1 - cos_o)^5.
 HD inline float schlick_weight(float cos_o) {
     const float x = clamp(1.0f - cos_o, 0.0f, 1.0f);
     return x * x * (x * x) * x;
 }
-/// Schlick's approximation; `f0` is the reflectance at normal incidence, that at grazing is 1.
+/// Schlick's approximation; `f0` is the reflectance at normal incidence, and that at grazing incidence is 1.
 HD inline Rgb fresnel_schlick(float cos_o, Rgb f0) {
     const float w = schlick_weight(cos_o);
     return {f0.r + (1.0f - f0.r) * w, f0.g + (1.0f - f0.g) * w, f0.b + (1.0f - f0.b) * w};

@@ -5,9 +5,9 @@
 // Source: Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007; Heitz, "Understanding the
 // Masking-Shadowing Function", JCGT 3(2), 2014, section 5 and appendix A; sampling: Dupuy & Benyoub, "Sampling Visible
 // GGX Normals with Spherical Caps", 2023.
-// The one thing to know: masking is never formed by itself. With S(z) = sqrt(z^2 + alpha^2 (1 - z^2)),
+// Masking never appears alone. With S(z) = sqrt(z^2 + alpha^2 (1 - z^2)),
 //     G1(o) = 2 o / (o + S(o)),   G2(o, i) / (4 o i) = 1 / (2 (S(o) i + S(i) o)),
-// and in that form nothing is divided by a cosine: all is finite down to grazing.
+// and in that form nothing is divided by a cosine, so everything is finite down to grazing angles.
 
 #include "base/host_device.h"
 #include "math/portable_math.h"
@@ -17,20 +17,20 @@
 namespace pertev {
 
 /// Below this alpha (roughness^2) a surface counts as perfectly smooth: its lobe is narrower than 1/10 degree, and a
-/// half vector formed from two float directions no longer resolves it well.
+/// half vector of two float directions no longer resolves it well.
 inline constexpr float kSmoothAlpha = 1e-3f;
 
-/// Density of normals per projected area, 1/sr. `h` of unit length; h.z of either sign.
+/// Density of normals per projected area, 1/sr. `h` has unit length; h.z may have either sign.
 HD inline float ggx_normals(Vec3 h, float alpha) {
     const float a2 = alpha * alpha;
-    const float t = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z; // from x and y: 1 - z^2 would cancel
+    const float t = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z; // from x and y, because 1 - z^2 would cancel
     return 1.0f / (kPi * a2 * (t * t));
 }
 
-/// S(z) of the header's comment, for z in [0, 1].
+/// The function S(z) of the first comment, for z in [0, 1].
 HD inline float ggx_slope_length(float z, float alpha) { return sqrt(z * z + alpha * alpha * max(1.0f - z * z, 0.0f)); }
 
-/// Normal m with density G1(wo) max(wo . m, 0) D(m) / wo.z. wo.z >= 0; u in [0, 1]^2.
+/// Samples a normal m with density G1(wo) max(wo . m, 0) D(m) / wo.z. wo.z >= 0; u in [0, 1]^2.
 HD inline Vec3 sample_ggx_visible_normal(Vec3 wo, float alpha, Vec2 u) {
     const Vec3 w = normalize(Vec3{alpha * wo.x, alpha * wo.y, wo.z});
     const float drop = u.y * (1.0f + w.z); // 1 - z of a point on the cap z > -w.z
@@ -47,13 +47,13 @@ HD inline Vec3 sample_ggx_visible_normal(Vec3 wo, float alpha, Vec2 u) {
 /// Mirror image of `wo` about the unit normal `m`.
 HD inline Vec3 reflect(Vec3 wo, Vec3 m) { return 2.0f * dot(wo, m) * m - wo; }
 
-/// The single-scattering lobe of reflection, without Fresnel's factor: what all GGX reflectors share.
+/// The single-scattering reflection lobe without Fresnel's factor, common to all GGX reflectors.
 struct GgxReflection {
     float f = 0;     // D G2 / (4 |cos(wo)|), 1/sr
-    float pdf = 0;   // of reflecting wo about a visible normal
+    float pdf = 0;   // density of reflecting wo about a visible normal
     float cos_h = 0; // wo . h
 };
-/// wo.z > 0, wi.z > 0.
+/// Evaluates the lobe for wo.z > 0, wi.z > 0.
 HD inline GgxReflection evaluate_ggx_reflection(Vec3 wo, Vec3 wi, float alpha) {
     const Vec3 sum = wo + wi;
     const Vec3 h = (1.0f / sqrt(length_squared(sum))) * sum;

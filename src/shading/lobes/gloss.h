@@ -1,6 +1,6 @@
 #pragma once
 
-// What a denoiser knows of the lobes of a BSDF that are not diffuse: a guide, no part of any estimate.
+// Properties of a BSDF's non-diffuse lobes for denoisers: a guide, which no estimate depends on.
 
 #include "math/rgb.h"
 #include "math/scalar.h"
@@ -8,9 +8,9 @@
 namespace pertev {
 
 struct Gloss {
-    Rgb reflectance = {0, 0, 0}; // about the share of light from all around that they scatter, [0, 1]
-    float alpha = 1;             // GGX width of the sharpest, [0, 1]; 1 without one
-    float passage = 1;           // share of light that they leave to the eye of what lies beneath, [0, 1]
+    Rgb reflectance = {0, 0, 0}; // approximate fraction of uniform light that they scatter, [0, 1]
+    float alpha = 1;             // GGX width of the sharpest, [0, 1]; 1 if there is none
+    float passage = 1;           // their transmittance towards the viewer for light from beneath, [0, 1]
 };
 
 HD inline Gloss operator+(Gloss a, Gloss b) {

@@ -1,8 +1,8 @@
 #pragma once
 
-// Sampling of the lobe that returns lost energy (energy_tables.h). That lobe is e(cos) cos with e about
-// (alpha / cos)^2 for cos > alpha: a cosine lobe would miss it where alpha is small, and weights of 100 be the price.
-// Density by solid angle: cos / (pi L (cos^2 + alpha^2)), L = log(1 + 1 / alpha^2); for large alpha a cosine lobe.
+// Sampling of the lobe that compensates lost energy (energy_tables.h). That lobe is e(cos) cos with e about (alpha /
+// cos)^2 for cos > alpha: a cosine lobe would miss it for small alpha and cause weights of 100. Density by solid
+// angle: cos / (pi L (cos^2 + alpha^2)), L = log(1 + 1 / alpha^2); for large alpha a cosine lobe.
 
 #include "base/host_device.h"
 #include "math/portable_math.h"
@@ -13,7 +13,7 @@ namespace pertev {
 
 HD inline float grazing_lobe_log(float alpha) { return log(1.0f + 1.0f / (alpha * alpha)); }
 
-/// Direction above the surface; u in [0, 1]^2, alpha in [kSmoothAlpha, 1].
+/// Samples a direction above the surface; u in [0, 1]^2, alpha in [kSmoothAlpha, 1].
 HD inline Vec3 sample_grazing_lobe(float alpha, Vec2 u) {
     const float z2 = clamp(alpha * alpha * (exp(u.y * grazing_lobe_log(alpha)) - 1.0f), 0.0f, 1.0f);
     const float radius = sqrt(1.0f - z2);
@@ -21,7 +21,7 @@ HD inline Vec3 sample_grazing_lobe(float alpha, Vec2 u) {
     sin_cos_2pi(u.x, sin_phi, cos_phi);
     return {radius * cos_phi, radius * sin_phi, sqrt(z2)};
 }
-/// `cosine` in [0, 1].
+/// Density at `cosine` in [0, 1].
 HD inline float pdf_grazing_lobe(float cosine, float alpha) {
     return kInvPi * cosine / ((cosine * cosine + alpha * alpha) * grazing_lobe_log(alpha));
 }

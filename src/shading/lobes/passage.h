@@ -1,15 +1,15 @@
 #pragma once
 
-// How a lobe stands in its BSDF: a *base* (diffuse, conductor, dielectric) lies innermost; a *layer* (the reflection of
-// a glTF material, coat, sheen) scatters some light and leaves the rest to what is beneath it. Every lobe is a file of
-// this folder and has, in the frame and units of bsdf_sample.h:
-//   lobe_class  what it scatters
-//   energy      about the largest share of light that it scatters, [0, 1]: how often it is drawn from beneath a layer
-//   evaluate    value and density of what it adds under a Passage; a layer then moves the Passage to beneath itself
-//   gloss       seen at a cosine: what a denoiser is told (shading/lobes/gloss.h); none of a diffuse lobe
-//   draw        a direction from u_lobe and u in [0, 1), or word that what is beneath is to draw one
-//   specular    what it sends along single directions, as if it were alone; a lobe that is diffuse has none
-// A layer also takes `beneath`, the energy of all that it lies on.
+// Position of a lobe in its BSDF: a *base* (diffuse, conductor, dielectric) is innermost; a *layer* (the reflection
+// of a glTF material, coat, sheen) scatters some light and transmits the rest to what is beneath it. Every lobe is a
+// file of this folder and has, in the frame and units of bsdf_sample.h:
+//   lobe_class  its kind of scattering
+//   energy      approximate maximum fraction of scattered light, [0, 1]: sets how often it is sampled beneath a layer
+//   evaluate    value and density that it adds under a Passage; a layer then moves the Passage beneath itself
+//   gloss       guide for denoisers at a cosine (shading/lobes/gloss.h); diffuse lobes have none
+//   draw        samples a direction from u_lobe and u in [0, 1), or returns that what is beneath must sample one
+//   specular    light along single directions, as if it were alone; diffuse lobes have none
+// A layer also takes `beneath`, the energy of everything beneath it.
 
 #include "base/host_device.h"
 #include "math/scalar.h"
@@ -18,35 +18,36 @@
 
 namespace pertev {
 
-/// What the layers above leave to a lobe, for one pair of directions.
+/// Transmittance of the layers above a lobe, for one pair of directions.
 struct Passage {
-    float light = 1; // factor on values, [0, 1]: of layers that may lie on anything
-    float reach = 1; // probability that sample() comes this deep
+    float light = 1; // factor on values, [0, 1], from layers that may lie on anything
+    float reach = 1; // probability that sample() gets this deep
 
-    // Of a layer that lies on a diffuse base alone: the base is scaled by near far / average, so that all light which
-    // the layer leaves is scattered (Kelemen & Szirmay-Kalos 2001).
+    // From a layer that lies only on a diffuse base: the base is scaled by near far / average, so that all light that
+    // the layer transmits is scattered (Kelemen & Szirmay-Kalos 2001).
     float near = 1, far = 1, average = 1;
 
-    /// Beneath a layer of albedo `at_o` and `at_i` that is drawn past with probability `p_beneath`. The factor is
-    /// reciprocal, and whatever lies beneath, no light is gained: it is at most 1 - at_o (KHR_materials_sheen).
+    /// Passes a layer with albedo `at_o` and `at_i` that sampling passes with probability `p_beneath`. The factor is
+    /// reciprocal and at most 1 - at_o, so no light is gained whatever lies beneath (KHR_materials_sheen).
     HD void pass(float at_o, float at_i, float p_beneath) {
         light = light * (1.0f - max(at_o, at_i));
         reach = reach * p_beneath;
     }
 };
 
-/// What delta lobes send along the only two directions that they have: into wo comes `mirror` of the light from the
-/// mirror image of wo, and `refraction` of the light from `refracted`. Nothing is drawn.
+/// Light that delta lobes scatter along their only two directions: wo receives `mirror` of the light from the mirror
+/// image of wo, and `refraction` of the light from `refracted`. Nothing is sampled.
 struct SpecularBranches {
     Rgb mirror = {}, refraction = {}; // [0, 1]
-    Vec3 refracted = {};              // unit, on the other side; where `refraction` is not black
+    Vec3 refracted = {};              // unit, on the other side; valid if `refraction` is not black
 };
 
-/// What draw() gives.
+/// Result of draw().
 struct LobeDraw {
-    BsdfSample sample = {};  // of a delta lobe as if it were alone; else wi and is_transmission; pdf 0: nothing
+    BsdfSample sample = {};  // for a delta lobe as if it were alone; else only wi and is_transmission are set; pdf 0:
+                             // no sample
     float u_lobe = 0;        // for what is beneath
-    bool is_beneath = false; // what is beneath draws
+    bool is_beneath = false; // whether what is beneath must sample
 };
 
 HD inline LobeDraw draw_direction(Vec3 wi, bool is_transmission = false) {

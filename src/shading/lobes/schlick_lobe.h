@@ -1,10 +1,11 @@
 #pragma once
 
-// The reflection of glTF 2.0's metallic-roughness (specification, appendix B): metal and dielectric coat, mixed by
-// `metallic`, by one GGX lobe with Schlick's Fresnel; multiple scattering is compensated (energy_tables.h). A layer, of
-// which the coat lies on a diffuse base or on nothing. The base gets (1 - C(o)) (1 - C(i)) / (1 - C_avg), C the coat's
-// directional albedo (Kelemen & Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", 2001), so coat
-// and a white base together return all light. Below kSmoothAlpha a perfect mirror. Both sides reflect alike.
+// The reflection of glTF 2.0's metallic-roughness model (specification, appendix B): metal and dielectric coat, mixed
+// by `metallic`, as one GGX lobe with Schlick's Fresnel; multiple scattering is compensated (energy_tables.h). It is
+// a layer whose coat lies on a diffuse base or on nothing. The base gets (1 - C(o)) (1 - C(i)) / (1 - C_avg) with the
+// coat's directional albedo C (Kelemen & Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model",
+// 2001), so that coat and a white base together return all light. Below kSmoothAlpha it is a perfect mirror. Both
+// sides reflect equally.
 
 #include "base/host_device.h"
 #include "shading/lobes/energy_tables.h"
@@ -15,12 +16,13 @@
 
 namespace pertev {
 
-/// Probabilities of sampling a layer's visible normal (or its mirror), its grazing lobe, what lies beneath.
+/// Probabilities of sampling a layer's visible normal (or its mirror direction), its grazing lobe, and what lies
+/// beneath.
 struct LayerShares {
     float specular, more, beneath;
 };
-/// From the energies seen from wo. The visible normals keep at least 1/16, against fireflies where the energy seen from
-/// wo is no guide to the value at wi.
+/// Computes the shares from the energies seen from wo. Visible normals keep at least 1/16, against fireflies where
+/// the energy seen from wo does not predict the value at wi.
 HD inline LayerShares layer_shares(float once, float more, float beneath) {
     LayerShares shares = {};
     shares.specular = more + beneath > 0 ? max(once / (once + more + beneath), 0.0625f) : 1.0f;
@@ -37,14 +39,14 @@ struct SchlickLobe {
     float f0;       // reflectance of the coat at normal incidence, [0, 1]: f0_from_ior(ior)
 
     struct Average {
-        float lost, schlick; // of the lobe with F = 1
+        float lost, schlick; // for the lobe with F = 1
         float coat_more;     // factor of the compensating lobe of the coat
         float coat;          // the coat's albedo
         Rgb more;            // factor of the compensating lobe, coat and metal mixed
     };
     struct Albedo {
-        float lost, schlick; // of the lobe with F = 1; schlick is metal_schlick()
-        float coat;          // of coat with compensation, [0, 1]
+        float lost, schlick; // for the lobe with F = 1; schlick is metal_schlick()
+        float coat;          // albedo of the compensated coat, [0, 1]
     };
 
     HD bool is_smooth() const { return !(alpha >= kSmoothAlpha); }
@@ -88,7 +90,7 @@ struct SchlickLobe {
         return draw_by(shares, fresnel_schlick(abs(wo.z), mixed_f0()), wo, u_lobe, u);
     }
 
-    // What follows also makes coat_lobe.h.
+    // coat_lobe.h uses the following functions too.
 
     HD Rgb value_of(const GgxReflection& once, float cos_i, const Average& average, const Albedo& at_o,
                     const Albedo& at_i) const {
@@ -100,7 +102,7 @@ struct SchlickLobe {
         return p_specular * once.pdf + p_more * pdf_grazing_lobe(cos_i, alpha);
     }
 
-    /// `fresnel`: the mirror's reflectance seen from wo.
+    /// `fresnel` is the mirror's reflectance seen from wo.
     HD LobeDraw draw_by(const LayerShares& shares, Rgb fresnel, Vec3 wo, float u_lobe, Vec2 u) const {
         Vec3 wi;
         if (u_lobe < shares.beneath) return draw_beneath(u_lobe, shares.beneath);

@@ -1,11 +1,11 @@
 #pragma once
 
-// Velvet: fibres that stand up and are seen bright at grazing angles. A layer that may lie on anything.
+// Velvet: upright fibres that appear bright at grazing angles. It is a layer that may lie on anything.
 //
 // Source: KHR_materials_sheen. D: Estevez & Kulla, "Production Friendly Microfacet Sheen BRDF", 2017; V: Neubelt &
-// Pettineo, "Crafting a Next-Gen Material Pipeline for The Order: 1886", 2013. Narrow sheen of both gives more light
-// than it gets (albedo E up to 2 at grazing): so value and albedo are here over max(1, E(o), E(i)), which is
-// reciprocal. E is tabulated over roughness from 0.2 to 1 and sqrt(mu) (sheen_table_data.h).
+// Pettineo, "Crafting a Next-Gen Material Pipeline for The Order: 1886", 2013. Narrow sheen of both creates energy
+// (albedo E up to 2 at grazing), so value and albedo are divided by max(1, E(o), E(i)), which is reciprocal. E is
+// tabulated over roughness from 0.2 to 1 and sqrt(mu) (sheen_table_data.h).
 
 #include "math/portable_pow.h"
 #include "math/sampling.h"
@@ -19,7 +19,7 @@ struct SheenLobe {
     Rgb color;   // [0, 1]
     float alpha; // roughness^2, in [kRoughnessMin^2, 1] (usable_alpha)
 
-    /// Of a roughness; one of less than kRoughnessMin counts as that.
+    /// Alpha for a roughness, which is clamped to at least kRoughnessMin.
     HD static float usable_alpha(float roughness) { return square(clamp(roughness, sheen_table::kRoughnessMin, 1.0f)); }
 
     HD LobeClass lobe_class() const { return LobeClass::Diffuse; }
@@ -53,7 +53,7 @@ struct SheenLobe {
     }
 
 private:
-    /// E: the integral of D V cos(wi), seen at cosine `mu` in [0, 1].
+    /// Albedo E: the integral of D V cos(wi), seen at cosine `mu` in [0, 1].
     HD float albedo_at(float mu) const {
         using namespace sheen_table;
         const energy_table::Cell column = energy_table::make_cell(sqrt(mu), kMuNodes);
@@ -61,7 +61,7 @@ private:
             energy_table::make_cell((sqrt(alpha) - kRoughnessMin) * (1.0f / (1.0f - kRoughnessMin)), kRoughnessNodes);
         return energy_table::along([](int i) { return sheen_table::albedo_at(i); }, 0, row, column, kMuNodes);
     }
-    /// At least 1/16 is drawn here, for where the energy seen from wo is no guide to the value at wi.
+    /// At least 1/16 samples this lobe, in case the energy seen from wo does not predict the value at wi.
     HD static float probability_beneath(float at_o, float beneath) {
         const float rest = beneath * (1.0f - at_o);
         return rest > 0 ? min(rest / (at_o + rest), 0.9375f) : 0.0f;

@@ -1,7 +1,7 @@
 #pragma once
 
-// If-if: at each turn a ray tests one node if it is at a node, and then one triangle if it is at a leaf. No lane of a
-// warp waits for a loop of another, but a turn costs both tests as soon as lanes differ.
+// If-if traversal: in each turn a ray tests one node if it is at a node, and then one triangle if it is at a leaf. No
+// lane of a warp waits for another's loop, but a turn costs both tests as soon as lanes differ.
 //
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.
 
@@ -24,7 +24,7 @@ struct IfIfWalk {
         const auto prepared = Tests::make_triangles(ray);
         typename WalkStack<kOptions.rta>::Slot slots[kMaxBvhDepth];
         WalkStack<kOptions.rta> stack = {slots};
-        uint32_t link = bvh.root; // at a leaf: kLeafBit | the triangle to test next
+        uint32_t link = bvh.root; // at a leaf: kLeafBit | the next triangle to test
         while (link != kNoLink) {
             if (!(link & kLeafBit)) {
                 counter.add_node(bvh.nodes + link);

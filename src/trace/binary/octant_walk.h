@@ -1,7 +1,7 @@
 #pragma once
 
-// While-while, with the way down to a leaf compiled for each octant that a ray can go to (octant_boxes.h). A warp's
-// rays from the camera nearly all go to the same one; where they do not, its lanes take the code for any octant.
+// While-while traversal whose descent to a leaf is compiled for each octant of ray directions (octant_boxes.h). A
+// warp's camera rays nearly all have the same octant; otherwise its lanes use the code for any octant.
 //
 // Source of the loop: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.
 
@@ -45,9 +45,9 @@ struct OctantWalk {
     }
 
 private:
-    using Stack = WalkStack<kOptions.rta>; // entries are parameters of the ray
+    using Stack = WalkStack<kOptions.rta>; // entries are ray parameters
 
-    /// Of all lanes that run together, or kAnyOctant.
+    /// Common octant of all lanes that run together, or kAnyOctant.
     HD static int octant_of_lanes(Vec3 inv) {
         const LaneMask lanes = lanes_here();
         const int octant = octant_of(inv);
@@ -83,7 +83,7 @@ private:
         }
     }
 
-    /// To the next leaf; kNoLink at the end.
+    /// Descends to the next leaf; kNoLink at the end.
     template <int kOctant, class Counter>
     HD static uint32_t go_down(const BvhView& bvh, uint32_t link, const RayOctantBoxes& boxes, Stack& stack,
                                const Counter& counter) {

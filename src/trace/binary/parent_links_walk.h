@@ -1,11 +1,12 @@
 #pragma once
 
-// The parent-pointer automaton: a walk whose whole memory is the node it is at and where it came from. Of a node's
-// children the near one is told by the ray's sign on the node's split axis, so that coming back up the automaton knows
-// which was walked already; entry parameters could not tell, for they are gone by then.
+// The parent-pointer automaton: a traversal whose state is the current node and where it came from. The sign of the
+// ray on the node's split axis identifies the near child, so that on the way up the automaton knows which child is
+// done; entry parameters are no longer available then.
 //
-// Source: Hapala, Davidovic, Wald, Havran, Slusallek, "Efficient Stack-less BVH Traversal for Ray Tracing", SCCG 2011,
-// algorithm 2. Wants a tree with add_parent_links (accel/bvh/parent_links.h); without them it may not end.
+// Source: Hapala, Davidovic, Wald, Havran, Slusallek, "Efficient Stack-less BVH Traversal for Ray Tracing", SCCG
+// 2011, algorithm 2. It requires a tree with add_parent_links (accel/bvh/parent_links.h); without them it may not
+// end.
 
 #include <cstdint>
 
@@ -32,7 +33,7 @@ struct ParentLinksWalk {
         uint32_t at = bvh.root;
         State state = State::FromParent;
         for (;;) {
-            if (state == State::FromChild) { // nothing is left beneath `at`
+            if (state == State::FromChild) { // the subtree of `at` is done
                 if (at == bvh.root) return false;
                 const uint32_t place = bvh.nodes[at].parent;
                 at = place & ~kSecondChildBit;
@@ -45,7 +46,7 @@ struct ParentLinksWalk {
             const BvhNode node = load_aligned(bvh.nodes + at);
             const int first = first_child<kOptions.near_first>(node.split, ray.direction);
             const bool second = (state == State::FromParent ? first : 1 - first) == 1;
-            // Where the walk goes on if there is nothing beneath this child, or when that is done.
+            // State after this child is skipped or done.
             const State after = state == State::FromParent ? State::FromSibling : State::FromChild;
             const uint32_t link = second ? node.child[1] : node.child[0];
             if (!enters(boxes, node, second, ray.t_min, skip_beyond<kOptions>(visitor, ray))) {
@@ -63,8 +64,8 @@ struct ParentLinksWalk {
 private:
     enum class State {
         FromParent,  // the first child of the current node is next
-        FromSibling, // the second is
-        FromChild,   // both are done
+        FromSibling, // the second child is next
+        FromChild,   // both children are done
     };
 
     template <bool kNear>

@@ -1,13 +1,13 @@
 #pragma once
 
-// Restart trail: a walk without a stack. Two bits a level tell which child the way down takes and whether the other one
-// still waits; when a leaf is done, the walk starts again at the root, repeats its way down to the deepest level at
-// which a child waits, and takes that one.
+// Restart trail: stackless traversal. Two bits per level store which child the path takes and whether the other one
+// is pending. After a leaf, the traversal restarts at the root, repeats its path down to the deepest level with a
+// pending child, and visits that one.
 //
-// Source: Laine, "Restart Trail for Stackless BVH Traversal", HPG 2010, where one bit a level says "far child" and the
-// order is computed anew on the way. That is ambiguous once a box on the way has come to lie beyond the nearest hit (as
-// it may with spatial splits, where a hit can lie outside its leaf's box), so here the way itself is kept.
-// Where the way is blocked by now, all that waits beneath is done with.
+// Source: Laine, "Restart Trail for Stackless BVH Traversal", HPG 2010, where one bit per level says "far child" and
+// the order is recomputed on the way. That is ambiguous once a box on the path is beyond the nearest hit (possible
+// with spatial splits, where a hit can lie outside its leaf's box), so the path itself is stored here. If the path is
+// blocked by then, everything pending below is done.
 
 #include <cstdint>
 
@@ -19,22 +19,23 @@
 
 namespace pertev {
 
-static_assert(kMaxBvhDepth <= 64); // a bit a level
+static_assert(kMaxBvhDepth <= 64); // one bit per level
 
-/// Nothing but the trail: every pop is a restart. (ShortStackWalk keeps a few entries instead.)
+/// No stack: every pop restarts. (ShortStackWalk keeps a few entries instead.)
 struct NoShortStack {
     HD void push(uint32_t, float) {}
     HD bool pop(WalkStackEntry&) { return false; }
 };
 
-/// Bit i is of level i, the root being level 0. A level above the current one is set, deeper ones do not count.
+/// Bit i belongs to level i; the root is level 0. A level above the current one is set, and deeper ones are ignored.
 struct RestartTrail {
-    uint64_t taken = 0;   // child 1 is on the way
-    uint64_t waiting = 0; // the other child is still to be walked; never set at the current level or deeper
-    int level = 0;        // of the current node
+    uint64_t taken = 0;   // child 1 is on the path
+    uint64_t waiting = 0; // the other child is pending; never set at the current level or deeper
+    int level = 0;        // level of the current node
     int repeated = 0;     // levels before this one follow `taken`
 
-    /// Turns to what waits deepest, by the stack where that has it, else from the root. kNoLink at the end.
+    /// Continues with the deepest pending child, from the stack if that has it, else from the root. Returns kNoLink
+    /// at the end.
     template <class ShortStack>
     HD uint32_t pop(uint32_t root, float limit, ShortStack& stack) {
         while (waiting != 0) {
@@ -57,7 +58,7 @@ struct RestartTrail {
     }
 };
 
-/// One step from an inner node; the link to go on with.
+/// Takes one step from an inner node and returns the next link.
 template <bool kNearFirst, class ShortStack>
 HD inline uint32_t step_by_trail(const BvhNode& node, const RayBoxes& boxes, float t_min, float limit, uint32_t root,
                                  RestartTrail& trail, ShortStack& stack) {
@@ -65,7 +66,7 @@ HD inline uint32_t step_by_trail(const BvhNode& node, const RayBoxes& boxes, flo
     float entry0, entry1;
     const bool enters0 = enters_child(boxes, node, 0, t_min, limit, entry0);
     const bool enters1 = enters_child(boxes, node, 1, t_min, limit, entry1);
-    bool second; // child 1 is the one to go on with
+    bool second; // continue with child 1
     bool waits = enters0 && enters1;
     if (trail.level < trail.repeated) {
         second = (trail.taken & bit) != 0;
@@ -81,7 +82,7 @@ HD inline uint32_t step_by_trail(const BvhNode& node, const RayBoxes& boxes, flo
         ++trail.level;
         return second ? node.child[1] : node.child[0];
     }
-    trail.waiting &= (bit << 1) - 1; // on a repeated way: what waited beneath
+    trail.waiting &= (bit << 1) - 1; // on a repeated path: clears pending children below
     return trail.pop(root, limit, stack);
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
-// Restart trail with a short stack: the last few children that wait are kept, older ones fall out at the bottom, and
-// only when the stack runs dry does the trail lead down from the root again. On that way the stack fills anew.
+// Restart trail with a short stack: the latest pending children are kept, and older ones are dropped at the bottom.
+// Only when the stack is empty does the trail restart at the root; on that path the stack is refilled.
 //
-// Source: Laine, "Restart Trail for Stackless BVH Traversal", HPG 2010, section 3.2; Horn et al., "Interactive k-D Tree
-// GPU Raytracing", I3D 2007 (short stacks). Entries move rather than an index, so that the device has them in
+// Source: Laine, "Restart Trail for Stackless BVH Traversal", HPG 2010, section 3.2; Horn et al., "Interactive k-D
+// Tree GPU Raytracing", I3D 2007 (short stacks). Entries move instead of an index, so that a device keeps them in
 // registers.
 
 #include "trace/binary/restart_trail_walk.h"
@@ -22,7 +22,7 @@ struct ShortStack {
         entries[0] = {link, entry};
         size = min(size + 1, kCapacity);
     }
-    /// False when there is none.
+    /// Returns false if the stack is empty.
     HD bool pop(WalkStackEntry& top) {
         if (size == 0) return false;
         top = entries[0];

@@ -1,7 +1,7 @@
 #pragma once
 
-// The walk along skip links: forwards through the list of nodes, past a subtree whose box is missed. Every ray takes
-// the builder's order, so near_first makes no difference to it.
+// Skip-link traversal: forwards through the list of nodes, past a subtree whose box is missed. All rays follow the
+// builder's order, so near_first has no effect.
 //
 // Source: Smits, "Efficiency Issues for Ray Tracing", Journal of Graphics Tools 3(2), 1998.
 

@@ -1,11 +1,11 @@
 #pragma once
 
-// Speculative while-while: a ray that has found a leaf puts it off and goes on down, as long as another lane of its
-// warp is still without one, for it would idle otherwise. What it tests meanwhile may turn out not to have been needed.
+// Speculative while-while traversal: a ray that has found a leaf postpones it and continues as long as another lane
+// of its warp has none, because it would idle otherwise. Its tests meanwhile may turn out to be unnecessary.
 //
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 4 (one postponed
-// leaf). How far lanes run ahead is a matter of the warp they are in; the hits are not. On the host, where a warp is
-// one ray, nothing is put off and the nodes tested are those of WhileWhileWalk.
+// leaf). How far lanes run ahead depends on their warp; the hits do not. On the host, where a warp is one ray,
+// nothing is postponed and the nodes tested are those of WhileWhileWalk.
 
 #include "trace/binary/while_while_walk.h"
 #include "trace/traversal/walk_by_turns.h"
@@ -29,7 +29,8 @@ struct SpeculativeWalk {
         return walk_by_turns<SpeculativeWalk>(bvh, ray, instance, visitor, counter);
     }
 
-    /// Down until all lanes that run together have found a leaf, and the leaves found. True when the visitor ended it.
+    /// Descends until all lanes that run together have found a leaf, then tests the leaves. Returns true if the
+    /// visitor ended it.
     template <class Visitor, class Counter>
     HD static bool turn(const Tree& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
                         const Counter& counter, LaneMask, int) {
@@ -39,14 +40,14 @@ struct SpeculativeWalk {
             const BvhNode node = load_aligned(bvh.nodes + link);
             const float limit = skip_beyond<kOptions>(visitor, ray);
             link = step_down<kOptions.near_first>(node, place.boxes, ray.t_min, limit, place.stack);
-            const bool ends = (link & kLeafBit) != 0; // at a leaf, or nothing is left
+            const bool ends = (link & kLeafBit) != 0; // at a leaf, or at the end
             if (all_lanes_here(ends || postponed != kNoLink)) break;
             if (ends && link != kNoLink && postponed == kNoLink) {
                 postponed = link;
                 link = place.stack.pop(limit);
             }
         }
-        for (;;) { // what was put off, then what the loop above ended at
+        for (;;) { // the postponed leaf, then the one at which the loop above ended
             const bool was_postponed = postponed != kNoLink;
             const uint32_t leaf = was_postponed ? postponed : link;
             if (!(leaf & kLeafBit) || leaf == kNoLink) break;

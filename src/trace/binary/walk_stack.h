@@ -1,10 +1,10 @@
 #pragma once
 
-// The stack of the walks of binary trees, and the step that they take at an inner node.
+// The stack of binary-tree traversals, and their step at an inner node.
 //
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009: both boxes are tested at
-// once, the walk goes on with the nearer child and the other one is pushed. Redundant traversal avoidance drops, at
-// each pop, what is entered beyond the nearest hit so far; without it no entry parameters are kept.
+// once, traversal continues with the nearer child, and the other one is pushed. Redundant traversal avoidance (RTA)
+// drops entries beyond the nearest hit at each pop; without it no entry parameters are stored.
 
 #include <cstdint>
 
@@ -17,16 +17,16 @@
 
 namespace pertev {
 
-/// Over slots that lie in an array of their own, [kMaxBvhDepth]: together in one object, the compiler would keep the
-/// size in the device's local memory as well.
+/// A stack over slots in a separate array, [kMaxBvhDepth]. In one object, the compiler would keep the size in the
+/// device's local memory too.
 template <bool kRta>
 struct WalkStack {
-    using Slot = uint64_t; // link in the lower half, entry in the upper: one load, where a struct would become two
+    using Slot = uint64_t; // link in the lower half, entry in the upper: one load, where a struct would take two
     Slot* slots;
     int size = 0;
 
     HD void push(uint32_t link, float entry) { slots[size++] = uint64_t(bits_of(entry)) << 32 | link; }
-    /// kNoLink when nothing is left.
+    /// Returns kNoLink if the stack is empty.
     HD uint32_t pop(float limit) {
         while (size > 0) {
             const Slot top = slots[--size];
@@ -46,13 +46,13 @@ struct WalkStack<false> {
     HD uint32_t pop(float) { return size > 0 ? slots[--size] : kNoLink; }
 };
 
-/// Of walks whose stack is of another shape.
+/// An entry of stacks with another layout.
 struct WalkStackEntry {
     uint32_t link;
     float entry;
 };
 
-/// The link to go on with after `node`: a child, or what is popped where neither is entered.
+/// The next link after `node`: a child, or a popped link if neither is entered.
 template <bool kNearFirst, class Stack>
 HD inline uint32_t step_down(const BvhNode& node, const RayBoxes& boxes, float t_min, float t_limit, Stack& stack) {
     float entry0, entry1;

@@ -1,10 +1,10 @@
 #pragma once
 
-// The walk of one binary tree, near child first, with a stack. What a leaf holds is the caller's affair.
+// Traversal of one binary tree with a stack, near child first. The caller tests the leaves.
 //
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009 (while-while); a node whose
-// entry lies beyond the nearest hit is dropped when it is popped (redundant traversal avoidance).
-// A node is skipped only if its grown box is missed or its entry parameter is greater than the limit: equal is entered.
+// entry is beyond the nearest hit is dropped when it is popped (redundant traversal avoidance). A node is skipped
+// only if its grown box is missed or its entry parameter is greater than the limit; it is entered if both are equal.
 
 #include <cstdint>
 
@@ -17,16 +17,16 @@
 
 namespace pertev {
 
-/// A walk that can be left at a leaf and taken up again.
+/// A traversal that can be suspended at a leaf and resumed.
 struct TreeWalk {
-    uint32_t link; // where to go on; kNoLink: done
+    uint32_t link; // next link; kNoLink: done
     int size = 0;  // entries on the stack
 };
 
 using TreeStack = WalkStack<true>;
 
-/// Goes on to the next leaf whose box may hold a hit with t_min < t <= t_limit and returns its link; kNoLink at the
-/// end. There are as many slots as the tree is deep.
+/// Continues to the next leaf whose box may hold a hit with t_min < t <= t_limit and returns its link; kNoLink at the
+/// end. There are as many slots as the depth of the tree.
 template <class Counter>
 HD inline uint32_t next_leaf(TreeWalk& walk, const BvhNode* nodes, const RayBoxes& boxes, float t_min, float t_limit,
                              TreeStack::Slot* slots, const Counter& counter) {
@@ -40,7 +40,7 @@ HD inline uint32_t next_leaf(TreeWalk& walk, const BvhNode* nodes, const RayBoxe
     return link;
 }
 
-/// Sets the walk to what is next on the stack after a leaf.
+/// Continues with the top of the stack after a leaf.
 HD inline void leave_leaf(TreeWalk& walk, TreeStack::Slot* slots, float t_limit) {
     TreeStack stack = {slots, walk.size};
     walk.link = stack.pop(t_limit);

@@ -1,14 +1,14 @@
 #pragma once
 
-// A packet of a whole warp: its rays are always at the same node, which is entered if any of them enters it. The stack
-// is one, each lane keeping a copy of its links; beside them lies the lane's own entry parameter, so that every push
-// and pop of a warp is one line of memory. Meant for persistent warps (trace/warps/persistent.h), whose lanes mostly
-// start together.
+// Packet traversal by a whole warp: its rays are always at the same node, which is entered if any of them enters it.
+// There is one stack, of whose links each lane keeps a copy, with the lane's own entry parameter beside it, so that
+// every push and pop of a warp accesses one line of memory. It is meant for persistent warps
+// (trace/warps/persistent.h), whose lanes mostly start together.
 //
 // Source: Guenther, Popov, Seidel, Slusallek, "Realtime Ray Tracing on GPU with BVH-based Packet Traversal", IEEE RT
-// 2007 (the majority says which child is walked first); Aila, Laine, HPG 2009, section 3 (the same as persistent
-// packets). Lanes that come here with different trees make packets of their own. On the host a packet is one ray, and
-// visits what WhileWhileWalk visits; packet_walk.h has the host's own packets.
+// 2007 (the majority decides which child is visited first); Aila, Laine, HPG 2009, section 3 (the same as persistent
+// packets). Lanes with different trees form separate packets. On the host a packet is one ray, and visits what
+// WhileWhileWalk visits; packet_walk.h has the host's own packets.
 
 #include <cstdint>
 
@@ -28,13 +28,13 @@ struct WarpPacketWalk {
     HD static bool walk(const BvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                         const Counter& counter) {
         using Tests = TestsOf<kOptions>;
-        // An instance's rays are in a space of their own, but the tree is the same for all instances of a mesh.
+        // An instance's rays have their own space, but all instances of a mesh have the same tree.
         const LaneMask packet = lanes_with_same(lanes_here(), reinterpret_cast<uint64_t>(bvh.triangles));
         const auto boxes = Tests::make_boxes(ray, bvh.bounds_max_abs);
         const auto prepared = Tests::make_triangles(ray);
-        WalkStackEntry stack[kMaxBvhDepth]; // links are the packet's, entries the lane's
+        WalkStackEntry stack[kMaxBvhDepth]; // links of the packet, entries of the lane
         int size = 0;
-        uint32_t link = bvh.root; // like size: the same in every lane of the packet
+        uint32_t link = bvh.root; // like size, equal in every lane of the packet
         bool takes_part = true, found = false;
         const auto pop = [&] {
             const float limit = skip_beyond<kOptions>(visitor, ray);

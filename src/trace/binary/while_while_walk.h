@@ -1,7 +1,7 @@
 #pragma once
 
-// While-while: one loop goes down to a leaf, another tests its triangles, and a warp's lanes wait for each other
-// between the two.
+// While-while traversal: one loop descends to a leaf, another tests its triangles, and a warp's lanes wait for each
+// other between the two.
 //
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.
 
@@ -13,16 +13,16 @@
 
 namespace pertev {
 
-/// Where a walk with a stack stands between two turns; dynamic fetch (trace/dynamic_fetch.h) may leave it there.
+/// State of a traversal with a stack between two turns; dynamic fetch (trace/dynamic_fetch.h) may suspend it there.
 template <WalkOptions kOptions>
 struct WalkPlace {
     using Tests = TestsOf<kOptions>;
     using Slot = typename WalkStack<kOptions.rta>::Slot;
     static constexpr int kSlots = kMaxBvhDepth;
-    static constexpr int kRefillBelow = 20; // for dynamic fetch: the source's, of 32 lanes
+    static constexpr int kRefillBelow = 20; // for dynamic fetch, from the source, of 32 lanes
 
     WalkStack<kOptions.rta> stack;
-    uint32_t link = kNoLink; // where to go on; kNoLink: done
+    uint32_t link = kNoLink; // next link; kNoLink: done
     typename Tests::Boxes boxes = {};
     typename Tests::Triangles prepared = {};
 
@@ -55,7 +55,7 @@ struct WhileWhileWalk {
         return walk_by_turns<WhileWhileWalk>(bvh, ray, instance, visitor, counter);
     }
 
-    /// Down to the next leaf, and its triangles. True when the visitor ended the walk.
+    /// Descends to the next leaf and tests its triangles. Returns true if the visitor ended the traversal.
     template <class Visitor, class Counter>
     HD static bool turn(const Tree& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
                         const Counter& counter, LaneMask, int) {

@@ -1,13 +1,14 @@
 #pragma once
 
-// The part of a ray that lies in a cell of a kd-tree or an octree, grown as boxes are.
+// The part of a ray inside a cell of a kd-tree or an octree, grown as boxes are.
 //
-// Why no hit is lost: planes move out by the e of ray_boxes.h, with the same products. So the span that a walk arrives
-// at by cutting is, to the bit, what enters_child would find for the cell's own box, min and max being exact: it holds
-// every t whose point lies within e of the cell, errors of the triangle test included. A hit is such a t for whatever
-// cell the point of the triangle lies in that it stands for, and a leaf that holds this point lists the triangle. At a
-// plane the spans of both sides overlap by what e makes of it, so where roundings could decide the side, both are
-// visited; a ray along the plane (|d| under 2^-80 counts as 2^-80) has spans that are whole or empty by the same rule.
+// Why no hit is lost: planes move out by the e of ray_boxes.h, with the same products. So the span that a traversal
+// reaches by clipping equals, to the bit, what enters_child would find for the cell's own box, because min and max
+// are exact. It contains every t whose point lies within e of the cell, including errors of the triangle test. A hit
+// is such a t for every cell that contains the point of the triangle that it stands for, and a leaf that contains
+// this point lists the triangle. At a plane the spans of both sides overlap by the effect of e, so if rounding could
+// decide the side, both are visited. For a ray along the plane (|d| under 2^-80 counts as 2^-80) the same rule makes
+// spans whole or empty.
 
 #include "base/host_device.h"
 #include "math/bounds3.h"
@@ -20,7 +21,7 @@ struct CellSpan {
     float entry, exit; // ray parameters; entry > exit: the ray misses the cell
 };
 
-/// The span within t_min <= t <= t_max of the whole bounds.
+/// The span of the whole bounds within t_min <= t <= t_max.
 HD inline CellSpan span_of_bounds(const RayBoxes& r, const Bounds3& bounds, float t_min, float t_max) {
     const float x0 = fma(bounds.lo.x, r.inv.x, r.lo.x), x1 = fma(bounds.hi.x, r.inv.x, r.hi.x);
     const float y0 = fma(bounds.lo.y, r.inv.y, r.lo.y), y1 = fma(bounds.hi.y, r.inv.y, r.hi.y);
@@ -29,7 +30,7 @@ HD inline CellSpan span_of_bounds(const RayBoxes& r, const Bounds3& bounds, floa
             fast_min(fast_min(fast_max(x0, x1), fast_max(y0, y1)), fast_min(fast_max(z0, z1), t_max))};
 }
 
-/// Where a ray passes a plane that has moved out of the cell below it, and out of the one above.
+/// The parameters at which a ray crosses a plane that has moved out of the cell below it, and out of the one above.
 struct PlaneCrossing {
     float below, above;
     bool forward; // the ray comes from below
@@ -47,7 +48,7 @@ HD inline CellSpan span_above(CellSpan s, const PlaneCrossing& p) {
     return p.forward ? CellSpan{fast_max(s.entry, p.above), s.exit} : CellSpan{s.entry, fast_min(s.exit, p.above)};
 }
 
-/// Whether the cell may hold a hit that is of interest.
+/// Whether the cell may hold a relevant hit.
 HD inline bool is_entered(CellSpan s, float t_limit) { return s.entry <= s.exit && s.entry <= t_limit; }
 
 } // namespace pertev

@@ -1,11 +1,11 @@
 #pragma once
 
-// The walk of a kd-tree with a stack of the far halves still to visit.
+// Traversal of a kd-tree with a stack of pending far halves.
 //
-// Source: Havran, "Heuristic Ray Shooting Algorithms", 2000, appendix C (the recursive algorithm TA_B, with an explicit
-// stack); near half by the sign of the direction. Why no hit is lost: cell_span.h. Unlike the textbook's, this walk
-// does not end at the first cell with a hit in it: it goes on until what is left is entered beyond the nearest hit,
-// since a hit may lie outside the cell that it was found in, and cells overlap by their growth.
+// Source: Havran, "Heuristic Ray Shooting Algorithms", 2000, appendix C (the recursive algorithm TA_B, with an
+// explicit stack); near half by the sign of the direction. Why no hit is lost: cell_span.h. Unlike the textbook's,
+// this traversal does not end at the first cell with a hit: it continues until all pending cells are entered beyond
+// the nearest hit, because a hit may lie outside the cell in which it was found, and grown cells overlap.
 
 #include <cstdint>
 

@@ -1,12 +1,12 @@
 #pragma once
 
-// The walk of an octree: the children that are there in an order in which none stands behind a later one, which for a
-// direction's signs s is child k ^ s for k = 0 to 7.
+// Traversal of an octree: existing children are visited front to back; with the direction's signs s that is child k ^
+// s for k = 0 to 7.
 //
 // Source: Knoll, "A Survey of Octree Volume Rendering Methods", 2006 (the order by signs). Why no hit is lost:
-// cell_span.h; a node's three planes cut its span as three nodes of a kd-tree would. The walk ends when what is left is
-// entered beyond the nearest hit, not at the first cell with a hit in it. A stack entry is what a node has still to do;
-// the planes are computed anew on the way back, which is exact and cheaper than keeping them.
+// cell_span.h; a node's three planes clip its span as three nodes of a kd-tree would. The traversal ends when all
+// pending cells are entered beyond the nearest hit, not at the first cell with a hit. A stack entry holds the rest of
+// a node's work; planes are recomputed on the way back, which is exact and cheaper than storing them.
 
 #include <cstdint>
 
@@ -26,7 +26,7 @@ struct OctreeWalk {
 
     struct Level {
         OctreeNode node;
-        uint32_t next; // of the eight children, in the ray's order
+        uint32_t next; // next of the eight children, in the ray's order
         CellSpan span;
     };
 
@@ -58,7 +58,7 @@ struct OctreeWalk {
                 if (size == 0) return false; // the root is a leaf
                 cell = cell.parent();
             }
-            for (;;) { // cell is that of the topmost level
+            for (;;) { // `cell` belongs to the topmost level
                 Level& top = stack[size - 1];
                 const uint32_t k =
                     next_child(top, boxes, cell.centre(tree.corner), signs, skip_beyond<kOptions>(visitor, ray), span);
@@ -74,7 +74,7 @@ struct OctreeWalk {
     }
 
 private:
-    /// The next child that may hold a hit of interest, and its span; 8 where there is none.
+    /// Finds the next child that may hold a relevant hit, and its span. Returns 8 if there is none.
     HD static uint32_t next_child(Level& level, const RayBoxes& boxes, Vec3 centre, uint32_t signs, float t_limit,
                                   CellSpan& span) {
         if (!(level.span.entry <= t_limit)) return 8;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Minimum and maximum of floats by one instruction on the device, where math/scalar.h's take two. Of equal zeros either
-// comes out, and where one is NaN the other may: who calls them gets along with that.
+// Minimum and maximum of floats in one device instruction, where math/scalar.h's take two. The result for two equal
+// zeros may be either, and so may that for a NaN; callers must accept both.
 
 #include "base/host_device.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// intersect_triangle for four triangles at once, host only: the same operations in the same order, so the same bits.
-// tests/consistency/walks_test.cpp holds the two together.
+// intersect_triangle for four triangles at once, host only: the same operations in the same order give the same bits,
+// which tests/consistency/walks_test.cpp checks.
 
 #include <immintrin.h>
 
@@ -14,18 +14,19 @@
 namespace pertev {
 
 struct RayShear4 {
-    __m128i order; // kx, ky, kz, and the fourth as it is
+    __m128i order; // kx, ky, kz; the fourth stays
     __m128 sx, sy, sz;
     __m128 ox, oy, oz; // origin, in that order of axes
 };
 
-/// make_ray_shear, as vectors too. It does not branch on the direction, whose largest component is anyone's guess: a
+/// make_ray_shear with results as vectors too. It does not branch on the direction, because the largest component is
+/// unpredictable, and a misprediction costs a quarter of a node.
 /// wrong one costs as much as a quarter of a node.
 inline RayShear4 make_ray_shear_4(const Ray& ray, RayShear& shear) {
     const Vec3 size = abs(ray.direction);
     const int x_y = size.x >= size.y, x_z = size.x >= size.z, y_z = size.y >= size.z;
     const int kz = 2 - 2 * (x_y & x_z) - ((x_y ^ 1) & y_z);
-    const int kx = (0b00'10'01 >> 2 * kz) & 3, ky = (0b01'00'10 >> 2 * kz) & 3; // the two that come after it, round
+    const int kx = (0b00'10'01 >> 2 * kz) & 3, ky = (0b01'00'10 >> 2 * kz) & 3; // the next two axes in cyclic order
     const __m128i order = _mm_setr_epi32(kx, ky, kz, 3);
     const __m128 direction = _mm_permutevar_ps(_mm_loadu_ps(&ray.direction.x), order);
     const __m128 dz = _mm_shuffle_ps(direction, direction, 0xaa);
@@ -47,8 +48,8 @@ struct TriangleHit4 {
     alignas(16) float t[4], u[4], v[4];
 };
 
-/// Bit k of the result: triangle k is hit with t_min < t < t_max and t <= t_limit; its hit is in `hits`. `count` of the
-/// triangles from `first` on are looked at, at most 4.
+/// Bit k of the result is set if triangle k is hit with t_min < t < t_max and t <= t_limit; its hit is in `hits`.
+/// Tests `count` triangles from `first` on, at most 4.
 inline unsigned intersect_4_triangles(Vec3 origin, const RayShear& shear, const RayShear4& ray, float t_min,
                                       float t_max, float t_limit, const BvhTriangle* first, uint32_t count,
                                       TriangleHit4& hits) {
@@ -57,7 +58,7 @@ inline unsigned intersect_4_triangles(Vec3 origin, const RayShear& shear, const 
     };
     const BvhTriangle* t[4] = {first, first + (count > 1 ? 1 : 0), first + (count > 2 ? 2 : 0),
                                first + (count > 3 ? 3 : 0)};
-    // In line, or its vectors go through memory three times.
+    // Inlined, because its vectors would otherwise go through memory three times.
     const auto sheared = [&](const Vec3 BvhTriangle::*corner) __attribute__((always_inline)) {
         const auto load = [&](int k) { return _mm_permutevar_ps(_mm_load_ps(&(t[k]->*corner).x), ray.order); };
         __m128 r0 = load(0), r1 = load(1), r2 = load(2), r3 = load(3);
@@ -82,12 +83,12 @@ inline unsigned intersect_4_triangles(Vec3 origin, const RayShear& shear, const 
     const unsigned asked = ((1u << count) - 1) & ~missed;
     const __m128 least =
         _mm_min_ps(_mm_andnot_ps(sign, ea), _mm_min_ps(_mm_andnot_ps(sign, eb), _mm_andnot_ps(sign, ec)));
-    // Not "less than": NaN goes the slow way too, where it is a miss.
+    // Not "less than", so that NaN takes the slow path too, where it is a miss.
     unsigned slow = asked & mask_of(_mm_cmpnge_ps(least, sure));
     unsigned hit = asked & ~slow;
     if ((hit | slow) == 0) return 0;
     if (hit != 0) {
-        const __m128 det = _mm_add_ps(_mm_add_ps(ea, eb), ec); // not 0: all of one sign, none of them 0
+        const __m128 det = _mm_add_ps(_mm_add_ps(ea, eb), ec); // not 0, because all have one sign and none is 0
         const __m128 inv = _mm_div_ps(_mm_set1_ps(1.0f), det);
         const __m128 u = _mm_mul_ps(eb, inv), v = _mm_mul_ps(ec, inv);
         const __m128 z =

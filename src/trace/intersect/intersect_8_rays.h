@@ -1,7 +1,7 @@
 #pragma once
 
-// intersect_triangle of one triangle for eight rays at once that look along the same axis most, host only: the same
-// operations in the same order, so the same bits.
+// intersect_triangle of one triangle for eight rays with the same dominant axis, host only: the same operations in
+// the same order give the same bits.
 
 #include <immintrin.h>
 
@@ -12,7 +12,7 @@
 namespace pertev {
 
 struct RayShear8 {
-    int kx, ky, kz; // of all of them
+    int kx, ky, kz; // common to all eight
     __m256 sx, sy, sz;
     __m256 ox, oy, oz; // origins, in that order of axes
 };
@@ -21,8 +21,8 @@ struct TriangleHit8 {
     alignas(32) float t[8], u[8], v[8];
 };
 
-/// Bit k of the result: ray k, of `asked`, hits the triangle with t_min < t < t_max and t <= t_limit; its hit is in
-/// `hits`.
+/// Bit k of the result is set if ray k of `asked` hits the triangle with t_min < t < t_max and t <= t_limit; its hit
+/// is in `hits`.
 [[gnu::always_inline]] inline unsigned intersect_8_rays(const Ray* rays, const RayShear8& ray, __m256 t_min,
                                                         __m256 t_max, __m256 t_limit, const BvhTriangle& triangle,
                                                         unsigned asked, TriangleHit8& hits) {
@@ -49,11 +49,11 @@ struct TriangleHit8 {
     asked &= ~mask_of(_mm256_cmp_ps(_mm256_min_ps(_mm256_xor_ps(below, sign), above), sure, _CMP_GE_OQ));
     const __m256 least = _mm256_min_ps(_mm256_andnot_ps(sign, ea),
                                        _mm256_min_ps(_mm256_andnot_ps(sign, eb), _mm256_andnot_ps(sign, ec)));
-    // Not "less than": NaN goes the slow way too, where it is a miss.
+    // Not "less than", so that NaN takes the slow path too, where it is a miss.
     unsigned slow = asked & mask_of(_mm256_cmp_ps(least, sure, _CMP_NGE_UQ));
     unsigned hit = asked & ~slow;
     if (hit != 0) {
-        const __m256 det = _mm256_add_ps(_mm256_add_ps(ea, eb), ec); // not 0: all of one sign, none of them 0
+        const __m256 det = _mm256_add_ps(_mm256_add_ps(ea, eb), ec); // not 0, because all have one sign and none is 0
         const __m256 inv = _mm256_div_ps(_mm256_set1_ps(1.0f), det);
         const __m256 u = _mm256_mul_ps(eb, inv), v = _mm256_mul_ps(ec, inv);
         const __m256 z = _mm256_add_ps(

@@ -25,15 +25,15 @@ struct TriangleHit {
     float u, v; // weights of the second and third vertex: u, v >= 0, u + v <= 1 up to 2 ulp
 };
 
-/// x / z to the bit, |x| <= |z|, z within [2^-40, 2^40] and of either sign; `inv` is reciprocal_of_normal(z). On the
-/// device by the instructions that the compiler takes too, but without its long way round for 0, which all rays along
-/// axes have.
+/// Returns x / z to the bit; |x| <= |z|, |z| within [2^-40, 2^40]; `inv` is reciprocal_of_normal(z). On the device it
+/// uses the compiler's instructions for a division, but without their slow path for 0, which all axis-aligned rays
+/// would take.
 HD inline float slope(float x, float z, [[maybe_unused]] float inv) {
 #if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
-    if (abs(x) < 0x1p-60f && x != 0) return x / z; // where floats might not hold what is left over
+    if (abs(x) < 0x1p-60f && x != 0) return x / z; // floats might not hold the remainder
     const float quotient = x * inv;
     const float corrected = ::fmaf(inv, ::fmaf(-z, quotient, x), quotient);
-    return x == 0 ? quotient : corrected; // of the right sign
+    return x == 0 ? quotient : corrected; // zero with the right sign
 #else
     return x / z;
 #endif
@@ -49,9 +49,9 @@ HD inline RayShear make_ray_shear(Vec3 direction) {
     return {kx, ky, kz, slope(component(direction, kx), dz, sz), slope(component(direction, ky), dz, sz), sz};
 }
 
-/// `p`, relative to the ray's origin, with the direction turned to +z. Same rounding for every caller.
+/// Shears `p`, relative to the ray's origin, so that the direction becomes +z. Every caller gets the same rounding.
 HD inline Vec3 shear(Vec3 p, const RayShear& ray) {
-    // The three cyclic orders, by two selects a component.
+    // The three cyclic orders by two selects per component.
     const bool to_x = ray.kz == 0, to_y = ray.kz == 1;
     const float x = to_x ? p.y : (to_y ? p.z : p.x);
     const float y = to_x ? p.z : (to_y ? p.x : p.y);
@@ -70,14 +70,15 @@ HD inline bool intersect_triangle(Vec3 origin, const RayShear& ray, float t_min,
     float ea = difference_of_products(pc.x, pb.y, pc.y, pb.x);
     float eb = difference_of_products(pa.x, pc.y, pa.y, pc.x);
     float ec = difference_of_products(pb.x, pa.y, pb.y, pa.x);
-    // Where an edge is NaN the triangle is not hit, whatever comes out.
-    // Two that differ in sign for sure make it a miss, whatever the third is: zero, say, of an edge along the ray,
-    // which rays along axes meet at every other wall.
+    // If an edge function is NaN, the triangle is not hit, whatever the result here. Two edge functions with surely
+    // different signs mean a miss, whatever the third is, for example zero for an edge along the ray, which
+    // axis-aligned rays meet at every other wall.
     const float below = fast_min(ea, fast_min(eb, ec)), above = fast_max(ea, fast_max(eb, ec));
     if (fast_min(-below, above) >= kSureEdge) return false;
     if (fast_min(abs(ea), fast_min(abs(eb), abs(ec))) < kSureEdge) {
-        // Zero, or products may have underflown: exact in double. Only their ratios matter below, so they are brought
-        // up to where floats hold them; one that is still lost beside the others counts as zero, which is inside.
+        // It is zero, or products may have underflowed: the exact values in double. Only their ratios matter below,
+        // so they are scaled into the range of floats; one that still vanishes beside the others counts as zero,
+        // which is inside.
         const double da = difference_of_products_in_double(pc.x, pb.y, pc.y, pb.x);
         const double db = difference_of_products_in_double(pa.x, pc.y, pa.y, pc.x);
         const double dc = difference_of_products_in_double(pb.x, pa.y, pb.y, pa.x);
@@ -88,9 +89,9 @@ HD inline bool intersect_triangle(Vec3 origin, const RayShear& ray, float t_min,
     }
     const float det = ea + eb + ec;
     if (det == 0) return false;
-    // Of three numbers alike in sign, each at least 2^-100, or of numbers whose sizes add up to 1. Nor is it 2^126: it
-    // is twice an area, of a triangle whose sides are a scene's. (Where products overflow it is infinite or NaN: a
-    // miss.)
+    // Either three numbers of one sign, each at least 2^-100, or numbers whose sizes add up to 1. It is below 2^126
+    // because it is twice the area of a triangle in the scene. (If products overflow it is infinite or NaN, which is
+    // a miss.)
     const float inv = reciprocal_of_normal(det), u = eb * inv, v = ec * inv;
     const float t = (ea * inv * pa.z + u * pb.z + v * pc.z) * ray.sz;
     if (!(t > t_min && t < t_max)) return false; // so written that NaN (bad vertex) is a miss

@@ -1,6 +1,6 @@
 #pragma once
 
-// Fetches of nodes and triangles: 16 bytes at a time through the read-only path on the device, a plain copy on the
+// Loads of nodes and triangles: 16 bytes at a time through the read-only path on the device, a plain copy on the
 // host.
 
 #include "accel/bvh/bvh.h"
@@ -9,7 +9,7 @@
 
 namespace pertev {
 
-/// A copy of *p; sizeof(T) is a multiple of 16.
+/// Returns a copy of *p; sizeof(T) is a multiple of 16.
 template <class T>
 HD inline T load_aligned(const T* p) {
     static_assert(sizeof(T) % 16 == 0 && alignof(T) >= 16);

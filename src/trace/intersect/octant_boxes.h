@@ -1,11 +1,11 @@
 #pragma once
 
-// The box tests of a binary node, for a ray whose octant is known when the code is compiled: which plane of an axis is
-// crossed first need not be found out, and the ray is a segment (ray_segment.h), so nothing is left to be clamped. That
-// is 9 instructions a box where ray_boxes.h takes 17. Conservative as that is.
+// Box tests of a binary node for a ray whose octant is known at compile time: the order in which an axis's planes are
+// crossed is fixed, and the ray is a segment (ray_segment.h), so nothing needs clamping. A box takes 9 instructions
+// instead of the 17 of ray_boxes.h, and the test is as conservative.
 //
-// Roundings, as shifts of a plane (u, S: ray_segment.h): three u S of 1/d, one of o +- e, one of its product, one of
-// the fma; together 6 u S and a little, which with the triangle test's 6 leaves 4 of 16.
+// Rounding errors as shifts of a plane (u, S: ray_segment.h): three u S for 1/d, one for o +- e, one for its product,
+// one for the fma; in total slightly more than 6 u S, which with the triangle test's 6 leaves 4 of 16.
 
 #include "accel/bvh/bvh.h"
 #include "base/host_device.h"
@@ -15,15 +15,15 @@
 
 namespace pertev {
 
-/// In place of an octant: nothing is known of it.
+/// Stands for an unknown octant.
 inline constexpr int kAnyOctant = 8;
 
 struct RayOctantBoxes {
     RaySegment segment;
-    Vec3 lo; // -(origin + e) / d: what takes a lower plane, moved out, to where the ray crosses it
+    Vec3 lo; // -(origin + e) / d: maps a lower plane, moved out, to the ray's crossing
     Vec3 hi; // -(origin - e) / d
 
-    /// After every change of the segment; `origin` is the ray's.
+    /// Must be called after every change of the segment; `origin` is the ray's.
     HD void set_planes(Vec3 origin) {
         const Vec3 inv = segment.inv;
         const float e = segment.grow;
@@ -40,11 +40,11 @@ HD inline RayOctantBoxes make_ray_octant_boxes(const Ray& ray, float bounds_max_
     return r;
 }
 
-/// Bit a: the ray goes towards less along axis a.
+/// Bit a is set if the ray's direction is negative along axis a.
 HD inline int octant_of(Vec3 inv) { return (inv.x < 0 ? 1 : 0) | (inv.y < 0 ? 2 : 0) | (inv.z < 0 ? 4 : 0); }
 
 /// Whether the box of child k may hold a hit with 0 < t <= r.segment.end; it is entered at entry * r.segment.end or
-/// later. kOctant: the ray's, or kAnyOctant.
+/// later. kOctant is the ray's, or kAnyOctant.
 template <int kOctant>
 HD inline bool enters_child(const RayOctantBoxes& r, const BvhNode& node, int k, float& entry) {
     const auto cross = [k](int axis, const float(&planes)[4], float inv, float lo, float hi, float& near, float& far) {

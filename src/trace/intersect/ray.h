@@ -1,6 +1,6 @@
 #pragma once
 
-// A ray, and what it meets first.
+// A ray, and its hit.
 
 #include <cstdint>
 
@@ -21,7 +21,7 @@ inline constexpr uint32_t kNoHit = 0xffffffffu;
 struct Hit {
     float t = kInfinity;
     float u = 0, v = 0;         // weights of the triangle's second and third vertex
-    uint32_t instance = kNoHit; // scene order; kNoHit: nothing was met
+    uint32_t instance = kNoHit; // scene order; kNoHit: no hit
     uint32_t primitive = 0;     // triangle of the instance's mesh
     bool operator==(const Hit&) const = default;
 };

@@ -1,22 +1,24 @@
 #pragma once
 
-// A ray as a segment that boxes are tested against: from its origin to parameter `end`, beyond which nothing is of
-// interest, with 0 to 1 along it. So the multiply-add that finds where the ray crosses a plane clamps for nothing (it
-// saturates to [0, 1]): what lies behind the origin comes to 0 on both sides, what lies beyond the end to 1, and a box
-// is entered if and only if it is left later than entered. t_min is not looked at: a box before it is entered in vain.
-// A hit shortens the segment.
+// A ray as a segment for box tests: from its origin to the parameter `end`, beyond which nothing is relevant,
+// parametrized from 0 to 1. So the multiply-add that computes the crossing of a plane clamps for free (it saturates
+// to [0, 1]): crossings behind the origin become 0 on both sides, those beyond the end 1, and a box is entered if and
+// only if its exit is later than its entry. t_min is ignored: a box before it is entered unnecessarily. A hit
+// shortens the segment.
 //
-// The tests of boxes move planes out by e = 16 u S, u = 2^-24, S = |origin|max + |bounds|max, as ray_boxes.h does, and
-// count roundings as shifts of a plane. Of 1/d, d = direction * end, they are three u S at most: one of d, two of its
-// reciprocal (the device's is approximate).
-// Why strictly later is enough: to the end the ray moves by at most S and a little, so u S of its way is about u of 1.
-// Where a test's own roundings and the triangle test's (6 u S) leave 3 of the 16, a hit, at 1 or before, is later than
-// the entry and earlier than the exit by more than 2 u, before both are clamped and so after.
+// Box tests move planes out by e = 16 u S, u = 2^-24, S = |origin|max + |bounds|max, as ray_boxes.h does, and count
+// rounding errors as shifts of a plane. The error of 1/d, d = direction * end, is at most three u S: one for d, two
+// for its reciprocal (the device's is approximate).
+//
+// Why strictly later is enough: to its end the ray moves by at most slightly more than S, so u S of its length is
+// about u of 1. If a test's own rounding and the triangle test's (6 u S) leave 3 of the 16, a hit at 1 or before is
+// later than the entry and earlier than the exit by more than 2 u, before both are clamped and thus afterwards.
+//
 // The guard: |d_i| < 2^-40 S (and 2^-100 m) counts as that much, so that everything is finite. Along such an axis the
-// ray moves, all the way to its end, by less than 2^-40 S, far less than e. (The 2^-100 m are, for S from 2^-76 m on.)
-// Shortening multiplies 1/d by the ratio of the ends: four roundings more, at most 4 u S, by which e grows each time.
+// ray moves, to its end, by less than 2^-40 S, far less than e. (The 2^-100 m are, for S from 2^-76 m on.) Shortening
+// multiplies 1/d by the ratio of the ends: four roundings more, at most 4 u S, by which e grows each time.
 //
-// The arithmetic was worked out for this file.
+// The arithmetic was developed for this file.
 
 #include <cstdint>
 
@@ -30,7 +32,7 @@
 
 namespace pertev {
 
-/// fma(a, b, c), clamped to [0, 1]; one instruction on the device.
+/// fma(a, b, c) clamped to [0, 1]; one instruction on the device.
 HD inline float fma_saturated(float a, float b, float c) {
 #if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
     float r;
@@ -41,14 +43,14 @@ HD inline float fma_saturated(float a, float b, float c) {
 #endif
 }
 
-/// What box tests need of a ray besides its origin.
+/// Data of a ray for box tests, besides its origin.
 struct RaySegment {
     Vec3 inv;   // 1 / (direction * end), guarded
-    float grow; // by which planes move out, metres
+    float grow; // distance by which planes move out, metres
     float end;  // the ray's parameter where the segment ends
 
-    /// Nothing beyond parameter t is of interest any more; t >= 0. The segment stays as long as 2^-24 S, so that 1/d
-    /// stays finite. (In the few instructions that it is: lanes that hit something do this alone.)
+    /// Makes parameters beyond t irrelevant; t >= 0. The segment stays at least 2^-24 S long, so that 1/d stays
+    /// finite. (It takes few instructions, because only lanes that hit something run it.)
     HD void shorten(float t) {
         const float slowest = fast_min(fast_min(abs(inv.x), abs(inv.y)), abs(inv.z));
         const float now = fast_max(t, 0x1p-4f * grow * slowest * end); // 1 / (slowest * end) is |direction|max
@@ -59,7 +61,8 @@ struct RaySegment {
     }
 };
 
-/// Of the ray up to `limit`, as far as it can be in bounds that reach to bounds_max_abs from the origin of coordinates.
+/// Makes the segment of the ray up to `limit`, clipped to bounds that reach to bounds_max_abs from the coordinates'
+/// origin.
 template <class Tests>
 HD inline RaySegment make_ray_segment(const Ray& ray, float bounds_max_abs, float limit) {
     RaySegment r;

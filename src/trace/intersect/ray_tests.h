@@ -1,8 +1,8 @@
 #pragma once
 
-// The two tests that every walk is made of, box and triangle, as one choice. ExactTests is the one that pictures are
-// made with: conservative boxes, watertight triangles, equal bits everywhere. FastTests is for the laboratory alone, to
-// tell what that costs: it is what most tracers do, and rays at edges slip through it.
+// The box and triangle tests of a traversal, as one choice. Rendering uses ExactTests: conservative boxes, watertight
+// triangles, equal bits everywhere. FastTests is only for the laboratory, which measures the cost of exactness: most
+// tracers use such tests, and rays at edges slip through them.
 //
 // Source of the fast triangle test: Moeller, Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
 
@@ -15,7 +15,7 @@ namespace pertev {
 
 struct ExactTests {
     using Boxes = RayBoxes;
-    using Triangles = RayShear; // what is computed once a ray
+    using Triangles = RayShear; // computed once per ray
 
     HD static Boxes make_boxes(const Ray& ray, float bounds_max_abs) {
         return make_ray_boxes(ray.origin, ray.direction, bounds_max_abs);
@@ -29,7 +29,7 @@ struct ExactTests {
     }
 };
 
-/// 1 / x, to about one unit in the last place on the device, where denormal numbers are 0.
+/// 1 / x with an error of about one unit in the last place on the device, where denormal numbers are 0.
 HD inline float fast_reciprocal(float x) {
 #if PERTEV_ON_DEVICE && !defined(PERTEV_EMULATED_WARPS)
     float r;
@@ -41,7 +41,7 @@ HD inline float fast_reciprocal(float x) {
 }
 
 struct FastTests {
-    using Boxes = RayBoxes; // of a growth of 0: lo and hi are equal, which the compiler sees
+    using Boxes = RayBoxes; // with growth 0, so that lo and hi are equal, which the compiler uses
     struct Triangles {};
 
     HD static Boxes make_boxes(const Ray& ray, float) {
@@ -52,7 +52,7 @@ struct FastTests {
         r.hi = r.lo;
         return r;
     }
-    /// Of boxes that are tested against a segment (ray_segment.h): without it, flat ones would be missed.
+    /// For boxes that are tested against a segment (ray_segment.h): without growth, flat ones would be missed.
     HD static float box_growth(const Ray& ray, float bounds_max_abs) {
         return pertev::box_growth(ray.origin, bounds_max_abs);
     }

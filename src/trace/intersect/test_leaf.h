@@ -1,6 +1,6 @@
 #pragma once
 
-// Tests the run of triangles that a leaf is, or one of them.
+// Tests the triangles of a leaf, or one of them.
 
 #include <cstdint>
 
@@ -12,8 +12,8 @@
 
 namespace pertev {
 
-/// Shows the visitor the triangle at `at`, if the ray hits it; `last` tells whether its leaf ends
-/// there. `instance` is kNoHit where the triangles carry their own. True when the visitor ended the walk.
+/// Tests the triangle at `at` and passes a hit to the visitor; `last` is set to whether its leaf ends there.
+/// `instance` is kNoHit if the triangles carry their own. Returns true if the visitor ended the traversal.
 template <class Tests = ExactTests, class Visitor, class Counter>
 HD inline bool test_triangle(const BvhTriangle* at, const Ray& ray, const typename Tests::Triangles& prepared,
                              uint32_t instance, Visitor& visitor, const Counter& counter, bool& last) {
@@ -25,7 +25,7 @@ HD inline bool test_triangle(const BvhTriangle* at, const Ray& ray, const typena
            visitor.visit(instance == kNoHit ? triangle.instance : instance, triangle.primitive, hit);
 }
 
-/// The same of each triangle of the run that the link `leaf` names.
+/// Tests each triangle of the leaf that the link `leaf` names.
 template <class Tests = ExactTests, class Visitor, class Counter>
 HD inline bool test_leaf(const BvhTriangle* triangles, uint32_t leaf, const Ray& ray,
                          const typename Tests::Triangles& prepared, uint32_t instance, Visitor& visitor,
@@ -37,7 +37,7 @@ HD inline bool test_leaf(const BvhTriangle* triangles, uint32_t leaf, const Ray&
     }
 }
 
-/// The same, of a tree; trace/intersect/woop_tests.h has that of a tree with Woop's triangles.
+/// Tests a leaf of a tree; trace/intersect/woop_tests.h has the overload for Woop's triangles.
 template <class Tests, class Visitor, class Counter>
 HD inline bool test_leaf(const BvhView& bvh, uint32_t leaf, const Ray& ray, const typename Tests::Triangles& prepared,
                          uint32_t instance, Visitor& visitor, const Counter& counter) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Tests the triangles that a leaf lists by reference. One that stands in several leaves is tested in each again: that
-// changes no result, and costs less than remembering.
+// Tests the triangles that a leaf references. A triangle in several leaves is tested in each: that does not change
+// the result, and costs less than remembering it.
 
 #include <cstdint>
 
@@ -13,7 +13,7 @@
 
 namespace pertev {
 
-/// As test_leaf, for references[0] to references[count - 1].
+/// Tests the triangles references[0] to references[count - 1] like test_leaf.
 template <class Tests = ExactTests, class Visitor, class Counter>
 HD inline bool test_references(const BvhTriangle* triangles, const uint32_t* references, uint32_t count, const Ray& ray,
                                const typename Tests::Triangles& prepared, uint32_t instance, Visitor& visitor,

@@ -1,7 +1,8 @@
 #pragma once
 
-// Woop's unit-triangle test, for the laboratory alone: the ray is taken into the space where the triangle is the unit
-// triangle. The tree has the transforms (accel/bvh/woop_bvh.h), so the corners are not read. Boxes are FastTests'.
+// Woop's unit-triangle test, only for the laboratory: transforms the ray to the space in which the triangle is the
+// unit triangle. The tree has the transforms (accel/bvh/woop_bvh.h), so the vertices are not read. Boxes are tested
+// see FastTests.
 //
 // Sources: Woop, M.Sc. thesis, Saarland University, 2004, section 4.2; used by Aila, Laine, "Understanding the
 // Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.
@@ -24,7 +25,7 @@ struct WoopTests {
         return FastTests::make_boxes(ray, bounds_max_abs);
     }
     HD static Triangles make_triangles(const Ray& ray) { return FastTests::make_triangles(ray); }
-    /// A hit at t_min < t < ray.t_max.
+    /// Finds a hit at t_min < t < ray.t_max.
     HD static bool intersect(const Ray& ray, const WoopTriangle& w, TriangleHit& hit) {
         const auto dot_fma = [](Vec3 p, Vec3 q, float add) { return fma(p.x, q.x, fma(p.y, q.y, fma(p.z, q.z, add))); };
         const auto slope = [](Vec3 p, Vec3 q) { return fma(p.x, q.x, fma(p.y, q.y, p.z * q.z)); };
@@ -37,7 +38,7 @@ struct WoopTests {
     }
 };
 
-/// test_leaf() of trace/intersect/test_leaf.h by transforms.
+/// test_leaf() of trace/intersect/test_leaf.h for these transforms.
 template <class Tests, class Visitor, class Counter>
 HD inline bool test_leaf(const WoopBvhView& bvh, uint32_t leaf, const Ray& ray, const typename Tests::Triangles&,
                          uint32_t instance, Visitor& visitor, const Counter& counter) {
@@ -45,7 +46,7 @@ HD inline bool test_leaf(const WoopBvhView& bvh, uint32_t leaf, const Ray& ray, 
         counter.add_triangle(bvh.transforms + i);
         const WoopTriangle triangle = load_aligned(bvh.transforms + i);
         TriangleHit hit;
-        if (Tests::intersect(ray, triangle, hit) && hit.t <= visitor.limit()) { // else it need not be known which it is
+        if (Tests::intersect(ray, triangle, hit) && hit.t <= visitor.limit()) { // otherwise its id is not needed
             const BvhTriangle* which = bvh.triangles + i;
             if (visitor.visit(instance == kNoHit ? which->instance : instance, which->primitive, hit)) return true;
         }

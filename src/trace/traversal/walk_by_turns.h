@@ -1,6 +1,6 @@
 #pragma once
 
-// A walk that can be left between two turns (trace/dynamic_fetch.h says what it offers), walked from root to end.
+// Runs a traversal that can be suspended between two turns (interface: trace/dynamic_fetch.h) from root to end.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@
 
 namespace pertev {
 
-/// True when the visitor ended it.
+/// Returns true if the visitor ended it.
 template <class Walk, class Visitor, class Counter>
 HD inline bool walk_by_turns(const typename Walk::Tree& tree, const Ray& ray, uint32_t instance, Visitor& visitor,
                              const Counter& counter) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// What a walk did, for tests and benchmarks. A walk tells its counter of each node and triangle that it is about to
-// test, and where that lies.
+// Counters of a traversal's work, for tests and benchmarks. A traversal reports each node and triangle before it
+// tests it, with its address.
 
 #include <cstdint>
 
@@ -9,13 +9,13 @@
 
 namespace pertev {
 
-/// Costs nothing.
+/// Counts nothing, at no cost.
 struct NoWalkCounter {
     HD void add_node(const void*) const {}
     HD void add_triangle(const void*) const {}
 };
 
-/// What one ray cost: nodes and triangles that were tested.
+/// The work of one ray: numbers of nodes and triangles tested.
 struct RayWork {
     uint32_t nodes = 0, triangles = 0;
 };

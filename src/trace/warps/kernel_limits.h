@@ -1,28 +1,28 @@
 #pragma once
 
-// How many blocks of a walk's kernel a GPU holds at once, and what the kernel takes of it. For .cu files.
+// The number of blocks of a traversal kernel that a GPU holds at once, and the kernel's resource use. For .cu files.
 
 #include <cstdint>
 #include <mutex>
 
 namespace pertev {
 
-inline constexpr int kWalkThreads = 128; // a block
-// Warps ask the counter for up to 64 indices more than there is work for, each; that must not pass 2^32.
+inline constexpr int kWalkThreads = 128; // per block
+// Each warp may request up to 64 indices more than there are; the sum must not exceed 2^32.
 inline constexpr uint32_t kMaxPoolCount = 1u << 31;
 
-/// What a kernel takes, and how much of the GPU it fills.
+/// Resource use and occupancy of a kernel.
 struct KernelLimits {
-    int registers = 0;   // a thread
-    int local_bytes = 0; // a thread: stacks and spilled registers
-    int blocks = 0;      // a multiprocessor, of kWalkThreads threads
-    float occupancy = 0; // warps that fit / warps that a multiprocessor has places for
+    int registers = 0;   // per thread
+    int local_bytes = 0; // per thread: stacks and spilled registers
+    int blocks = 0;      // per multiprocessor, with kWalkThreads threads each
+    float occupancy = 0; // resident warps / maximum warps of a multiprocessor
     int multiprocessors = 0;
 };
 
 #if defined(__CUDACC__)
 
-/// Of the current device; zeros where it cannot tell (the launch will say why).
+/// Limits on the current device; zeros if it cannot report them (the launch will report why).
 template <class Kernel>
 KernelLimits limits_of(Kernel* kernel) {
     KernelLimits limits;
@@ -40,10 +40,10 @@ KernelLimits limits_of(Kernel* kernel) {
     return limits;
 }
 
-/// The limits of one kernel, asked of each device once, since asking takes longer than launching. Any thread may ask.
+/// Limits of one kernel, queried once per device, because a query takes longer than a launch. Thread-safe.
 class LimitsByDevice {
 public:
-    /// Of the current device.
+    /// Limits on the current device.
     template <class Kernel>
     KernelLimits of(Kernel* kernel) {
         int device = 0;
@@ -54,13 +54,14 @@ public:
     }
 
 private:
-    static constexpr int kDevices = 64; // later ones are asked each time
+    static constexpr int kDevices = 64; // further devices are queried each time
     std::once_flag asked_[kDevices];
     KernelLimits limits_[kDevices];
 };
 
-/// Blocks that fill the GPU, or fewer where `count` threads do with them; at least 1. Where several streams go side by
-/// side they fill half of it: kernels of two kinds wait for different things, and do more together than in turns.
+/// Number of blocks that fill the GPU, or fewer if `count` threads need fewer; at least 1. With concurrent streams
+/// they fill half of it, because kernels of two kinds wait for different resources and do more together than in
+/// turns.
 inline uint32_t blocks_that_fit(const KernelLimits& limits, uint32_t count, int streams) {
     const int blocks = streams > 1 ? (limits.blocks + 1) / 2 : limits.blocks;
     const uint32_t fit = static_cast<uint32_t>(blocks * limits.multiprocessors);

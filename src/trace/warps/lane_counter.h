@@ -1,9 +1,10 @@
 #pragma once
 
-// What warps make of a walk: how many lanes are live when they test a node or a triangle, and how many sectors of 32
-// bytes the loads of these touch. On the host a warp is one ray. For counting runs: it slows a walk many times.
+// SIMD efficiency of a traversal: the number of active lanes when a warp tests a node or a triangle, and of the
+// 32-byte sectors that these loads touch. On the host a warp is one ray. It is for counting runs, because it slows
+// traversal down many times.
 //
-// Which lanes test together is the warp's affair, so figures may differ a little between two runs.
+// Which lanes test together depends on timing, so the figures may differ slightly between two runs.
 
 #include <cstdint>
 
@@ -12,15 +13,15 @@
 
 namespace pertev {
 
-/// Sums over all warps. A request is one load of 16 bytes a lane; 32 lanes far apart touch 32 sectors, neighbours 16,
-/// and lanes at one place 1.
+/// Sums over all warps. A request is one load of 16 bytes per lane; 32 distant lanes touch 32 sectors, neighbours 16,
+/// and lanes at one address 1.
 struct LaneCounts {
     uint64_t node_steps = 0, node_lanes = 0, node_requests = 0, node_sectors = 0;
     uint64_t triangle_steps = 0, triangle_lanes = 0, triangle_requests = 0, triangle_sectors = 0;
 };
 
 struct LaneCounter {
-    LaneCounts* counts; // in the device's memory
+    LaneCounts* counts; // in device memory
 
     template <class Node>
     HD void add_node(const Node* at) const {

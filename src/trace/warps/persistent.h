@@ -1,8 +1,8 @@
 #pragma once
 
-// Persistent threads: as many warps as the GPU holds at once, whose lanes take indices from one counter, together 32 at
-// a time, until none is left. A stage runs as it does under launch() (device/launch.h); only who runs which index
-// differs. Included by the .cu files that instantiate it, and by nothing else (see device/launch_body.h).
+// Persistent threads: as many warps as the GPU holds at once, whose lanes fetch indices from one counter until none
+// is left. A stage runs as under launch() (device/launch.h); only the assignment of indices to threads differs. Only
+// .cu files that instantiate it include this (device/launch_body.h).
 //
 // Source: Aila, Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.2.
 
@@ -18,11 +18,11 @@ namespace pertev {
 
 #if PERTEV_HAS_KERNELS
 
-/// Each lane takes an index by itself: the compiler makes one addition of those of the lanes that are here. No lane
-/// relies on another one: a warp's lanes may come back from a stage apart. ptxas 13.0 takes for granted that they meet
-/// again, and leaves out the waiting of __syncwarp() and of the votes; but where it keeps a convergence barrier in a
-/// register across a call (BMOV in SASS), they do not always. An index that lane 0 fetched for all was then read where
-/// no lane 0 was, and the kernel did not end.
+/// Each lane fetches an index by itself; the compiler combines the additions of converged lanes. No lane relies on
+/// another one, because a warp's lanes may return from a stage diverged. ptxas 13.0 assumes that they reconverge and
+/// omits the waiting of __syncwarp() and of the votes, but where it keeps a convergence barrier in a register across
+/// a call (BMOV in SASS), they do not always. An index that lane 0 fetched for all was then read where there was no
+/// lane 0, and the kernel did not end.
 template <class Stage>
 __global__ void __launch_bounds__(kWalkThreads) run_stage_persistent(Stage stage, WorkCount work, uint32_t* pool) {
     const uint32_t count = work.value();
@@ -37,8 +37,8 @@ __global__ void __launch_bounds__(kWalkThreads) run_stage_persistent(Stage stage
 
 #if defined(__CUDACC__)
 
-/// Runs stage(i) for each i in [0, count), count <= kMaxPoolCount. `pool` is one number in the queue's memory, 0
-/// when the launch runs. The queue is of a GPU.
+/// Runs stage(i) for each i in [0, count), count <= kMaxPoolCount. `pool` is a counter in the queue's memory, 0 when
+/// the launch runs. The queue is a GPU's.
 template <class Stage>
 void launch_persistent(Queue& queue, const char* name, WorkCount count, const Stage& stage, uint32_t* pool) {
     PERTEV_CHECK(queue.is_cuda() && count.most <= kMaxPoolCount);

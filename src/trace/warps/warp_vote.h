@@ -1,7 +1,7 @@
 #pragma once
 
-// Votes among the lanes of a warp. On the host a warp is one ray. Which lanes run together is a matter of timing, so a
-// vote may decide how much work is done and in which order, never what comes out.
+// Votes among the lanes of a warp. On the host a warp is one ray. Which lanes run together depends on timing, so a
+// vote may affect the amount and order of work, but never the result.
 
 #include <cstdint>
 
@@ -9,9 +9,9 @@
 
 namespace pertev {
 
-using LaneMask = uint32_t; // bit k: lane k
+using LaneMask = uint32_t; // bit k stands for lane k
 
-/// The lanes that run this line at this moment.
+/// The lanes that execute this line together.
 HD inline LaneMask lanes_here() {
 #if PERTEV_ON_DEVICE
     return __activemask();
@@ -20,7 +20,7 @@ HD inline LaneMask lanes_here() {
 #endif
 }
 
-/// Whether it holds for all lanes that run this line at this moment.
+/// Whether the condition holds for all lanes that execute this line together.
 HD inline bool all_lanes_here(bool mine) {
 #if PERTEV_ON_DEVICE
     return __all_sync(__activemask(), mine) != 0;
@@ -29,7 +29,7 @@ HD inline bool all_lanes_here(bool mine) {
 #endif
 }
 
-/// Those of `lanes`, all of which come here, that have the same key as this one.
+/// Lanes with the same key as this one, among `lanes`, all of which must call it.
 HD inline LaneMask lanes_with_same(LaneMask lanes, uint64_t key) {
 #if PERTEV_ON_DEVICE
     return __match_any_sync(lanes, static_cast<unsigned long long>(key));
@@ -39,17 +39,17 @@ HD inline LaneMask lanes_with_same(LaneMask lanes, uint64_t key) {
 #endif
 }
 
-/// Whether this lane is the first of `lanes`, one of which it is.
+/// Whether this lane is the first of `lanes`, which include it.
 HD inline bool is_first_lane(LaneMask lanes) {
 #if PERTEV_ON_DEVICE
     return static_cast<unsigned>(__ffs(static_cast<int>(lanes)) - 1) ==
-           (threadIdx.x & 31u); // blocks are lines of threads
+           (threadIdx.x & 31u); // blocks are one-dimensional
 #else
     return lanes != 0;
 #endif
 }
 
-/// Which of `lanes` say yes. All of them come here, and wait for each other.
+/// Mask of the lanes with a true condition. All of `lanes` must call it, and wait for each other.
 HD inline LaneMask ballot(LaneMask lanes, bool mine) {
 #if PERTEV_ON_DEVICE
     return __ballot_sync(lanes, mine);
@@ -58,7 +58,8 @@ HD inline LaneMask ballot(LaneMask lanes, bool mine) {
 #endif
 }
 
-/// The lanes of the warp before this one. Asked of the hardware each time: kept, it would take a register.
+/// Mask of the lanes of the warp before this one. It is queried from the hardware each time, because storing it would
+/// take a register.
 HD inline LaneMask lanes_before() {
 #if defined(PERTEV_EMULATED_WARPS)
     return emulated_lanes_before();

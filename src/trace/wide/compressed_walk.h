@@ -1,19 +1,20 @@
 #pragma once
 
-// The walk of the compressed 8-wide tree: what is left to do is kept in groups, one 8-byte entry for all the children
-// of a node that are still to be entered, nearest octant first (or farthest, below) without any sorting.
+// Traversal of the compressed 8-wide tree: pending work is stored in groups, one 8-byte entry for all pending
+// children of a node, in octant order, nearest (or farthest, see below) first, without sorting.
 //
 // Source: Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017,
-// section 4, with its postponing of triangles: a warp tests them only while enough of its lanes have some, and goes on
-// down otherwise. Unlike theirs, the triangles that are put off stay in registers until the ray finds more,
-// and only those go to the stack. How long they are put off is a matter of the warp; the hits are not. On the host,
-// where a warp is one ray, nothing is put off.
+// section 4, with its postponing of triangles: a warp tests triangles only while enough of its lanes have some, and
+// descends otherwise. Unlike theirs, postponed triangles stay in registers until the ray finds more, and only those
+// go to the stack. How long they are postponed depends on the warp; the hits do not. On the host, where a warp is one
+// ray, nothing is postponed.
 //
-// RTA: a hit shortens the segment that boxes are tested against, and a group carries where the ray enters
-// the nearest of its waiting children, so that it is dropped at a pop when that lies beyond. That saves 7 to
-// 8 % of the nodes in Sponza and costs more instructions than it saves: rta_at_pops off is without it. Triangles that
-// were put off carry no distance: they are tested whatever was hit meanwhile.
-// near_first off: in the order of slots. On: a search for any hit may ask for far children first (trace_any.h).
+// RTA: a hit shortens the segment against which boxes are tested, and a group stores the entry parameter of the
+// nearest of its pending children, so that it is dropped at a pop if that is beyond the hit. That saves 7 to 8 % of
+// the nodes in Sponza and costs more instructions than it saves; rta_at_pops switches it. Postponed triangles carry
+// no distance and are always tested.
+//
+// near_first off means the order of slots. With it on, an any-hit search may visit far children first (trace_any.h).
 
 #include <cstddef>
 #include <cstdint>
@@ -30,55 +31,56 @@
 
 namespace pertev {
 
-/// Triangles are tested while at least this many of `working` lanes have some: 13 of 32, about 40 %; theirs is 20 %.
-/// Counted for warps of 32, not timed, on the second diffuse bounce in Sponza: 2.7 lanes test a triangle together where
-/// none are put off, 7.4 by their rule at 20 %, 13 by this one at 40 %, while 25 of 32 test a node. From 35 to 50 % the
-/// instructions a ray takes change by 2 %. At least 1.
+/// Minimum number of the `working` lanes that must have triangles for a test: 13 of 32, about 40 %; theirs is 20 %.
+/// Counted for warps of 32, not timed, on the second diffuse bounce in Sponza: 2.7 lanes test a triangle together
+/// without postponing, 7.4 with their 20 %, 13 with 40 %, while 25 of 32 test a node. From 35 to 50 % the number of
+/// instructions per ray changes by 2 %. At least 1.
 HD inline int lanes_for_triangles(int working) { return (13 * working + 31) / 32; }
 
-/// The children of one node that are still to be entered.
+/// Pending children of one node.
 struct NodeGroup {
     uint32_t base; // CompressedBvhNode::child_base
-    uint32_t left; // bits 0 to 7: slots to be entered; 8 to 23: with RTA at pops, the upper half of a float that no
-                   // entry of those after the first is less than; 24 to 31: all inner slots, at least one
+    uint32_t left; // bits 0 to 7: slots to enter; 8 to 23: with RTA at pops, the upper half of a float that is a
+                   // lower bound of the entries of all but the first; 24 to 31: all inner slots, at least one
 
     HD bool is_empty() const { return (left & 0xffu) == 0; }
     HD float entry() const { return float_of((left & 0xffff00u) << 8); }
 };
 
-/// The triangles of one node that are still to be tested.
+/// Pending triangles of one node.
 struct TriangleGroup {
     uint32_t base; // CompressedBvhNode::triangle_base
     uint32_t all;  // CompressedBvhNode::triangles
-    uint32_t left; // of these
+    uint32_t left; // subset of `all` to be tested
 
     HD bool is_empty() const { return left == 0; }
 };
 
-/// Where a walk stands between two turns.
+/// State of a traversal between two turns.
 template <WalkOptions kOptions>
 struct CompressedPlace {
     using Tests = TestsOf<kOptions>;
     static constexpr bool kRtaAtPops = kOptions.rta && kOptions.rta_at_pops;
-    // Searches for the closest hit go by the signs of 1/direction: with a register for an order they are 5 % slower.
+    // Closest-hit searches use the signs of 1/direction, because with a register for an order they are 5 % slower.
     static constexpr bool kEitherWay = kOptions.any_hit && kOptions.near_first;
-    // One store, where a struct would become two. Upper half from 2^24: a NodeGroup, whose base is the lower half;
-    // less: the `left` of triangles, and the lower half is their node.
+    // One store, where a struct would take two. If the upper half is at least 2^24, it is a NodeGroup whose base is
+    // the lower half; otherwise it is the `left` of triangles, and the lower half is their node.
     using Slot = uint64_t;
-    // Of each node on the way down at most its children and its triangles; what lies above them is of nodes beneath it.
+    // Each node on the path has at most one entry for its children and one for its triangles; entries above belong to
+    // nodes below.
     static constexpr int kSlots = 2 * kMaxBvhDepth;
     static constexpr int kRefillBelow = 24; // for dynamic fetch
 
-    // [kSlots], an array of its own: see WalkStack. In local memory on the device: pushes are few, and more of the
-    // stack in shared memory, as theirs, would be taken from the L1 cache that all nodes are gathered through. Its top
-    // is held in registers, so that no lane waits for one that it pops: [k] lies below entry k, [0] below the first.
+    // [kSlots] in a separate array: see WalkStack. It is in local memory on the device: pushes are few, and using
+    // more shared memory, as they do, would shrink the L1 cache for nodes. The top is held in registers, so that no
+    // lane waits for a pop: [k] is below entry k, [0] below the first.
     Slot* slots;
     Slot top = 0;
     int size = 0;
     NodeGroup nodes = {0, 0};
-    TriangleGroup triangles = {0, 0, 0}; // found, and put off
+    TriangleGroup triangles = {0, 0, 0}; // found and postponed
     RaySegment segment = {};
-    uint32_t order = 0; // of slots, for searches that may go either way
+    uint32_t order = 0; // order of slots, for searches in either direction
     typename Tests::Triangles prepared = {};
 
     HD explicit CompressedPlace(Slot* memory) : slots(memory) {}
@@ -88,7 +90,7 @@ struct CompressedPlace {
         size = 0;
         nodes.left = triangles.left = 0;
     }
-    /// Which triangles a node has, of which none is left; one load of 8 bytes.
+    /// The triangles of a node, none of them pending; one load of 8 bytes.
     HD static TriangleGroup load_triangles(const CompressedBvhNode* node) {
 #if PERTEV_ON_DEVICE
         static_assert(offsetof(CompressedBvhNode, triangle_base) % 8 == 0);
@@ -104,9 +106,9 @@ struct CompressedPlace {
         top = uint64_t(left) << 32 | lower;
     }
 
-    /// Takes one entry from the stack, where there is need of it; a node entered beyond `limit` is dropped. Triangles
-    /// that meet others which are put off stay there, and the ray waits. One a turn: the next turn takes another one
-    /// sooner than a loop would bring a warp's lanes together again.
+    /// Pops one entry if needed; a node entered beyond `limit` is dropped. If popped triangles meet postponed ones,
+    /// they stay on the stack, and the ray waits. It pops one per turn, because the next turn comes sooner than a
+    /// loop would reconverge a warp's lanes.
     HD void refill(const CompressedBvhView& bvh, float limit) {
         if (!nodes.is_empty() || size == 0) return;
         const uint32_t lower = static_cast<uint32_t>(top), left = static_cast<uint32_t>(top >> 32);
@@ -142,12 +144,12 @@ struct CompressedWalk {
         if (Place::kEitherWay) place.order = slot_order(place.segment.inv, visitor.goes_far_first());
         place.prepared = Tests::make_triangles(ray);
         place.size = 0;
-        place.nodes = {0, 1u << 24 | (bvh.nodes == nullptr ? 0u : 1u)}; // slot 0 of a node above
+        place.nodes = {0, 1u << 24 | (bvh.nodes == nullptr ? 0u : 1u)}; // slot 0 of a node above the root
         place.triangles.left = 0;
     }
 
-    /// One node, and the triangles that were put off, where enough of the lanes that run together have some. True when
-    /// the visitor ended the walk.
+    /// Tests one node, and the postponed triangles if enough of the lanes that run together have some. Returns true
+    /// if the visitor ended the traversal.
     template <class Visitor, class Counter>
     HD static bool turn(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
                         const Counter& counter, LaneMask lanes, int working) {
@@ -155,8 +157,8 @@ struct CompressedWalk {
         const int enough = lanes_for_triangles(working);
         bool ended = false;
         const auto are_enough = [&] { return count_lanes(ballot(lanes, !place.triangles.is_empty())) >= enough; };
-        if (are_enough()) { // all of `lanes` come to each vote
-            do {            // so written, it is 1 % faster than one loop that votes first
+        if (are_enough()) { // all of `lanes` take part in each vote
+            do {            // this form is 1 % faster than one loop that votes first
                 if (!place.triangles.is_empty() && test_triangle(bvh, ray, instance, place, visitor, counter)) {
                     ended = true;
                     place.stop();
@@ -169,13 +171,13 @@ struct CompressedWalk {
     }
 
 private:
-    /// Of slots the one to enter first; 0 of none.
+    /// Bit of the slot to enter first; 0 for no slots.
     HD static uint32_t first_slot(uint32_t slots, const Place& place) {
         if (!kOptions.near_first) return slots & (0u - slots);
         return Place::kEitherWay ? first_of_slots(slots, place.order) : nearest_slot(slots, place.segment.inv);
     }
 
-    /// Tests the boxes of the next node. Its children come before what is left of its group.
+    /// Tests the boxes of the next node. Its children come before the rest of its group.
     template <class Counter>
     HD static void step_down(const CompressedBvhView& bvh, const Ray& ray, Place& place, const Counter& counter) {
         NodeGroup group = place.nodes;
@@ -188,7 +190,7 @@ private:
         float entries[8];
         const uint32_t entered = enters_slots(ray.origin, place.segment, node, entries);
         const uint32_t found = triangles_of_slots(node, entered);
-        const bool waits = !place.triangles.is_empty(); // selects, not branches, which would part the lanes
+        const bool waits = !place.triangles.is_empty(); // selects instead of branches, which would diverge the lanes
         if (waits & (found != 0)) place.push(index, found);
         place.triangles.base = waits ? place.triangles.base : node.triangle_base;
         place.triangles.all = waits ? place.triangles.all : node.triangles;

@@ -1,9 +1,8 @@
 #pragma once
 
-// What a ray of walk_in_flight.h has still to enter. Nothing here branches on what was met: a branch that is guessed
-// wrong costs as much as a quarter of a node. Entered children are put on the stack by one permutation of vectors, the
-// nearest of them is found by a minimum over lanes, and a hit drops at once what lies beyond it, so that a pop need
-// not look.
+// The stack of a ray in walk_in_flight.h. Its code does not branch on hits, because a misprediction costs as much as
+// a quarter of a node. Entered children are pushed by one permutation of vectors, the nearest of them is found by a
+// minimum over lanes, and a hit drops entries beyond it at once, so that a pop need not test them.
 
 #include <immintrin.h>
 
@@ -15,7 +14,7 @@
 
 namespace pertev {
 
-/// Which lanes a mask names, first to last or last to first, as bytes; the rest is 0.
+/// Lanes of a mask in ascending or descending order, as bytes; the rest is 0.
 struct LanesOfMask {
     std::array<uint64_t, 256> up, down;
 };
@@ -33,20 +32,21 @@ inline constexpr LanesOfMask kLanesOfMask = [] {
     return lanes;
 }();
 
-/// What one ray has still to enter: arrays, so that vectors are put on it. [0] ends the walk.
+/// Pending children of one ray, as arrays, so that vectors can be pushed. [0] ends the traversal.
 class FlightStack {
 public:
     FlightStack() : size_(1) { entry_[0] = -kInfinity, link_[0] = kNoLink, count_[0] = 0; }
 
-    /// The children that are entered; the nearest last, or the one that the builder put first, or the farthest.
+    /// Pushes the entered children; the last is the nearest, or the builder's first, or the farthest.
     template <WalkOptions kOptions>
     [[gnu::always_inline]] void push(const WideBvhNode<kWideChildren>& node, const EnteredChildren& children,
                                      bool far_first) {
         const unsigned entered = children.mask();
         uint64_t lanes;
-        if (far_first) { // alike for most rays in flight
+        if (far_first) { // equal for most rays in flight
             const unsigned farthest = farthest_of(children);
-            const unsigned others = entered & ~(1u << farthest); // all, if that is not entered: it comes beyond the top
+            const unsigned others = entered & ~(1u << farthest); // all of them if none is entered, because then it is
+                                                                 // beyond the top
             lanes = kLanesOfMask.down[others] | uint64_t(farthest) << 8 * __builtin_popcount(others);
         } else if constexpr (kOptions.near_first) {
             const unsigned nearest = nearest_of(children);
@@ -65,7 +65,7 @@ public:
         size_ = size;
         return {entry_[size], link_[size], count_[size]};
     }
-    /// Drops what is entered beyond `limit`.
+    /// Drops entries beyond `limit`.
     void shorten(float limit) {
         int kept = 0;
         const __m256 limits = _mm256_set1_ps(limit);
@@ -83,13 +83,14 @@ public:
     }
 
 private:
-    static constexpr int kSize = kWideStackSize<kWideChildren> + 9; // [0], and the unused lanes of what is put last
+    static constexpr int kSize = kWideStackSize<kWideChildren> + 9; // [0], and the unused lanes of the last push
 
-    /// The lane of the least entry, by its upper 16 bits; none is negative. Where none is entered, any.
+    /// The lane with the least entry, by its upper 16 bits; none is negative. Any lane if none is entered.
     [[gnu::always_inline]] static unsigned nearest_of(const EnteredChildren& children) {
         return least_lane(_mm_or_si128(keys_of(children), _mm_xor_si128(in_of(children), _mm_set1_epi32(-1))));
     }
-    /// Likewise of the greatest. Where all are 0, lane 0, entered or not: push() leaves it out where it is not.
+    /// The lane with the greatest entry. If all are 0, it is lane 0, entered or not; push() leaves it out if it is
+    /// not.
     [[gnu::always_inline]] static unsigned farthest_of(const EnteredChildren& children) {
         return least_lane(_mm_xor_si128(_mm_and_si128(keys_of(children), in_of(children)), _mm_set1_epi32(-1)));
     }
@@ -105,7 +106,7 @@ private:
         return static_cast<unsigned>(_mm_cvtsi128_si32(_mm_minpos_epu16(keys))) >> 16;
     }
 
-    /// From place `at` on, the lanes that are named; what comes after them is spoilt.
+    /// Writes the listed lanes from index `at` on; elements after them are overwritten too.
     [[gnu::always_inline]] void put(int at, uint64_t lanes, __m256 entries, __m256i links, __m256i counts) {
         const __m256i order = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(lanes)));
         _mm256_storeu_ps(entry_ + at, _mm256_permutevar8x32_ps(entries, order));

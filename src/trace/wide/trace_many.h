@@ -1,8 +1,8 @@
 #pragma once
 
-// What many rays meet, on the host: rays that are asked for in a row and go nearly the same way go in packets, the
-// others in flight, and each gets the hit that it would get by itself. For rays from a camera, or towards one lamp, it
-// pays to look for those that go together; scattered ones seldom do.
+// Traces many rays on the host: consecutive coherent rays in packets, the others in flight; each gets the hit that it
+// would get alone. For rays from a camera or towards one light, searching for coherent ones pays; scattered ones
+// seldom are.
 
 #include <array>
 #include <cstdint>
@@ -16,11 +16,11 @@
 namespace pertev {
 
 enum class RayOrder {
-    Scattered, // all of them in flight
-    Together,  // each eight in a row are looked at: do they go together?
+    Scattered, // traces all of them in flight
+    Together,  // tests whether each eight consecutive rays are coherent
 };
 
-/// Walks the scene with many rays: see walk_scene_in_flight.
+/// Traverses the scene with many rays: see walk_scene_in_flight.
 template <WalkOptions kOptions, class RayOf, class AcceptOf, class MakeVisitor, class End>
 void walk_scene_together(const HostTrees& scene, uint32_t count, const RayOf& ray_of, const AcceptOf& accept_of,
                          const MakeVisitor& make_visitor, const End& end_of) {
@@ -48,7 +48,7 @@ void walk_scene_together(const HostTrees& scene, uint32_t count, const RayOf& ra
     uint32_t packets = 0;
     for (uint32_t first = 0; first < count; first += kSize) {
         const uint32_t some = min(count - first, kSize);
-        if (packets == 0 && first >= kLooks * kSize) { // the others will be no better
+        if (packets == 0 && first >= kLooks * kSize) { // further ones will not be coherent either
             put_alone(first, some);
             continue;
         }
@@ -70,7 +70,7 @@ void walk_scene_together(const HostTrees& scene, uint32_t count, const RayOf& ra
     send_alone();
 }
 
-/// trace_closest of `count` rays: hits[i] is what ray_of(i) meets, of the candidates that accept_of(i) lets count.
+/// Closest hits of `count` rays: hits[i] is that of ray_of(i), among the candidates that accept_of(i) accepts.
 template <WalkOptions kOptions, class RayOf, class AcceptOf>
 void trace_closest_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
                         const AcceptOf& accept_of, Hit* hits) {
@@ -85,7 +85,7 @@ void trace_closest_many(const HostTrees& scene, uint32_t count, RayOrder order, 
     }
 }
 
-/// trace_any of `count` rays: met[i].
+/// Occlusion of `count` rays: met[i].
 template <WalkOptions kOptions, class RayOf, class AcceptOf>
 void trace_any_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
                     const AcceptOf& accept_of, bool* met) {

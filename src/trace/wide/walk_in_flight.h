@@ -1,9 +1,9 @@
 #pragma once
 
-// The host's walk of one mesh by several rays in turns: each makes one step, asks for the memory that its next step
-// reads, and lets the others step meanwhile. A ray alone waits half of its time for nodes and triangles. Rays that are
-// at nodes step together, then those at leaves, so that no branch asks which it is. Boxes and triangles are tested as
-// in walk_wide.h, and hits are the same to the bit: what differs is the order in which children are entered.
+// Host traversal of one mesh by several interleaved rays: each makes one step, prefetches the memory of its next
+// step, and lets the others step meanwhile. A single ray waits half of its time for nodes and triangles. Rays at
+// nodes step together, then those at leaves, so that no branch distinguishes them. Boxes and triangles are tested as
+// in walk_wide.h, and hits are the same to the bit; only the order of children differs.
 //
 // Source of the idea: Kocberber, Falsafi, Grot, "Asynchronous Memory Access Chaining", VLDB 2015.
 
@@ -20,14 +20,14 @@
 
 namespace pertev {
 
-/// Rays in flight. More are no faster; four are not slower either while the cache is this program's own.
+/// Number of rays in flight. More are not faster; four are not slower either while the cache is not shared.
 inline constexpr int kFlights = 8;
 
-/// Walks `bvh` with `count` rays. `rays` says what there is to do:
+/// Traverses `bvh` with `count` rays, which `rays` defines:
 ///   Ray ray(uint32_t i)                             the i-th ray
-///   Accept accept(uint32_t i)                       what counts for it
-///   Visitor visitor(const Accept&, const Ray&)      what looks at its candidates (trace/walk_scene.h)
-///   void end(uint32_t i, const Ray&, Visitor&)      its walk of this mesh is over
+///   Accept accept(uint32_t i)                       its acceptance rule
+///   Visitor visitor(const Accept&, const Ray&)      the visitor of its candidates (trace/walk_scene.h)
+///   void end(uint32_t i, const Ray&, Visitor&)      called at the end of its traversal of this mesh
 template <WalkOptions kOptions, class Rays>
 class WalkInFlight {
     using Accept = decltype(std::declval<Rays>().accept(0));
@@ -55,7 +55,7 @@ private:
         Ray ray;
         LeafOfFour<kOptions> leaf;
         const void* at;     // a node, or a leaf's first triangle
-        uint32_t count = 0; // triangles of a leaf; of a leaf 0: nothing is left to do
+        uint32_t count = 0; // triangles of a leaf; 0 for a leaf: nothing is pending
         uint32_t number;
         Accept accept;
         Visitor visitor;
@@ -74,7 +74,7 @@ private:
 
     struct List {
         int size = 0;
-        Flight* flights[kFlights + 1]; // one more: add_if writes before it knows
+        Flight* flights[kFlights + 1]; // one more, because add_if writes unconditionally
 
         void add(Flight* flight) { flights[size++] = flight; }
         void add_if(bool belongs, Flight* flight) {
@@ -88,7 +88,7 @@ private:
         return new (&room.flight) Flight(bvh_, rays_, i, rays_.ray(i));
     }
 
-    /// Takes what comes next from the stack and asks for its memory. True of a leaf.
+    /// Pops the next entry and prefetches its memory. Returns true for a leaf.
     [[gnu::always_inline]] bool go_on(Flight& flight) const {
         const WideEntry entry = flight.stack.pop();
         const bool is_leaf = (entry.link & kLeafBit) != 0;
@@ -146,7 +146,7 @@ private:
     std::array<Room, kFlights> rooms_;
 };
 
-/// Rays whose walk goes on in the instances once the baked tree is behind them.
+/// Rays that continue in the instances after the baked tree.
 template <WalkOptions kOptions, class RayOf, class AcceptOf, class MakeVisitor, class End>
 struct RaysOfScene {
     const HostTrees& instances; // the scene without its baked tree
@@ -164,8 +164,8 @@ struct RaysOfScene {
     }
 };
 
-/// Walks the scene with many rays, the baked tree in flight, and what instances there are ray by ray. `end(i, visitor)`
-/// sees each when it is through.
+/// Traverses the scene with many rays: the baked tree in flight, and instances ray by ray. Calls `end(i, visitor)`
+/// for each at its end.
 template <WalkOptions kOptions, class RayOf, class AcceptOf, class MakeVisitor, class End>
 void walk_scene_in_flight(const HostTrees& scene, uint32_t count, const RayOf& ray_of, const AcceptOf& accept_of,
                           const MakeVisitor& make_visitor, const End& end_of) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// The host's walk of one mesh: eight boxes and four triangles at once (AVX2, part of the baseline x86-64-v3). It skips
-// by the same rule as the binary walk, with the same grown planes, so the hits are the same to the bit.
+// Host traversal of one mesh: eight boxes and four triangles at once (AVX2, part of the baseline x86-64-v3). It skips
+// by the same rule as the binary traversal, with the same grown planes, so the hits are the same to the bit.
 
 #include <immintrin.h>
 
@@ -18,13 +18,13 @@
 namespace pertev {
 
 struct WideRay {
-    std::ptrdiff_t near_plane[3], far_plane[3]; // where WideBvhNode::planes has them, in floats
+    std::ptrdiff_t near_plane[3], far_plane[3]; // offsets in WideBvhNode::planes, in floats
     __m256 inv[3];
-    __m256 near[3], far[3]; // what takes a moved-out plane to its parameter; RayBoxes' lo and hi by the ray's sign
+    __m256 near[3], far[3]; // map a moved-out plane to its parameter; RayBoxes' lo and hi by the ray's sign
 };
 
-/// A ray's boxes, exact or not; of them the first are made in vectors, like make_ray_boxes to the bit, and without a
-/// branch on the direction's signs.
+/// Data of a ray for box tests, exact or not. For exact tests it is computed in vectors, to the bit like
+/// make_ray_boxes, and without a branch on the direction's signs.
 template <WalkOptions kOptions>
 WideRay make_wide_ray(const Ray& ray, float bounds_max_abs) {
     __m128 inv, lo, hi;
@@ -55,15 +55,15 @@ WideRay make_wide_ray(const Ray& ray, float bounds_max_abs) {
     return wide;
 }
 
-/// What a ray meets of a node: lane k is child k.
+/// Entered children of a node: lane k is child k.
 struct EnteredChildren {
-    __m256 entries; // parameters
-    __m256 is_in;   // all bits where the child may hold a hit with t_min < t <= t_limit, else none
+    __m256 entries; // entry parameters
+    __m256 is_in;   // all bits set if the child may hold a hit with t_min < t <= t_limit, else 0
 
     unsigned mask() const { return static_cast<unsigned>(_mm256_movemask_ps(is_in)); }
 };
 
-/// Always inlined: as a call, with its vectors through memory, it takes a tenth of a render.
+/// Always inlined: as a call, with its vectors through memory, it would take a tenth of a render.
 [[gnu::always_inline]] inline EnteredChildren
 enters_children(const WideRay& ray, const WideBvhNode<kWideChildren>& node, __m256 t_min, __m256 t_limit) {
     const auto near = [&](int axis) {
@@ -78,7 +78,8 @@ enters_children(const WideRay& ray, const WideBvhNode<kWideChildren>& node, __m2
     return {entries, _mm256_cmp_ps(entries, exit, _CMP_LE_OQ)};
 }
 
-/// Leaves of up to four triangles at once, or one by one where hits need not be exact. True when the visitor ended it.
+/// Tests leaves of up to four triangles at once, or one by one if hits need not be exact. Returns true if the visitor
+/// ended it.
 template <WalkOptions kOptions>
 struct LeafOfFour {
     const Ray& ray;
@@ -112,7 +113,7 @@ struct LeafOfFour {
         return false;
     }
 
-    /// Of a leaf, whatever its size.
+    /// Tests a leaf of any size.
     template <class Visitor, class Counter>
     bool test_all(const BvhTriangle* triangles, uint32_t count, uint32_t instance, Visitor& visitor,
                   const Counter& counter) const {
@@ -126,16 +127,16 @@ struct LeafOfFour {
     }
 };
 
-/// A child that is still to be entered.
+/// A pending child.
 struct WideEntry {
     float entry;
-    uint32_t link, count; // WideBvhNode's
+    uint32_t link, count; // copied from WideBvhNode
 };
 using WideStack = WideEntry[kWideStackSize<kWideChildren>];
 
-/// Tests a node's boxes. Where the ray enters any, the first of them goes to `at` and the others to the stack: the
-/// nearest first, or the one that the builder put first, or the farthest, the others as the builder has them. Most
-/// nodes lead to one child or two, which take no loop by distance.
+/// Tests a node's boxes. If the ray enters any, the first goes to `at` and the others to the stack: the nearest
+/// first, or the builder's first, or the farthest, and the others in the builder's order. Most nodes have one or two
+/// entered children, for which no sorting loop is needed.
 template <WalkOptions kOptions>
 [[gnu::always_inline]] inline bool enter_node(const WideBvhNode<kWideChildren>& node, const WideRay& wide, __m256 t_min,
                                               __m256 t_limit, bool far_first, WideEntry* stack, int& size,
@@ -183,7 +184,8 @@ template <WalkOptions kOptions>
     return true;
 }
 
-/// True when the visitor ended it. There is a node. Always inlined: as a call it makes a render a twentieth slower.
+/// Returns true if the visitor ended it. The tree has a node. Always inlined: as a call it makes a render a twentieth
+/// slower.
 template <WalkOptions kOptions, class Visitor, class Counter>
 [[gnu::always_inline]] inline bool walk_wide(const WideBvhView<kWideChildren>& bvh, const Ray& ray, uint32_t instance,
                                              Visitor& visitor, const Counter& counter) {
@@ -209,7 +211,7 @@ template <WalkOptions kOptions, class Visitor, class Counter>
     }
 }
 
-/// It as a walk (trace/walk_scene.h); host only.
+/// The traversal in the form of trace/walk_scene.h; host only.
 template <WalkOptions kOptions>
 struct Wide8SimdWalk {
     using Tree = WideBvhView<kWideChildren>;

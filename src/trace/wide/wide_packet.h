@@ -1,15 +1,15 @@
 #pragma once
 
-// Eight rays that go nearly the same way, through one mesh together, host only: the children of a node are tested all
-// at once for the whole packet, by intervals that hold the eight origins and directions, and those that are left one by
-// one for the eight rays. A triangle is loaded once for all. Each ray gets the hit that it would get by itself.
+// Traverses one mesh with eight coherent rays together, host only: the children of a node are tested at once for the
+// whole packet, with intervals that contain the eight origins and directions, and the remaining ones one by one for
+// the eight rays. A triangle is loaded once for all. Each ray gets the hit that it would get alone.
 //
 // Source: Wald, Boulos, Shirley, "Ray Tracing Deformable Scenes Using Dynamic Bounding Volume Hierarchies", ACM TOG
-// 26(1), 2007, section 4: packets over a hierarchy with intervals; nodes of eight as in walk_wide.h.
-// A search for any hit keeps to the builder's order, of rays without an end too (trace_any.h): those that go together
-// mostly go to one sun, and with far children first fewer of them go on together.
-// No hit is lost to the intervals: planes are moved out for each ray (ray_boxes.h) by 16 units, of which a bound that
-// is computed as (plane - moved origin) times 1/direction loses four and the triangle's test six.
+// 26(1), 2007, section 4: packets over a hierarchy with intervals; nodes of eight as in walk_wide.h. An any-hit
+// search keeps the builder's order, even for rays without an end (trace_any.h): coherent ones mostly go to one sun,
+// and with far children first fewer of them stay together. No hit is lost by the intervals: planes are moved out for
+// each ray (ray_boxes.h) by 16 units, of which a bound computed as (plane - moved origin) times 1/direction loses
+// four and the triangle test six.
 
 #include <cstdint>
 
@@ -23,10 +23,10 @@ inline constexpr int kPacketEights = 4, kWidePacket = 8 * kPacketEights;
 template <WalkOptions kOptions, class Visitor>
 class WidePacket {
     static_assert(kOptions.is_exact());
-    static constexpr float kMaxSpread = 0.25f; // of slopes: with more, rays share too few nodes
+    static constexpr float kMaxSpread = 0.25f; // maximum spread of slopes; with more, rays share too few nodes
 
 public:
-    /// Of the first `count` of eight rays, at least one; the others are copies of one of them. Visitors are theirs.
+    /// Makes a packet of eight rays; those that are not needed are copies of one of the others, with its visitor.
     /// `rays` and, for run(), `visitors` outlive it.
     WidePacket(const WideBvhView<kWideChildren>& bvh, const Ray* rays) : bvh_(bvh), rays_(rays) {
         const RayShear first = make_ray_shear(rays[0].direction);
@@ -49,7 +49,7 @@ public:
         }
     }
 
-    /// Whether the rays go nearly the same way; those that do not must not run.
+    /// Whether the rays are coherent; others must not run.
     bool is_coherent() const { return is_coherent_; }
 
     void run(Visitor* visitors, int count) {
@@ -64,10 +64,10 @@ private:
     struct Eight {
         __m256 inv[3], near[3], far[3], t_min, t_max;
         RayShear8 shear;
-        alignas(32) float limits[8]; // of the visitors; -inf of rays that are done
+        alignas(32) float limits[8]; // limits of the visitors; -inf for rays that are done
     };
 
-    /// What make_ray_boxes says of eight rays, and the bounds of it.
+    /// Computes make_ray_boxes for eight rays along an axis, and its bounds.
     void set_axis(Eight& eight, int axis, __m256 origin, __m256 d, __m256 growth) {
         const __m256 sign = _mm256_set1_ps(-0.0f), tiny = _mm256_set1_ps(0x1p-80f);
         const __m256 guarded = _mm256_blendv_ps(d, _mm256_or_ps(tiny, _mm256_and_ps(d, sign)),
@@ -79,7 +79,7 @@ private:
         const __m256 lo = _mm256_xor_ps(_mm256_mul_ps(above, inv), sign);
         const __m256 hi = _mm256_xor_ps(_mm256_mul_ps(below, inv), sign);
         eight.inv[axis] = inv, eight.near[axis] = back ? hi : lo, eight.far[axis] = back ? lo : hi;
-        // Forwards a plane's parameter is (plane - q) |1/d|, backwards (-plane - (-q)) |1/d|.
+        // A plane's parameter is (plane - q) |1/d| in positive and (-plane - (-q)) |1/d| in negative direction.
         const __m256 q_near = back ? _mm256_xor_ps(below, sign) : above;
         const __m256 q_far = back ? _mm256_xor_ps(above, sign) : below;
         const __m256 size = size_of(inv);
@@ -101,7 +101,7 @@ private:
             if (!(link & kLeafBit)) {
                 const WideBvhNode<kWideChildren>& node = bvh_.nodes[link];
                 int order[kWideChildren];
-                for (int n = enter_together(node, order); n-- > 0;) { // the first one comes to the top
+                for (int n = enter_together(node, order); n-- > 0;) { // the first one ends on top
                     const int k = order[n];
                     Waiting& next = stack[size];
                     int some = 0;
@@ -151,12 +151,12 @@ private:
         }
     };
 
-    /// Of all rays along an axis: |1/direction|, and the origins that enters_together takes planes from.
+    /// Bounds of all rays along an axis: |1/direction|, and the origins that enters_together subtracts from planes.
     struct Extent {
         float least_inv, most_inv, most_near, least_far;
     };
 
-    /// make_ray_shear of eight rays, where all have the first one's order of axes.
+    /// make_ray_shear of eight rays that share the first one's order of axes.
     void set_shear(Eight& eight, const Lanes& lanes, const RayShear& first) {
         RayShear8& shear = eight.shear;
         shear.kx = first.kx, shear.ky = first.ky, shear.kz = first.kz;
@@ -195,7 +195,7 @@ private:
         return node.planes[2 * axis + (back_[axis] ? 0 : 1)];
     }
 
-    /// Children that any ray of the packet may enter: how many, and in which order.
+    /// Finds the children that any ray of the packet may enter: their number and order.
     [[gnu::always_inline]] int enter_together(const WideBvhNode<kWideChildren>& node,
                                               int (&order)[kWideChildren]) const {
         __m256 limits = _mm256_load_ps(eights_[0].limits);
@@ -226,7 +226,7 @@ private:
         return n;
     }
 
-    /// enters_children (walk_wide.h) of child k for eight rays: not 0 where any enters, and where.
+    /// enters_children (walk_wide.h) of child k for eight rays: nonzero if any enters, with the entry parameters.
     [[gnu::always_inline]] int enter_child(const Eight& eight, const WideBvhNode<kWideChildren>& node, int k,
                                            __m256& entry) const {
         const auto near = [&](int axis) {

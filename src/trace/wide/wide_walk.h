@@ -1,7 +1,7 @@
 #pragma once
 
-// The walk of a 4- or 8-wide tree with float boxes, one box after another, on host and device: a stack of children with
-// their entry parameters, in order of entry or in the builder's.
+// Traversal of a 4- or 8-wide tree with float boxes, one box after another, on host and device: a stack of children
+// with their entry parameters, sorted by them or in the builder's order.
 //
 // Source: Wald, Benthin, Boulos, "Getting Rid of Packets", IEEE RT 2008, with a scalar box test; RTA drops a child
 // entered beyond the nearest hit when it is pushed and again when it is popped.
@@ -22,8 +22,8 @@ namespace pertev {
 /// Four planes of one row of WideBvhNode::planes.
 HD inline Float4 load_planes(const float* row) { return load_aligned(reinterpret_cast<const Float4*>(row)); }
 
-/// The four children of a node from `first` on. Bit k: child first + k may hold a hit with t_min < t <= t_limit; its
-/// entry parameter goes to entries[k]. What it says of places left empty, whose boxes are inverted, is never true.
+/// Tests four children of a node from `first` on. Bit k is set if child first + k may hold a hit with t_min < t <=
+/// t_limit; its entry parameter goes to entries[k]. Empty slots have inverted boxes, which are never entered.
 template <int kWidth>
 HD inline uint32_t enters_4_children(const RayBoxes& r, const WideBvhNode<kWidth>* node, int first, float t_min,
                                      float t_limit, float (&entries)[4]) {
@@ -80,7 +80,7 @@ struct WideWalk {
     }
 
 private:
-    /// The one to enter first comes to the top.
+    /// The child to enter first ends on top.
     template <class Visitor>
     HD static void push_children(const WideBvhNode<kWidth>* node, const RayBoxes& boxes, float t_min, float t_limit,
                                  WalkStackEntry* stack, int& size) {

@@ -1,8 +1,8 @@
 #pragma once
 
-// Builds the tree of compressed nodes on the device that its triangles lie on, by H-PLOC (accel/hploc/climb.h). The
-// same bytes on every device, whatever the number of threads. All work is given to the queue at once; the host waits
-// only for what came out.
+// Builds a tree of compressed nodes by H-PLOC (accel/hploc/climb.h) on the device that holds the triangles. The bytes
+// are the same on every device and for any number of threads. All work is queued at once; the host waits only for the
+// figures.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,41 +18,42 @@ namespace pertev {
 
 class DeviceBuilder {
 public:
-    /// Memory for trees of up to `most` triangles: about 280 bytes for each while it builds, and what it makes. Costs:
-    /// max_leaf is at most kCompressedLeaf, one triangle at a time. Throws Error(OutOfMemory), Error(OverLimit).
+    /// Allocates for trees of up to `most` triangles: about 280 bytes per triangle during the build, plus the result.
+    /// costs.max_leaf is at most kCompressedLeaf, tested one triangle at a time. Throws Error(OutOfMemory),
+    /// Error(OverLimit).
     DeviceBuilder(Queue& queue, uint32_t most, const CollapseSettings& costs = kCompressedCollapse);
 
-    /// Gives the build to the queue and returns. `triangles` are on the device, finite, |coordinate| at most
-    /// kMaxCoordinate; count <= most.
+    /// Queues the build and returns. `triangles` are on the device, finite, with |coordinate| at most kMaxCoordinate;
+    /// count <= most.
     void start(const BvhTriangle* triangles, uint32_t count);
 
-    /// What start() made. Waits. A tree too deep for a walk's stack, which only made-up coordinates give, is built
-    /// again of equal halves of the curve. Throws Error(DeviceFault).
+    /// finish() waits for the queue and returns figures of the tree. A tree that is too deep for the traversal stack,
+    /// which only contrived coordinates cause, is rebuilt with equal halves of the curve. Throws Error(DeviceFault).
     struct Figures {
         uint32_t nodes = 0, triangles = 0;
         int depth = 0;
-        float sah_cost = 0;   // as CompressedBvh::sah_cost, of the build
-        float refit_cost = 0; // the same of the tree as start_refit() left it; 0: it was not refitted
+        float sah_cost = 0;   // after the build, as CompressedBvh::sah_cost
+        float refit_cost = 0; // after start_refit(), in the same unit; 0 if there was no refit
         Bounds3 bounds;
     };
     Figures finish();
 
-    /// Gives the queue the work of fitting the tree that finish() told of to triangles that have moved: as many, in the
-    /// same order, anywhere. finish() then has their bounds and the cost of the tree now.
+    /// Queues a refit of the tree from the last finish() to triangles that have moved. They have the same number and
+    /// order. finish() then returns their bounds and the present cost.
     void start_refit(const BvhTriangle* moved);
-    /// Takes the memory for start_refit. Without this call the first start_refit takes it.
+    /// Allocates memory for start_refit(), which otherwise does so at its first call.
     void reserve_refit();
 
-    /// After finish(): where the tree lies, and a copy on the host.
+    /// The tree's device view and a host copy, after finish().
     CompressedBvhView view() const;
     CompressedBvh download() const;
 
-    /// For tests: what the stages work on, cleared where it has to be, and the binary tree as it was before.
+    /// For tests: the cleared working memory of the stages, and the binary tree before the conversion.
     hploc::Climb prepare_climb() const;
     hploc::EmitWide prepare_emit();
     std::vector<hploc::ClusterNode> download_clusters() const { return nodes_.download(); }
 
-    /// Of equal halves from now on, as after a tree too deep; for tests.
+    /// For tests: builds with equal halves of the curve from now on, as after a tree that was too deep.
     void set_balanced(bool balanced) { balanced_ = balanced; }
 
 private:
@@ -80,14 +81,14 @@ private:
     Buffer<CompressedBvhNode> wide_;
     Buffer<BvhTriangle> placed_;
     Buffer<uint32_t> sources_;
-    // For refits, made by the first: which node is above each, how many beneath it are done, and boxes.
+    // Refit data, made by the first refit: parent of each node, children that are done, and boxes.
     Buffer<uint32_t> parents_, children_, arrived_;
     Buffer<NodeBox> boxes_;
     Buffer<RefitResult> refitted_;
     bool are_linked_ = false, is_refitted_ = false;
 };
 
-/// Of triangles on the host, and back there; what the laboratory's structure is.
+/// Builds from triangles on the host and copies the tree back; used by the laboratory.
 CompressedBvh build_compressed_bvh(Queue& queue, std::span<const BvhTriangle> triangles);
 
 } // namespace pertev

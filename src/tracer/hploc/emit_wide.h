@@ -1,8 +1,9 @@
 #pragma once
 
-// From the binary tree to compressed nodes and their triangles, from the root down, each node by itself: its plan says
-// how many nodes and triangles lie beneath it, so it knows where each of its children belongs. Beneath a node, its
-// inner children come first, then what lies beneath each; triangles likewise. So every node comes after its parent.
+// Converts the binary tree to compressed nodes and orders their triangles, from the root down. A node's plan holds
+// the number of nodes and triangles below it, so each node finds the positions of its children independently. A
+// node's inner children come first, then their subtrees; triangles follow the same order. Thus every node comes after
+// its parent.
 
 #include <cstdint>
 
@@ -14,24 +15,24 @@
 
 namespace pertev::hploc {
 
-/// A wide node that its parent has placed.
+/// A wide node whose position is known because its parent has been made.
 struct alignas(16) WideItem {
-    uint32_t node;  // of the binary tree; kNone: not placed yet
-    uint32_t depth; // 1: the root
+    uint32_t node;  // binary node; kNone if not placed yet
+    uint32_t depth; // the root has depth 1
     uint32_t child_base, triangle_base;
 };
 
-/// What came out; on the device until all is done.
+/// Figures of the result, on the device until all is done.
 struct alignas(16) WideCounts {
-    uint32_t nodes; // kNone until the root is made; more than there is room for: nothing else was made
+    uint32_t nodes; // kNone until the root is made; if it exceeds the room, nothing else is made
     int32_t depth;
-    float cost;     // of a ray that meets the bounds, as WideBvh::sah_cost
-    uint32_t drawn; // by warps that make nodes
+    float cost;     // expected cost of a ray that hits the bounds, as WideBvh::sah_cost
+    uint32_t drawn; // items taken by warps that make nodes
     Bounds3 bounds;
-    uint32_t queued; // wide nodes that were placed, less 1 for the root
+    uint32_t queued; // wide nodes that were placed, without the root
 };
 
-/// The children of a wide node, in the binary tree's order; returns how many.
+/// Writes the children of a wide node in the binary tree's order and returns their number.
 HD inline uint32_t children_of(const ClusterTree& tree, uint32_t node, uint32_t (&children)[kMaxWidth]) {
     uint32_t pending[kMaxWidth], roots[kMaxWidth], size = 1, count = 0;
     pending[0] = node, roots[0] = kMaxWidth;
@@ -57,7 +58,7 @@ HD inline uint32_t triangles_beneath(const ClusterTree& tree, uint32_t node) {
     return node < tree.count ? 1 : tree.sizes[node - tree.count].triangles;
 }
 
-/// The place in the input of triangle k beneath a node.
+/// Input index of triangle k below a node.
 HD inline uint32_t triangle_beneath(const ClusterTree& tree, uint32_t node, uint32_t k) {
     while (node >= tree.count) {
         const uint32_t left = tree.nodes[node].left, of_left = triangles_beneath(tree, left);
@@ -67,16 +68,16 @@ HD inline uint32_t triangle_beneath(const ClusterTree& tree, uint32_t node, uint
     return tree.nodes[node].left;
 }
 
-/// How little child k would like slot s, the less the better: how far it lies along the slot's octant, then its
-/// number, then the slot's. `from`: from the middle of its node.
+/// Sort key of child k for slot s; the smallest fits best. It compares the projection on the slot's octant direction,
+/// then k, then s. `from` points from the centre of the node to the child.
 HD inline uint64_t dislike(Vec3 from, uint32_t k, uint32_t s) {
     const float cost = (s & 1 ? -from.x : from.x) + (s & 2 ? -from.y : from.y) + (s & 4 ? -from.z : from.z);
     const uint32_t of_cost = static_cast<uint32_t>(ordered(cost + 0.0f)) ^ 0x80000000u; // -0 is 0
     return static_cast<uint64_t>(of_cost) << 32 | k << 3 | s;
 }
 
-/// Of what is left, the pair of child and slot that dislike each other least, until all children have one. slot_of[k]
-/// is of child k.
+/// Greedily assigns the remaining child and slot with the least dislike() until every child has a slot. slot_of[k] is
+/// the slot of child k.
 HD inline void choose_slots(const Vec3 (&from)[kMaxWidth], uint32_t count, uint32_t (&slot_of)[kMaxWidth]) {
     uint32_t children = (1u << count) - 1, slots = 0xffu;
     while (children != 0) {
@@ -98,24 +99,25 @@ struct EmitWide {
     ClusterTree tree;
     const uint32_t* root;
     const BvhTriangle* triangles;
-    WideItem* items;          // [room], all bytes 0xff at first: of node i; by warps, of the i-th that was placed
-    uint32_t* item_nodes;     // [room], likewise; by warps alone: which node that is
+    WideItem* items;          // [room] set to 0xff bytes at first; item of node i, or in warps of the i-th placed
+                              // node
+    uint32_t* item_nodes;     // [room] set to 0xff bytes at first; node number of each item, used only by warps
     CompressedBvhNode* nodes; // [room]
     BvhTriangle* placed;      // [tree.count]
-    uint32_t* sources;        // [tree.count] the place in the input of each of these
-    WideCounts* counts;       // all bytes 0xff at first
+    uint32_t* sources;        // [tree.count] input index of each placed triangle
+    WideCounts* counts;       // set to 0xff bytes at first
     uint32_t room;
 
-    /// The root's item; it has no parent to place it.
+    /// Item of the root, which has no parent to place it.
     HD WideItem first_item() const { return {*root, 1, 1, 0}; }
 
     HD bool is_leaf(uint32_t node) const { return node < tree.count || tree.plans[node - tree.count].is_leaf(); }
 
     struct Placed {
-        uint32_t first, count; // inner children, wide nodes
+        uint32_t first, count; // inner children, as wide nodes
     };
 
-    /// Makes wide node `index` and places its inner children: store(k, item) for node k.
+    /// Makes wide node `index` and places its inner children with store(k, item), k being the node number.
     template <class Store>
     HD Placed make(uint32_t index, const WideItem& item, const Store& store) const {
         uint32_t children[kMaxWidth], slot_of[kMaxWidth];
@@ -145,7 +147,7 @@ struct EmitWide {
         }
         uint32_t child_base = item.child_base + inner_count, triangle_base = item.triangle_base + leaf_triangles;
         uint32_t child = item.child_base;
-        if (index == 0) { // how many there are is known first, so that nobody writes where there is no room
+        if (index == 0) { // the root checks the node count first, so that nothing is written if there is no room
             uint32_t total = 1;
             for (uint32_t s = 0; s < kMaxWidth; ++s) {
                 if (inner >> s & 1u) total += tree.sizes[child_in[s] - tree.count].nodes[0];
@@ -182,7 +184,7 @@ struct EmitWide {
         return {item.child_base, inner_count};
     }
 
-    // What `make` is made of, for hploc/warp_kernels.h too.
+    // Parts of make() that hploc/warp_kernels.h uses too.
 
     HD void start_counts(uint32_t node_count, const Bounds3& all) const {
         const float area = all.half_area();
@@ -214,7 +216,7 @@ struct EmitWide {
     }
 };
 
-/// One wide node of a level each; appends its inner children to the next level, in no stated order.
+/// One call per wide node of a level. Its inner children are appended to the next level in no fixed order.
 struct EmitLevel {
     EmitWide emit;
     const uint32_t* level;

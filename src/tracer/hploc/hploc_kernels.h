@@ -1,7 +1,7 @@
 #pragma once
 
-// What the builder on the device does otherwise on a GPU than on a CPU: a warp joins the clusters of a node together,
-// and wide nodes are made in one launch, each as soon as its parent has placed it. The bytes are the same.
+// Launches of the device builder that differ between GPU and CPU. On a GPU a warp merges the clusters of a node, and
+// wide nodes are made in a single launch, each as soon as its parent has placed it. The bytes are the same.
 
 #include "accel/hploc/climb.h"
 #include "device/queue.h"
@@ -9,10 +9,11 @@
 
 namespace pertev {
 
-/// The leaves lie ready (PlaceLeaves).
+/// Merges clusters up to the root; PlaceLeaves has written the leaves.
 void launch_climb(Queue& queue, const hploc::Climb& climb);
 
-/// True where the device makes wide nodes this way; else they are made level by level (EmitLevel).
+/// Makes all wide nodes in one launch and returns true. Returns false if the device makes them level by level
+/// (EmitLevel).
 bool launch_emit(Queue& queue, const hploc::EmitWide& emit);
 
 } // namespace pertev

@@ -1,7 +1,7 @@
 #pragma once
 
-// Fits a tree of compressed nodes to triangles that have moved: nodes and leaves stay what they are, boxes are made
-// anew. Each box is that of its triangles, to the bit.
+// Refits a tree of compressed nodes to triangles that have moved. Its topology does not change. Each box equals the
+// bounds of its triangles to the bit.
 
 #include <cstdint>
 
@@ -13,7 +13,7 @@
 
 namespace pertev::hploc {
 
-/// One node each: counts its inner children and tells them where it is. The root's own entry is the caller's.
+/// One call per node: counts its inner children and stores their links to it. The caller sets the root's entry.
 struct LinkParents {
     const CompressedBvhNode* nodes;
     uint32_t *parents, *children;
@@ -25,10 +25,10 @@ struct LinkParents {
     }
 };
 
-/// One triangle of the tree each: takes its new place.
+/// One call per triangle of the tree: copies its new vertices.
 struct MoveTriangles {
-    const BvhTriangle* moved; // in the order of those that the tree was built of
-    const uint32_t* sources;  // [triangle of the tree] which of them
+    const BvhTriangle* moved; // in the order of the triangles that the tree was built from
+    const uint32_t* sources;  // [triangle of the tree] index into `moved`
     BvhTriangle* triangles;
 
     HD void operator()(uint32_t i) const {
@@ -38,12 +38,12 @@ struct MoveTriangles {
     }
 };
 
-/// One node each.
+/// One call per node.
 struct RefitNodes {
     CompressedBvhNode* nodes;
     const BvhTriangle* triangles;
     UpwardLinks links;
-    float node_cost, triangle_cost; // CollapseSettings'
+    float node_cost, triangle_cost; // from CollapseSettings
 
     HD void operator()(uint32_t i) const {
         links.climb_from(i, [this](uint32_t node) { return fit(node); });

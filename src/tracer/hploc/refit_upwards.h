@@ -1,8 +1,8 @@
 #pragma once
 
-// Fits the nodes of a wide tree from the bottom up, each by whoever finishes the last of its children, so that all
-// threads work at once and none waits. What a node becomes is a function of its children alone, so the bytes do not
-// depend on who that is.
+// Refits the nodes of a wide tree from the bottom up. The thread that finishes the last child of a node handles the
+// node, so all threads work at once and none waits. A node depends only on its children, so the bytes do not depend
+// on which thread that is.
 
 #include <cstdint>
 
@@ -12,29 +12,29 @@
 
 namespace pertev {
 
-/// What a refitted node tells the one above it.
+/// The result that a refitted node passes to its parent.
 struct alignas(32) NodeBox {
-    Vec3 lo;    // of what it holds, before it is rounded
-    float cost; // that a ray through the root's box expects here and beneath, times the area of that box
+    Vec3 lo;    // bounds of its contents before quantization
+    float cost; // SAH cost of the subtree, times the surface area of the root's box
     Vec3 hi;
     uint32_t unused;
 };
 
-/// Of a whole tree, after a refit.
+/// Figures of a tree after a refit.
 struct RefitResult {
     Bounds3 bounds;
-    float cost; // of a ray that meets the bounds, as WideBvh::sah_cost
+    float cost; // expected cost of a ray that hits the bounds, as WideBvh::sah_cost
 };
 
 struct UpwardLinks {
-    const uint32_t* parents;  // of each node; of the root nothing that is looked at
-    const uint32_t* children; // of each node, how many inner ones
-    uint32_t* arrived;        // of each node, children that are done; 0 at first
+    const uint32_t* parents;  // [node]; the root's entry is not read
+    const uint32_t* children; // [node] number of inner children
+    uint32_t* arrived;        // [node] children that are done; 0 at first
     NodeBox* boxes;
     RefitResult* result;
 
-    /// One call for each node: those without inner children begin, and climb as far as they are the last to come.
-    /// `fit(node)` returns the NodeBox of a node whose inner children's lie in `boxes`.
+    /// Called once for each node. Nodes without inner children start, and climb as long as they are the last child to
+    /// arrive. `fit(node)` returns the NodeBox of a node whose inner children have theirs in `boxes`.
     template <class Fit>
     HD void climb_from(uint32_t i, const Fit& fit) const {
         if (children[i] != 0) return;
@@ -53,11 +53,11 @@ struct UpwardLinks {
         }
     }
 
-    /// Of an inner child that is done.
+    /// Box of an inner child that is done.
     HD NodeBox box_of(uint32_t node) const { return hploc::load_fresh(boxes + node); }
 
 private:
-    /// How many have arrived, this one among them; it sees what those before wrote.
+    /// Returns the number of arrivals including this one; writes of earlier arrivals are visible.
     HD static uint32_t arrive(uint32_t* count) {
 #if defined(__CUDA_ARCH__)
         __threadfence();

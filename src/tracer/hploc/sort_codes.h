@@ -1,7 +1,7 @@
 #pragma once
 
-// Sorts Morton codes, each with the number of its triangle; equal codes stay in the order of numbers. On a GPU by the
-// radix sort of NVIDIA's CUB, which is part of the CUDA toolkit.
+// Sorts pairs of Morton code and triangle index; equal codes keep the order of their indices. A GPU uses the radix
+// sort of NVIDIA's CUB, which is part of the CUDA toolkit.
 
 #include <cstdint>
 
@@ -9,11 +9,11 @@
 
 namespace pertev {
 
-/// Returns the bytes of `scratch` for `count` codes. In a dry run it returns an estimate.
+/// Returns the bytes of `scratch` for `count` codes; an estimate in a dry run.
 std::size_t sort_scratch_bytes(Queue& queue, uint32_t count);
 
-/// Arrays of `count`, on the queue's device. What was in `codes` and `order`, where order[i] is i, lies sorted in
-/// `sorted_codes` and `sorted_order` afterwards.
+/// Sorts `codes` and `order`, where order[i] is i, into `sorted_codes` and `sorted_order`. All arrays have `count`
+/// elements on the queue's device.
 void sort_codes(Queue& queue, Buffer<std::byte>& scratch, const uint64_t* codes, const uint32_t* order,
                 uint64_t* sorted_codes, uint32_t* sorted_order, uint32_t count);
 

@@ -1,11 +1,11 @@
 #pragma once
 
-// The builder's kernels for CUDA. A warp joins the clusters of one node of the radix tree together, a lane a cluster,
-// as the source has it (accel/hploc/climb.h); wide nodes are made by threads that wait for their parents, as in
-// Benthin, Drabinski, Tessari, Dittebrandt, "PLOC++", 2022, section 4. Included by hploc_kernels.cu alone.
+// CUDA kernels of the device builder; only hploc_kernels.cu includes this. A warp merges the clusters of one node of
+// the radix tree, one cluster per lane, as in the source (accel/hploc/climb.h). Wide nodes are made by threads that
+// wait for their parents, as in Benthin, Drabinski, Tessari, Dittebrandt, "PLOC++", 2022, section 4.
 //
-// The bytes are those of the form of one thread: the same pairs are compared by the same numbers, and each node's
-// number and place follow from the triangles.
+// The bytes equal those of the single-threaded form: the same pairs are compared by the same numbers, and each node's
+// number and position follow from the triangles.
 
 #include <cstdint>
 
@@ -18,11 +18,12 @@
 namespace pertev::hploc {
 
 inline constexpr uint32_t kClimbThreads = 32, kEmitThreads = 128, kAllLanes = 0xffffffffu;
-// Leave 80 registers a thread, without spills. More blocks of fewer registers, and blocks of four warps, are as fast.
+// Leaves 80 registers per thread without spills. More blocks with fewer registers, or blocks of four warps, are as
+// fast.
 inline constexpr uint32_t kClimbBlocks = 25;
-inline constexpr uint32_t kNodesAtOnce = 32 / kMaxWidth; // of a warp
+inline constexpr uint32_t kNodesAtOnce = 32 / kMaxWidth; // nodes that a warp makes at once
 
-/// The clusters that a warp joins, in order: {corner of the box, node} and {other corner, name}.
+/// The clusters that a warp merges, in order: {corner of the box, node} and {other corner, name}.
 struct WarpClusters {
     float4 lower[32], upper[32];
 
@@ -36,8 +37,8 @@ struct WarpClusters {
     }
 };
 
-/// What both children of a node were left with, side by side; returns how many there are. The lower half of the warp
-/// looks at the left child.
+/// Loads the remaining clusters of both children side by side and returns their number. The lower half of the warp
+/// reads the left child.
 __device__ inline uint32_t take_clusters(const Climb& climb, const LeafRange& range, WarpClusters& all, uint32_t lane) {
     const bool of_right = lane >= kKept;
     const uint32_t first = of_right ? range.middle : range.first, end = of_right ? range.last + 1 : range.middle;
@@ -52,7 +53,7 @@ __device__ inline uint32_t take_clusters(const Climb& climb, const LeafRange& ra
     return static_cast<uint32_t>(__popc(there));
 }
 
-/// join_range, by all lanes of a warp.
+/// join_range by all lanes of a warp.
 __device__ inline void join_range_together(const Climb& climb, const LeafRange& range, WarpClusters& all,
                                            uint32_t lane) {
     uint32_t count = take_clusters(climb, range, all, lane);
@@ -89,7 +90,7 @@ __device__ inline void join_range_together(const Climb& climb, const LeafRange& 
         __syncwarp();
         if (stays) all.set(static_cast<uint32_t>(__popc(staying & ((1u << lane) - 1))), box, cluster);
         count = static_cast<uint32_t>(__popc(staying));
-        __syncwarp(); // of nodes and plans too: lanes read what others wrote
+        __syncwarp(); // lanes also read nodes and plans that other lanes wrote
     }
     const uint32_t room = range.size() < climb.kept() ? range.size() : climb.kept();
     if (lane < room) climb.clusters[range.first + lane] = lane < count ? all.cluster(lane) : Cluster{kNone, 0};
@@ -97,7 +98,7 @@ __device__ inline void join_range_together(const Climb& climb, const LeafRange& 
     __syncwarp();
 }
 
-/// ClimbFromLeaves; what is to be joined, the warp's lanes join one node after the other.
+/// ClimbFromLeaves, with ranges merged by all lanes of the warp, one node after the other.
 __device__ inline void climb_together(const Climb& climb, WarpClusters& all) {
     const uint32_t n = climb.tree.count, lane = threadIdx.x & 31u;
     const uint32_t leaf = blockIdx.x * blockDim.x + threadIdx.x;
@@ -110,13 +111,15 @@ __device__ inline void climb_together(const Climb& climb, WarpClusters& all) {
                 if (n == 1) *climb.root = 0;
                 climbs = false;
             } else {
-                if (needs_joining(climb, range)) __threadfence(); // what the warp wrote comes before the word of it
+                if (needs_joining(climb, range))
+                    __threadfence(); // the warp's writes must be visible before its
+                                     // arrival is counted
                 climbs = go_up(climb, range);
                 joins = climbs && needs_joining(climb, range);
                 if (joins) __threadfence();
             }
         }
-        __syncwarp(); // all lanes read what a lane has been told of
+        __syncwarp(); // all lanes see what any lane has read
         for (uint32_t left = __ballot_sync(kAllLanes, joins); left != 0; left &= left - 1) {
             const int source = __ffs(static_cast<int>(left)) - 1;
             const LeafRange of_lane = {__shfl_sync(kAllLanes, range.first, source),
@@ -132,7 +135,7 @@ __global__ void __launch_bounds__(kClimbThreads, kClimbBlocks) climb_by_warps(Cl
     climb_together(climb, of_warps[threadIdx.x / 32]);
 }
 
-// An item in one piece, or none of it.
+// Stores an item atomically.
 #if defined(PERTEV_EMULATED_WARPS)
 __device__ inline void store_item(WideItem* at, const WideItem& item) { *at = item; }
 __device__ inline WideItem load_item(const WideItem* at) { return *at; }
@@ -154,11 +157,11 @@ __device__ inline WideItem load_item(const WideItem* at) {
 }
 #endif
 
-// Eight lanes make a wide node together, a lane a child; what they tell each other is here.
+// Memory through which the eight lanes that make a wide node, one lane per child, exchange data.
 struct alignas(16) GroupMemory {
     uint2 entries[kMaxWidth];
     CompressedBvhNode node;
-    uint32_t triangles[kCompressedLeaf * kMaxWidth]; // places in the input; with kLast the last of a leaf
+    uint32_t triangles[kCompressedLeaf * kMaxWidth]; // input indices; kLast marks the last triangle of a leaf
 };
 inline constexpr uint32_t kLast = 0x80000000u;
 
@@ -169,7 +172,7 @@ __device__ inline uint64_t least_of_group(uint64_t x) {
     }
     return x;
 }
-/// Of lanes before this one in its group.
+/// Sum of x over the lanes before this one in its group.
 __device__ inline uint32_t sum_before(uint32_t x, uint32_t k) {
     uint32_t sum = x;
     for (uint32_t step = 1; step < kMaxWidth; step *= 2) {
@@ -179,8 +182,8 @@ __device__ inline uint32_t sum_before(uint32_t x, uint32_t k) {
     return sum - x;
 }
 
-/// children_of: each lane gets a child or kNone, in the binary tree's order. A subtree that may have j roots has j
-/// lanes in a row, so its halves know theirs.
+/// children_of in parallel: each lane gets a child or kNone, in the binary tree's order. A subtree that may have j
+/// roots owns j consecutive lanes, so its halves know theirs.
 __device__ inline uint32_t child_of_lane(const ClusterTree& tree, uint32_t node, GroupMemory& memory, uint32_t k) {
     uint2 own = k == 0 ? make_uint2(node, kMaxWidth) : make_uint2(kNone, 0);
     memory.entries[k] = own;
@@ -195,7 +198,7 @@ __device__ inline uint32_t child_of_lane(const ClusterTree& tree, uint32_t node,
         if (left != 0) {
             memory.entries[k + left] = make_uint2(tree.nodes[own.x].right, own.y - left);
             memory.entries[k] = make_uint2(tree.nodes[own.x].left, left);
-        } else if (own.x != kNone) { // an empty place may be written by the lane that fills it
+        } else if (own.x != kNone) { // the lane that fills an empty entry may write it
             memory.entries[k].y = own.y;
         }
         __syncwarp();
@@ -203,13 +206,13 @@ __device__ inline uint32_t child_of_lane(const ClusterTree& tree, uint32_t node,
     }
 }
 
-/// choose_slots, for the lane's child (kNone: none).
+/// choose_slots for the lane's child (kNone if it has none).
 __device__ inline uint32_t slot_of_lane(uint32_t child, Vec3 from, uint32_t k) {
     uint32_t slot = kNone, free = 0xffu;
     bool wants = child != kNone;
     uint64_t own = ~uint64_t(0);
     while (__any_sync(kAllLanes, wants)) {
-        if (wants && (own == ~uint64_t(0) || !(free >> (own & 7u) & 1u))) { // what it liked best is taken
+        if (wants && (own == ~uint64_t(0) || !(free >> (own & 7u) & 1u))) { // its best slot is taken
             own = ~uint64_t(0);
 #pragma unroll
             for (uint32_t s = 0; s < kMaxWidth; ++s) {
@@ -218,7 +221,7 @@ __device__ inline uint32_t slot_of_lane(uint32_t child, Vec3 from, uint32_t k) {
             }
         }
         const uint64_t least = least_of_group(wants ? own : ~uint64_t(0));
-        if (least == ~uint64_t(0)) continue; // of this group none wants
+        if (least == ~uint64_t(0)) continue; // no lane of this group wants a slot
         const auto taken = static_cast<uint32_t>(least & 7u);
         free &= ~(1u << taken);
         if (k == static_cast<uint32_t>(least >> 3 & 7u)) {
@@ -229,17 +232,17 @@ __device__ inline uint32_t slot_of_lane(uint32_t child, Vec3 from, uint32_t k) {
     return slot;
 }
 
-/// EmitWide::make by the eight lanes of each group that is ready; all lanes of the warp come here.
+/// EmitWide::make by the eight lanes of each group that is ready. All lanes of the warp must call it.
 __device__ inline void make_together(const EmitWide& emit, uint32_t index, const WideItem& item, bool is_ready,
                                      GroupMemory& memory) {
     const ClusterTree& tree = emit.tree;
-    const uint32_t k = threadIdx.x & 7u, group = threadIdx.x & 24u; // its first lane
+    const uint32_t k = threadIdx.x & 7u, group = threadIdx.x & 24u; // first lane of its group
     uint32_t child = child_of_lane(tree, is_ready ? item.node : kNone, memory, k);
     const Bounds3 all = is_ready ? tree.nodes[item.node].box() : Bounds3{};
     Bounds3 box = child != kNone ? tree.nodes[child].box() : Bounds3{};
     const uint32_t slot = slot_of_lane(child, box.centre() - all.centre(), k);
 
-    // From here on, lanes are slots.
+    // From here on lanes stand for slots.
     memory.entries[k].x = kNone;
     __syncwarp();
     if (slot != kNone) memory.entries[slot].x = k;
@@ -272,7 +275,8 @@ __device__ inline void make_together(const EmitWide& emit, uint32_t index, const
         is_ready = total <= emit.room;
     }
 
-    uint32_t first_place = 0; // in the queue; -1 + 1 at first, and the root's own comes before
+    uint32_t first_place = 0; // position in the queue; the counter starts at -1, and the root's own position comes
+                              // first
     if (is_ready && k == 0 && inner_count != 0) first_place = atomicAdd(&emit.counts->queued, inner_count) + 2;
     first_place = __shfl_sync(kAllLanes, first_place, static_cast<int>(group));
     if (is_inner && is_ready) {
@@ -312,7 +316,7 @@ __device__ inline void make_together(const EmitWide& emit, uint32_t index, const
     for (uint32_t i = k; i < leaf_triangles; i += kMaxWidth) {
         emit.sources[item.triangle_base + i] = memory.triangles[i] & ~kLast;
     }
-    // Triangles in pieces of 16 bytes; the last one of each has the flags.
+    // Triangles are copied in 16-byte pieces; the last piece of each holds the flags.
     for (uint32_t piece = k; piece < 3 * leaf_triangles; piece += kMaxWidth) {
         const uint32_t i = piece / 3;
         const uint32_t triangle = memory.triangles[i];
@@ -322,15 +326,16 @@ __device__ inline void make_together(const EmitWide& emit, uint32_t index, const
     }
 }
 
-/// Wide nodes in the order in which they are placed, eight lanes each. That order is a matter of timing, but each of
-/// them has its number. Who is to make the i-th waits until there is one: only while fewer are placed than warps are
-/// there. In the order of numbers most would wait for a parent that is made at the same time: 2.9 ms in place of 1.8
-/// for 8.2 M triangles on an H200.
+/// Makes wide nodes in the order in which they are placed, eight lanes each. That order depends on timing, but each
+/// node has a fixed number. The maker of the i-th node waits until it is placed, which happens only while fewer nodes
+/// are placed than there are warps. In the order of numbers most would wait for a parent that is made at the same
+/// time: 2.9 ms instead of 1.8 ms for 8.2 M triangles on an H200.
 __device__ inline void emit_together(const EmitWide& emit, GroupMemory& memory) {
-    const int head = static_cast<int>(threadIdx.x & 24u); // the first lane of a group; the others go by what it sees
+    const int head = static_cast<int>(threadIdx.x & 24u); // first lane of the group; the others use its value
     uint32_t first = 0, total = 0;
     do {
-        if ((threadIdx.x & 31u) == 0) first = (atomicAdd(&emit.counts->drawn, 1u) + 1) * kNodesAtOnce; // -1 at first
+        if ((threadIdx.x & 31u) == 0)
+            first = (atomicAdd(&emit.counts->drawn, 1u) + 1) * kNodesAtOnce; // the counter starts at -1
         first = __shfl_sync(kAllLanes, first, 0);
         const uint32_t place = first + (threadIdx.x & 31u) / kMaxWidth;
         bool waits = place < emit.room;
@@ -350,7 +355,7 @@ __device__ inline void emit_together(const EmitWide& emit, GroupMemory& memory) 
                     }
                 }
             }
-            if (index == kNone) item.node = kNone; // both are there or it is not
+            if (index == kNone) item.node = kNone; // both parts are there or neither is
             index = __shfl_sync(kAllLanes, index, head);
             item.node = __shfl_sync(kAllLanes, item.node, head);
             item.depth = __shfl_sync(kAllLanes, item.depth, head);
@@ -365,7 +370,7 @@ __device__ inline void emit_together(const EmitWide& emit, GroupMemory& memory) 
                 __nanosleep(20);
             }
         }
-        // Known by now, but where none of these nodes has room.
+        // The total is known by now, but these nodes found no room.
         total = __shfl_sync(kAllLanes, *static_cast<volatile uint32_t*>(&emit.counts->nodes), 0);
     } while (first + kNodesAtOnce < total && total <= emit.room && first + kNodesAtOnce < emit.room);
 }

@@ -7,10 +7,10 @@
 
 namespace pertev {
 
-/// Rays of the camera.
+/// Rendering uses it for camera rays.
 template <>
 inline constexpr bool kOfPictures<OctantWalk<WalkOptions{}>> = true;
-/// Rays of bounces and shadow rays.
+/// Rendering uses these for bounce and shadow rays.
 template <>
 inline constexpr bool kOfPictures<CompressedWalk<WalkOptions{.rta_at_pops = false}>> = true;
 template <>

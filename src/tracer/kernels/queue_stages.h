@@ -1,7 +1,7 @@
 #pragma once
 
-// One walk over a queue of rays, as stages: every tracer runs as these, for pictures and for the laboratory alike. A
-// walk's .cu file instantiates launch() of the stages that it is run with.
+// Traversal of a queue of rays, as stages that rendering and the laboratory share. Each traversal's .cu file
+// instantiates launch() for its stages.
 
 #include <cstdint>
 
@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-/// What ray i meets, told to `counter`: of an any-hit search instance 0 where there is anything.
+/// Traces ray i of the queue and counts work in `counter`. An any-hit search returns instance 0 if there is a hit.
 template <class Walk, bool kAny, class Accept, class Scene, class Counter>
 HD inline Hit trace_queued(const Scene& scene, const TraceQuery& query, uint32_t i, const Counter& counter) {
     const Accept accept{query, i};
@@ -34,7 +34,7 @@ HD inline void store_hit(const HitQueueView& hits, uint32_t i, const Hit& hit) {
     }
 }
 
-/// `Scene` is SceneTrees or SingleTree of what the walk walks; `Accept` AcceptOpaque or AcceptQueued.
+/// `Scene` is SceneTrees or SingleTree of the structure; `Accept` is AcceptOpaque or AcceptQueued.
 template <class Walk, bool kAny, class Accept, class Scene>
 struct TraceQueue {
     Scene scene;
@@ -46,7 +46,7 @@ struct TraceQueue {
     }
 };
 
-/// For launch_dynamic_fetch (trace/dynamic_fetch.h).
+/// Reads rays and stores hits for launch_dynamic_fetch (trace/dynamic_fetch.h).
 template <bool kAny, class Accept>
 struct QueueInOut {
     TraceQuery query;
@@ -57,7 +57,7 @@ struct QueueInOut {
     HD void store(uint32_t i, const Hit& hit) const { store_hit<kAny>(hits, i, hit); }
 };
 
-/// The same where hits are not wanted.
+/// QueueInOut without stored hits.
 template <class Accept>
 struct QueueIn {
     TraceQuery query;
@@ -67,7 +67,7 @@ struct QueueIn {
     HD void store(uint32_t, const Hit&) const {}
 };
 
-/// The same walk, counted. Stages of their own, so that the counting costs the timed one nothing.
+/// A traversal that counts its work. It is a stage of its own so that counting does not slow down the timed one.
 template <class Walk, bool kAny>
 struct CountQueue {
     SceneTrees<typename Walk::Tree> scene;

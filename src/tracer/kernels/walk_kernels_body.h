@@ -1,7 +1,7 @@
 #pragma once
 
-// The rows of the table of walk_kernels.h for one walk: included by the .cu files of this folder and by nothing else,
-// since it holds the bodies of launches (see device/launch_body.h).
+// Makes the rows of one traversal for the table in walk_kernels.h. Only .cu files of this folder include it, because
+// it includes the bodies of launches (device/launch_body.h).
 
 #include "device/launch_body.h"
 #include "trace/dynamic_fetch.h"
@@ -11,15 +11,15 @@
 
 namespace pertev {
 
-// A walk is compiled for a scene of one tree all of whose surfaces are opaque, which saves registers, and for all
-// scenes; those that are made to be fast for a scene of one tree with other surfaces too; those of pictures also for
-// instances that stand still.
+// Each traversal is compiled for opaque scenes with one tree, which saves registers, and for all scenes. Fast
+// traversals are also compiled for non-opaque scenes with one tree, and those that rendering uses also for static
+// instances.
 
-/// Whether a picture's rays go this way where nothing else is asked for.
+/// Whether rendering uses this traversal by default.
 template <class Walk>
 inline constexpr bool kOfPictures = false;
 
-/// A kernel's template arguments beside the walk.
+/// Template arguments of a kernel besides the traversal.
 template <class SceneOf, class AcceptOf>
 struct Compiled {
     using Scene = SceneOf;
@@ -34,7 +34,7 @@ using StillScene = Compiled<SceneTrees<typename Walk::Tree>, AcceptQueued<false>
 template <class Walk>
 using AnyScene = Compiled<SceneTrees<typename Walk::Tree>, AcceptQueued<true>>;
 
-/// Calls run(scene, compiled) with the kernel for this scene and these surfaces.
+/// Calls run(scene, compiled) with the kernel for this scene and its surfaces.
 template <class Walk, bool kFast, bool kStillToo, class Run>
 void with_kernel(const AnyTrees& trees, const TraceQuery& query, const Run& run) {
     const auto& scene = std::get<SceneTrees<typename Walk::Tree>>(trees);
@@ -83,9 +83,10 @@ void trace_dynamic(Queue& queue, const AnyTrees& trees, const RayBatch& batch, c
     });
 }
 
-// Lanes are counted in opaque scenes of one tree: each counting kernel takes as long to compile as a walk.
+// Lanes are counted only in opaque scenes with one tree, because each counting kernel takes as long to compile as a
+// traversal.
 
-/// The counting of trace/warps/lane_counter.h.
+/// Counts lanes as in trace/warps/lane_counter.h.
 template <class Walk, bool kAny>
 struct CountLanes {
     SingleTree<typename Walk::Tree> scene;
@@ -111,7 +112,7 @@ void count_lanes(Queue& queue, const AnyTrees& trees, const RayBatch& batch, Lan
     }
 }
 
-/// Of the kernel for opaque scenes that stand still, of one tree or of several.
+/// Limits of the kernel for opaque static scenes, with one tree or with instances.
 template <class Walk, bool kAny, Distribution kDistribution, bool kStillToo = false>
 KernelLimits limits(bool has_instances) {
     const auto of = []<class Kernel>(Kernel) {
@@ -133,8 +134,8 @@ KernelLimits limits(bool has_instances) {
 
 #endif
 
-/// Closest or any hit of one set of switches: one ray a thread, and in CUDA from a pool too. `kFast`: by dynamic fetch
-/// as well, which pictures then go by. `kLanes`: lanes are counted.
+/// Adds the rows of one set of switches, closest or any hit: one ray per thread and, in CUDA, a pool. `kFast` adds
+/// dynamic fetch, which rendering then uses. `kLanes` adds lane counting.
 template <class Walk, bool kAny, bool kFast, bool kLanes>
 void add_rows(WalkKind kind, const WalkOptions& options, std::vector<WalkKernel>& rows) {
     WalkKernel row = {kind, options, Distribution::OneAThread, kAny, true, kind != WalkKind::Packet};
@@ -146,7 +147,7 @@ void add_rows(WalkKind kind, const WalkOptions& options, std::vector<WalkKernel>
     rows.push_back(row);
     row.distribution = Distribution::Persistent;
     row.trace = trace_persistent<Walk, kAny, false>;
-    row.count = nullptr; // as one ray a thread
+    row.count = nullptr; // the row with one ray per thread counts
     if constexpr (kLanes) row.count_lanes = count_lanes<Walk, kAny, Distribution::Persistent>;
     row.limits = limits<Walk, kAny, Distribution::Persistent>;
     if constexpr (kFast) {
@@ -169,8 +170,8 @@ void add_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
     }
 }
 
-/// Every useful set of switches except the default one, which pictures.cu may have: tests that leak only with
-/// everything else on. Lanes are counted with the exact tests and near children first.
+/// Adds every useful set of switches except the default one, which pictures.cu may have. Tests that leak are combined
+/// only with all other switches on. Lanes are counted with the exact tests and near children first.
 template <template <WalkOptions> class Walk, bool kFast = false>
 void add_other_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
     add_kernels<Walk, WalkOptions{false, true}, kFast>(kind, rows);
@@ -179,20 +180,20 @@ void add_other_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
     add_kernels<Walk, WalkOptions{true, true, TestKind::Fast}, kFast>(kind, rows);
 }
 
-/// Every useful set of switches.
+/// Adds every useful set of switches.
 template <template <WalkOptions> class Walk, bool kFast = false>
 void add_all_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
     add_kernels<Walk, WalkOptions{}, kFast>(kind, rows);
     add_other_kernels<Walk, kFast>(kind, rows);
 }
 
-/// Those with the transforms of accel/bvh/woop_bvh.h.
+/// Adds the rows that use the transforms of accel/bvh/woop_bvh.h.
 template <template <WalkOptions> class Walk>
 void add_woop_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
     add_kernels<Walk, WalkOptions{true, true, TestKind::Woop}, true>(kind, rows);
 }
 
-/// For a walk without an order of children.
+/// Adds the rows of a traversal that does not order children.
 template <template <WalkOptions> class Walk>
 void add_unordered_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
     add_kernels<Walk, WalkOptions{true, true}, false>(kind, rows);

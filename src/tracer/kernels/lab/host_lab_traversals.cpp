@@ -10,7 +10,7 @@
 namespace pertev {
 namespace {
 
-/// Eight rays in a row, fewer at the end; what each meets.
+/// Traces eight consecutive rays, fewer at the end, and returns their hits.
 template <WalkOptions kOptions, bool kAny, class Counter>
 std::array<Hit, kPacketRays> trace_packet(const SceneBvhView& scene, const RayBatch& batch, uint64_t first,
                                           const Counter& counter) {
@@ -31,7 +31,7 @@ std::array<Hit, kPacketRays> trace_packet(const SceneBvhView& scene, const RayBa
     return found;
 }
 
-/// Calls trace(the first ray's number) for each packet.
+/// Calls trace(index of the first ray) for each packet.
 template <class Trace>
 void for_each_packet(const RayBatch& batch, const Trace& trace) {
     const uint64_t packets = (uint64_t(batch.count.value()) + kPacketRays - 1) / kPacketRays;
@@ -48,7 +48,7 @@ void trace_packets(Queue&, const AnyTrees& trees, const RayBatch& batch, const H
     });
 }
 
-/// Counts a node for each ray of the packet that takes part in its test, and a triangle for the ray that tests it.
+/// Counts a node for each ray of the packet that takes part in the test, and a triangle for each ray that tests it.
 struct PacketWorkCounter {
     struct OfRay {
         RayWork* work;

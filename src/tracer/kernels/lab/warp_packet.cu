@@ -1,4 +1,4 @@
-// A CPU has packets of its own: see host_walks.cpp.
+// Packets of a warp. The CPU has packets of its own (host_walks.cpp).
 
 #include "trace/binary/warp_packet_walk.h"
 #include "tracer/kernels/walk_kernels_body.h"

@@ -1,0 +1,24 @@
+#pragma once
+
+// The traversal laboratory's report as a measurement: tables "scene" (one row), "sets", "structures", and "runs", one
+// row for each combination and set of rays. Combinations without figures have a row with the reason. Registers, local
+// bytes and occupancy stand in rows of closest-hit sets only, because they are of that kernel.
+
+#include <string>
+
+#include "lab/lab_report.h"
+#include "lab/measurement.h"
+
+namespace pertev {
+
+/// `head` says which machine and command.
+Measurement measurement_of(const LabReport& report, Measurement head = {});
+
+/// The table "runs", with what all rows have in common.
+std::string csv_of(const LabReport& report);
+
+/// Returns text for a terminal: wrong combinations, structures, million rays per second by combination and set (fastest
+/// first), frames per second by depth, and warp statistics of a GPU.
+std::string text_of(const LabReport& report);
+
+} // namespace pertev

@@ -1,0 +1,225 @@
+#include "lab/measurement.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/json_text.h"
+#include "base/parallel_for.h"
+#include "base/version.h"
+#include "image/write_png.h"
+#include "lab/text_table.h"
+
+namespace pertev {
+namespace {
+
+template <class All, class Text>
+std::string json_list(const All& all, const Text& text) {
+    std::string list;
+    for (const auto& one : all) list += (list.empty() ? "" : ",") + text(one);
+    return '[' + list + ']';
+}
+
+std::string text_or_null(const std::string& text) { return text.empty() ? "null" : json_string(text); }
+
+/// RFC 4648, section 4.
+std::string base64(const std::vector<std::byte>& bytes) {
+    constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const auto at = [&](std::size_t k) { return k < bytes.size() ? std::to_integer<uint32_t>(bytes[k]) : 0u; };
+        const uint32_t bits = at(i) << 16 | at(i + 1) << 8 | at(i + 2);
+        for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[bits >> (18 - 6 * k) & 63] : '=';
+    }
+    return text;
+}
+
+std::string json_of(const Rgba8Image& image) {
+    return image.pixels.empty() ? "null" : "\"data:image/png;base64," + base64(encode_png(image)) + '"';
+}
+
+std::string json_of(const ResultPicture& p, bool has_images) {
+    return fmt::format(R"({{"group":{},"title":{},"caption":{},"file":{},"exr":{}{}}})", json_string(p.group),
+                       json_string(p.title), json_string(p.caption), text_or_null(p.file), text_or_null(p.exr),
+                       has_images ? fmt::format(R"(,"image":{},"error":{},"svg":{})", json_of(p.image),
+                                                json_of(p.error), text_or_null(p.svg))
+                                  : "");
+}
+
+std::string json_of(const ResultTable& table) {
+    const auto column = [](const ResultTable::Column& c) {
+        return fmt::format(R"({{"key":{},"title":{},"unit":{}}})", json_string(c.key),
+                           json_string(c.title.empty() ? c.key : c.title), json_string(c.unit));
+    };
+    const auto row = [](const std::vector<ResultCell>& cells) {
+        return json_list(cells, [](const ResultCell& c) { return c.json(); });
+    };
+    return fmt::format(R"({{"name":{},"title":{},"columns":{},"rows":{}}})", json_string(table.name),
+                       json_string(table.title), json_list(table.columns, column), json_list(table.rows, row));
+}
+
+/// The text of a file of /proc, whose size is not known beforehand; empty if there is none.
+std::string system_text(const char* path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What follows `key` and blanks on its line.
+std::string value_after(const std::string& text, std::string_view key, std::string_view end = "\n") {
+    const std::size_t at = text.find(key);
+    if (at == std::string::npos) return {};
+    const std::size_t begin = text.find_first_not_of("\t :", at + key.size());
+    return begin == std::string::npos ? "" : text.substr(begin, text.find_first_of(end, begin) - begin);
+}
+
+/// The words of this process, quoted where a shell would part them.
+std::string command_line() {
+    std::string line, word;
+    for (const char c : system_text("/proc/self/cmdline")) {
+        if (c != '\0') {
+            word += c;
+            continue;
+        }
+        const bool is_plain = !word.empty() && word.find_first_of(" \t\n\"'$&|<>;*?()`\\") == std::string::npos;
+        std::string quoted = word;
+        for (std::size_t at = 0; (at = quoted.find('\'', at)) != std::string::npos; at += 4)
+            quoted.replace(at, 1, "'\\''");
+        line += (line.empty() ? "" : " ") + (is_plain ? word : '\'' + quoted + '\'');
+        word.clear();
+    }
+    return line;
+}
+
+} // namespace
+
+std::string ResultCell::json() const {
+    if (const auto* number = std::get_if<int64_t>(&value_)) return fmt::format("{}", *number);
+    if (const auto* number = std::get_if<double>(&value_)) return json_number(*number);
+    if (const auto* text = std::get_if<std::string>(&value_)) return json_string(*text);
+    if (const auto* truth = std::get_if<bool>(&value_)) return *truth ? "true" : "false";
+    return "null";
+}
+
+std::string ResultCell::csv() const {
+    if (const auto* truth = std::get_if<bool>(&value_)) return *truth ? "1" : "0";
+    const auto* text = std::get_if<std::string>(&value_);
+    if (text == nullptr) return is_there() && json() != "null" ? json() : "";
+    if (text->find_first_of(",\"\n\r") == std::string::npos) return *text;
+    std::string quoted = "\"";
+    for (const char c : *text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+    return quoted + '"';
+}
+
+std::string ResultCell::text(const std::string& format) const {
+    if (const auto* text = std::get_if<std::string>(&value_)) return *text;
+    if (const auto* number = std::get_if<int64_t>(&value_)) return fmt::format("{}", *number);
+    if (const auto* truth = std::get_if<bool>(&value_)) return *truth ? "yes" : "no";
+    const auto* number = std::get_if<double>(&value_);
+    if (number == nullptr) return "-";
+    const std::string text = fmt::format(fmt::runtime(format.empty() ? "{:.4g}" : format), *number);
+    const bool is_lost = *number != 0 && text.find_first_of("123456789") == std::string::npos; // 0.00003 is not "0.000"
+    return is_lost ? fmt::format("{:.2g}", *number) : text;
+}
+
+void ResultTable::add(const Fields& fields) {
+    if (columns.empty()) {
+        for (const ResultField& f : fields) columns.push_back({f.key, f.title, f.unit, f.format});
+    }
+    PERTEV_CHECK(fields.size() == columns.size());
+    std::vector<ResultCell>& row = rows.emplace_back();
+    for (const ResultField& f : fields) row.push_back(f.value);
+}
+
+const ResultCell& ResultTable::at(std::size_t row, std::string_view key) const {
+    const auto column = std::ranges::find(columns, key, &Column::key);
+    PERTEV_CHECK(column != columns.end() && row < rows.size());
+    return rows[row][static_cast<std::size_t>(column - columns.begin())];
+}
+
+const ResultTable& Measurement::table(std::string_view name) const {
+    const auto found = std::ranges::find(tables, name, &ResultTable::name);
+    PERTEV_CHECK(found != tables.end());
+    return *found;
+}
+
+Measurement start_measurement(const Queue& queue, std::string title) {
+    Measurement m = {.title = std::move(title), .program = fmt::format("pertev {} {}", version(), git_commit())};
+    const auto now = std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
+    m.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
+    m.command = command_line();
+    m.processor = value_after(system_text("/proc/cpuinfo"), "model name");
+    m.threads = static_cast<uint32_t>(thread_count());
+    if (!queue.is_cuda()) return m;
+    m.device = queue.device_name();
+    m.driver = value_after(system_text("/proc/driver/nvidia/version"), "Kernel Module", " \n");
+    return m;
+}
+
+std::string json_of(const Measurement& m, std::string_view event, bool has_images) {
+    return fmt::format(
+        R"({{{}"format":"pertev-measurement","version":1,"kind":{},"title":{},"program":{},"date":{},"command":{},"processor":{},"threads":{},"device":{},"driver":{},"interrupted":{},"tables":{},"notes":{},"pictures":{}}})",
+        event.empty() ? "" : fmt::format(R"("event":"{}",)", event), text_or_null(m.kind), json_string(m.title),
+        json_string(m.program), json_string(m.date), json_string(m.command), text_or_null(m.processor), m.threads,
+        text_or_null(m.device), text_or_null(m.driver), m.interrupted,
+        json_list(m.tables, [](const ResultTable& t) { return json_of(t); }), json_strings(m.notes),
+        json_list(m.pictures, [&](const ResultPicture& p) { return json_of(p, has_images); }));
+}
+
+std::string json_of(std::string_view event, const Fields& fields) {
+    std::string members;
+    for (const ResultField& f : fields) members += fmt::format(R"(,"{}":{})", f.key, f.value.json());
+    return fmt::format(R"({{"event":"{}"{}}})", event, members);
+}
+
+std::string csv_of(const ResultTable& table, const Fields& common) {
+    std::vector<std::string> head, common_cells;
+    for (const ResultField& f : common) head.emplace_back(f.key), common_cells.push_back(f.value.csv());
+    for (const ResultTable::Column& column : table.columns) head.push_back(column.key);
+    std::string csv = fmt::format("{}\n", fmt::join(head, ","));
+    for (const std::vector<ResultCell>& row : table.rows) {
+        std::vector<std::string> cells = common_cells;
+        for (const ResultCell& cell : row) cells.push_back(cell.csv());
+        csv += fmt::format("{}\n", fmt::join(cells, ","));
+    }
+    return csv;
+}
+
+std::string text_of(const ResultTable& table, const std::vector<std::string_view>& keys) {
+    std::vector<std::size_t> shown;
+    for (std::size_t i = 0; keys.empty() && i < table.columns.size(); ++i) {
+        if (!table.columns[i].title.empty()) shown.push_back(i);
+    }
+    for (const std::string_view key : keys) {
+        const auto column = std::ranges::find(table.columns, key, &ResultTable::Column::key);
+        if (column != table.columns.end()) shown.push_back(static_cast<std::size_t>(column - table.columns.begin()));
+    }
+    std::vector<std::vector<std::string>> lines(1 + table.rows.size());
+    for (const std::size_t i : shown) {
+        const ResultTable::Column& column = table.columns[i];
+        const std::string& title = column.title.empty() ? column.key : column.title;
+        lines[0].push_back(column.unit.empty() ? title : title + ' ' + column.unit);
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            lines[row + 1].push_back(table.rows[row][i].text(column.format));
+        }
+    }
+    return align_columns(lines);
+}
+
+std::string text_of(const Fields& fields) {
+    std::vector<std::vector<std::string>> lines;
+    for (const ResultField& f : fields) {
+        if (*f.title == '\0' || !f.value.is_there()) continue;
+        const std::string value = f.value.text(f.format);
+        lines.push_back({f.title, *f.unit != '\0' ? value + ' ' + f.unit : value});
+    }
+    return align_columns(lines);
+}
+
+} // namespace pertev

@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+"""Refuses comments that begin as a fragment and commit subjects that are too long, with file and line.
+
+A comment, docstring or trailing comment names a thing or is a sentence, and is understood without its neighbour. One that
+begins with a word of FRAGMENTS leans on another one. Subjects are checked for the commits that follow the one that added
+this file; where there is no git or no history, they are not checked.
+
+`check_words.py [ROOT]` checks the tree, `--count [ROOT]` prints how many faults each folder has, `--self-test` checks this
+tool on text that it must refuse or accept.
+"""
+
+import ast
+import collections
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import tokenize
+
+FOLDERS = ["src", "apps", "tests", "tools", "bench"]
+C_SUFFIXES = {".h", ".cpp", ".cu", ".inl", ".js"}
+FRAGMENTS = re.compile(r"(?:of|what|those|the same|likewise|as|beside)\b", re.IGNORECASE)
+LONGEST_SUBJECT = 72
+
+# Strings are matched so that a "//" in one begins no comment; a ' between digits separates them.
+TOKEN = re.compile(
+    r"""R"(\w*)\((?:.|\n)*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])*'|//[^\n]*|/\*(?:.|\n)*?\*/""")
+
+
+def comments_of_c(text):
+    """Yields (line, text) of each comment in C++ or JavaScript; lines that continue a comment belong to its first."""
+    line, seen, column_above = 1, 0, {}
+    for match in TOKEN.finditer(text):
+        line += text.count("\n", seen, match.start())
+        seen = match.start()
+        if not match[0].startswith(("//", "/*")):
+            continue
+        before = text[text.rfind("\n", 0, seen) + 1:seen]
+        is_continued = not before.strip() and column_above.get(line - 1) == len(before)
+        column_above[line] = len(before)
+        if not is_continued:
+            yield line, match[0].lstrip("/*!< \n")
+
+
+def comments_of_python(text, name):
+    """Yields (line, text) of each comment and docstring in Python."""
+    for node in ast.walk(ast.parse(text, name)):
+        if isinstance(node, (ast.Module, ast.FunctionDef, ast.ClassDef)) and ast.get_docstring(node):
+            yield node.body[0].lineno, ast.get_docstring(node)
+    column_above = {}
+    for token in tokenize.generate_tokens(iter(text.splitlines(keepends=True)).__next__):
+        if token.type == tokenize.COMMENT:
+            line, column = token.start
+            if token.line[:column].strip() or column_above.get(line - 1) != column:
+                yield line, token.string.lstrip("# ")
+            column_above[line] = column
+
+
+def comment_faults(root):
+    for folder in FOLDERS:
+        for file in sorted((root / folder).rglob("*")):
+            if file.suffix in C_SUFFIXES:
+                comments = comments_of_c(file.read_text(encoding="utf-8"))
+            elif file.suffix == ".py":
+                comments = comments_of_python(file.read_text(encoding="utf-8"), str(file))
+            else:
+                continue
+            for line, comment in comments:
+                if FRAGMENTS.match(comment):
+                    yield f"{file.relative_to(root)}:{line}: a comment is no fragment: {comment.splitlines()[0]}"
+
+
+def git(root, *arguments):
+    """The output of git, or nothing where it fails."""
+    try:
+        return subprocess.run(["git", "-C", str(root), *arguments], capture_output=True, text=True, check=True).stdout
+    except (OSError, subprocess.CalledProcessError):
+        return ""
+
+
+def subject_faults(root):
+    """In a shallow clone the oldest commit counts as the one that added this file, so that later ones are checked."""
+    added = git(root, "log", "--diff-filter=A", "--format=%H", "--", "tools/check_words.py").split()
+    if not added:
+        return
+    following = f"{added[-1]}..HEAD"
+    for commit in git(root, "log", "--ancestry-path", "--no-merges", "--format=%h %s", following).splitlines():
+        name, subject = commit.split(" ", 1)
+        if len(subject) > LONGEST_SUBJECT:
+            yield f"commit {name}: the subject has {len(subject)} characters, over {LONGEST_SUBJECT}: {subject}"
+
+
+# Suffix, text, and the line of the fault; 0 where there is none.
+CASES = [
+    (".h", "int a; // of one\n", 1),
+    (".h", "\n/// Those that there are.\nint a;\n", 2),
+    (".h", "/// The same of two.\n", 1),
+    (".h", "/// Offset of a ray.\n", 0),
+    (".h", "/// The ray\n/// of a pixel.\n", 0),
+    (".h", "int a; // the ray\n       // of a pixel\n", 0),
+    (".h", "int a; // first\nint b; // as the next\n", 2),
+    (".cpp", 'auto a = "// of";\n', 0),
+    (".cpp", 'auto a = R"(\n// of\n)";\n', 0),
+    (".cpp", "int a = 1'000; // what follows 1'000\n", 1),
+    (".js", "/** Likewise. */\n", 1),
+    (".py", "def f():\n    '''Of one.'''\n", 2),
+    (".py", "a = 1  # beside it\n", 1),
+    (".py", "a = '# of'\n# A list\n# of names.\n", 0),
+]
+
+
+def self_test():
+    failures = []
+    for suffix, text, line in CASES:
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "src").mkdir()
+            (pathlib.Path(folder) / "src" / f"a{suffix}").write_text(text)
+            faults = list(comment_faults(pathlib.Path(folder)))
+            if len(faults) != bool(line) or (line and not faults[0].startswith(f"src/a{suffix}:{line}: ")):
+                failures.append(f"{text!r}: {faults}")
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder) / "whole"
+        (root / "tools").mkdir(parents=True)
+        if list(subject_faults(root)):
+            failures.append("a folder without history has subjects")
+        git(root, "init", "--quiet")
+        if git(root, "rev-parse", "--git-dir"):
+            identity = ["-c", "user.name=a", "-c", "user.email=a@b"]
+            commit = [*identity, "commit", "--quiet", "--allow-empty", "-m"]
+            git(root, *commit, "x" * 80)
+            (root / "tools" / "check_words.py").write_text("\n")
+            git(root, "add", "tools")
+            for length in (79, 72, 73, 72):
+                git(root, *commit, "x" * length)
+            git(root, "clone", "--quiet", "--depth", "3", f"file://{root}", str(root.parent / "shallow"))
+            for clone in (root, root.parent / "shallow"):
+                faults = list(subject_faults(clone))
+                if len(faults) != 1 or "has 73 characters" not in faults[0]:
+                    failures.append(f"{clone.name}: {faults}")
+    return failures
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        failures = self_test()
+        print("\n".join(failures) or "the check refuses and accepts what it should")
+        sys.exit(1 if failures else 0)
+    arguments = [argument for argument in sys.argv[1:] if argument != "--count"]
+    root = pathlib.Path(arguments[0]) if arguments else pathlib.Path(__file__).resolve().parent.parent
+    faults = list(comment_faults(root)) + list(subject_faults(root))
+    if len(arguments) < len(sys.argv[1:]):
+        folders = collections.Counter("/".join(fault.split(":")[0].split("/")[:-1]) for fault in faults)
+        print("\n".join(f"{count:5} {folder}" for folder, count in sorted(folders.items())))
+        print(f"{len(faults):5} in all")
+        return
+    print("\n".join(faults) or "no comment begins as a fragment and no subject is too long")
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,160 @@
+#!/usr/bin/env python3
+"""Writes the tables of measured figures in the documents from bench/results/*.json, so that each figure stands in one place.
+
+    tools/make_tables.py           rewrites the tables between the markers
+    tools/make_tables.py --check   fails where a document differs from its JSON, or a JSON file from the format
+    tools/make_tables.py --self-test
+
+A document has `<!-- table: results/FILE.json NAME -->` ... `<!-- end -->`. After the name may stand `columns=KEY,KEY` and
+`where=KEY:VALUE|VALUE`, which select columns and rows. Numbers keep the digits that the JSON has. A unit that several columns
+share stands once, in the head of the first column.
+"""
+
+import json
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+MARKER = re.compile(r"(<!-- table: (results/\S+\.json) (\S+)([^>]*?) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+KEYS = {"format", "version", "program", "date", "command", "processor", "threads", "device", "driver", "title", "tables"}
+
+
+class Digits(float):
+    """A number that remembers its digits, so that 1.10 stays 1.10."""
+
+    def __new__(cls, text):
+        number = super().__new__(cls, text)
+        number.text = text
+        return number
+
+    def __str__(self):
+        return self.text
+
+
+def load(text):
+    return json.loads(text, parse_float=Digits, parse_int=Digits)
+
+
+def faults_of(name, measured):
+    """What keeps a file from being a measurement."""
+    if not isinstance(measured, dict) or measured.get("format") != "pertev-measurement" or measured.get("version") != 1:
+        return [f"{name}: not a pertev-measurement of version 1"]
+    faults = [f"{name}: lacks {key}" for key in sorted(KEYS - measured.keys())]
+    names = [table["name"] for table in measured.get("tables", [])]
+    if len(names) != len(set(names)) or not names:
+        faults.append(f"{name}: tables have no names, or two have one")
+    for table in measured.get("tables", []):
+        keys = [column["key"] for column in table["columns"]]
+        if len(keys) != len(set(keys)):
+            faults.append(f"{name}: {table['name']}: two columns have one key")
+        if any(len(row) != len(keys) for row in table["rows"]) or not table["rows"]:
+            faults.append(f"{name}: {table['name']}: a row has more or fewer cells than there are columns")
+    return faults
+
+
+def pick(table, options):
+    """Indices of the columns and the rows that the options select."""
+    keys = [column["key"] for column in table["columns"]]
+    columns, rows = list(range(len(keys))), table["rows"]
+    for word in options.split():
+        what, value = word.split("=", 1)
+        if what == "columns":
+            columns = [keys.index(key) for key in value.split(",")]
+        elif what == "where":
+            key, values = value.split(":", 1)
+            wanted = [v.replace("_", " ") for v in values.split("|")]
+            rows = [row for row in rows if str(row[keys.index(key)]) in wanted]
+        else:
+            raise ValueError(f"{word} is neither columns= nor where=")
+    return columns, rows
+
+
+def source_of(path, measured):
+    """One line that says where the figures come from."""
+    where = measured["device"] or measured["processor"]
+    commit = measured["program"].get("commit")
+    parts = [where, f"driver {measured['driver']}" if measured["driver"] else None, commit, measured["date"]]
+    return f"([{pathlib.PurePath(path).stem}](../bench/{path}): {', '.join(p for p in parts if p)})\n"
+
+
+def render(path, measured, name, options):
+    table = next((t for t in measured["tables"] if t["name"] == name), None)
+    if table is None:
+        raise ValueError(f"{path} has no table {name}")
+    columns, rows = pick(table, options)
+    heads = [table["columns"][c] for c in columns]
+    numeric = [any(isinstance(row[c], Digits) for row in rows) and i > 0 for i, c in enumerate(columns)]
+    units = [h["unit"] for h in heads if h.get("unit")]
+    shared = units[0] if len(units) > 1 and len(set(units)) == 1 and (units[0] != "%" or len(units) == sum(numeric)) else None
+
+    def title(index, head):
+        unit = (shared if index == 0 else None) if shared else head.get("unit")
+        return ", ".join(part for part in (head["title"], unit) if part)
+
+    def cell(value):
+        return "" if value is None else str(value).replace("|", "\\|").replace("*", "\\*")
+
+    lines = ["| " + " | ".join(title(i, h) for i, h in enumerate(heads)) + " |",
+             "| " + " | ".join("---:" if n else "---" for n in numeric) + " |"]
+    lines += ["| " + " | ".join(cell(row[c]) for c in columns) + " |" for row in rows]
+    return "\n" + "\n".join(lines) + "\n\n" + source_of(path, measured)
+
+
+def remade(text, read):
+    return MARKER.sub(lambda m: m[1] + render(m[2], read(m[2]), m[3], m[4]) + m[6], text)
+
+
+def self_test():
+    good = {"format": "pertev-measurement", "version": 1, "program": {"version": None, "commit": "abc"}, "date": None,
+            "command": "x", "processor": "P", "threads": 2, "device": None, "driver": None, "title": "T",
+            "tables": [{"name": "a", "title": "A", "columns": [{"key": "k", "title": "scene", "unit": None},
+                                                              {"key": "r", "title": "rays", "unit": "Mrays/s"},
+                                                              {"key": "s", "title": "seconds", "unit": "s"}],
+                        "rows": [["Sponza", Digits("1.10"), None], ["two words", Digits("2"), Digits("3e-5")]]}]}
+    assert not faults_of("x", good)
+    assert faults_of("x", {**good, "version": 2}) and faults_of("x", {k: v for k, v in good.items() if k != "device"})
+    assert faults_of("x", {**good, "tables": good["tables"] * 2})
+    text = render("results/x.json", good, "a", "")
+    assert "| scene | rays, Mrays/s | seconds, s |" in text and "| Sponza | 1.10 |  |" in text and "3e-5" in text, text
+    chosen = render("results/x.json", good, "a", "columns=k,r where=k:two_words")
+    assert "1.10" not in chosen and "| two words | 2 |" in chosen, chosen
+    document = "before\n<!-- table: results/x.json a -->\nold 1.2\n<!-- end -->\nafter\n"
+    once = remade(document, lambda _: good)
+    assert "old" not in once and once == remade(once, lambda _: good) and once.endswith("after\n")
+    assert once != remade(once.replace("1.10", "1.20"), lambda _: good).replace("Sponza", "Other")
+
+
+def main(arguments):
+    if arguments == ["--self-test"]:
+        self_test()
+        return 0
+    check = arguments == ["--check"]
+    if arguments and not check:
+        print(__doc__, file=sys.stderr)
+        return 2
+    faults, seen = [], {}
+    for path in sorted((ROOT / "bench/results").glob("*.json")):
+        name = f"results/{path.name}"
+        seen[name] = load(path.read_text(encoding="utf-8"))
+        faults += faults_of(name, seen[name])
+    for document in sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md"]):
+        text = document.read_text(encoding="utf-8")
+        if text.count("<!-- table:") != len(MARKER.findall(text)):
+            faults.append(f"{document.name}: a table's marker is not well formed, or has no end")
+        try:
+            new = remade(text, lambda name: seen[name])
+        except (KeyError, ValueError) as error:
+            faults.append(f"{document.name}: {error}")
+            continue
+        if new != text and check:
+            faults.append(f"{document.name}: a table differs from its JSON; run tools/make_tables.py")
+        elif new != text:
+            document.write_text(new, encoding="utf-8")
+            print(f"{document.name} is written")
+    print("\n".join(faults) or f"{len(seen)} files of measurements; documents have their figures")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
