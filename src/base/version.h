@@ -4,7 +4,7 @@
 
 namespace pertev {
 
-/// Release, such as "0.1.0".
+/// Release, such as "0.2.0".
 const char* version();
 
 /// Commit from which the program was built: 12 hexadecimal digits, followed by `+` if files were changed since. Empty

@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""Every command of README.md, CONTRIBUTING.md and docs/ that begins with the program is run, on small stand-ins for the files that it names and at
+small sizes. Commands in PARSED take too long, or need a server, a GPU or a public scene; of these the verb and the flags must exist.
+`tools/check_documents.py` looks at links, scripts and presets."""
+
+import functools
+import json
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import unittest
+
+from cli_run import CliTest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+import check_documents  # pylint: disable=wrong-import-position
+
+PARSED = [r"^view ", r"--thesis", r"--rays record", r"--preset all", r"\$S/", r"--device cuda", r"^render cornell-box .*--size 480x480"]
+SMALL = {"--size": "24x16", "--spp": "1", "--seconds": "0.3", "--depths": "1-2", "--runs": "1", "--repetitions": "2", "--reference-spp": "2",
+         "--frames": "0-1"}
+ADDED = {"render": ["--size", "--spp"], "lab": ["--size", "--runs"], "lab --transport": ["--size", "--seconds", "--repetitions", "--reference-spp"],
+         "bench": ["--size", "--spp"], "bench noise": ["--size", "--spp"], "measure": ["--spp"]}
+QUICK = {"solve radiosity": ["--patch-size", "0.3", "--patch-rays", "16"], "lab": ["--no-heat-maps"],
+         "bench": ["--device", "cpu"], "lab --transport": []}
+
+
+def as_glb(text):
+    body = text.encode() + b" " * (-len(text.encode()) % 4)
+    return b"glTF" + b"".join(n.to_bytes(4, "little") for n in (2, 20 + len(body), len(body), 0x4E4F534A)) + body
+
+
+def verb_of(words):
+    """One word or two, and `lab --transport` as a verb of its own."""
+    if words[0] == "lab" and "--transport" in words:
+        return "lab --transport"
+    return " ".join(words[:2]) if words[0] in ("bench", "solve") and words[1:] and not words[1].startswith("-") else words[0]
+
+
+def made_small(words):
+    verb, given = verb_of(words), {word.split("=")[0] for word in words}
+    small = []
+    for before, word in zip(["", *words], words):
+        small.append(SMALL.get(before, word))
+    for flag in ADDED.get(verb, []):
+        small += [] if flag in given else [flag, SMALL[flag]]
+    return small + QUICK.get(verb, [])
+
+
+class Commands(CliTest):
+    def stand_in(self):
+        """The files that commands of the documents name."""
+        box = self.path("moving.gltf")
+        subprocess.run([sys.executable, ROOT / "tools/make_moving_box.py", box], check=True)
+        scene = json.loads(pathlib.Path(box).read_text(encoding="utf-8"))
+        scene["animations"][0]["name"] = "wave"
+        for name in ["scene.gltf", "room.gltf"]:
+            pathlib.Path(self.path(name)).write_text(json.dumps(scene), encoding="utf-8")
+        for name in ["robot.glb", "room.glb"]:
+            pathlib.Path(self.path(name)).write_bytes(as_glb(json.dumps(scene)))
+        shutil.copy(ROOT / "scenes/transport/door.obj", self.path("sponza.obj"))
+        shutil.copy(ROOT / "scenes/transport/door.mtl", self.path("door.mtl"))
+        for name in ["sky.hdr", "a.exr", "b.exr", "picture.exr", "room.exr"]:
+            self.render(scene="room.gltf", size=SMALL["--size"], output=name)
+
+    def check_flags(self, words):
+        """The verb and the flags of a command exist."""
+        given = {word.split("=")[0] for word in words if re.match(r"--?[a-z]", word)}
+        self.assertLessEqual(given, self.flags_of(verb_of(words)), "flags that the verb has not got")
+
+    @functools.cache
+    def flags_of(self, verb):
+        words = verb.replace(" --transport", "").split()
+        text = self.succeed(*words, "--help", "all").stdout if verb.startswith(("render", "view", "bench frames")) else \
+            self.succeed(*words, "--help").stdout + self.run_pertev(*words, "--help", "all").stdout
+        return set(re.findall(r"(?m)(?<![\w-])--?[a-z][a-z-]*", text))
+
+    def test_commands_of_documents_run(self):
+        self.stand_in()
+        ran, parsed = 0, 0
+        for document in check_documents.documents(ROOT):
+            for command in check_documents.commands(document.read_text(encoding="utf-8")):
+                words = shlex.split(command)
+                if words[0] not in ("pertev", "build/bin/pertev"):
+                    continue
+                words = words[1:]
+                with self.subTest(document=document.name, command=command):
+                    if any(re.search(pattern, " ".join(words)) for pattern in PARSED):
+                        self.check_flags(words)
+                        parsed += 1
+                    else:
+                        self.succeed(*made_small(words))
+                        ran += 1
+        self.assertGreater(ran, 20)
+        self.assertGreater(parsed, 3)
+
+    def test_commands_within_sentences_have_flags_that_exist(self):
+        found = 0
+        for document in check_documents.documents(ROOT):
+            for command in check_documents.inline_commands(document.read_text(encoding="utf-8")):
+                words = command.replace("[", "").replace("]", "").replace("|", " ").split()[1:]
+                with self.subTest(document=document.name, command=command):
+                    self.check_flags([word for word in words if not word.startswith("'")])
+                    found += 1
+        self.assertGreater(found, 40)
+
+    def test_a_flag_that_is_gone_is_noticed(self):
+        self.assertNotIn("--no-such-flag", self.flags_of("view"))
+        self.assertIn("--restir", self.flags_of("view"))
+        self.assertEqual(self.run_pertev(*made_small(shlex.split("render cornell-box -o a.png --no-such-flag"))).status, 2)
+
+    def test_scripts_of_tools_say_how_they_are_used(self):
+        named = {word for document in check_documents.documents(ROOT)
+                 for command in check_documents.commands(document.read_text(encoding="utf-8"))
+                 for word in command.split() if word.startswith("tools/")}
+        self.assertGreater(len(named), 3)
+        for name in named:
+            self.assertTrue(os.access(ROOT / name, os.X_OK), f"{name} is not executable")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

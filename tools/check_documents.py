@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""Fails where a document names what is not there: a file, an anchor, a source file, a script or a preset. It also fails where all
+documents together have more than 40,000 words, the tour names more than forty files, or a text speaks of internal targets.
+
+    tools/check_documents.py
+    tools/check_documents.py --self-test
+
+tests/robust/cli_documents_test.py runs the commands that commands() finds.
+"""
+
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+MOST_WORDS, MOST_FILES_OF_TOUR = 40_000, 40
+SOURCE = re.compile(r"`([\w./-]+\.(?:h|cpp|cu|py|sh|js|md|cmake))`")
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+COMMAND = re.compile(r"(?:build/bin/|bench/|tools/|tests/)[\w./-]+|pertev\b|\./setup\.sh|cmake|ctest|python3")
+TARGETS = re.compile(r"(?i)\b(?:was|were) asked for|\basked for were|\bhoped for\b|(?<![`|\w])S[58](?![`|\w])")
+FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "docs", "scenes"]
+# This section names files that do not exist yet.
+ON_PAPER = "## Fourteen changes on paper"
+
+
+def documents(root=ROOT):
+    return [*sorted((root / "docs").glob("*.md")), root / "README.md", root / "CHANGELOG.md", root / "CONTRIBUTING.md"]
+
+
+def anchors_of(text):
+    """The anchors that GitHub gives the headings."""
+    anchors = set()
+    for line in without_fences(text):
+        if match := re.match(r"#+ +(.*)", line):
+            title = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", match[1]).lower()
+            anchors.add(re.sub(r"\s", "-", re.sub(r"[^\w\- ]", "", title).strip()))
+    return anchors
+
+
+def without_fences(text):
+    fenced = False
+    for line in text.splitlines():
+        if line.startswith("```"):
+            fenced = not fenced
+        elif not fenced:
+            yield line
+
+
+def commands(text):
+    """The shell commands of fenced and indented blocks, without comments, with continued lines joined."""
+    fenced, found = False, []
+    for line in text.replace("\\\n", " ").splitlines():
+        if line.startswith("```"):
+            fenced = not fenced
+        elif fenced or line.startswith("    "):
+            for part in re.split(r"\s#\s|\s{2,}#", line.strip())[0].split(" && "):
+                if COMMAND.match(re.sub(r"^[A-Z_]+=\S+ ", "", part)):
+                    found.append(part.strip())
+    return found
+
+
+def inline_commands(text):
+    """The program's commands within sentences, whose files and values are placeholders."""
+    return [" ".join(found.split()) for found in re.findall(r"(?<!`)`(pertev [a-z][^`]*)`", "\n".join(without_fences(text)))]
+
+
+def link_faults(document, text, read):
+    for target in LINK.findall("\n".join(without_fences(text))):
+        if re.match(r"[a-z]+:", target):
+            continue
+        path, _, anchor = target.partition("#")
+        file = (document.parent / path).resolve() if path else document
+        if not file.exists():
+            yield f"{document.name}: {target} is not there"
+        elif anchor and anchor not in anchors_of(read(file)):
+            yield f"{document.name}: {path or document.name} has no heading #{anchor}"
+
+
+def source_faults(name, text, tracked):
+    ends = {"/".join(path.split("/")[i:]) for path in tracked for i in range(path.count("/") + 1)}
+    for source in sorted({name.removeprefix("./") for name in SOURCE.findall(text.split(ON_PAPER)[0])}):
+        if source not in ends and not re.search(r"NAME|FAMILY|[a-z]+_lobe\.h$", source):
+            yield f"{name}: no file is called {source}"
+
+
+def command_faults(name, text, presets):
+    """What a command that is not the program's own names must be there; the program's are run by the test."""
+    for command in commands(text):
+        for word in re.sub(r"^[A-Z_]+=\S+ ", "", command).split():
+            if word.startswith(("tools/", "tests/", "./")) and not (ROOT / word).exists():
+                yield f"{name}: {word} is not there: {command}"
+        if match := re.search(r"--preset (\S+)", command):
+            if command.startswith("cmake") and match[1] not in presets:
+                yield f"{name}: no preset {match[1]}: {command}"
+
+
+def faults_of_all():
+    tracked = [path.relative_to(ROOT).as_posix() for folder in FOLDERS for path in (ROOT / folder).rglob("*.*")]
+    tracked += [path.name for path in ROOT.glob("*.*")]
+    presets = re.findall(r'"name": "([^"]+)"', (ROOT / "CMakePresets.json").read_text(encoding="utf-8"))
+    words = 0
+    for document in documents():
+        text = document.read_text(encoding="utf-8")
+        words += len(text.split()) * (document.name != "CONTRIBUTING.md")
+        yield from link_faults(document, text, lambda file: file.read_text(encoding="utf-8") if file.suffix == ".md" else "")
+        if document.name != "CHANGELOG.md": # it names files that are gone
+            yield from source_faults(document.name, text, tracked)
+        yield from command_faults(document.name, text, presets)
+        yield from (f"{document.name}: an internal target or a job's number: {match[0]}" for match in TARGETS.finditer(text))
+        if document.name == "tour.md" and len(set(SOURCE.findall(text))) > MOST_FILES_OF_TOUR:
+            yield f"tour.md names {len(set(SOURCE.findall(text)))} files; {MOST_FILES_OF_TOUR} is the most"
+    if words > MOST_WORDS:
+        yield f"all documents have {words} words; {MOST_WORDS} is the most"
+
+
+def self_test():
+    text = "# Some `code`: a title\n\n```\npertev render a \\\n  -o b  # why\ntools/x.py && ./setup.sh\n# no\n```\n\n    pertev view c\n"
+    assert anchors_of(text) == {"some-code-a-title"}, anchors_of(text)
+    assert commands(text) == ["pertev render a    -o b", "tools/x.py", "./setup.sh", "pertev view c"], commands(text)
+    assert inline_commands("a `pertev render\nX` b\n```\n`pertev no`\n```\n") == ["pertev render X"]
+    here = ROOT / "docs" / "tour.md"
+    assert list(link_faults(here, "[a](none.md)", lambda _: "")) and list(link_faults(here, "[a](#none)", lambda _: "# some"))
+    assert not list(link_faults(here, "[a](tour.md#some) [b](https://x.y)", lambda _: "# Some"))
+    assert list(source_faults("x", "`render/none.h`", ["src/render/film.h"]))
+    assert not list(source_faults("x", "`render/film.h` `film.h` `src/render/film.h`", ["src/render/film.h"]))
+    assert list(command_faults("x", "    tools/none.py a", [])) and list(command_faults("x", "    cmake --preset none", ["cpu"]))
+    assert TARGETS.search("1.3 was asked for") and TARGETS.search("S5 is") and not TARGETS.search("`S5` and --job S5|S8")
+
+
+def main(arguments):
+    if arguments == ["--self-test"]:
+        self_test()
+        return 0
+    faults = list(faults_of_all())
+    print("\n".join(faults) or "documents name what is there")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
