@@ -1,8 +1,9 @@
 #pragma once
 
-// What each picture of the thesis (lab/thesis_pictures.h) is made of: one row a picture.
+// What each picture of the thesis (lab/thesis_pictures.h) is made of: one row of bench/thesis.json a picture.
 
-#include <span>
+#include <string>
+#include <vector>
 
 #include "lab/thesis_scenes.h"
 #include "settings/render_settings.h"
@@ -20,6 +21,11 @@ enum class ThesisWay : uint8_t {
     Octree,    // likewise
 };
 
+inline constexpr ValueName<ThesisWay> kThesisWayNames[] = {
+    {ThesisWay::Render, "render"}, {ThesisWay::Radiosity, "radiosity"}, {ThesisWay::Photons, "photons"},
+    {ThesisWay::Work, "work"},     {ThesisWay::KdTree, "kd-tree"},      {ThesisWay::Octree, "octree"}};
+constexpr const auto& names_of_all(ThesisWay) { return kThesisWayNames; }
+
 /// Of Radiosity.
 struct RadiosityPanel {
     bool is_early = false;   // after a few patches have sent
@@ -36,22 +42,20 @@ struct ThesisDetail {
 };
 ThesisDetail thesis_detail(uint32_t panel_height);
 
-inline constexpr uint32_t kThesisPhotons = 16384; // of a pass, for each map, where they are to be seen one by one
-
 struct ThesisRecipe {
-    const char *name, *title, *shows; // ThesisPicture's
+    std::string name, title, shows; // ThesisPicture's
     ThesisWay way = ThesisWay::Render;
     ThesisScene scene = ThesisScene::Box;
-    const char* integrator = "";
-    bool is_whole = false;                  // else one panel of several: half the width and height
-    const char* settings = "";              // of the command, beside scene, integrator, patches and photons
-    void (*set)(RenderSettings&) = nullptr; // does what `settings` say, and chooses photons; null: nothing
-    RadiosityPanel panel = {};              // of Radiosity
-    StructureKind structure = {};           // of Work
-    float stops = 2;                        // of exposure
+    std::string integrator;
+    bool is_whole = false;             // else one panel of several: half the width and height
+    std::vector<std::string> settings; // NAME or NAME=VALUE, beside scene, integrator and patches
+    bool has_photons_by_size = false;  // thesis_detail's
+    RadiosityPanel panel = {};         // of Radiosity
+    StructureKind structure = {};      // of Work
+    float stops = 2;                   // of exposure
 };
 
 /// Ordered as the thesis is.
-std::span<const ThesisRecipe> thesis_recipes();
+const std::vector<ThesisRecipe>& thesis_recipes();
 
 } // namespace pertev

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "base/value_names.h"
 #include "scene/scene.h"
 
 namespace pertev {
@@ -17,6 +18,14 @@ enum class ThesisScene : uint8_t {
     TwoBalls,    // the same light, a mirror sphere there and one of glass in the tall block's place
     Caustic,     // caustic, with the camera of the transport report
 };
+
+inline constexpr ValueName<ThesisScene> kThesisSceneNames[] = {{ThesisScene::Box, "box"},
+                                                               {ThesisScene::PointLight, "point-light"},
+                                                               {ThesisScene::MirrorBall, "mirror-ball"},
+                                                               {ThesisScene::PlasticBall, "plastic-ball"},
+                                                               {ThesisScene::TwoBalls, "two-balls"},
+                                                               {ThesisScene::Caustic, "caustic"}};
+constexpr const auto& names_of_all(ThesisScene) { return kThesisSceneNames; }
 
 Scene make_thesis_scene(ThesisScene which);
 
