@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Fails where a document names what is not there: a file, an anchor, a source file, a script or a preset. It also fails where all
-documents together have more than 40,000 words, the tour names more than forty files, or a text speaks of internal targets.
+documents together have more than 40,000 words, the tour names more than forty files, a text speaks of internal targets, or a
+picture has no licence in docs/notices.md.
 
     tools/check_documents.py
     tools/check_documents.py --self-test
@@ -84,7 +85,7 @@ def source_faults(name, text, tracked):
 
 
 def command_faults(name, text, presets):
-    """What a command that is not the program's own names must be there; the program's are run by the test."""
+    """Faults of scripts and presets that commands name. The test runs the commands of the program itself."""
     for command in commands(text):
         for word in re.sub(r"^[A-Z_]+=\S+ ", "", command).split():
             if word.startswith(("tools/", "tests/", "./")) and not (ROOT / word).exists():
@@ -109,6 +110,13 @@ def faults_of_all():
         yield from (f"{document.name}: an internal target or a job's number: {match[0]}" for match in TARGETS.finditer(text))
         if document.name == "tour.md" and len(set(SOURCE.findall(text))) > MOST_FILES_OF_TOUR:
             yield f"tour.md names {len(set(SOURCE.findall(text)))} files; {MOST_FILES_OF_TOUR} is the most"
+    notices = (ROOT / "docs/notices.md").read_text(encoding="utf-8")
+    shown = "".join(document.read_text(encoding="utf-8") for document in documents())
+    for picture in (ROOT / "docs/pictures").iterdir():
+        if f"`{picture.name}`" not in notices:
+            yield f"notices.md names no licence of {picture.name}"
+        if f"pictures/{picture.name}" not in shown:
+            yield f"no document shows {picture.name}"
     if words > MOST_WORDS:
         yield f"all documents have {words} words; {MOST_WORDS} is the most"
 

@@ -39,7 +39,7 @@ const std::vector<ThesisRecipe>& thesis_recipes() {
 }
 
 ThesisDetail thesis_detail(uint32_t panel_height) {
-    constexpr uint32_t kFullHeight = 384; // of a panel of 1024x768
+    constexpr uint32_t kFullHeight = 384; // height of a panel at 1024x768
     constexpr uint32_t kFinestMm = 80, kEarlySteps = 200, kFullPhotons = 1u << 16;
     const uint32_t mm = std::clamp(kFinestMm * kFullHeight / std::max(1u, panel_height), kFinestMm, 4 * kFinestMm);
     const uint32_t area = mm * mm, finest = kFinestMm * kFinestMm;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every command of README.md, CONTRIBUTING.md and docs/ that begins with the program is run, on small stand-ins for the files that it names and at
+"""Each command of README.md, CONTRIBUTING.md and docs/ that begins with the program is run, on small stand-ins for the files that it names and at
 small sizes. Commands in PARSED take too long, or need a server, a GPU or a public scene; of these the verb and the flags must exist.
 `tools/check_documents.py` looks at links, scripts and presets."""
 
