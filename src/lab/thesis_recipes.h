@@ -1,6 +1,6 @@
 #pragma once
 
-// What each picture of the thesis (lab/thesis_pictures.h) is made of: one row of bench/thesis.json a picture.
+// Recipes of the thesis's pictures (lab/thesis_pictures.h): one row of bench/thesis.json per picture.
 
 #include <string>
 #include <vector>
@@ -26,7 +26,7 @@ inline constexpr ValueName<ThesisWay> kThesisWayNames[] = {
     {ThesisWay::Work, "work"},     {ThesisWay::KdTree, "kd-tree"},      {ThesisWay::Octree, "octree"}};
 constexpr const auto& names_of_all(ThesisWay) { return kThesisWayNames; }
 
-/// Of Radiosity.
+/// A panel of the figure of radiosity.
 struct RadiosityPanel {
     bool is_early = false;   // shown after a few steps of the solver
     bool has_ambient = true; // unsent light is shown as ambient light
@@ -50,9 +50,9 @@ struct ThesisRecipe {
     bool is_whole = false;             // else one panel of several: half the width and height
     std::vector<std::string> settings; // NAME or NAME=VALUE, beside scene, integrator and patches
     bool has_photons_by_size = false;  // thesis_detail's
-    RadiosityPanel panel = {};         // of Radiosity
-    StructureKind structure = {};      // of Work
-    float stops = 2;                   // of exposure
+    RadiosityPanel panel = {};         // for Radiosity
+    StructureKind structure = {};      // for Work
+    float stops = 2;                   // exposure stops
 };
 
 /// Ordered as the thesis is.
