@@ -6,14 +6,16 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 
 usage() {
     cat <<'END'
-usage: ./setup.sh [--cpu | --cuda] [--tests] [--no-apt] [--help]
+usage: ./setup.sh [--cpu | --cuda | --check-kernels] [--tests] [--no-apt] [--help]
 
-  --cpu     build without CUDA
-  --cuda    build with CUDA; where no nvcc is found, fetch one from PyPI into build/cuda (about 300 MB)
-  --tests   build the tests too and run them; the exit status is theirs
-  --no-apt  install nothing; say what is missing
+  --cpu            build without CUDA
+  --cuda           build with CUDA; where no nvcc is found, fetch one from PyPI into build/cuda (about 300 MB)
+  --check-kernels  build without CUDA, but compile the kernels to see whether they compile (needs nvcc)
+  --tests          build the tests too and run them; the exit status is theirs
+  --no-apt         install nothing; say what is missing
 
-Without --cpu or --cuda: CUDA is on where nvcc is found, and nvcc is fetched where a GPU's driver is.
+Without --cpu or --cuda, CUDA is used if there is a GPU's driver; nvcc is fetched if there is none. Kernels are compiled
+for this machine's GPU.
 END
 }
 
@@ -22,8 +24,10 @@ readonly build=build
 cuda=auto tests=false apt=true
 for arg in "$@"; do
     case $arg in
-        --cpu) [[ $cuda == auto ]] || { echo "setup.sh: --cpu and --cuda exclude each other" >&2; exit 2; }; cuda=off ;;
-        --cuda) [[ $cuda == auto ]] || { echo "setup.sh: --cpu and --cuda exclude each other" >&2; exit 2; }; cuda=on ;;
+        --cpu | --cuda | --check-kernels)
+            [[ $cuda == auto ]] || { echo "setup.sh: --cpu, --cuda and --check-kernels exclude each other" >&2; exit 2; }
+            cuda=$arg
+            ;;
         --tests) tests=true ;;
         --no-apt) apt=false ;;
         -h | --help) usage; exit 0 ;;
@@ -222,11 +226,15 @@ $(grep -m 1 -i error "$folder/log" || head -n 1 "$folder/log")"
 }
 
 choose_cuda() {
-    if [[ $cuda == off ]]; then
+    if [[ $cuda == --cpu ]]; then
         cuda_note="--cpu"
         return
     fi
     find_driver
+    if [[ $cuda == auto && -z $driver ]]; then
+        cuda_note="there is no GPU's driver; ./setup.sh --cuda builds with CUDA nevertheless"
+        return
+    fi
     find_nvcc
     local no_fetch=""
     if [[ -n $driver ]] && ! at_least "$driver" 580; then
@@ -234,21 +242,22 @@ choose_cuda() {
         no_fetch="driver $driver runs CUDA 12 at most, and PyPI has nvcc only from 13.0: install NVIDIA's \
 toolkit 12.x or a driver from 580 on, then run ./setup.sh again"
     fi
-    if [[ -z $nvcc && ($cuda == on || -n $driver) ]]; then
+    if [[ -z $nvcc && $cuda != --check-kernels ]]; then
         if [[ -n $no_fetch ]]; then
             [[ $cuda == auto ]] || fail "$no_fetch"
             cuda_note=$no_fetch
             return
         fi
-        [[ $cuda == on ]] || echo "Found a GPU's driver ($driver) but no nvcc: fetching one (--cpu does without)."
+        [[ $cuda == --cuda ]] || echo "Found a GPU's driver ($driver) but no nvcc: fetching one (--cpu does without)."
         if fetch_nvcc; then
             find_nvcc
-        elif [[ $cuda == on ]]; then
+        elif [[ $cuda == --cuda ]]; then
             fail "$cuda_note"
         fi
     fi
     if [[ -z $nvcc ]]; then
-        cuda_note=${cuda_note:-"no nvcc found; ./setup.sh --cuda fetches one"}
+        cuda_note=${cuda_note:-"no nvcc found"}
+        [[ $cuda != --check-kernels ]] || fail "$cuda_note, and --check-kernels needs one"
         return
     fi
     if [[ ! -e $build/setup.options || $(<"$build/setup.options") != *"CUDA_COMPILER=$nvcc "* ]] && ! nvcc_works; then
@@ -267,7 +276,9 @@ configure() {
         [[ -z $nvcc ]] || options+=(-DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
     fi
     if [[ -n $nvcc ]]; then
-        options+=(-DPERTEV_CUDA=ON "-DCMAKE_CUDA_COMPILER=$nvcc" "-DCMAKE_CUDA_ARCHITECTURES=$cuda_architectures")
+        local mode=ON
+        [[ $cuda != --check-kernels ]] || mode=CHECK
+        options+=("-DPERTEV_CUDA=$mode" "-DCMAKE_CUDA_COMPILER=$nvcc" "-DCMAKE_CUDA_ARCHITECTURES=$cuda_architectures")
     else
         options+=(-DPERTEV_CUDA=OFF)
     fi
@@ -313,7 +324,9 @@ summary() {
     echo
     echo "${name:-pertev} is built: $build/bin/pertev"
     echo "  compiler  $("${CXX:-c++}" --version | head -n 1)"
-    if [[ -n $nvcc ]]; then
+    if [[ $cuda == --check-kernels ]]; then
+        echo "  CUDA      left out: --check-kernels; nvcc $nvcc_release ($nvcc) has compiled the kernels"
+    elif [[ -n $nvcc ]]; then
         echo "  CUDA      on: nvcc $nvcc_release ($nvcc), architectures $cuda_architectures"
         if [[ -n $cuda_note ]]; then
             echo "            but $cuda_note"
@@ -344,5 +357,5 @@ summary
 if $tests; then
     echo
     tools/missing_scenes.sh
-    ctest --test-dir "$build" --output-on-failure -j 2
+    ctest --test-dir "$build" --output-on-failure -j 3 # some of them wait
 fi

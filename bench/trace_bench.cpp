@@ -100,7 +100,7 @@ RaySet make_sun(const RaySet& shadow) {
 
 int run_bench(const Flags& flags) {
     Messages messages;
-    const RecordScene* const record = find_record_scene(flags.scene);
+    const RecordScene* const record = find_named(the_record().scenes, flags.scene);
     if (record == nullptr) throw Error(ErrorCode::BadInput, "trace_bench: no such scene: " + flags.scene);
     const Scene scene = make_record_scene(*record, flags.folder, messages);
     const std::optional<TreeBuild> build = value_named<TreeBuild>(flags.build);

@@ -19,10 +19,6 @@ endif()
 add_compile_options(
   "$<$<COMPILE_LANGUAGE:CXX>:${PERTEV_ARITHMETIC_FLAGS};${PERTEV_WARNING_FLAGS}>"
   "$<$<COMPILE_LANGUAGE:CUDA>:-fmad=false;-Xcompiler=-ffp-contract=off,-fno-math-errno,-march=x86-64-v3;-Xcompiler=-Wall,-Wextra;--expt-relaxed-constexpr;-Wno-deprecated-gpu-targets>")
-# Device code is compiled to see that it compiles (.ci/run): the build is to be soon done, not fast.
-if(CMAKE_CUDA_FLAGS MATCHES "-Ofc=max")
-  set(PERTEV_CUDA_IS_CHECKED_ALONE ON)
-endif()
 if(PERTEV_WERROR)
   add_compile_options("$<$<COMPILE_LANGUAGE:CUDA>:-Werror=all-warnings;-Xcompiler=-Werror>")
 endif()

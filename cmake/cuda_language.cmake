@@ -1,4 +1,5 @@
-# Switches the CUDA language on where nvcc is found. PERTEV_HAS_CUDA says what was decided.
+# Switches the CUDA language on where nvcc is found. PERTEV_HAS_CUDA says what was decided. With PERTEV_CUDA=CHECK, on a
+# machine without a GPU, kernels are compiled to PTX in order to see that they compile; the program has their C++ only.
 
 set(PERTEV_HAS_CUDA OFF)
 if(NOT PERTEV_CUDA STREQUAL "OFF")
@@ -19,9 +20,14 @@ if(NOT PERTEV_CUDA STREQUAL "OFF")
     set(CMAKE_CUDA_STANDARD 20)
     set(CMAKE_CUDA_STANDARD_REQUIRED ON)
     set(CMAKE_CUDA_RUNTIME_LIBRARY Static)
-    message(STATUS "CUDA: on (${CMAKE_CUDA_COMPILER}, architectures ${CMAKE_CUDA_ARCHITECTURES})")
-  elseif(PERTEV_CUDA STREQUAL "ON")
-    message(FATAL_ERROR "PERTEV_CUDA=ON, but no nvcc was found. Set CMAKE_CUDA_COMPILER, or run ./setup.sh --cuda.")
+    if(PERTEV_CUDA STREQUAL "CHECK")
+      set(PERTEV_ONLY_CHECKS_KERNELS ON)
+    else()
+      set(PERTEV_COMPILES_KERNELS ON)
+    endif()
+    message(STATUS "CUDA: ${PERTEV_CUDA} (${CMAKE_CUDA_COMPILER}, architectures ${CMAKE_CUDA_ARCHITECTURES})")
+  elseif(PERTEV_CUDA MATCHES "^(ON|CHECK)$")
+    message(FATAL_ERROR "PERTEV_CUDA=${PERTEV_CUDA}, but no nvcc was found. Set CMAKE_CUDA_COMPILER, or run ./setup.sh --cuda.")
   else()
     message(STATUS "CUDA: off (no nvcc found; ./setup.sh --cuda fetches one)")
   endif()

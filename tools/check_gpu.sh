@@ -62,7 +62,7 @@ for part in "${parts[@]}"; do
         run "$bin/pertev" bench
         run "$bin/pertev" bench rays --check --axes
         run "$bin/pertev" bench build --compare
-        run "$here/time_start.sh" "$bin/pertev" "$sponza"
+        run "$here/measure.py" "$bin/pertev" "$scenes" "$(mktemp -d)" start
         for size in 1920x1080 3840x2160; do
             run "$bin/pertev" bench frames "$sponza" --size $size
         done

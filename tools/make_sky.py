@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the sky that the figures of tools/measure_noise.sh are measured under, as an EXR file of 256 x 128 pixels:
+"""Writes the sky that the figures of tools/measure.py are measured under, as an EXR file of 256 x 128 pixels:
   python3 tools/make_sky.py sky.exr
 
 The sky is blue above and pale at the horizon, and a broad warm sun stands at the upper left front. A white surface

@@ -7,7 +7,7 @@ uplight: a lamp in a bowl that sends its light to the ceiling alone.
 door: a room lit through a door that is ajar, from the room next to it.
 cove: a diffuse room lit by way of its ceiling alone, from lamps behind a ledge.
 
-OBJ and MTL in metres, +y up; all faces are flat, so that no normal is interpolated. tools/compare_transport.sh has the cameras.
+OBJ and MTL in metres, +y up; all faces are flat, so that no normal is interpolated. bench/jobs.json has the cameras.
 
 `make_transport_scenes.py --check` writes nothing and fails when a file is not what this script would write.
 """

@@ -40,37 +40,33 @@ std::vector<BvhTriangle> read_triangles(const std::string& name, Messages& messa
 }
 
 /// `ratio`: of the tree's cost to that of the SBVH; 0: not known. `scene` may be one of the record.
-void print(const std::string& scene, std::string_view tree, const std::string& device, uint64_t triangles,
-           const RunTimes& times, std::size_t nodes, int depth, float cost, double ratio, Reporter& reporter) {
-    const std::vector<Ratio> others = ratios_of(BuildRun{device, find_record_scene(scene), triangles, times.median});
-    if (reporter.json()) {
-        return reporter.event(fmt::format(
-            R"({{"event":"build","scene":{},"tree":"{}","device":{},"triangles":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"runs":{},"nodes":{},"depth":{},"sah_cost":{:.4f},"ratio_to_sbvh":{},{}}})",
-            json_string(scene), tree, json_string(device), triangles, json_number(times.median),
-            json_number(times.least), json_number(times.greatest), times.runs, nodes, depth, cost,
-            ratio > 0 ? fmt::format("{:.4f}", ratio) : "null", ratios_json(others)));
+void add_build(const std::string& scene, std::string_view tree, const std::string& device, uint64_t triangles,
+               const RunTimes& times, std::size_t nodes, int depth, float cost, double ratio, BenchReport& report) {
+    Fields fields = {{"scene", "scene", scene},
+                     {"tree", "tree", tree},
+                     {"device", "", device},
+                     {"triangles", "triangles", triangles}};
+    for (const ResultField& time : time_fields(times)) fields.push_back(time);
+    fields.insert(fields.end(),
+                  {{"triangles_per_second", "Mtri/s", millions_a_second(triangles, times.median) * 1e6, "", "{:.3g}"},
+                   {"nodes", "nodes", nodes},
+                   {"depth", "depth", depth},
+                   {"sah_cost", "cost", static_cast<double>(cost), "", "{:.3f}"},
+                   {"ratio_to_sbvh", "of sbvh", if_timed(ratio), "", "{:.3f}"}});
+    for (const Ratio& other :
+         ratios_of(BuildRun{device, find_named(the_record().scenes, scene), triangles, times.median})) {
+        fields.push_back(field_of(other));
     }
-    reporter.answer(fmt::format(
-        "{:11} {:12} {:>8} {:11.3f} {:9.3f} {:>9} {:9} {:5} {:8.3f} {:>7} {:>8} {:>8}\n", scene, tree, triangles,
-        times.median * 1e3, times.least * 1e3, fmt::format("{:.1f}", millions_a_second(triangles, times.median)), nodes,
-        depth, cost, ratio > 0 ? fmt::format("{:.3f}", ratio) : "-", ratio_cell(others[0]), ratio_cell(others[1])));
+    report.add(
+        "build", fields,
+        fmt::format("from triangles on the device to compressed nodes and triangles there; others on the CPU; cost of "
+                    "a ray by the\nsurface area heuristic, and its ratio to the SBVH's; at the right, on an {} "
+                    "alone, our rate in times OptiX's\n",
+                    the_record().device));
 }
 
-/// A built tree fitted to its triangles again.
-void print_refit(const std::string& scene, const std::string& device, uint64_t triangles, const RunTimes& times,
-                 Reporter& reporter) {
-    if (reporter.json()) {
-        return reporter.event(fmt::format(
-            R"({{"event":"refit","scene":{},"tree":"hploc","device":{},"triangles":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"runs":{}}})",
-            json_string(scene), json_string(device), triangles, json_number(times.median), json_number(times.least),
-            json_number(times.greatest), times.runs));
-    }
-    reporter.answer(fmt::format("{:11} {:12} {:>8} {:11.3f} {:9.3f} {:>9}\n", scene, "its refit", triangles,
-                                times.median * 1e3, times.least * 1e3,
-                                fmt::format("{:.1f}", millions_a_second(triangles, times.median))));
-}
-
-void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags, Reporter& reporter) {
+void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags, Reporter& reporter,
+                 BenchReport& report) {
     reporter.set_work(fmt::format("{}: reading", name));
     const std::vector<BvhTriangle> triangles = read_triangles(name, reporter.messages());
     reporter.say_messages();
@@ -88,8 +84,8 @@ void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags,
             const CompressedBvh bvh = make_compressed_bvh(build_bvh(builder, triangles));
             const double seconds = watch.seconds();
             if (builder == BvhBuilder::SpatialSplits) sbvh_cost = bvh.sah_cost;
-            print(name, name_of(builder), "cpu", count, {seconds, seconds, seconds, 1}, bvh.nodes.size(), bvh.depth,
-                  bvh.sah_cost, ratio(bvh.sah_cost), reporter);
+            add_build(name, name_of(builder), "cpu", count, {seconds, seconds, seconds, 1}, bvh.nodes.size(), bvh.depth,
+                      bvh.sah_cost, ratio(bvh.sah_cost), report);
             throw_if_interrupted();
         }
     }
@@ -102,14 +98,19 @@ void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags,
     };
     const RunTimes times = time([&] { builder.start(there.data(), count); });
     const DeviceBuilder::Figures figures = builder.finish();
-    print(name, "hploc", queue.device_name(), count, times, figures.nodes, figures.depth, figures.sah_cost,
-          ratio(figures.sah_cost), reporter);
+    add_build(name, "hploc", queue.device_name(), count, times, figures.nodes, figures.depth, figures.sah_cost,
+              ratio(figures.sah_cost), report);
     const RunTimes refits = time([&] { builder.start_refit(there.data()); });
     if (builder.finish().bounds != figures.bounds) {
         throw Error(ErrorCode::DeviceFault,
                     fmt::format("{}: a tree fitted to its own triangles has other bounds", name));
     }
-    print_refit(name, queue.device_name(), count, refits, reporter);
+    Fields refit = {{"scene", "scene", name},
+                    {"tree", "refitted", "hploc"},
+                    {"device", "", queue.device_name()},
+                    {"triangles", "triangles", count}};
+    for (const ResultField& field : time_fields(refits)) refit.push_back(field);
+    report.add("refit", refit);
 }
 
 int bench_build(BuildFlags& flags) {
@@ -118,15 +119,9 @@ int bench_build(BuildFlags& flags) {
     const std::vector<std::string> scenes = check_record_scenes(flags.scenes);
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
-    reporter.answer(
-        fmt::format("{}: from triangles on the device to compressed nodes and triangles there; others on "
-                    "the CPU; cost of a ray by\nthe surface area heuristic, and its ratio to the SBVH's; at the "
-                    "right, on an {} alone, our rate in\ntimes that of OptiX when it builds for fast tracing and "
-                    "for fast building\n"
-                    "{:11} {:12} {:>8} {:>11} {:>9} {:>9} {:>9} {:>5} {:>8} {:>7} {:>8} {:>8}\n",
-                    queue->device_name(), kFiguresDevice, "scene", "tree", "tri", "ms (median)", "fastest", "Mtri/s",
-                    "nodes", "depth", "cost", "of sbvh", "to trace", "to build"));
-    for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, reporter);
+    BenchReport report(reporter, flags.report, *queue, "Trees built on the device");
+    for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, reporter, report);
+    report.write();
     return 0;
 }
 
@@ -140,7 +135,7 @@ void add_bench_build_command(CLI::App& bench, int& status) {
     verb.add_flag("--compare", flags->compare,
                   "build by sbvh, sbvh-reinsertion, reinsertion, binned and\nploc on the CPU too");
     flags->settings.add(verb, kBenchBuild, *flags);
-    add_report_flags(verb, flags->report);
+    add_bench_report_flags(verb, flags->report);
     verb.callback([&verb, flags, &status] {
         refuse_flags_before(verb);
         status = bench_build(*flags);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -109,19 +108,20 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     return figures;
 }
 
-void print(const SceneFigures& f, Reporter& reporter) {
-    if (reporter.json()) {
-        reporter.event(fmt::format(
-            R"({{"event":"bench","scene":{},"device":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"cached_seconds":{:.4f},"first_pixel_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"camera_rays_per_second":{:.0f},"bounce_rays_per_second":{:.0f},"shadow_rays_per_second":{:.0f},"tree_bytes_per_triangle":{:.1f}}})",
-            json_string(f.scene), json_string(f.device), f.triangles, f.load_s, f.build_s, f.cached_s, f.first_pixel_s,
-            f.render_s, f.msamples * 1e6, f.camera_mrays * 1e6, f.bounce_mrays * 1e6, f.shadow_mrays * 1e6,
-            f.tree_bytes_per_triangle));
-    } else {
-        reporter.answer(fmt::format(
-            "{:10} {:12.12} {:9} {:7.3f} {:7.3f} {:7.3f} {:7.3f} {:8.3f} {:9.2f} {:8.1f} {:8.1f} {:8.1f} {:6.1f}\n",
-            f.scene, f.device, f.triangles, f.load_s, f.build_s, f.cached_s, f.first_pixel_s, f.render_s, f.msamples,
-            f.camera_mrays, f.bounce_mrays, f.shadow_mrays, f.tree_bytes_per_triangle));
-    }
+Fields fields_of(const SceneFigures& f) {
+    return {{"scene", "scene", f.scene},
+            {"device", "device", f.device},
+            {"triangles", "triangles", f.triangles},
+            {"load_seconds", "load", f.load_s, "s", "{:.3f}"},
+            {"build_seconds", "build", f.build_s, "s", "{:.3f}"},
+            {"cached_seconds", "cached", f.cached_s, "s", "{:.3f}"},
+            {"first_pixel_seconds", "first", f.first_pixel_s, "s", "{:.3f}"},
+            {"render_seconds", "render", f.render_s, "s", "{:.3f}"},
+            {"samples_per_second", "samples/s", f.msamples * 1e6, "", "{:.4g}"},
+            {"camera_rays_per_second", "camera rays/s", f.camera_mrays * 1e6, "", "{:.4g}"},
+            {"bounce_rays_per_second", "bounce rays/s", f.bounce_mrays * 1e6, "", "{:.4g}"},
+            {"shadow_rays_per_second", "shadow rays/s", f.shadow_mrays * 1e6, "", "{:.4g}"},
+            {"tree_bytes_per_triangle", "B/tri", f.tree_bytes_per_triangle, "", "{:.1f}"}};
 }
 
 /// Sponza and Sibenik of the test scenes, where PERTEV_SCENES says they are.
@@ -152,22 +152,16 @@ int bench_scenes(PictureFlags& flags) {
     queues.push_back(take_machine(flags.machine, messages));
     if (flags.machine.device == "auto" && queues.front()->is_cuda()) queues.push_back(choose_device("cpu", messages));
     reporter.say_messages();
-    std::string header =
-        fmt::format("seconds: load the file, build the trees, read them from the cache, first sample of every pixel, "
-                    "render; Mrays/s by kind\n{:10} {:12} {:>9} {:>7} {:>7} {:>7} {:>7} {:>8} {:>9} {:>8} {:>8} {:>8} "
-                    "{:>6}\n",
-                    "scene", "device", "triangles", "load", "build", "cached", "first", "render", "Msample/s", "camera",
-                    "bounce", "shadow", "B/tri");
+    BenchReport report(reporter, flags.report, *queues.front(), "Loading, building and rendering");
     for (const std::string& scene : scenes) {
         for (const auto& queue : queues) {
             reporter.set_work(fmt::format("measuring {} on {}", scene, queue->device_name()));
             settings.tracers = tracer_choice(flags.tracer, queue->is_cuda());
             settings.samples = flags.samples > 0 ? flags.samples : (queue->is_cuda() ? 64 : 4);
-            const SceneFigures figures = measure(scene, *queue, settings);
-            reporter.answer(std::exchange(header, "")); // over the first row
-            print(figures, reporter);
+            report.add("bench", fields_of(measure(scene, *queue, settings)));
         }
     }
+    report.write();
     return 0;
 }
 
@@ -187,6 +181,7 @@ void add_bench_command(CLI::App& app, int& status) {
     add_bench_noise_command(verb, status);
     add_bench_sequence_command(verb, status);
     add_bench_build_command(verb, status);
+    add_bench_page_command(verb, status);
     verb.require_subcommand(0, 1);
     verb.callback([&verb, flags, &status] {
         if (verb.get_subcommands().empty()) status = bench_scenes(*flags);

@@ -130,6 +130,7 @@ int bench_frames(FramesFlags& flags) {
                         "for path and hybrid",
                         integrator_name(settings)));
     }
+    BenchReport report(reporter, flags.render.report, *queue, "Frames in real time");
     Session session(*queue, prepared, camera, settings);
     const ToneMap tone_map = ToneMap::Agx;
     const float exposure = session.meter(tone_map);
@@ -141,35 +142,32 @@ int bench_frames(FramesFlags& flags) {
     if (flags.reference > 0) likeness = compare_last(session, flags.reference, reporter);
     reporter.end_progress();
     const double rays_a_second = millions_a_second(figures.rays.total(), figures.seconds);
-    if (reporter.json()) {
-        const auto part = [&](double Likeness::*of) { return likeness ? json_number(*likeness.*of) : "null"; };
-        reporter.event(fmt::format(
-            R"({{"event":"frames","scene":{},"device":{},"integrator":{},"width":{},"height":{},"max_depth":{},"frames":{},"still":{},"reconstruction":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"reconstruction_seconds":{},"copy_seconds":{},"mrays_per_s":{:.1f},"hdr_flip":{},"hdr_flip_of_sample":{},"rel_mse":{},"rel_mse_of_sample":{},"mean":{},"reference_mean":{},"picture":"{}"}})",
-            json_string(flags.render.scene.scene), json_string(queue->device_name()),
-            json_string(integrator_name(settings)), settings.width, settings.height, settings.path.max_depth,
-            flags.frames, flags.still, json_of(flags.render.reconstruction), json_number(figures.whole.median),
-            json_number(figures.whole.least), json_number(figures.whole.greatest),
-            json_number(figures.reconstruction.median), json_number(figures.copy.median), rays_a_second,
-            part(&Likeness::flip), part(&Likeness::flip_of_sample), part(&Likeness::rel_mse),
-            part(&Likeness::rel_mse_of_sample), part(&Likeness::mean), part(&Likeness::reference_mean), hash));
-        return 0;
-    }
-    reporter.answer(fmt::format(
-        "{} on {}: {}x{}, {}, at most {} scatterings, {} frames, camera {}, ReSTIR {}\n{:.3f} ms a "
-        "frame (median; {:.3f} to {:.3f}), "
-        "{:.1f} frames a second; reconstruction {:.3f} ms, copying to the host {:.3f}; {:.1f} Mrays/s; last frame {}\n",
-        flags.render.scene.scene, queue->device_name(), settings.width, settings.height, integrator_name(settings),
-        settings.path.max_depth, flags.frames, flags.still ? "still" : "moving",
-        name_of(flags.render.reconstruction.sharing.light), figures.whole.median * 1e3, figures.whole.least * 1e3,
-        figures.whole.greatest * 1e3, 1 / figures.whole.median, figures.reconstruction.median * 1e3,
-        figures.copy.median * 1e3, rays_a_second, hash));
-    if (likeness) {
-        reporter.answer(fmt::format(
-            "HDR-FLIP of the last frame against {} spp {:.4f}, of its sample alone {:.4f}; relMSE {:.4f} and {:.4f}; "
-            "mean {:.5f} of {:.5f}\n",
-            flags.reference, likeness->flip, likeness->flip_of_sample, likeness->rel_mse, likeness->rel_mse_of_sample,
-            likeness->mean, likeness->reference_mean));
-    }
+    const auto part = [&](double Likeness::*of) { return likeness ? ResultCell(*likeness.*of) : ResultCell(); };
+    report.add_alone("frames",
+                     {{"scene", "scene", flags.render.scene.scene},
+                      {"device", "device", queue->device_name()},
+                      {"integrator", "integrator", integrator_name(settings)},
+                      {"width", "width", settings.width},
+                      {"height", "height", settings.height},
+                      {"max_depth", "scatterings", settings.path.max_depth},
+                      {"frames", "frames", flags.frames},
+                      {"still", "camera stands still", flags.still},
+                      {"reconstruction", "reconstruction", ResultCell::raw(json_of(flags.render.reconstruction))},
+                      {"median_seconds", "a frame, median", figures.whole.median, "s", "{:.6f}"},
+                      {"least_seconds", "least", figures.whole.least, "s", "{:.6f}"},
+                      {"greatest_seconds", "greatest", figures.whole.greatest, "s", "{:.6f}"},
+                      {"frames_per_second", "frames a second", 1 / figures.whole.median, "", "{:.1f}"},
+                      {"reconstruction_seconds", "of it reconstruction", figures.reconstruction.median, "s", "{:.6f}"},
+                      {"copy_seconds", "of it copying to the host", figures.copy.median, "s", "{:.6f}"},
+                      {"mrays_per_s", "Mrays/s", rays_a_second, "", "{:.1f}"},
+                      {"hdr_flip", "HDR-FLIP of the last frame", part(&Likeness::flip), "", "{:.4f}"},
+                      {"hdr_flip_of_sample", "of its sample alone", part(&Likeness::flip_of_sample), "", "{:.4f}"},
+                      {"rel_mse", "relMSE of the last frame", part(&Likeness::rel_mse), "", "{:.4f}"},
+                      {"rel_mse_of_sample", "of its sample alone", part(&Likeness::rel_mse_of_sample), "", "{:.4f}"},
+                      {"mean", "mean", part(&Likeness::mean), "", "{:.5f}"},
+                      {"reference_mean", "mean of the reference", part(&Likeness::reference_mean), "", "{:.5f}"},
+                      {"picture", "last frame", hash}});
+    report.write();
     return 0;
 }
 
@@ -189,7 +187,7 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
         ->type_name("SPP")
         ->check(whole_between(1, kMaxSamplesPerPixel));
     verb.add_option("--write", flags->write, "write each frame as a PNG file into this folder")->type_name("FOLDER");
-    add_report_flags(verb, flags->render.report);
+    add_bench_report_flags(verb, flags->render.report);
     flags->render.settings.add(verb, kBenchFrames, flags->render);
     verb.callback([&verb, flags, &status] {
         refuse_flags_before(verb);

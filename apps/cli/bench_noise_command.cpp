@@ -82,28 +82,27 @@ Comparison compare(const Pictures& sobol, const Pictures& independent, double ke
             .invalid_samples = sobol.invalid_samples + independent.invalid_samples};
 }
 
-void print(const NoiseFlags& flags, const RenderSettings& settings, const Queue& queue, const Comparison& figures,
-           Reporter& reporter) {
-    const std::string& scene = flags.render.scene.scene;
+Fields fields_of(const NoiseFlags& flags, const RenderSettings& settings, const Queue& queue,
+                 const Comparison& figures) {
     const NoiseFigures &sobol = figures.sobol, &independent = figures.independent;
-    if (reporter.json()) {
-        reporter.event(fmt::format(
-            R"({{"event":"noise","scene":{},"device":{},"width":{},"height":{},"samples":{},"seeds":{},"keep_percent":{},"pixels":{},"rel_mse":{},"rel_mse_independent":{},"ratio":{},"seconds":{:.5f},"seconds_independent":{:.5f},"efficiency":{},"efficiency_independent":{},"mean":{},"mean_independent":{},"invalid_samples":{}}})",
-            json_string(scene), json_string(queue.device_name()), settings.width, settings.height, settings.samples,
-            flags.seeds, json_number(static_cast<double>(flags.keep_percent)), figures.pixels,
-            json_number(sobol.variance.rel_mse), json_number(independent.variance.rel_mse),
-            json_number(figures.ratio()), sobol.seconds, independent.seconds, json_number(sobol.efficiency()),
-            json_number(independent.efficiency()), json_number(sobol.variance.mean),
-            json_number(independent.variance.mean), figures.invalid_samples));
-        return;
-    }
-    reporter.answer(fmt::format("{} on {}: {}x{}, {} spp, {} seeds, {:.4g} % of the pixels\n"
-                                "relMSE {:.3e}, independent samples {:.3e}: {:.2f} times less; mean {:.5f} and {:.5f}\n"
-                                "{:.4f} s a picture, 1 / (relMSE x s) {:.4g}, independent samples {:.4g}\n",
-                                scene, queue.device_name(), settings.width, settings.height, settings.samples,
-                                flags.seeds, flags.keep_percent, sobol.variance.rel_mse, independent.variance.rel_mse,
-                                figures.ratio(), sobol.variance.mean, independent.variance.mean, sobol.seconds,
-                                sobol.efficiency(), independent.efficiency()));
+    return {{"scene", "scene", flags.render.scene.scene},
+            {"device", "device", queue.device_name()},
+            {"width", "width", settings.width},
+            {"height", "height", settings.height},
+            {"samples", "samples of each pixel", settings.samples},
+            {"seeds", "seeds", flags.seeds},
+            {"keep_percent", "of the pixels", static_cast<double>(flags.keep_percent), "%"},
+            {"pixels", "pixels", figures.pixels},
+            {"rel_mse", "relMSE", sobol.variance.rel_mse, "", "{:.3e}"},
+            {"rel_mse_independent", "relMSE of independent samples", independent.variance.rel_mse, "", "{:.3e}"},
+            {"ratio", "times less", figures.ratio(), "", "{:.2f}"},
+            {"seconds", "a picture", sobol.seconds, "s", "{:.4f}"},
+            {"seconds_independent", "a picture of independent samples", independent.seconds, "s", "{:.4f}"},
+            {"efficiency", "1 / (relMSE x s)", sobol.efficiency()},
+            {"efficiency_independent", "of independent samples", independent.efficiency()},
+            {"mean", "mean", sobol.variance.mean, "", "{:.5f}"},
+            {"mean_independent", "mean of independent samples", independent.variance.mean, "", "{:.5f}"},
+            {"invalid_samples", "invalid samples", figures.invalid_samples}};
 }
 
 int bench_noise(NoiseFlags& flags) {
@@ -111,6 +110,7 @@ int bench_noise(NoiseFlags& flags) {
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, reporter);
     const auto& [queue, scene, settings, camera, prepared] = *benched;
 
+    BenchReport report(reporter, flags.render.report, *queue, "Variance of a picture");
     throw_if_interrupted();
     reporter.set_work("warming up"); // clocks, caches, the driver's first launch
     Session session(*queue, prepared, camera, settings);
@@ -121,8 +121,9 @@ int bench_noise(NoiseFlags& flags) {
     const Pictures sobol = render(SamplerKind::Sobol, 0);
     const Pictures independent = render(SamplerKind::Independent, flags.seeds);
     reporter.end_progress();
-    print(flags, settings, *queue, compare(sobol, independent, static_cast<double>(flags.keep_percent) / 100),
-          reporter);
+    report.add_alone("noise", fields_of(flags, settings, *queue,
+                                        compare(sobol, independent, static_cast<double>(flags.keep_percent) / 100)));
+    report.write();
     return 0;
 }
 
@@ -141,7 +142,7 @@ void add_bench_noise_command(CLI::App& bench, int& status) {
         ->type_name("PERCENT")
         ->check(number_above_zero(100))
         ->capture_default_str();
-    add_report_flags(verb, flags->render.report);
+    add_bench_report_flags(verb, flags->render.report);
     flags->render.settings.add(verb, kBenchNoise, flags->render);
     verb.callback([&verb, flags, &status] {
         refuse_flags_before(verb);

@@ -6,9 +6,11 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "base/error.h"
+#include "base/write_file_atomically.h"
 #include "formats/builtin_scenes.h"
 #include "formats/read_scene.h"
 #include "lab/record_scenes.h"
+#include "lab/report_page.h"
 #include "math/portable_math.h"
 #include "session/check_integrator.h"
 #include "session/opening/strictness.h"
@@ -36,18 +38,18 @@ void add_record_scenes(CLI::App& verb, std::vector<std::string>& names) {
 
 std::vector<std::string> check_record_scenes(std::vector<std::string> names) {
     if (names.empty()) {
-        for (const RecordScene& scene : record_scenes()) names.emplace_back(scene.name);
+        for (const RecordScene& scene : the_record().scenes) names.emplace_back(scene.name);
     }
     for (const std::string& name : names) {
-        const RecordScene* const record = find_record_scene(name);
+        const RecordScene* const record = find_named(the_record().scenes, name);
         if (record == nullptr) check_bench_scene(name, "sponza, bunny or forest nor ");
-        if (record != nullptr && record->file != nullptr) record_file(*record, public_scenes_folder());
+        if (record != nullptr && !record->file.empty()) record_file(*record, public_scenes_folder());
     }
     return names;
 }
 
 Scene read_record_scene(const std::string& name, Messages& messages) {
-    if (const RecordScene* record = find_record_scene(name)) {
+    if (const RecordScene* record = find_named(the_record().scenes, name)) {
         return make_record_scene(*record, public_scenes_folder(), messages);
     }
     ReadOptions options;
@@ -94,13 +96,72 @@ void add_picture_flags(CLI::App& verb, PictureFlags& flags, const std::string& s
         ->check(picture_size());
     add_whole(verb, "--spp", flags.samples, fmt::format("samples a pixel ({})", samples), 1, kMaxSamplesPerPixel);
     flags.settings.add(verb, kBench, flags);
-    add_report_flags(verb, flags.report);
+    add_bench_report_flags(verb, flags.report);
 }
 
 PrepareOptions trees_for(const RenderSettings& settings, const Queue& queue) {
     PrepareOptions options;
     options.builder = builder_of(tracers_of(settings, queue.is_cuda()));
     return options;
+}
+
+void add_bench_report_flags(CLI::App& verb, ReportFlags& flags) {
+    add_report_flags(verb, flags);
+    verb.add_option(
+            "--report", flags.measurement,
+            "write the measurement, with machine and command: as JSON, as a page\nthat draws it, or its rows as CSV")
+        ->type_name("FILE.json|.html|.csv")
+        ->check(file_name());
+}
+
+BenchReport::BenchReport(Reporter& reporter, const ReportFlags& flags, const Queue& queue, std::string title)
+    : reporter_(reporter), file_(flags.measurement), measurement_(start_measurement(queue, std::move(title))) {
+    if (file_.empty()) return;
+    const std::string extension = std::filesystem::path(file_).extension().string();
+    refuse(extension != ".json" && extension != ".html" && extension != ".csv",
+           fmt::format("--report {}: wants a name that ends in .json, .html or .csv", file_));
+    check_writable(file_);
+}
+
+ResultTable& BenchReport::table_of(const char* name) {
+    for (ResultTable& table : measurement_.tables) {
+        if (table.name == name) return table;
+    }
+    return measurement_.tables.emplace_back(ResultTable{name, name});
+}
+
+void BenchReport::add(const char* event, const Fields& fields, const std::string& above) {
+    ResultTable& table = table_of(event);
+    table.add(fields);
+    reporter_.event(json_of(event, fields));
+    if (table.rows.size() == 1) reporter_.answer(above + line_of(table, std::nullopt));
+    reporter_.answer(line_of(table, table.rows.size() - 1));
+}
+
+void BenchReport::add_alone(const char* event, const Fields& fields) {
+    table_of(event).add(fields);
+    reporter_.event(json_of(event, fields));
+    reporter_.answer(text_of(fields));
+}
+
+void BenchReport::keep(const char* name, const Fields& fields) { table_of(name).add(fields); }
+
+void BenchReport::write() const {
+    if (file_.empty()) return;
+    const std::string extension = std::filesystem::path(file_).extension().string(), json = json_of(measurement_);
+    std::string text = extension == ".html" ? report_page({&json, 1}) : json + '\n';
+    if (extension == ".csv") {
+        text.clear();
+        for (const ResultTable& table : measurement_.tables) text += csv_of(table);
+    }
+    reporter_.write_output(file_, [&] { write_file_atomically(file_, std::as_bytes(std::span(text))); });
+}
+
+Fields time_fields(const RunTimes& times) {
+    return {{"median_seconds", "median", times.median, "s", "{:.6f}"},
+            {"least_seconds", "least", times.least, "s", "{:.6f}"},
+            {"greatest_seconds", "greatest", times.greatest, "s", "{:.6f}"},
+            {"runs", "", times.runs}};
 }
 
 Camera moved(const Camera& camera, float yaw, Vec3 step) {

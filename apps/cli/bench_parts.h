@@ -12,7 +12,9 @@
 
 #include "apps/cli/render_flags.h"
 #include "apps/cli/reporter.h"
+#include "device/device_timer.h"
 #include "device/queue.h"
+#include "lab/measurement.h"
 #include "render/prepare_scene.h"
 #include "session/session.h"
 
@@ -75,6 +77,35 @@ void add_picture_flags(CLI::App& verb, PictureFlags& flags, const std::string& s
 /// The binary trees that pictures with these settings need; what they are turned into is made by the session.
 PrepareOptions trees_for(const RenderSettings& settings, const Queue& queue);
 
+/// Adds --report, the file of the measurement, beside -q and --json.
+void add_bench_report_flags(CLI::App& verb, ReportFlags& flags);
+
+/// What a benchmark measures: said as it comes, and a measurement (lab/measurement.h) in the file of --report.
+class BenchReport {
+public:
+    BenchReport(Reporter& reporter, const ReportFlags& flags, const Queue& queue, std::string title);
+
+    /// A row of the table of this event. With --json it is an object; for people a line under the table's head, with
+    /// `above` over that.
+    void add(const char* event, const Fields& fields, const std::string& above = "");
+    /// A row that is all there is, for people a line a field.
+    void add_alone(const char* event, const Fields& fields);
+    /// A row that nobody is told: it stands in the file alone.
+    void keep(const char* name, const Fields& fields);
+    /// Writes the file, where one is wanted.
+    void write() const;
+
+private:
+    ResultTable& table_of(const char* name);
+
+    Reporter& reporter_;
+    std::string file_;
+    Measurement measurement_;
+};
+
+/// Median, least and greatest seconds, and how many runs these are of.
+Fields time_fields(const RunTimes& times);
+
 /// Turned by `yaw` radians about +y, and moved by `step`, metres, of its own space.
 Camera moved(const Camera& camera, float yaw, Vec3 step);
 
@@ -86,6 +117,7 @@ void refuse_flags_before(const CLI::App& verb);
 
 /// `bench rays`, a verb of `bench`.
 void add_bench_rays_command(CLI::App& bench, int& status);
+void add_bench_page_command(CLI::App& bench, int& status);
 /// `bench build`, `bench frames`, `bench noise`, `bench render` and `bench sequence`, likewise.
 void add_bench_build_command(CLI::App& bench, int& status);
 void add_bench_frames_command(CLI::App& bench, int& status);

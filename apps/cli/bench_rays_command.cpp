@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <memory>
 #include <span>
-#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -96,55 +95,57 @@ SetFigures measure(Queue& queue, const RaySet& set, const RaysFlags& flags, cons
     return figures;
 }
 
-std::string beside(double value, const char* format, bool is_there, const char* none = "-") {
-    return is_there ? fmt::format(fmt::runtime(format), value) : std::string(none);
-}
-
-void print(const SetFigures& f, bool is_checked, Reporter& reporter) {
-    const bool has = f.record != nullptr;
+Fields fields_of(const SetFigures& f, bool is_checked) {
+    const bool has = f.record != nullptr, any = f.rays > 0;
     const RecordedSet r = has ? f.record->sets[f.number] : RecordedSet{};
-    const double best = has ? best_rays_per_second(*f.record, f.number) : 0.0;
-    const double rate = f.rays_per_second() * 1e-6;
-    const Ratio ratio = f.ratio();
-    if (reporter.json()) {
-        const std::string record =
-            has ? fmt::format(R"({{"hit_share":{},"nodes":{},"triangles":{},"best_rays_per_second":{:.0f}}})",
-                              r.hit_share, r.nodes, r.triangles, best)
-                : "null";
-        reporter.event(fmt::format(
-            R"({{"event":"rays","scene":{},"set":"{}","device":{},"tracer":"{}","rays":{},"rays_per_second":{},"median_seconds":{},"least_seconds":{},"greatest_seconds":{},"runs":{},"hit_share":{:.6f},"nodes":{:.3f},"triangles":{:.3f},"most_nodes":{},"most_triangles":{},"checked":{},"record":{},{}}})",
-            json_string(f.scene), f.set, json_string(f.device), f.tracer, f.rays,
-            beside(f.rays_per_second(), "{:.0f}", f.rays > 0, "null"), json_number(f.times.median),
-            json_number(f.times.least), json_number(f.times.greatest), f.times.runs, f.hit_share, f.work.nodes,
-            f.work.triangles, f.work.most_nodes, f.work.most_triangles, is_checked, record, ratios_json({&ratio, 1})));
-        return;
-    }
-    if (f.rays == 0) {
-        return reporter.answer(
-            fmt::format("{:11} {:8} {:8} empty: no ray before it hit anything\n", f.scene, f.set, 0));
-    }
-    reporter.answer(fmt::format(
-        "{:11} {:8} {:8} {:8.2f} {:8.2f} {:8.2f} {:6.3f} {:6.1f} {:6.1f} {:7} {:>6} {:>6} {:>6} {:>6} {:>6} {}\n",
-        f.scene, f.set, f.rays, rate, millions_a_second(f.rays, f.times.greatest),
-        millions_a_second(f.rays, f.times.least), f.hit_share, f.work.nodes, f.work.triangles, f.work.most_nodes,
-        beside(best * 1e-6, "{:.0f}", has), ratio_cell(ratio), beside(r.hit_share, "{:.3f}", has),
-        beside(r.nodes, "{:.1f}", has), beside(r.triangles, "{:.1f}", has), f.tracer));
+    const auto recorded = [has](double value) { return has ? ResultCell(value) : ResultCell(); };
+    const auto traced = [any](auto value) { return any ? ResultCell(value) : ResultCell(); };
+    Fields fields = {{"scene", "scene", f.scene},
+                     {"set", "set", f.set},
+                     {"device", "", f.device},
+                     {"tracer", "", f.tracer},
+                     {"rays", "rays", f.rays},
+                     {"rays_per_second", "", traced(f.rays_per_second())},
+                     {"mrays", "Mrays/s", traced(f.rays_per_second() * 1e-6), "", "{:.2f}"}};
+    for (const ResultField& time : time_fields(f.times)) fields.push_back(time);
+    fields.insert(fields.end(),
+                  {{"hit_share", "hits", f.hit_share, "", "{:.3f}"},
+                   {"nodes", "nodes", f.work.nodes, "", "{:.1f}"},
+                   {"triangles", "tri", f.work.triangles, "", "{:.1f}"},
+                   {"most_nodes", "most", f.work.most_nodes},
+                   {"most_triangles", "", f.work.most_triangles},
+                   {"checked", "", is_checked},
+                   {"record", "",
+                    has ? ResultCell::raw(json_of("", {{"hit_share", "", r.hit_share},
+                                                       {"nodes", "", r.nodes},
+                                                       {"triangles", "", r.triangles},
+                                                       {"best_rays_per_second", "", r.best_rays_per_second}}))
+                        : ResultCell()},
+                   {"best_mrays", "best", recorded(has ? r.best_rays_per_second * 1e-6 : 0), "", "{:.0f}"},
+                   field_of(f.ratio()),
+                   {"recorded_hit_share", "its hits", recorded(r.hit_share), "", "{:.3f}"},
+                   {"recorded_nodes", "its nodes", recorded(r.nodes), "", "{:.1f}"},
+                   {"recorded_triangles", "its tri", recorded(r.triangles), "", "{:.1f}"},
+                   {"traced_by", "traced by", any ? f.tracer : "empty: no ray before it hit anything"}});
+    return fields;
 }
 
 /// Of ratios to the best public tracers, where there are any; `scene` is "" of all scenes together.
 void print_summary(const std::string& scene, std::span<const double> ratios, Reporter& reporter) {
     if (ratios.empty()) return;
     const auto [mean, least] = summarize(ratios);
-    reporter.event(fmt::format(R"({{"event":"ratios","scene":{},"sets":{},"ratio_to_best":{:.4f},"least":{:.4f}}})",
-                               scene.empty() ? "null" : json_string(scene), ratios.size(), mean, least));
+    reporter.event(json_of("ratios", {{"scene", "", if_said(scene)},
+                                      {"sets", "", ratios.size()},
+                                      {"ratio_to_best", "", mean},
+                                      {"least", "", least}}));
     reporter.answer(
         fmt::format("{}: {:.2f} times the best public tracer, the geometric mean of {} sets; the least {:.2f}\n",
                     scene.empty() ? "all" : scene, mean, ratios.size(), least));
 }
 
-/// `header` is printed before the first row, and is empty after it. Ratios to the best public tracers go to `all`.
+/// Ratios to the best public tracers go to `all`.
 void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, const TracerChoice& choice,
-                 std::string& header, std::vector<double>& all, Reporter& reporter) {
+                 BenchReport& report, std::vector<double>& all, Reporter& reporter) {
     Messages& messages = reporter.messages();
     reporter.set_work(fmt::format("{}: making sets of rays", name));
     Stopwatch watch;
@@ -163,7 +164,7 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     reporter.say(fmt::format("{}: {} triangles, scene {:.2f} s, trees {:.2f} s, ray sets {:.2f} s (frames of {}x{})",
                              name, prepared.triangles, load_s, prepared.build_seconds, watch.seconds(), frame.width,
                              frame.height));
-    const RecordScene* const record = find_record_scene(name);
+    const RecordScene* const record = find_named(the_record().scenes, name);
     const bool is_moved = flags.scene.camera.eye || flags.scene.camera.target || flags.scene.camera.fov_deg;
     std::vector<double> ratios;
     for (std::size_t i = 0; i < sets.size(); ++i) {
@@ -172,8 +173,12 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
         figures.scene = record != nullptr ? name : std::filesystem::path(name).stem().string();
         figures.record = is_moved || i >= recorded ? nullptr : record, figures.number = i,
         figures.triangles = prepared.triangles;
-        reporter.answer(std::exchange(header, ""));
-        print(figures, flags.check, reporter);
+        report.add(
+            "rays", fields_of(figures, flags.check),
+            fmt::format("share of hits, nodes and triangles a ray in the binary tree, nodes of the dearest ray; at the "
+                        "right the best\npublic tracer on one {}, the ratio to it where ours is on one too, and what "
+                        "the record says of the same rays\n",
+                        the_record().device));
         if (const auto ratio = figures.ratio().value) ratios.push_back(*ratio);
         sets[i].rays = {}; // a quarter of a gigabyte on the record
     }
@@ -191,18 +196,11 @@ int bench_rays(RaysFlags& flags) {
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, reporter.messages());
     const TracerChoice choice = tracer_choice(flags.tracer, queue->is_cuda()).value(); // there is one: of the best tree
-    std::string header = fmt::format(
-        "{}: Mrays/s (median, slowest, fastest run), share of hits, nodes and triangles a ray in the binary tree,\n"
-        "nodes of the dearest ray; at the right the best public tracer on one {}, the ratio to it where ours is on\n"
-        "one too, what the record says of the same rays, and by what ours were traced\n{:11} {:8} {:>8} {:>8} {:>8} "
-        "{:>8} {:>6} {:>6} {:>6} "
-        "{:>7} "
-        "{:>6} {:>6} {:>6} {:>6} {:>6} {}\n",
-        queue->device_name(), kFiguresDevice, "scene", "set", "rays", "Mrays/s", "slowest", "fastest", "hits", "nodes",
-        "tri", "most", "best", "ratio", "hits", "nodes", "tri", "traced by");
+    BenchReport report(reporter, flags.report, *queue, "Rays of the record");
     std::vector<double> ratios;
-    for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, choice, header, ratios, reporter);
+    for (const std::string& scene : scenes) bench_scene(scene, *queue, flags, choice, report, ratios, reporter);
     if (scenes.size() > 1) print_summary("", ratios, reporter);
+    report.write();
     return 0;
 }
 
@@ -220,7 +218,7 @@ void add_bench_rays_command(CLI::App& bench, int& status) {
     verb.add_flag("--axes", flags->axes, "two more sets: diffuse1 turned along axes, and a thousandth beside them");
     flags->tracer.default_build = TreeBuild::Best; // no tree's making is timed
     flags->settings.add(verb, kBenchRays, *flags);
-    add_report_flags(verb, flags->report);
+    add_bench_report_flags(verb, flags->report);
     verb.callback([&verb, flags, &status] {
         refuse_flags_before(verb);
         status = bench_rays(*flags);

@@ -19,7 +19,7 @@
 #include "image/write_image.h"
 #include "integrators/path/path_integrator.h"
 #include "lab/isolated_rays.h"
-#include "lab/record_jobs.h"
+#include "lab/record_scenes.h"
 #include "lab/stored_figures.h"
 #include "session/machine.h"
 #include "settings/parse_values.h"
@@ -96,7 +96,7 @@ int bench_job(JobFlags& flags) {
     Reporter reporter(flags.picture.report);
     Messages& messages = reporter.messages();
     flags.picture.settings.read(flags.picture, messages);
-    const RecordJob& job = *find_record_job(flags.job);
+    const RecordJob& job = *find_named(the_record().jobs, flags.job);
     const std::string& file = flags.picture.scenes.front();
     RenderSettings settings = settings_of(job, flags);
     if (!flags.output.empty()) {
@@ -108,6 +108,7 @@ int bench_job(JobFlags& flags) {
     listen_for_interrupt();
     const std::unique_ptr<Queue> queue = take_machine(flags.picture.machine, messages);
     settings.tracers = tracer_choice(flags.picture.tracer, queue->is_cuda());
+    BenchReport report(reporter, flags.picture.report, *queue, "One job of the record");
     reporter.set_work(fmt::format("measuring {}", file));
     const Stopwatch watch;
     const Scene scene = make_job_scene(job, file, messages);
@@ -139,41 +140,33 @@ int bench_job(JobFlags& flags) {
     const JobBytes bytes = bytes_of(settings, prepared, *queue);
     const std::size_t path_bytes = PathIntegrator::bytes_of_path({});
     const std::string device = queue->device_name();
+    Fields fields = {
+        {"job", "job", job.name},
+        {"device", "device", device},
+        {"width", "width", settings.width},
+        {"height", "height", settings.height},
+        {"samples", "samples of each pixel", settings.samples},
+        {"triangles", "triangles", prepared.triangles},
+        {"load_seconds", "load", load_s, "s", "{:.3f}"},
+        {"build_seconds", "trees", prepared.build_seconds, "s", "{:.3f}"},
+        {"render_seconds", "render", result.render_seconds, "s", "{:.3f}"},
+        {"samples_per_second", "samples a second", samples_per_second, "", "{:.4g}"},
+        {"rays_per_second", "rays a second", rays_per_second, "", "{:.4g}"},
+        {"rays_per_sample", "rays a sample", static_cast<double>(result.rays.total()) / samples, "", "{:.2f}"},
+        {"ratio_to_isolated_rays", "of the same rays by themselves", of_isolated, "", "{:.3f}"},
+        {"queue_bytes", "queues of paths", bytes.of_queues, "bytes"},
+        {"bytes_per_path", "a path", path_bytes, "bytes"},
+        {"structure_bytes_per_triangle", "trees with triangles", bytes.of_structures, "bytes a triangle", "{:.1f}"},
+        {"moved_samples_per_second", "samples a second after a move", moved_per_second, "", "{:.4g}"},
+        {"mean", "mean", mean, "", "{:.5f}"},
+        {"invalid_samples", "invalid samples", result.invalid_samples},
+        {"hash", "picture", hash}};
     const std::vector<Ratio> ratios = ratios_of(JobRun{device, &job, settings.width, settings.height, settings.samples,
                                                        prepared.triangles, mean, samples_per_second});
-    if (flags.picture.report.json) {
-        reporter.event(fmt::format(
-            R"({{"event":"job","job":"{}","device":{},"width":{},"height":{},"samples":{},"triangles":{},"load_seconds":{:.4f},"build_seconds":{:.4f},"render_seconds":{:.4f},"samples_per_second":{:.0f},"rays_per_second":{:.0f},"rays_per_sample":{:.3f},"ratio_to_isolated_rays":{},"queue_bytes":{},"bytes_per_path":{},"structure_bytes_per_triangle":{},"moved_samples_per_second":{},"mean":{:.6f},"invalid_samples":{},"hash":"{}",{}}})",
-            job.name, json_string(device), settings.width, settings.height, settings.samples, prepared.triangles,
-            load_s, prepared.build_seconds, result.render_seconds, samples_per_second, rays_per_second,
-            static_cast<double>(result.rays.total()) / samples,
-            of_isolated ? fmt::format("{:.4f}", *of_isolated) : "null", bytes.of_queues, path_bytes,
-            bytes.of_structures ? fmt::format("{:.2f}", *bytes.of_structures) : "null",
-            moved_per_second ? fmt::format("{:.0f}", *moved_per_second) : "null", mean, result.invalid_samples, hash,
-            ratios_json(ratios)));
-    } else {
-        reporter.answer(
-            fmt::format("job {} on {}: {}x{}, {} spp, {} triangles\nload {:.3f} s, trees {:.3f} s, render {:.3f} s\n"
-                        "{:.2f} Msamples/s, {:.1f} Mrays/s, {:.2f} rays a sample\n{}\nmean {:.5f}, picture {}\n",
-                        job.name, device, settings.width, settings.height, settings.samples, prepared.triangles, load_s,
-                        prepared.build_seconds, result.render_seconds, samples_per_second * 1e-6,
-                        millions_a_second(result.rays.total(), result.render_seconds),
-                        static_cast<double>(result.rays.total()) / samples, ratios_line(ratios, job), mean, hash));
-        if (bytes.of_structures) {
-            reporter.answer(fmt::format(
-                "queues of paths {:.1f} MB, {} bytes a path, trees with their triangles {:.1f} bytes a triangle\n",
-                static_cast<double>(bytes.of_queues) * 1e-6, path_bytes, *bytes.of_structures));
-        }
-        if (of_isolated) {
-            reporter.answer(fmt::format("rays a second: {:.3f} of the same mix of the record's rays by themselves\n",
-                                        *of_isolated));
-        }
-        if (moved_per_second) {
-            reporter.answer(
-                fmt::format("one sample a pixel after the camera moved: {:.2f} Msamples/s, {:.3f} of {} spp\n",
-                            *moved_per_second * 1e-6, *moved_per_second / samples_per_second, settings.samples));
-        }
-    }
+    for (const Ratio& ratio : ratios) fields.push_back(field_of(ratio));
+    report.add_alone("job", fields);
+    if (!ratios.front().value) reporter.answer(why_no_ratios(job));
+    report.write();
     return 0;
 }
 
@@ -184,7 +177,7 @@ void add_bench_render_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<JobFlags>();
     flags->picture.tracer.default_build = TreeBuild::Best; // what is timed is the render alone
     std::vector<std::string> names;
-    for (const RecordJob& job : record_jobs()) names.emplace_back(job.name);
+    for (const RecordJob& job : the_record().jobs) names.emplace_back(job.name);
     verb.add_option(
             "--job", flags->job,
             "S5 or S8: grey geometry under a constant sky, at most 5 or 8\nscatterings, Russian roulette from the "

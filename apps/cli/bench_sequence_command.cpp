@@ -157,15 +157,11 @@ Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const
     return scores;
 }
 
-std::string json_of(const Score& score) {
-    return fmt::format(R"({{"hdr_flip":{},"hdr_flip_first":{},"hdr_flip_last":{},"flicker":{}}})",
-                       json_number(score.mean_flip()), json_number(score.flip_of_first),
-                       json_number(score.flip_of_last), json_number(score.mean_flicker()));
-}
-
-std::string text_of(const char* name, const Score& score) {
-    return fmt::format("  {:<8} HDR-FLIP {:.4f} (first frame {:.4f}, last {:.4f}), flicker {:.5f}\n", name,
-                       score.mean_flip(), score.flip_of_first, score.flip_of_last, score.mean_flicker());
+Fields fields_of(const Score& score) {
+    return {{"hdr_flip", "HDR-FLIP", score.mean_flip(), "", "{:.4f}"},
+            {"hdr_flip_first", "of the first frame", score.flip_of_first, "", "{:.4f}"},
+            {"hdr_flip_last", "of the last frame", score.flip_of_last, "", "{:.4f}"},
+            {"flicker", "flicker", score.mean_flicker(), "", "{:.5f}"}};
 }
 
 int bench_sequence(SequenceFlags& flags) {
@@ -182,6 +178,7 @@ int bench_sequence(SequenceFlags& flags) {
     const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, kBenchSequence, reporter);
     reporter.say_messages();
     listen_for_interrupt();
+    BenchReport report(reporter, flags.render.report, *ready->queue, "Frames of a moving picture");
     PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
     Session session(*ready->queue, ready->prepared(), record.camera.camera, ready->settings);
     const ToneMap tone_map = ToneMap::Agx;
@@ -190,26 +187,36 @@ int bench_sequence(SequenceFlags& flags) {
     reporter.set_work("rendering");
     const Scores scores = measure(*ready, session, record, flags, exposure, tone_map, reporter);
     reporter.end_progress();
-    if (reporter.json()) {
-        reporter.event(fmt::format(
-            R"({{"event":"sequence_errors","scene":{},"device":{},"width":{},"height":{},"frames":{},"max_depth":{},"reconstruction":{},"reference_spp":{},"reference_noise":{},"reference_flicker":{},"ours":{},"sample":{},"peer":{},"last_frame":"{}"}})",
-            json_string(flags.render.scene.scene), json_string(ready->queue->device_name()), ready->settings.width,
-            ready->settings.height, ready->sequence.count(), ready->settings.path.max_depth,
-            json_of(flags.render.reconstruction), flags.reference, json_number(scores.noise),
-            json_number(scores.half.mean_flicker()), json_of(scores.ours), json_of(scores.sample),
-            scores.peer ? json_of(*scores.peer) : "null", picture_hash(session.frame().picture()).hex()));
-        return 0;
+    const auto score = [](const Score& of) { return ResultCell::raw(json_of("", fields_of(of))); };
+    report.add_alone("sequence_errors",
+                     {{"scene", "scene", flags.render.scene.scene},
+                      {"device", "device", ready->queue->device_name()},
+                      {"width", "width", ready->settings.width},
+                      {"height", "height", ready->settings.height},
+                      {"frames", "frames", ready->sequence.count()},
+                      {"max_depth", "scatterings", ready->settings.path.max_depth},
+                      {"reconstruction", "", ResultCell::raw(json_of(flags.render.reconstruction))},
+                      {"reference_spp", "samples of the references", flags.reference},
+                      {"reference_noise", "HDR-FLIP of their halves", scores.noise, "", "{:.4f}"},
+                      {"reference_flicker", "flicker of their own noise", scores.half.mean_flicker(), "", "{:.5f}"},
+                      {"ours", "", score(scores.ours)},
+                      {"sample", "", score(scores.sample)},
+                      {"peer", "", scores.peer ? score(*scores.peer) : ResultCell()},
+                      {"last_frame", "last frame", picture_hash(session.frame().picture()).hex()}});
+    if (flags.reference > 0) {
+        ResultTable table;
+        const auto add = [&](const char* name, const Score& of) {
+            Fields fields = {{"way", "frames by", name}};
+            for (const ResultField& field : fields_of(of)) fields.push_back(field);
+            report.keep("scores", fields);
+            table.add(fields);
+        };
+        add("frames", scores.ours);
+        if (scores.peer) add("peer", *scores.peer);
+        add("samples", scores.sample);
+        reporter.answer(text_of(table));
     }
-    reporter.answer(fmt::format("{} on {}: {}x{}, {} frames; last frame {}\n", flags.render.scene.scene,
-                                ready->queue->device_name(), ready->settings.width, ready->settings.height,
-                                ready->sequence.count(), picture_hash(session.frame().picture()).hex()));
-    if (flags.reference == 0) return 0;
-    reporter.answer(fmt::format("against {} spp, one half of which differs from the other by {:.4f}; their own noise "
-                                "flickers by {:.5f}:\n",
-                                flags.reference, scores.noise, scores.half.mean_flicker()));
-    reporter.answer(text_of("frames", scores.ours));
-    if (scores.peer) reporter.answer(text_of("peer", *scores.peer));
-    reporter.answer(text_of("samples", scores.sample));
+    report.write();
     return 0;
 }
 
@@ -238,7 +245,7 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
                     "write of each fifteenth frame samples, frame, peer and reference\nside by side as PNG into this "
                     "folder")
         ->type_name("FOLDER");
-    add_report_flags(verb, flags->render.report);
+    add_bench_report_flags(verb, flags->render.report);
     flags->render.settings.add(verb, kBenchSequence, flags->render);
     verb.callback([&verb, flags, &status] {
         refuse_flags_before(verb);

@@ -16,7 +16,7 @@ namespace pertev {
 
 Scene read_lab_scene(const SceneOptions& options, Messages& messages) {
     const std::string& name = options.scene;
-    if (const RecordScene* record = find_record_scene(name)) {
+    if (const RecordScene* record = find_named(the_record().scenes, name)) {
         if (!options.file_scene.empty()) {
             throw Error(ErrorCode::BadInput,
                         fmt::format("--file-scene: {} has no scenes of its own to choose from", name));
@@ -26,7 +26,7 @@ Scene read_lab_scene(const SceneOptions& options, Messages& messages) {
     std::error_code no_such_name; // of a name too long for a file, too
     if (!builtin_scene(name) && !std::filesystem::exists(name, no_such_name)) {
         std::vector<std::string_view> known = builtin_scene_names();
-        for (const RecordScene& record : record_scenes()) known.emplace_back(record.name);
+        for (const RecordScene& record : the_record().scenes) known.emplace_back(record.name);
         throw Error(ErrorCode::BadInput, fmt::format("{}: neither a file nor a scene of this name; there are {}", name,
                                                      fmt::join(known, ", ")));
     }

@@ -20,6 +20,7 @@ namespace pertev {
 /// -q silences everything but errors; --json turns everything into JSON lines on stdout. Every verb has both.
 struct ReportFlags {
     bool quiet = false, json = false;
+    std::string measurement; // file that a benchmark writes its measurement into; empty: none
 };
 
 void add_report_flags(CLI::App& verb, ReportFlags& flags);

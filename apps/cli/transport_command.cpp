@@ -19,9 +19,9 @@
 #include "image/read_image.h"
 #include "image/write_exr.h"
 #include "lab/describe_camera.h"
+#include "lab/record_scenes.h"
 #include "lab/run_transport.h"
 #include "lab/transport_light.h"
-#include "lab/transport_presets.h"
 #include "lab/transport_tables.h"
 #include "session/survey/default_light.h"
 #include "settings/parse_values.h"
@@ -59,7 +59,7 @@ std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const 
     if (flags.preset.empty() && !scene.scene.empty()) return {nullptr};
     refuse(!scene.scene.empty(), "--preset: it has a scene of its own; leave out SCENE or --preset");
     std::vector<const TransportPreset*> presets;
-    for (const TransportPreset& preset : transport_presets()) {
+    for (const TransportPreset& preset : the_record().presets) {
         const std::string wanted = flags.preset.empty() ? "cornell" : flags.preset;
         if (wanted == kAllPresets || wanted == preset.name) presets.push_back(&preset);
     }
@@ -197,7 +197,7 @@ int run_transport_command(Queue& queue, const SceneOptions& scene, const Transpo
 void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags& flags) {
     const char* group = "Light transport (--transport)";
     std::vector<std::string> presets = {kAllPresets};
-    for (const TransportPreset& preset : transport_presets()) presets.emplace_back(preset.name);
+    for (const TransportPreset& preset : the_record().presets) presets.emplace_back(preset.name);
     const auto add = [&](CLI::Option* option, const char* type) {
         return option->type_name(type)->group(group)->needs(transport);
     };

@@ -26,12 +26,12 @@ std::vector<RayHit> BruteForce::trace(std::span<const Ray> rays, const PieceDone
                                       hits.data() + begin};
         if (queue_.is_cuda()) {
             launch(queue_, "brute force", static_cast<uint32_t>(count), stage);
-        } else { // few rays of much work each
+        } else { // a CPU gets a few rays at a time, each of which is much work
             parallel_for(count, 1, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
         }
     };
     if (queue_.is_cuda()) {
-        trace_piece(0, rays.size()); // a thread a ray: few rays would take as long as all
+        trace_piece(0, rays.size()); // one thread per ray: a few rays would take as long as all of them
     } else {
         in_pieces(rays.size(), static_cast<uint64_t>(thread_count()), trace_piece, done);
     }

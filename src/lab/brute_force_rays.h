@@ -1,9 +1,9 @@
 #pragma once
 
-// The laboratory's oracle: each ray against every triangle of the scene as it was read, without any tree. The result
-// rule of docs/conventions.md word by word, by the triangle test that the walks use. That test is all it shares with
-// what it judges: trace/brute_force_walk.h goes over the triangles of a tree, by the machinery of the walks, and is
-// judged too.
+// The laboratory's oracle: tests each ray against every triangle of the scene as it was read, without any tree. It
+// applies the result rule of docs/conventions.md literally, with the triangle test that the traversals use. It shares
+// nothing else with them. (trace/brute_force_walk.h tests all triangles of a tree within the traversal code and is
+// itself checked against this.)
 
 #include <cstdint>
 #include <span>
@@ -25,11 +25,11 @@ struct TriangleRange {
 
 struct BruteForceRays {
     TriangleRange baked;
-    const TriangleRange* meshes; // [InstanceRecord::mesh_bvh]
+    const TriangleRange* meshes; // indexed by InstanceRecord::mesh_bvh
     const InstanceRecord* instances;
     uint64_t instance_count;
     const Ray* rays;
-    RayHit* hits; // the closest
+    RayHit* hits; // the closest ones
 
     HD void operator()(uint32_t i) const {
         const Ray ray = load_ray(rays + i);
@@ -43,8 +43,9 @@ struct BruteForceRays {
     }
 
 private:
-    /// Whether the triangle, seen along the ray, lies all to one side of it. The exact signs of its edges then differ,
-    /// so that the test would refuse it; this is six times less work.
+    /// Whether the triangle, seen along the ray, lies entirely to one side of it. The exact edge signs then differ,
+    /// so
+    /// the triangle test would refuse it. This check takes a sixth of the work.
     HD static bool is_beside(const BvhTriangle& t, Vec3 origin, const RayShear& ray) {
         const Vec3 a = shear(t.a - origin, ray), b = shear(t.b - origin, ray), c = shear(t.c - origin, ray);
         return (a.x > 0 && b.x > 0 && c.x > 0) || (a.x < 0 && b.x < 0 && c.x < 0) || (a.y > 0 && b.y > 0 && c.y > 0) ||
@@ -67,7 +68,7 @@ private:
     }
 };
 
-/// The triangles in a device's memory, once for any number of rays.
+/// Holds the triangles in a device's memory and tests any number of rays against them.
 class BruteForce {
 public:
     BruteForce(Queue& queue, const SceneTriangles& triangles, const TopLevelBvh& top_level);

@@ -9,10 +9,10 @@
 namespace pertev {
 namespace {
 
-/// The fewest digits that give the same floats; no "-0".
+/// The shortest text that reads back as the same floats; "-0" is written as "0".
 std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x + 0.0f, v.y + 0.0f, v.z + 0.0f); }
 
-/// Likewise for a place, in the coordinates of the file.
+/// The shortest text of a position, given in the file's coordinates.
 std::string text_of(Vec3 p, DoubleVec3 origin) {
     if (origin == DoubleVec3{0, 0, 0}) return text_of(p);
     const DoubleVec3 place = origin + to_double(p);
@@ -24,7 +24,9 @@ std::string text_of(Vec3 p, DoubleVec3 origin) {
 std::string describe_camera(const Camera& camera, DoubleVec3 origin) {
     const Transform& m = camera.world_from_camera;
     const Vec3 eye = m.translation, forward = -column(m, 2);
-    // As far away as the eye is from the origin: nearer, their difference would lose digits of the direction.
+    // The target is as far from the camera as the camera is from the origin. If it were nearer, the direction would
+    // lose
+    // digits in the difference of the two.
     float distance = 1;
     while (distance < max_component(abs(eye))) distance *= 2;
     const std::string place = fmt::format("`eye={}` `target={}` `up={}`", text_of(eye, origin),

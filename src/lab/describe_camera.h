@@ -1,6 +1,6 @@
 #pragma once
 
-// A camera as settings with their values: given back, they place the camera where it was.
+// Describes a camera by settings and their values, which place the same camera when they are given again.
 
 #include <string>
 
@@ -9,8 +9,8 @@
 
 namespace pertev {
 
-/// "`eye=0,1,3` `target=0,1,2` `up=0,1,0` `projection=perspective` `fov=39.3` (vertical field of view, degrees)". The
-/// lens is left out: rays of the laboratory go through its middle.
+/// Returns "`eye=0,1,3` `target=0,1,2` `up=0,1,0` `projection=perspective` `fov=39.3`" (vertical field of view in
+/// degrees). The lens is left out: the laboratory's rays pass through its centre.
 std::string describe_camera(const Camera& camera, DoubleVec3 origin = {0, 0, 0});
 
 } // namespace pertev

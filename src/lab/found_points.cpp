@@ -17,14 +17,14 @@ constexpr uint32_t kDrawnPoints = 240;
 constexpr Vec3 kAsked = {0.38f, 0.52f, 0};
 constexpr double kDrawnSide = 440, kDrawnMargin = 10, kDrawnTop = 28;
 
-/// Dense in two places and sparse in between, as photons are.
+/// Points that are dense in two places and sparse between them, like photons.
 std::vector<Vec3> scattered_points() {
     std::vector<Vec3> points;
     for (uint32_t i = 0; points.size() < kDrawnPoints; ++i) {
         const auto bits = hash_words(i, 0, 0x706f696eu);
         const auto unit = [](uint32_t word) { return static_cast<float>(word >> 8) * 0x1p-24f; };
         Vec3 p = {unit(bits.x), unit(bits.y), 0};
-        if (i % 3 != 0) { // Box and Muller's normal distribution
+        if (i % 3 != 0) { // a normal distribution by Box and Muller's method
             const Vec3 middle = i % 3 == 1 ? Vec3{0.3f, 0.6f, 0} : Vec3{0.72f, 0.3f, 0};
             const float far = 0.13f * sqrt(-2.0f * log(1.0f - p.x)), angle = 2 * kPi * p.y;
             p = {middle.x + far * cos(angle), middle.y + far * sin(angle), 0};
@@ -34,12 +34,12 @@ std::vector<Vec3> scattered_points() {
     return points;
 }
 
-/// Hands on what a search offers, and keeps count.
+/// Forwards the points that a search offers and counts them.
 template <class Found>
 struct Watched {
     Found& inner;
     std::vector<uint32_t>& looked_at;
-    mutable uint32_t asked = 0; // for the limit
+    mutable uint32_t asked = 0; // counts calls for the search radius
 
     float limit() const {
         ++asked;
@@ -51,9 +51,9 @@ struct Watched {
     }
 };
 
-/// Planes of the nodes from `at` on, which divide the cell.
+/// Adds the splitting planes of node `at` and of the nodes below it, clipped to the node's cell.
 void add_planes(const PointKdTree& tree, std::size_t at, const Bounds3& cell, FoundPoints& found) {
-    if (2 * at + 1 >= tree.nodes.size()) return; // no children: its plane divides nothing
+    if (2 * at + 1 >= tree.nodes.size()) return; // a node without children: its plane divides nothing
     const PointKdNode& node = tree.nodes[at];
     Bounds3 left = cell, right = cell;
     Vec3 from = cell.lo, to = cell.hi;
@@ -94,7 +94,7 @@ FoundPoints found_in_kd_tree() {
     std::ranges::sort(result.found);
     std::ranges::sort(result.looked_at);
     result.nodes = static_cast<uint32_t>(tree.nodes.size());
-    result.visited = static_cast<uint32_t>(result.looked_at.size()); // each node has one point
+    result.visited = static_cast<uint32_t>(result.looked_at.size()); // each node holds one point
     add_planes(tree, 0, {{0, 0, 0}, {1, 1, 0}}, result);
     return result;
 }
@@ -110,7 +110,7 @@ FoundPoints found_in_octree() {
     PointsWithin<decltype(keep)> within = {result.radius_squared, keep};
     Watched<PointsWithin<decltype(keep)>> watched = {within, result.looked_at};
     search_points(view_of(tree), result.at, watched);
-    result.visited = watched.asked; // once a node
+    result.visited = watched.asked; // the radius is asked for once per node
     std::ranges::sort(result.found);
     std::ranges::sort(result.looked_at);
     result.nodes = static_cast<uint32_t>(tree.nodes.size());
@@ -138,7 +138,7 @@ std::string svg_of(const FoundPoints& found) {
         content += box_at(box.lo, box.hi,
                           box.is_visited ? R"(fill="#ffe8cc" stroke="#d9822b")" : R"(fill="none" stroke="#bbb")");
     }
-    for (const bool visited : {false, true}) { // those above
+    for (const bool visited : {false, true}) { // planes of visited nodes are drawn last, so they lie on top
         for (const FoundPoints::Line& line : found.lines) {
             if (line.is_visited != visited) continue;
             const auto [x0, y0] = at(line.from);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Points found in a tree, as a drawing: the trees are those that photon maps and irradiance caches look things up in
-// (accel/kd_tree/point_kd_tree.h, accel/octree/point_octree.h), over points of a plane, and the search is theirs.
+// A search for points in a tree, as a drawing. Photon maps and irradiance caches use these trees
+// (accel/kd_tree/point_kd_tree.h, accel/octree/point_octree.h) and these searches; here the points lie in a plane.
 
 #include <cstdint>
 #include <string>
@@ -11,37 +11,37 @@
 
 namespace pertev {
 
-/// A search and what it met.
+/// A search and everything that it visited.
 struct FoundPoints {
-    const char* tree;                // "kd-tree"
+    const char* tree;                // for example "kd-tree"
     std::vector<Vec3> points;        // in the unit square, z = 0
-    Vec3 at;                         // the place whose neighbours were asked for
-    float radius_squared = 0;        // of the circle about it that holds what was found
+    Vec3 at;                         // the query point
+    float radius_squared = 0;        // the circle about `at` that encloses the found points
     std::vector<uint32_t> found;     // indices of `points`, ascending
-    std::vector<uint32_t> looked_at; // whose distance was taken, ascending
-    uint32_t nodes = 0, visited = 0; // of the tree; of these the search came to
+    std::vector<uint32_t> looked_at; // indices of the points whose distance was computed, ascending
+    uint32_t nodes = 0, visited = 0; // number of nodes in the tree, and how many of these the search visited
     struct Line {
         Vec3 from, to;
-        bool is_visited; // its node is
+        bool is_visited; // whether its node was visited
     };
-    std::vector<Line> lines; // of a kd-tree: planes of nodes within their cells
+    std::vector<Line> lines; // kd-tree only: the splitting planes, each clipped to its node's cell
     struct Box {
         Vec3 lo, hi;
-        bool is_visited; // points of its node were looked at
+        bool is_visited; // whether distances to points of its node were computed
     };
-    std::vector<Box> boxes; // of an octree: of the points of each leaf
+    std::vector<Box> boxes; // octree only: the bounding boxes of each leaf's points
 };
 
 inline constexpr uint32_t kPointsAsked = 12;
 
-/// The kPointsAsked nearest ones. The circle goes through the farthest of these.
+/// Finds the kPointsAsked nearest points. The circle passes through the farthest of them.
 FoundPoints found_in_kd_tree();
-/// All within the circle of found_in_kd_tree(), so the same ones.
+/// Finds all points within the circle of found_in_kd_tree(), which are the same points.
 FoundPoints found_in_octree();
 
-/// "16 of 240 nodes are visited and 16 of 240 points looked at: orange; found are 12: green."
+/// Returns, for example, "16 of 240 nodes are visited and 16 of 240 points looked at: orange; found are 12: green."
 std::string describe(const FoundPoints& found);
-/// A file by itself.
+/// Returns a complete SVG file.
 std::string svg_of(const FoundPoints& found);
 
 } // namespace pertev

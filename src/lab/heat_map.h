@@ -1,7 +1,7 @@
 #pragma once
 
-// Counts a pixel as false colours: dark is little, bright is much; the scale stands beneath the picture, with its ends
-// in numbers.
+// Per-pixel counts in false colours: dark is low, bright is high. A colour scale below the picture has its two ends
+// labelled.
 
 #include <cstdint>
 #include <span>
@@ -11,11 +11,11 @@
 
 namespace pertev {
 
-/// A picture of `counts` ([height * width], row 0 on top); pale yellow at `most` and above. 16 rows of scale stand
-/// below.
+/// Draws `counts` ([height * width], row 0 on top). `most` and larger counts are pale yellow. The picture gets 16
+/// more rows at the bottom for the scale.
 Rgba8Image draw_heat_map(std::span<const uint32_t> counts, uint32_t width, uint32_t height, uint32_t most);
 
-/// The count that one pixel in two hundred exceeds: what a scale should end at.
+/// The count that one pixel in two hundred exceeds: a good end for the scale.
 uint32_t scale_end(std::span<const uint32_t> counts);
 
 } // namespace pertev

@@ -1,8 +1,7 @@
 #pragma once
 
-// Long work over a range, cut into pieces of about a tenth of a second, so that whoever waits for it can be told how
-// far it is and can stop it between two of them. Where the cuts lie depends on the clock: the work must not depend on
-// them.
+// Splits long work over a range into pieces of about a tenth of a second, so that the caller can report progress and
+// stop between two pieces. The clock decides where the cuts lie: the result must not depend on them.
 
 #include <algorithm>
 #include <cstdint>
@@ -13,14 +12,14 @@
 
 namespace pertev {
 
-/// Told after each piece: the share that is done, (0, 1]. May throw, which ends the work.
+/// Called after each piece with the finished share, (0, 1]. It may throw, which ends the work.
 using PieceDone = std::function<void(double share)>;
 
-/// For rays that a CPU walks: as many as launch() gives a thread at a time, for each thread; whole packets.
+/// First piece for rays that a CPU traces: for each thread, as many as launch() gives it at a time; whole packets.
 inline uint64_t first_piece_of_rays() { return 256 * static_cast<uint64_t>(thread_count()); }
 
-/// Calls work(begin, count) over parts of [0, count), which together are all of it; work returns when it is done. The
-/// first part has `first` elements, and none has fewer but the last.
+/// Calls work(begin, count) on consecutive parts of [0, count) that cover it; work must be finished when it returns.
+/// The first part has `first` elements, and only the last part may have fewer.
 template <class Work>
 void in_pieces(uint64_t count, uint64_t first, const Work& work, const PieceDone& done) {
     constexpr double least_s = 0.05, most_s = 0.2;

@@ -28,7 +28,7 @@ std::vector<RaySet> make_isolated_sets(Queue& queue, const Scene& scene, const C
 double IsolatedRates::of_mix(const RayCounts& rays) const {
     double seconds = 0;
     const auto add = [&](uint64_t count, double rate) {
-        if (count > 0) seconds += static_cast<double>(count) / rate; // infinite where there is none
+        if (count > 0) seconds += static_cast<double>(count) / rate; // infinite where a kind has no rate
     };
     add(rays.camera, camera);
     add(rays.bounce, bounce);
@@ -52,7 +52,7 @@ IsolatedRates measure_isolated_rays(Queue& queue, const Scene& scene, const Came
         Sum& sum = set.any_hit ? shadows : set.name == "primary" ? camera_rays : bounces;
         sum.rays += static_cast<double>(rays.count());
         sum.seconds += rays.time(tracer, queue.is_cuda() ? 3 : 1, queue.is_cuda() ? 11 : 3).median;
-        set.rays = {}; // a quarter of a gigabyte on the record
+        set.rays = {}; // frees a quarter of a gigabyte at the record's size
     }
     return {camera_rays.rate(), bounces.rate(), shadows.rate()};
 }

@@ -1,8 +1,9 @@
 #pragma once
 
-// The record's sets of rays (lab/ray_sets.h) in any scene, traced by themselves by what pictures trace rays of their
-// kind by: what `pertev bench rays` measures, and what `pertev bench render` holds the rays of whole pictures to. On a
-// CPU they go one after the other, where pictures go by packets and several in flight (trace/wide/trace_many.h).
+// Traces the record's ray sets (lab/ray_sets.h) of any scene in isolation, by the tracers that renders use for each
+// kind of ray. `pertev bench rays` reports these rates, and `pertev bench render` compares the rays of whole renders
+// with them. A CPU traces these rays one after the other, while renders trace packets and several rays at once
+// (trace/wide/trace_many.h).
 
 #include <cstdint>
 #include <functional>
@@ -16,30 +17,32 @@
 
 namespace pertev {
 
-/// Binary nodes, one ray a thread: what the record's counts of nodes are of.
+/// One ray per thread over binary nodes; the record's node counts belong to this tracer.
 inline constexpr Combination kBinaryTracer = {.structure = StructureKind::Binned, .walk = WalkKind::WhileWhile};
 
-/// Throws Error(OutOfMemory).
+/// Builds the combination's tracer. Throws Error(OutOfMemory).
 Tracer make_tracer(Queue& queue, const Combination& combination, const PreparedScene& prepared);
 
-/// What pictures trace rays of the set's kind by.
+/// The tracer that renders use for rays of this set's kind.
 const Combination& tracer_of_pictures(const RaySet& set, const TracerChoice& choice);
 
-/// `prepared` is of `scene` and keeps its coordinates. `between()` is asked now and then; it may throw to end this.
+/// `prepared` must come from `scene` and keep its coordinates. `between()` is called now and then and may throw to
+/// end
+/// the work.
 std::vector<RaySet> make_isolated_sets(Queue& queue, const Scene& scene, const Camera& camera,
                                        const PreparedScene& prepared, uint32_t count,
                                        const std::function<void()>& between);
 
-/// Rays a second of each kind by themselves; 0: none was there.
+/// Rays per second of each kind in isolation; 0 where there were no such rays.
 struct IsolatedRates {
     double camera = 0, bounce = 0, shadow = 0;
 
-    /// Of so many rays of each kind, one kind after the other; 0 where one has no rate.
+    /// The rate of these rays when each kind is traced after the other; 0 where a kind that occurs has no rate.
     double of_mix(const RayCounts& rays) const;
 };
 
-/// Primary rays of the record as the camera's, its three sets of diffuse ones together as bounces, and its shadow rays.
-/// Arguments as make_isolated_sets has them. Throws Error(OutOfMemory, DeviceFault).
+/// Measures the record's primary rays as camera rays, its three diffuse sets together as bounces, and its shadow
+/// rays. See make_isolated_sets for the arguments. Throws Error(OutOfMemory, DeviceFault).
 IsolatedRates measure_isolated_rays(Queue& queue, const Scene& scene, const Camera& camera,
                                     const PreparedScene& prepared, const TracerChoice& choice, uint32_t count,
                                     const std::function<void()>& between);

@@ -41,7 +41,7 @@ const char* family_of(WalkKind walk) {
     return "brute force";
 }
 
-/// Null if its turn never came or it could not be built.
+/// Returns null if the combination was never reached or its structure could not be built.
 const StructureFigures* structure_of(const LabReport& report, const CombinationFigures& c) {
     if (!c.structure || *c.structure >= report.structures.size()) return nullptr;
     const StructureFigures& s = report.structures[*c.structure];
@@ -176,7 +176,7 @@ std::string wrong_lines(const LabReport& report) {
     return lines;
 }
 
-/// Combinations with figures, the fastest first. Complete ones come before those that were interrupted.
+/// Combinations with figures, the fastest first. Completely measured ones come before interrupted ones.
 std::vector<const CombinationFigures*> in_order(const LabReport& report) {
     std::vector<const CombinationFigures*> order;
     for (const CombinationFigures& c : report.combinations) {
@@ -191,7 +191,7 @@ std::vector<const CombinationFigures*> in_order(const LabReport& report) {
     return order;
 }
 
-/// "12.34 [11.90, 12.51] (10.1 + 2.3)", as much of it as was measured.
+/// Returns "12.34 [11.90, 12.51] (10.1 + 2.3)", or the part of it that was measured.
 std::string speed_of(const LabReport& report, const RunFigures& run) {
     std::string text;
     if (run.median_s > 0) {
@@ -204,7 +204,7 @@ std::string speed_of(const LabReport& report, const RunFigures& run) {
     if (run.nodes && run.triangles) {
         text += fmt::format("{}({:.1f} + {:.1f})", text.empty() ? "" : " ", *run.nodes, *run.triangles);
     }
-    return text.empty() ? "right" : text; // its hits are those of the proven traversal, and nothing else was measured
+    return text.empty() ? "right" : text; // its hits match the proven traversal, and nothing else was measured
 }
 
 } // namespace
@@ -228,7 +228,7 @@ Measurement measurement_of(const LabReport& report, Measurement m) {
         m.notes.push_back(fmt::format("Not run: {}: {}", refusal.reason, fmt::join(refusal.names, ", ")));
     }
     m.kind = "lab";
-    uint32_t most[2] = {1, 1}; // one scale for all, so that pictures can be compared
+    uint32_t most[2] = {1, 1}; // all pictures share one scale, so they can be compared
     for (const HeatMap& map : report.heat_maps) {
         most[0] = std::max(most[0], scale_end(map.nodes)), most[1] = std::max(most[1], scale_end(map.triangles));
     }

@@ -25,7 +25,9 @@ std::vector<CombinationFigures> list_combinations(const LabSettings& settings, b
     bool brute_force_listed = false;
     for (const StructureKind structure : settings.structures) {
         for (const WalkKind walk : settings.walks) {
-            if (walk == WalkKind::BruteForce && brute_force_listed) continue; // one array is as good as another
+            if (walk == WalkKind::BruteForce && brute_force_listed)
+                continue; // brute force does not depend on the
+                          // structure, so it is listed once
             brute_force_listed = brute_force_listed || (walk == WalkKind::BruteForce && builder_of(structure));
             if (!settings.by_name && why_not(structure, walk)) continue;
             for (const Distribution distribution : settings.distributions) {

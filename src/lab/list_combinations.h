@@ -1,7 +1,7 @@
 #pragma once
 
-// What the laboratory is asked to measure, before anything is: each combination once, those that cannot be measured
-// with the reason.
+// Lists the combinations that the laboratory is asked to measure, each once. Combinations that cannot be measured
+// carry the reason.
 
 #include <vector>
 
@@ -9,10 +9,10 @@
 
 namespace pertev {
 
-/// In the order in which they are measured; names differ.
+/// Lists combinations in measuring order; their names are unique.
 std::vector<CombinationFigures> list_combinations(const LabSettings& settings, bool on_cuda);
 
-/// Throws Error(BadInput) with the reasons where all are refused.
+/// Throws Error(BadInput) with the reasons if every combination is refused.
 void check_any_can_run(const std::vector<CombinationFigures>& combinations);
 
 } // namespace pertev

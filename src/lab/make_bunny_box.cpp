@@ -7,8 +7,8 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kWallQuads = 32; // along each side
-constexpr float kRoughness = 0.05f; // of an edge's length
+constexpr uint32_t kWallQuads = 32; // along each side of a wall
+constexpr float kRoughness = 0.05f; // relative to the edge's length
 
 /// Unit normals of vertices, weighted by area; a vertex without one keeps zero. Summed in the triangles' order.
 std::vector<Vec3> vertex_normals(const Mesh& mesh) {
@@ -23,13 +23,14 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh) {
     return normals;
 }
 
-/// The vertex in the middle of the edge from vertex `from` to `to`, with from < to.
+/// Adds the vertex at the middle of the edge from `from` to `to`; from < to.
 Vec3 split_edge(const Mesh& mesh, const std::vector<Vec3>& normals, uint32_t from, uint32_t to) {
     const Vec3 a = mesh.positions[from], b = mesh.positions[to];
     const Vec3 na = normals[from], nb = normals[to];
     Vec3 normal = na + nb;
     normal = length_squared(normal) > 0 ? normalize(normal) : Vec3{};
-    // Of an arc whose normals turn by nb - na from end to end, the middle stands an eighth of that above the chord.
+    // Where the normals of an arc turn by nb - na from end to end, its midpoint lies an eighth of that above the
+    // chord.
     const float bulge = 0.125f * dot(nb - na, b - a);
     const Hash3 hash = hash_words(from, to, 1);
     const float rough = (2.0f * static_cast<float>(hash.x >> 8) * 0x1p-24f - 1.0f) * kRoughness * length(b - a);
@@ -40,7 +41,8 @@ Mesh subdivide(const Mesh& mesh) {
     const std::vector<Vec3> normals = vertex_normals(mesh);
     Mesh finer;
     finer.positions = mesh.positions;
-    std::unordered_map<uint64_t, uint32_t> middles; // looked up, never walked: its order does not matter
+    std::unordered_map<uint64_t, uint32_t> middles; // looked up by key and never iterated, so its order does not
+                                                    // matter
     middles.reserve(mesh.indices.size());
     const auto middle_of = [&](uint32_t p, uint32_t q) {
         const uint32_t from = min(p, q), to = max(p, q);
@@ -58,7 +60,7 @@ Mesh subdivide(const Mesh& mesh) {
     return finer;
 }
 
-/// Height 2, the middle of its box over the origin.
+/// Scales the mesh to height 2 and centres its box over the origin.
 void stand_on_floor(Mesh& mesh) {
     const Bounds3 box = bounds_of(mesh);
     const float scale = 2.0f / box.size().y;
@@ -66,7 +68,7 @@ void stand_on_floor(Mesh& mesh) {
     for (Vec3& p : mesh.positions) p = scale * (p - foot);
 }
 
-/// A parallelogram of 32 x 32 quads, two triangles each.
+/// Adds a parallelogram of 32 x 32 quads with two triangles each.
 void add_wall(Mesh& mesh, Vec3 corner, Vec3 across, Vec3 up) {
     const uint32_t first = static_cast<uint32_t>(mesh.positions.size()), row = kWallQuads + 1;
     for (uint32_t j = 0; j < row; ++j) {

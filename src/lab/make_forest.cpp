@@ -9,14 +9,15 @@
 namespace pertev {
 namespace {
 
-constexpr float kSide = 200; // of the ground, metres
-constexpr float kHills = 12; // height of the ground's noise
-constexpr int kOctaves = 6;  // of the noise, each twice as fine and half as high as the one before
-constexpr float kCell = 50;  // of the coarsest octave
+constexpr float kSide = 200; // side of the ground, metres
+constexpr float kHills = 12; // amplitude of the ground's noise, metres
+constexpr int kOctaves = 6;  // number of noise octaves, each with half the cell size and half the height of the one
+                             // before
+constexpr float kCell = 50;  // cell size of the coarsest octave, metres
 constexpr uint32_t kTrunkSides = 6, kTrunkRings = 4;
 constexpr uint32_t kTrunkTriangles = 2 * kTrunkSides * (kTrunkRings - 1); // 36
 
-/// Numbers in [0, 1) of one thing: the n-th call gives the n-th.
+/// A stream of numbers in [0, 1) that belongs to one object: the n-th call returns the n-th number.
 class Numbers {
 public:
     Numbers(uint32_t kind, uint32_t index) : kind_(kind), index_(index) {}
@@ -27,11 +28,11 @@ private:
     uint32_t kind_, index_, count_ = 0;
 };
 
-// Chosen among a few so that the record's camera stands free of leaves and as many of its rays meet something as on the
+// Chosen from a few candidates so that no leaves hide the record's camera and as many of its rays hit as in the
 // record.
 constexpr uint32_t kGroundNumbers = 1144, kTreeNumbers = 4, kLeafNumbers = 0x4c454146u;
 
-/// Value noise in [0, 1): random values on a grid, smoothly blended.
+/// Value noise in [0, 1): random values on a grid, blended smoothly.
 float value_noise(float x, float z, uint32_t octave) {
     const float fx = floor(x), fz = floor(z);
     const auto corner = [&](int i, int j) {
@@ -44,7 +45,7 @@ float value_noise(float x, float z, uint32_t octave) {
     return lerp(lerp(corner(0, 0), corner(1, 0), s), lerp(corner(0, 1), corner(1, 1), s), t);
 }
 
-/// In [0, kHills).
+/// Height of the ground in [0, kHills), metres.
 float ground_height(float x, float z) {
     float sum = 0, weight = 1, total = 0, scale = 1.0f / kCell;
     for (int octave = 0; octave < kOctaves; ++octave) {
@@ -56,11 +57,12 @@ float ground_height(float x, float z) {
     return kHills * (sum / total);
 }
 
-/// A part of the mesh's arrays for one piece of the forest to fill: all of known size, so that pieces are made at once.
+/// The section of the mesh's arrays that one piece of the forest fills. All sizes are known in advance, so pieces can
+/// be made in parallel.
 struct MeshPart {
     Vec3* positions;
     uint32_t* indices;
-    uint32_t first_vertex; // number of positions[0]
+    uint32_t first_vertex; // index of positions[0] in the mesh
     uint32_t vertices = 0;
 
     uint32_t add_vertex(Vec3 p) {
@@ -96,7 +98,7 @@ void make_ground(uint32_t quads, Mesh& mesh) {
     });
 }
 
-/// A tapering prism, open at both ends, from a little below the ground.
+/// Adds a tapered prism, open at both ends, that starts slightly below the ground.
 void add_trunk(MeshPart& part, Vec3 foot, float height, float radius) {
     uint32_t vertex[kTrunkRings][kTrunkSides];
     for (uint32_t ring = 0; ring < kTrunkRings; ++ring) {
@@ -116,11 +118,12 @@ void add_trunk(MeshPart& part, Vec3 foot, float height, float radius) {
     }
 }
 
-/// A small rectangle, turned every way, near the shell of the crown.
+/// Adds a small rectangle of random orientation near the surface of the crown.
 void add_leaf(MeshPart& part, Numbers& numbers, Vec3 centre, Vec3 radii) {
     const float around = numbers.next();
     const float height = numbers.between(-1, 1);
-    const float out = sqrt(sqrt(numbers.next())); // density grows with the distance from the centre: few inside
+    const float out = sqrt(sqrt(numbers.next())); // density grows with the distance from the centre, so few leaves
+                                                  // are inside
     const Vec3 place = out * direction_at_height(height, around);
     const Vec3 p = centre + Vec3{radii.x * place.x, radii.y * place.y, radii.z * place.z};
     const float turn = numbers.next();

@@ -104,16 +104,18 @@ std::string ResultCell::json() const {
     if (const auto* number = std::get_if<double>(&value_)) return json_number(*number);
     if (const auto* text = std::get_if<std::string>(&value_)) return json_string(*text);
     if (const auto* truth = std::get_if<bool>(&value_)) return *truth ? "true" : "false";
+    if (const auto* raw = std::get_if<Raw>(&value_)) return raw->json;
     return "null";
 }
 
 std::string ResultCell::csv() const {
     if (const auto* truth = std::get_if<bool>(&value_)) return *truth ? "1" : "0";
-    const auto* text = std::get_if<std::string>(&value_);
-    if (text == nullptr) return is_there() && json() != "null" ? json() : "";
-    if (text->find_first_of(",\"\n\r") == std::string::npos) return *text;
+    const auto* said = std::get_if<std::string>(&value_);
+    const std::string text = said != nullptr ? *said : json();
+    if (said == nullptr && text == "null") return {};
+    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
     std::string quoted = "\"";
-    for (const char c : *text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+    for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
     return quoted + '"';
 }
 
@@ -122,7 +124,7 @@ std::string ResultCell::text(const std::string& format) const {
     if (const auto* number = std::get_if<int64_t>(&value_)) return fmt::format("{}", *number);
     if (const auto* truth = std::get_if<bool>(&value_)) return *truth ? "yes" : "no";
     const auto* number = std::get_if<double>(&value_);
-    if (number == nullptr) return "-";
+    if (number == nullptr) return is_there() ? json() : "-";
     const std::string text = fmt::format(fmt::runtime(format.empty() ? "{:.4g}" : format), *number);
     const bool is_lost = *number != 0 && text.find_first_of("123456789") == std::string::npos; // 0.00003 is not "0.000"
     return is_lost ? fmt::format("{:.2g}", *number) : text;
@@ -174,8 +176,11 @@ std::string json_of(const Measurement& m, std::string_view event, bool has_image
 
 std::string json_of(std::string_view event, const Fields& fields) {
     std::string members;
-    for (const ResultField& f : fields) members += fmt::format(R"(,"{}":{})", f.key, f.value.json());
-    return fmt::format(R"({{"event":"{}"{}}})", event, members);
+    if (!event.empty()) members = fmt::format(R"("event":"{}")", event);
+    for (const ResultField& f : fields) {
+        members += fmt::format(R"({}"{}":{})", members.empty() ? "" : ",", f.key, f.value.json());
+    }
+    return '{' + members + '}';
 }
 
 std::string csv_of(const ResultTable& table, const Fields& common) {
@@ -210,6 +215,19 @@ std::string text_of(const ResultTable& table, const std::vector<std::string_view
         }
     }
     return align_columns(lines);
+}
+
+std::string line_of(const ResultTable& table, std::optional<std::size_t> row) {
+    std::string line;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const ResultTable::Column& column = table.columns[i];
+        if (column.title.empty()) continue;
+        const std::string title = column.unit.empty() ? column.title : column.title + ' ' + column.unit;
+        const std::string text = row ? table.rows[*row][i].text(column.format) : title;
+        line += line.empty() ? fmt::format("{:16}", text)
+                             : fmt::format(" {:>{}}", text, std::max<std::size_t>(title.size(), 8));
+    }
+    return line + '\n';
 }
 
 std::string text_of(const Fields& fields) {

@@ -38,6 +38,13 @@ public:
         if (value) *this = ResultCell(*value);
     }
 
+    /// A JSON object or array as a value.
+    static ResultCell raw(std::string json) {
+        ResultCell cell;
+        cell.value_ = Raw{std::move(json)};
+        return cell;
+    }
+
     bool is_there() const { return !std::holds_alternative<std::monostate>(value_); }
     bool operator==(const ResultCell&) const = default;
     std::string json() const;
@@ -47,7 +54,11 @@ public:
     std::string text(const std::string& format) const;
 
 private:
-    std::variant<std::monostate, bool, int64_t, double, std::string> value_;
+    struct Raw {
+        std::string json;
+        bool operator==(const Raw&) const = default;
+    };
+    std::variant<std::monostate, bool, int64_t, double, std::string, Raw> value_;
 };
 
 /// A number, unless it is 0 because nothing was timed.
@@ -109,12 +120,15 @@ Measurement start_measurement(const Queue& queue, std::string title);
 
 /// With `event` the object says so first. With `has_images` pictures carry their bytes, as a page needs them.
 std::string json_of(const Measurement& measurement, std::string_view event = "", bool has_images = false);
-/// A row as an object of its own.
+/// A row as an object of its own; without an event it says none.
 std::string json_of(std::string_view event, const Fields& fields);
 /// With a header line; `common` stands in front of each row.
 std::string csv_of(const ResultTable& table, const Fields& common = {});
 /// Columns with a title, aligned; with `keys` those of them alone, in that order.
 std::string text_of(const ResultTable& table, const std::vector<std::string_view>& keys = {});
+/// The same of one row alone, in columns as wide as its title or 8 characters (the first 16), so that rows can be
+/// printed as they come; `row` is the head's if it is none.
+std::string line_of(const ResultTable& table, std::optional<std::size_t> row);
 /// A line a field, for a result of one row.
 std::string text_of(const Fields& fields);
 

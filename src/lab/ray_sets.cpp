@@ -16,28 +16,28 @@
 namespace pertev {
 namespace {
 
-constexpr float kFarAway = 1e30f;       // t_max of rays that look for the first hit
-constexpr float kOffset = 2e-5f;        // of the scene's diagonal: how far secondary rays start off the surface
-constexpr float kShadowReach = 0.9995f; // of the way to the target
+constexpr float kFarAway = 1e30f;       // t_max of closest-hit rays
+constexpr float kOffset = 2e-5f;        // offset of secondary rays from the surface, relative to the scene's diagonal
+constexpr float kShadowReach = 0.9995f; // share of the distance to the target that a shadow ray covers
 constexpr uint64_t kGrain = 1 << 14;
 
-// Each set has a sequence of random numbers of its own: the one that is traced, and the one whose hits fill up the
-// next.
+// Each set has its own sequence of random numbers, and so has the second set whose hits complete the next one.
 constexpr uint32_t kShadowSeed = 11;
 uint32_t diffuse_seed(int bounce) { return 22u * static_cast<uint32_t>(bounce); }
 uint32_t second_diffuse_seed(int bounce) { return diffuse_seed(bounce) + 11u; }
 
-/// Where a secondary ray starts: a little off the surface, on the side that the ray before came from.
+/// The origin of a secondary ray: slightly off the surface, on the side that the previous ray came from.
 struct StartPoint {
     Vec3 origin, normal;
 };
 
 struct StartPoints {
     std::vector<StartPoint> points;
-    std::size_t first_group = 0; // how many are the hits of the first parents; what follows is of the second
+    std::size_t first_group = 0; // number of hits of the first parents; the rest come from the second parents
 };
 
-/// Unit normal of a triangle, turned against `direction`. In doubles, so that no sliver's cross product is lost.
+/// The triangle's unit normal, facing against `direction`. Computed in doubles, so that a sliver's cross product does
+/// not lose its digits.
 Vec3 normal_against(const Scene& scene, const RayHit& hit, Vec3 direction) {
     const Instance& instance = scene.instances[hit.instance];
     const Mesh& mesh = scene.meshes[instance.mesh];
@@ -51,7 +51,8 @@ Vec3 normal_against(const Scene& scene, const RayHit& hit, Vec3 direction) {
     return dot(normal, direction) > 0 ? -normal : normal;
 }
 
-/// One a ray that hits something, in the rays' order. Chunks are counted first, so that threads know where to write.
+/// Finds one start point per ray that hits, in the order of the rays. Hits of each chunk are counted first, so that
+/// threads know where to write.
 std::vector<StartPoint> find_start_points(const RaySetJob& job, std::span<const Ray> rays, float offset) {
     std::vector<RayHit> hits(rays.size());
     job.trace(rays, hits);
@@ -79,7 +80,7 @@ std::vector<StartPoint> find_start_points(const RaySetJob& job, std::span<const 
     return points;
 }
 
-/// The hits of `rays`; where they are fewer than `count`, also those of the rays that make_second gives.
+/// Collects the hits of `rays`, and those of the rays that make_second returns if there are fewer than `count`.
 StartPoints gather(const RaySetJob& job, float offset, std::size_t count, std::span<const Ray> rays,
                    const std::function<std::vector<Ray>()>& make_second) {
     StartPoints starts{find_start_points(job, rays, offset)};
@@ -91,7 +92,7 @@ StartPoints gather(const RaySetJob& job, float offset, std::size_t count, std::s
     return starts;
 }
 
-/// `count` rays, whole frames one after the other; the first is of sample `first_sample`.
+/// Makes `count` rays as consecutive whole frames; the first frame is sample `first_sample`.
 std::vector<Ray> make_primary(const RaySetJob& job, uint32_t count, uint32_t first_sample) {
     const CameraView camera = make_camera_view(job.camera, job.width, job.height);
     const uint32_t pixels = job.width * job.height;
@@ -104,13 +105,15 @@ std::vector<Ray> make_primary(const RaySetJob& job, uint32_t count, uint32_t fir
         const float down = draw(state);
         const uint32_t x = pixel % job.width, y = pixel / job.width;
         rays[i] = make_camera_ray(camera, {static_cast<float>(x) + across, static_cast<float>(y) + down},
-                                  {0.5f, 0.5f}); // the middle of the lens
+                                  {0.5f, 0.5f}); // centre of the lens
         rays[i].t_max = kFarAway;
     });
     return rays;
 }
 
-/// The state of ray o: it counts from 0 in each group, and the second group's seed is moved on by what the first made.
+/// The random state of ray o. Rays are numbered from 0 in each group; the second group's seed is offset by the size
+/// of
+/// the first.
 uint32_t state_of(const StartPoints& starts, std::size_t o, uint32_t seed) {
     const bool is_first = o < starts.first_group;
     const std::size_t made = is_first ? 0 : starts.first_group;
@@ -125,14 +128,14 @@ std::vector<Ray> make_shadow(const StartPoints& starts, const Bounds3& box) {
         const Vec3 target = targets[static_cast<std::size_t>(draw(state) * static_cast<float>(kShadowTargets))];
         const Vec3 origin = starts.points[o].origin, way = target - origin;
         const float distance = length(way);
-        const bool is_there = !(distance > 0); // a ray of no length: it can hit nothing
+        const bool is_there = !(distance > 0); // a ray of zero length, which cannot hit anything
         rays[o] = {origin, 0.0f, is_there ? starts.points[o].normal : (1.0f / distance) * way,
                    is_there ? 0.0f : kShadowReach * distance};
     });
     return rays;
 }
 
-/// About the normal, with a density of cosine / pi.
+/// Draws directions about the normal with density cosine / pi.
 std::vector<Ray> make_diffuse(const StartPoints& starts, uint32_t seed) {
     std::vector<Ray> rays(starts.points.size());
     parallel_for(rays.size(), kGrain, [&](uint64_t o) {
@@ -158,7 +161,7 @@ void check_frame(const RaySetJob& job) {
 } // namespace
 
 std::array<Vec3, kShadowTargets> shadow_targets(const Bounds3& box) {
-    // PCG's own stream from the state 777: the state moves on by the linear congruence and is hashed for each number.
+    // PCG's own stream from state 777: a linear congruence advances the state, and each number is its hash.
     uint32_t state = 777;
     const auto next = [&state] {
         const float u = static_cast<float>(hash_word(state) >> 8) * 0x1p-24f;
@@ -177,7 +180,7 @@ std::array<Vec3, kShadowTargets> shadow_targets(const Bounds3& box) {
 }
 
 FrameSize record_frame(uint32_t count) {
-    uint64_t step = 4; // 9 * 4 rows are whole tiles, and so are 16 * 4 columns
+    uint64_t step = 4; // 9 * 4 rows and 16 * 4 columns are whole tiles
     while (4 * 16 * 9 * (step + 4) * (step + 4) <= count) step += 4;
     return {static_cast<uint32_t>(16 * step), static_cast<uint32_t>(9 * step)};
 }

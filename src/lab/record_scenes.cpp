@@ -1,53 +1,15 @@
 #include "lab/record_scenes.h"
 
-#include <algorithm>
-#include <array>
-
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "formats/read_scene.h"
 #include "lab/make_bunny_box.h"
 #include "lab/make_forest.h"
+#include "session/opening/open_scene.h"
 
 namespace pertev {
 namespace {
-
-const std::array kScenes = {
-    RecordScene{"sponza",
-                "crytek-sponza/sponza.obj",
-                262204,
-                {-110, 18, -2},
-                {60, 32, -4},
-                60,
-                {{"primary", .991, 44.5, 3.6},
-                 {"shadow", .869, 30.9, 3.1},
-                 {"diffuse1", .977, 43.1, 6.2},
-                 {"diffuse2", .970, 39.7, 5.5},
-                 {"diffuse3", .973, 38.8, 5.6}}},
-    RecordScene{"bunny",
-                "stanford/bunny.obj",
-                1119408,
-                {0.3f, 1.5f, 3.6f},
-                {0, 0.95f, 0},
-                32,
-                {{"primary", 1.00, 24.6, 2.5},
-                 {"shadow", .350, 22.3, 1.6},
-                 {"diffuse1", .611, 25.4, 2.6},
-                 {"diffuse2", .635, 20.1, 1.8},
-                 {"diffuse3", .645, 19.7, 1.8}}},
-    RecordScene{"forest",
-                nullptr,
-                8223200,
-                {0, 17.80f, 75},
-                {0, 7.25f, 0},
-                55,
-                {{"primary", .803, 65.8, 4.5},
-                 {"shadow", .968, 42.4, 3.5},
-                 {"diffuse1", .739, 63.2, 6.4},
-                 {"diffuse2", .787, 63.2, 6.7},
-                 {"diffuse3", .808, 63.3, 6.9}}},
-};
 
 /// The file's triangles alone, all in one mesh in the file's order, without normals.
 Mesh read_one_mesh(const std::filesystem::path& path, Messages& messages) {
@@ -64,14 +26,24 @@ Mesh read_one_mesh(const std::filesystem::path& path, Messages& messages) {
     return mesh;
 }
 
-} // namespace
-
-std::span<const RecordScene> record_scenes() { return kScenes; }
-
-const RecordScene* find_record_scene(std::string_view name) {
-    const auto found = std::ranges::find(kScenes, name, &RecordScene::name);
-    return found == kScenes.end() ? nullptr : &*found;
+Scene make_grey_scene(const std::string& file, Messages& messages) {
+    ReadOptions options;
+    options.geometry_only = true;
+    Scene scene = read_scene(file, options, messages);
+    scene.materials.assign(1, Material{{.base_color = {0.7f, 0.7f, 0.7f}}, "grey"});
+    for (Instance& instance : scene.instances) instance.material = 0;
+    for (Mesh& mesh : scene.meshes) {
+        mesh.normals.clear();
+        mesh.tangents.clear();
+        mesh.colors.clear();
+    }
+    scene.images.clear();
+    scene.lights.clear();
+    scene.environment = Environment{};
+    return scene;
 }
+
+} // namespace
 
 std::filesystem::path record_file(const RecordScene& scene, const std::filesystem::path& folder) {
     const std::filesystem::path path = folder / scene.file;
@@ -86,23 +58,59 @@ std::filesystem::path record_file(const RecordScene& scene, const std::filesyste
 Camera record_camera(const RecordScene& scene) {
     Camera camera;
     camera.name = scene.name;
-    camera.world_from_camera = look_at(scene.eye, scene.target, {0, 1, 0});
-    camera.fov_y = scene.fov_y_deg * kPi / 180;
+    camera.world_from_camera = look_at(scene.view.eye, scene.view.target, {0, 1, 0});
+    camera.fov_y = scene.view.fov_y_deg * kPi / 180;
     return camera;
 }
 
 Scene make_record_scene(const RecordScene& record, const std::filesystem::path& folder, Messages& messages) {
     Scene scene;
-    if (record.file == nullptr) {
+    if (record.file.empty()) {
         scene.meshes.push_back(make_forest());
     } else {
         scene.meshes.push_back(read_one_mesh(record_file(record, folder), messages));
-        if (std::string_view(record.name) == "bunny") scene.meshes[0] = make_bunny_box(scene.meshes[0]);
+        if (record.name == "bunny") scene.meshes[0] = make_bunny_box(scene.meshes[0]);
     }
     scene.materials.push_back({{}, "grey"});
     scene.instances.push_back({.name = record.name});
     scene.cameras.push_back(record_camera(record));
     return scene;
+}
+
+RenderSettings job_settings(const RecordJob& job) {
+    RenderSettings settings;
+    settings.width = job.width, settings.height = job.height, settings.samples = job.samples;
+    settings.path.max_depth = job.max_depth;
+    if (job.is_grey) {
+        settings.filter = PixelFilter::Box;
+        settings.path.roulette = Roulette::Throughput;
+        settings.path.roulette_depth = 2;
+    } else {
+        settings.filter = PixelFilter::Tent;
+        settings.filter_radius = 1;
+    }
+    return settings;
+}
+
+Scene make_job_scene(const RecordJob& job, const std::string& file, Messages& messages) {
+    if (job.is_grey) return make_grey_scene(file, messages);
+    OpenOptions options;
+    options.scene = file;
+    options.use = SceneUse::Benchmark;
+    return open_scene(options, messages);
+}
+
+Camera job_camera(const RecordJob& job, const Scene& scene, float aspect, Messages& messages) {
+    if (job.is_grey) return record_camera(*find_named(the_record().scenes, "sponza"));
+    return choose_camera(CameraChoice{}, scene, aspect, messages);
+}
+
+CameraChoice camera_choice(const TransportPreset& preset) {
+    CameraChoice choice;
+    if (!preset.view) return choice;
+    choice.eye = to_double(preset.view->eye), choice.target = to_double(preset.view->target);
+    choice.fov_deg = preset.view->fov_y_deg;
+    return choice;
 }
 
 } // namespace pertev

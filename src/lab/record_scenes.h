@@ -1,41 +1,26 @@
 #pragma once
 
-// The record: five sets of rays (docs/ray_sets.md) that other tracers were timed on. Here are the three scenes that
-// they are traced in, with their cameras, and what tells whether rays are the same. How fast others were is in
-// lab/stored_figures.h.
+// Makers of what bench/figures.json describes (lab/record.h): scenes of the five sets of rays that other tracers were
+// timed on (docs/ray_sets.md), jobs that other renderers were timed on, and cameras of presets.
+//
+// S5, S8: the triangles of Crytek's Sponza, seen as rays on the record are (lab/record_scenes.h), in a 0.7 grey that
+// scatters to both sides, without vertex normals, under radiance 1 from everywhere; box filter of one pixel, at most 5
+// or 8 scatterings, Russian roulette by throughput from the second on. cornell-box-65, cornell-box-8: Bitterli's
+// Cornell box as its file has it (tests/images/mitsuba_to_gltf.py makes a glTF of that), tent filter of radius 1, at
+// most 65 or 8 edges from the camera to a light; roulette as in any picture.
 
 #include <filesystem>
-#include <span>
-#include <string_view>
+#include <string>
 
 #include "base/messages.h"
+#include "lab/record.h"
 #include "scene/scene.h"
+#include "session/opening/choose_camera.h"
+#include "settings/render_settings.h"
 
 namespace pertev {
 
-/// What other tracers' record says of one set of rays, 8,294,400 of them: the share that hit, nodes and triangles a ray
-/// in a binary tree. A tracer that makes the same rays in the same scene has the same hit share.
-struct RecordedSet {
-    const char* name;
-    double hit_share;
-    double nodes, triangles;
-};
-
-struct RecordScene {
-    const char* name;
-    const char* file;   // under the folder of public scenes; null: generated
-    uint32_t triangles; // that have an area
-    Vec3 eye, target;
-    float fov_y_deg;
-    RecordedSet sets[5]; // in the order in which they are made
-};
-
 inline constexpr uint32_t kRecordRays = 8294400; // four frames of 1920 x 1080
-
-/// sponza, bunny, forest.
-std::span<const RecordScene> record_scenes();
-/// Null where none has this name.
-const RecordScene* find_record_scene(std::string_view name);
 
 Camera record_camera(const RecordScene& scene);
 
@@ -45,5 +30,17 @@ std::filesystem::path record_file(const RecordScene& scene, const std::filesyste
 
 /// Geometry in one mesh, grey, with the camera. The forest needs no folder. Throws as record_file.
 Scene make_record_scene(const RecordScene& scene, const std::filesystem::path& folder, Messages& messages);
+
+/// Size, samples, filter and depth of the job.
+RenderSettings job_settings(const RecordJob& job);
+
+/// The job's scene, of the file that has its geometry. Throws Error.
+Scene make_job_scene(const RecordJob& job, const std::string& file, Messages& messages);
+
+/// For pictures of this width / height. Throws Error(BadInput).
+Camera job_camera(const RecordJob& job, const Scene& scene, float aspect, Messages& messages);
+
+/// The preset's own view, if it has one.
+CameraChoice camera_choice(const TransportPreset& preset);
 
 } // namespace pertev

@@ -14,7 +14,7 @@ void replace(std::string& text, std::string_view from, std::string_view to) {
 std::string report_page(std::span<const std::string> measurements) {
     std::string data;
     for (const std::string& json : measurements) {
-        std::string safe = json; // in JSON a `<` stands in texts only, and there it may end the element
+        std::string safe = json; // JSON has `<` only inside strings, where it could end the script element
         replace(safe, "<", "\\u003c");
         data += "<script type=\"application/json\" class=\"measurement\">" + safe + "</script>\n";
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-// The page that draws measurements: one HTML file that needs nothing else, with the JSON inside (page/report.js).
+// The page that draws measurements: one self-contained HTML file with the JSON inside (page/report.js draws it).
 
 #include <span>
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace pertev {
 
-/// A file that the build has put into the program (cmake/embed_files.cmake), by its name.
+/// The contents of a file that the build embedded into the program (cmake/embed_files.cmake).
 std::string_view embedded_file(std::string_view name);
 
-/// Each text is the JSON of a measurement.
+/// Makes the page; each text is the JSON of one measurement.
 std::string report_page(std::span<const std::string> measurements);
 
 } // namespace pertev

@@ -26,13 +26,15 @@
 namespace pertev {
 namespace {
 
-/// Thrown when keep_going says no; what has been measured is kept.
+/// Thrown when keep_going returns false; everything measured so far is kept.
 struct Stopped {};
 
-/// The proven walk: held against brute force on some rays, so that every other combination can be held to it on all.
+/// The proven traversal. Some of its rays are compared with brute force, so that every other combination can be
+/// compared with it on all rays.
 constexpr Combination kProven = {.structure = StructureKind::Binned, .walk = WalkKind::WhileWhile};
 
-/// Over the instances that keep a tree of their own, in the file's coordinates, as the sets of rays are.
+/// Builds the top level over instances that have their own tree, in the file's coordinates, which the ray sets use
+/// too.
 TopLevelBvh top_level_over(const Scene& scene, const BinaryTrees& trees) {
     return build_top_level_bvh(placed_trees(scene, place_meshes(scene), trees.mesh_bounds()));
 }
@@ -69,7 +71,7 @@ public:
             for (const StructureKind structure : structures_) measure_structure(structure);
         } catch (const Stopped&) {
             report_.interrupted = true;
-        } catch (const Error& error) { // the device is dead, what was measured is not
+        } catch (const Error& error) { // the device is lost, but the measurements so far are kept
             if (error.code() != ErrorCode::DeviceFault || measuring_ == nullptr) throw;
             report_.interrupted = true;
             measuring_->wrong = true;
@@ -93,7 +95,7 @@ private:
     void progress(const std::string& doing, double share_of_that = 0) {
         if (keep_going_ && !keep_going_(progress_now(doing, share_of_that))) throw Stopped{};
     }
-    /// For work that is done in pieces. `doing` outlives it.
+    /// Progress callback for work in pieces. `doing` must outlive it.
     PieceDone progress_of(const std::string& doing) {
         return [this, &doing](double share) { progress(doing, share); };
     }
@@ -108,7 +110,7 @@ private:
         }
     }
 
-    /// The rays of a frame, and what the proven walk finds, which is held against brute force here.
+    /// Makes the rays of a frame, traces them by the proven traversal and compares that with brute force.
     void make_sets() {
         progress("building the tree of the proven walk");
         const BinaryTrees binary = build_binary_trees(triangles_.parts, BvhBuilder::Binned);
@@ -129,7 +131,7 @@ private:
         std::vector<RaySet> sets = make_rays(proven);
         const bool record = settings_.record_rays > 0;
         int depth = 0;
-        std::string parent; // whose hits the next set starts at
+        std::string parent; // the set whose hits are the next set's origins
         for (RaySet& set : sets) {
             if (!set.any_hit) ++depth;
             const bool wanted = set.any_hit ? settings_.shadow : depth == 1 ? settings_.primary : settings_.diffuse;
@@ -138,11 +140,12 @@ private:
                     report_.notes.push_back(
                         fmt::format("{}: no rays, since none of {} meets the scene", set.name, parent));
                 } else {
-                    add_set(set, proven, oracle, set.any_hit || record ? 0 : depth); // frames are not of the record
+                    add_set(set, proven, oracle, set.any_hit || record ? 0 : depth); // the record's sets are not part
+                                                                                     // of a frame
                 }
             }
             if (!set.any_hit && !set.rays.empty()) parent = set.name;
-            set.rays = {}; // those wanted are on the device
+            set.rays = {}; // the rays that are needed are on the device
         }
         if (sets_.empty()) {
             throw Error(ErrorCode::BadInput,
@@ -171,8 +174,8 @@ private:
                                          : make_frame_ray_sets(job, settings_.depth - 1);
     }
 
-    /// Runs f, and says what the memory was wanted for where it runs out. Throws Error(OutOfMemory) before, where not
-    /// even the camera rays and what they meet can be held.
+    /// Runs f and says what the memory was for if it runs out. Throws Error(OutOfMemory) before that if not even the
+    /// camera rays and their hits fit.
     template <class F>
     void with_memory_for_rays(const F& f) const {
         const bool record = settings_.record_rays > 0;
@@ -197,7 +200,7 @@ private:
         }
     }
 
-    /// What was asked for and will not be there.
+    /// Notes which requested heat maps will be missing.
     void note_heat_maps() {
         if (!settings_.heat_maps) return;
         const auto camera = std::ranges::find(report_.sets, kCameraSet, &SetFigures::name);
@@ -210,7 +213,7 @@ private:
     }
     uint64_t pixels() const { return uint64_t(settings_.width) * settings_.height; }
 
-    /// By the proven walk, in pieces.
+    /// Traces by the proven traversal, in pieces.
     RayTracer ray_tracer(const Tracer& proven) {
         return [this, trace = make_ray_tracer(queue_, proven)](std::span<const Ray> rays, std::span<RayHit> hits) {
             const auto piece = [&](uint64_t begin, uint64_t count) {
@@ -238,7 +241,7 @@ private:
             const std::vector<CombinationFigures*>& combinations = entry.second;
             const uint32_t at = static_cast<uint32_t>(report_.structures.size());
             const std::string failed = unless_memory_lacks([&] {
-                // Builders cannot be stopped inside: an interrupt is heard after the tree and after its conversion.
+                // Builders cannot be interrupted: a stop takes effect after the build and again after the conversion.
                 progress(fmt::format("building {}", name_of(structure)));
                 const auto builder = builder_of(structure);
                 if (builder && !binary) {
@@ -267,7 +270,7 @@ private:
         if (keep_going_ && !keep_going_(now)) throw Stopped{};
     }
 
-    /// Runs f; what it lacked where that was memory or a limit, else nothing.
+    /// Runs f and returns its message if memory or another limit did not suffice, else nothing.
     template <class F>
     std::string unless_memory_lacks(const F& f) {
         try {
@@ -306,7 +309,9 @@ private:
         if (heat_map_) keep_heat_map(c);
     }
 
-    /// An any-hit search has no nearest hit, so with RTA and without it is one walk: the figures of the one measured.
+    /// Any-hit traversals with and without RTA are identical, as there is no nearest hit to use. Returns the figures
+    /// of
+    /// the one that was measured.
     const RunFigures* same_run(const CombinationFigures& c, uint32_t set) const {
         if (!sets_[set].figures.any_hit) return nullptr;
         for (const auto& [rta, at_pops] : {std::pair(true, true), std::pair(true, false), std::pair(false, true)}) {
@@ -328,7 +333,9 @@ private:
     }
 
     static uint32_t count_of(const TracedSet& set) { return static_cast<uint32_t>(set.rays.size()); }
-    /// A GPU has the whole set at once, as when it is timed: it is soon done. A CPU may have an hour's work.
+    /// Runs work over the set: at once on a GPU, as when timed, since it is soon done; in pieces on a CPU, where it
+    /// may
+    /// take an hour.
     template <class Work>
     void over_set(const TracedSet& set, const std::string& doing, const Work& work) {
         if (queue_.is_cuda()) {
@@ -338,11 +345,11 @@ private:
         }
     }
 
-    /// False when the combination differs from the proven walk: it has no figures then.
+    /// Returns false if the combination differs from the proven traversal; it then has no figures.
     bool check(CombinationFigures& c, const TracedSet& set, const Tracer& tracer, const std::string& doing,
                RunFigures& run) {
         HitsOnDevice hits(queue_, set.rays.size());
-        hits.spoil(); // a ray that was forgotten has no result that could be right
+        hits.spoil(); // so that a ray that is not traced cannot have a right result
         over_set(set, doing, [&](uint64_t begin, uint64_t count) {
             trace(tracer, set.figures.any_hit, set.rays.data() + begin, static_cast<uint32_t>(count), hits.from(begin));
         });
@@ -393,7 +400,7 @@ private:
         run.triangle_sectors = ratio(counts.triangle_sectors, counts.triangle_requests);
     }
 
-    /// One for each structure and walk: of its first combination, which has the most switches on.
+    /// One heat map per structure and traversal, from the first combination, which has the most options on.
     bool wants_heat_map(const CombinationFigures& c, const TracedSet& set) const {
         const auto is_same = [&](const Combination& other) {
             return other.structure == c.combination.structure && other.walk == c.combination.walk;
@@ -407,13 +414,13 @@ private:
         heat_map_ = HeatMap{.name = c.name, .width = settings_.width, .height = settings_.height};
         heat_map_->rays_per_second = static_cast<double>(set.rays.size()) / run.median_s;
         heat_map_->nodes.resize(pixels()), heat_map_->triangles.resize(pixels());
-        for (uint32_t i = 0; i < pixels(); ++i) { // rays are in the order of tiles; of several frames, the first
+        for (uint32_t i = 0; i < pixels(); ++i) { // rays are in tile order; only the first frame is drawn
             const uint32_t pixel = tiled_pixel(i, settings_.width, settings_.height);
             heat_map_->nodes[pixel] = work[i].nodes, heat_map_->triangles[pixel] = work[i].triangles;
         }
     }
 
-    /// Gives it away to be written, and keeps it in the report while it is among the fastest.
+    /// Hands the heat map to the caller to write, and keeps it in the report while it belongs to the fastest.
     void keep_heat_map(const CombinationFigures& c) {
         mapped_.push_back(c.combination);
         report_.heat_map_names.push_back(c.name);
@@ -439,9 +446,9 @@ private:
     LabReport report_;
     Stopwatch watch_;
     CombinationFigures* measuring_ = nullptr;
-    std::optional<HeatMap> heat_map_; // of the combination being measured
-    std::vector<Combination> mapped_; // those that have one
-    double work_ = 0, work_done_ = 0; // combinations
+    std::optional<HeatMap> heat_map_; // heat map of the combination being measured
+    std::vector<Combination> mapped_; // combinations that have a heat map
+    double work_ = 0, work_done_ = 0; // number of combinations, and how many are finished
 };
 
 } // namespace

@@ -35,20 +35,20 @@ RenderSettings settings_of(const TransportSettings& settings, const std::string&
     return picture;
 }
 
-/// Returns an upper bound of the host's memory that the integrator takes besides the device's.
+/// Returns an upper bound on the integrator's use of host memory.
 std::size_t host_bytes_of(const RenderSettings& picture) {
     Queue queue = Queue::make_dry_run(false);
     return make_integrator(queue, picture)->most_host_bytes({.width = picture.width, .height = picture.height});
 }
 
-/// Mean of two, which a picture of as many samples of each is.
+/// The mean of two pictures with equal sample counts, which is the picture of all samples.
 Image mean_of(const Image& a, const Image& b) {
     Image mean = a;
     for (std::size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * a.pixels[i] + 0.5f * b.pixels[i];
     return mean;
 }
 
-/// Errors in [0, 1] as false colours; none of an empty picture.
+/// Draws errors in [0, 1] in false colours; an empty picture yields an empty one.
 Rgba8Image draw_errors(const Image& errors) {
     Rgba8Image image = {errors.width, errors.height, std::vector<uint8_t>(4 * errors.pixels.size(), 255)};
     for (std::size_t i = 0; i < errors.pixels.size(); ++i) {
@@ -78,7 +78,7 @@ public:
     TransportScene run() {
         try {
             progress("building trees");
-            Messages messages; // said when the scene was read
+            Messages messages; // messages of reading the scene, already reported
             prepared_ = prepare_scene(scene_, prepare_options(settings_.picture, queue_.is_cuda()), messages);
             report_.triangles = prepared_.triangles;
             turns_left_ = static_cast<double>(settings_.repetitions) *
@@ -97,7 +97,7 @@ public:
     }
 
 private:
-    /// Empty where it can render the scene.
+    /// Why the integrator cannot render the scene; empty if it can.
     std::string why_not(const std::string& integrator) const {
         try {
             const RenderSettings picture = settings_of(settings_, integrator, 0);
@@ -140,7 +140,7 @@ private:
 
     void progress(const std::string& doing, double share_of_that = 0, double left_of_that_s = 0) {
         const double now_s = watch_.seconds();
-        // Each turn takes its share of the time, and what the turns so far took beside theirs.
+        // A remaining turn is expected to take the mean time of the finished ones; the first takes its share.
         const double turn_s = turns_ > 0 ? turns_s_ / turns_ : share_s();
         const double left_s = left_of_that_s + turns_left_ * turn_s;
         share_ = std::max(share_, left_s > 0 ? now_s / (now_s + left_s) : share_);
@@ -148,14 +148,14 @@ private:
         if (keep_going_ && !keep_going_(now)) throw TransportStopped{};
     }
 
-    /// What a turn has left after so many seconds, `made_s` of them before its samples.
+    /// Seconds that a turn has left; `made_s` of the elapsed seconds were spent before its first sample.
     double left_of_turn_s(const TransportRow& row, double seconds, uint32_t samples, double made_s = 0) const {
         if (!row.repetitions.empty()) return std::max(0.0, row.repetitions.front().back().seconds - seconds);
         const double to_most_s = (seconds - made_s) / std::max(1u, samples) * (settings_.max_samples - samples);
         return std::max(0.0, std::min(share_s() - seconds, samples > 0 ? to_most_s : share_s()));
     }
 
-    /// Adds samples to the session's film. Returns what it has then, without its errors; `before` is what it had.
+    /// Adds samples to the session's film. Returns the film's new figures, without errors; `before` has the old ones.
     TransportFigures render(Session& session, const TransportRow& row, uint32_t samples, const std::string& doing,
                             const TransportFigures& before) {
         TransportFigures all;
@@ -170,7 +170,7 @@ private:
         return all;
     }
 
-    /// One of the two halves of the reference.
+    /// Renders one of the reference's two halves.
     Image render_half(uint32_t half, uint32_t samples) {
         TransportReference& reference = report_.reference;
         const std::string doing = fmt::format("reference by {}", reference.integrator);
@@ -200,7 +200,8 @@ private:
             std::vector<std::size_t> all(std::size_t(halves[0].width) * halves[0].height);
             std::iota(all.begin(), all.end(), std::size_t(0));
             report_.reference.samples = 2 * samples;
-            report_.reference.rel_mse = variance.over(all).rel_mse / 2; // of the mean of two
+            report_.reference.rel_mse = variance.over(all).rel_mse / 2; // the mean of two halves has half the
+                                                                        // variance
             report_.reference.flip = hdr_flip(halves[0], halves[1]).mean;
             reference_ = mean_of(halves[0], halves[1]);
         }
@@ -217,7 +218,7 @@ private:
                                     .linear = picture});
     }
 
-    /// One repetition of one integrator.
+    /// Runs one repetition of one integrator.
     void take_turn(TransportRow& row, uint32_t number) {
         const Stopwatch watch;
         const std::string doing = fmt::format("{}, {} of {}", row.name, number + 1, settings_.repetitions);
@@ -247,7 +248,7 @@ private:
         if (stopped) throw TransportStopped{};
     }
 
-    /// False where it was stopped.
+    /// Adds samples until the time is used up. Returns false if it was stopped.
     bool add_samples(TransportRow& row, uint32_t number, const std::string& doing, Repetition& figures,
                      std::vector<Image>& pictures) {
         bool stopped = false;
@@ -266,8 +267,10 @@ private:
         return !stopped;
     }
 
-    /// Solutions of growing detail, as long as the next would fit into a repetition's share of the time by itself: it
-    /// has about four times the patches. Another repetition has as many as the first. False where it was stopped.
+    /// Renders solutions of growing detail, each about four times the patches of the one before, while the next one
+    /// alone would fit into a repetition's share of the time. Later repetitions make as many as the first. Returns
+    /// false if
+    /// it was stopped.
     bool add_solutions(TransportRow& row, uint32_t number, const std::string& doing, Repetition& figures,
                        std::vector<Image>& pictures) {
         const Stopwatch watch;
@@ -315,7 +318,7 @@ private:
         }
     }
 
-    /// A repetition without figures leaves nothing.
+    /// Compares the repetition's pictures with the reference; a repetition without figures adds nothing.
     void compare(TransportRow& row, uint32_t number, Repetition figures, const std::vector<Image>& pictures) {
         if (figures.empty()) return;
         std::vector<const Image*> all;

@@ -1,7 +1,7 @@
 #pragma once
 
-// The laboratory of light transport: makes a reference, or takes one, and lets each integrator render the same picture
-// several times, for the same time each.
+// The light transport laboratory: makes or accepts a reference, then lets each integrator render the same view
+// several times, each for the same time.
 
 #include <cstdint>
 #include <functional>
@@ -22,20 +22,21 @@ namespace pertev {
 inline constexpr uint32_t kMostRepetitions = 1024;
 
 struct TransportSettings {
-    std::string camera;                   // describe_camera in the words of the front end, for the report
+    std::string camera;                   // describe_camera's text in the front end's words, for the report
     std::vector<std::string> integrators; // names (settings/value_names.h)
     uint32_t repetitions = 4;             // [1, kMostRepetitions]
-    double seconds = 10;                  // of rendering for each integrator, all repetitions together
-    uint32_t max_samples = 1u << 16;      // of each pixel, of one repetition
-    uint32_t max_solutions = 16;          // of radiosity, of one repetition
-    RenderSettings picture;               // size, depth, filter, and the first seed; the integrator is not looked at
-    std::optional<Image> reference;       // given; none: it is made by
-    std::string reference_file;           // name of the one given
+    double seconds = 10;                  // rendering time of each integrator over all repetitions
+    uint32_t max_samples = 1u << 16;      // largest number of samples per pixel in a repetition
+    uint32_t max_solutions = 16;          // largest number of radiosity solutions in a repetition
+    RenderSettings picture;               // size, depth, filter and first seed; its integrator is ignored
+    std::optional<Image> reference;       // a given reference; if absent, `reference_integrator` renders one
+    std::string reference_file;           // file name of a given reference
     std::string reference_integrator = "path";
-    uint32_t reference_samples = 1024; // at least 2; an odd one is one fewer
+    uint32_t reference_samples = 1024; // at least 2; an odd number is rounded down
 };
 
-/// Seed of a repetition. Those of the reference's two halves are none of these, for at most kMostRepetitions.
+/// The seed of a repetition. The seeds of the reference's halves differ from all of these, for at most
+/// kMostRepetitions.
 inline uint32_t repetition_seed(const TransportSettings& settings, uint32_t repetition) {
     return settings.picture.path.seed + repetition;
 }
@@ -43,24 +44,28 @@ inline uint32_t reference_seed(const TransportSettings& settings, uint32_t half)
     return settings.picture.path.seed + 0x80000000u + half;
 }
 
-/// Samples of the picture after `last`, the first repetition's: twice as many where they come within `share_s`, else as
-/// many as do, where those are an eighth more at least; 0: none. What is made before the first sample (made_seconds) is
-/// there and takes no time again. At most `most`.
+/// The number of samples of the next picture after `last`: twice as many if they fit into `share_s` seconds, else as
+/// many as fit if that is at least an eighth more, else 0. made_seconds is already spent and not counted again. At
+/// most
+/// `most`.
 uint32_t next_samples(const TransportFigures& last, double share_s, uint32_t most);
 
-/// A sample of each pixel that no figures count, so that memory, caches and the driver's first launches are not timed.
-/// Where the integrator makes something before samples it is ended once that has begun: it is made once, and timed.
-/// The film begins anew. Throws as Session::render.
+/// Renders one uncounted sample per pixel, so that memory allocation, caches and the driver's first launches are not
+/// timed. If the integrator prepares something before its samples, rendering stops once that has begun: it is made
+/// only
+/// once and timed. The film is cleared afterwards. Throws what Session::render throws.
 void warm_up(Session& session, const std::function<void()>& tell = {});
 
-/// All integrators take their first turn, then all their second, and so on: so an interrupt leaves something of each.
-/// The first repetition of an integrator goes on to 1, 2, 4, ... samples as long as the next fits into its share of the
-/// time (one sample is always rendered), and then to as many as do; the others have the same numbers. Radiosity has
-/// solutions of growing detail in their place (lab/transport_solutions.h), as long as the next would fit into the share
-/// by itself. One that cannot render this scene is refused in its row. `scene` has been through validate(). Stops
-/// early, with `interrupted` set, when keep_going returns false; the repetition that was under way is kept where it is
-/// an integrator's first. Throws Error(BadInput) where the reference given has another size or is not finite, or the
-/// reference's integrator cannot render the scene; what Session throws of the device.
+/// Lets all integrators take their first turn, then all their second, and so on, so that an interrupt leaves results
+/// of each. An integrator's first repetition has 1, 2, 4, ... samples as long as the next picture fits into its share
+/// of
+/// the time (one sample is always rendered), and then as many as fit; its other repetitions use these numbers.
+/// Radiosity makes solutions of growing detail instead (lab/transport_solutions.h), while the next alone would fit
+/// into
+/// the share. An integrator that cannot render the scene is refused in its row. `scene` must have passed validate().
+/// Stops early, with `interrupted` set, when keep_going returns false; an unfinished repetition is kept if it is an
+/// integrator's first. Throws Error(BadInput) if a given reference has another size or is not finite, or if the
+/// reference's integrator cannot render the scene, and the device errors that Session throws.
 TransportScene run_transport(Queue& queue, const Scene& scene, const Camera& camera, const TransportSettings& settings,
                              const std::function<bool(const LabProgress&)>& keep_going);
 

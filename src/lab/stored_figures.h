@@ -1,8 +1,8 @@
 #pragma once
 
-// Stored figures: what public tracers, builders and renderers reached on one NVIDIA H200 at what `pertev bench rays`,
-// `build` and `render` measure, and our rates over theirs: above 1 ours is faster. There is a ratio only where device,
-// scene and job are those of the figure:
+// Ratios to stored figures (bench/figures.json): what public tracers, builders and renderers reached on one NVIDIA H200
+// at what `pertev bench rays`, `build` and `render` measure, and our rates over theirs: above 1 ours is faster. There
+// is a ratio only where device, scene and job are those of the figure:
 // - the device has the card's very name: "NVIDIA H200 NVL" is another card, and a slice of one has a name of its own;
 // - a set of rays is of a scene of the record (by its name, its camera and its triangles), has all of the record's
 //   8,294,400 rays, and they hit as often: to the record's third digit in scenes of a file, to 0.05 in the forest,
@@ -16,17 +16,13 @@
 #include <string_view>
 #include <vector>
 
-#include "lab/record_jobs.h"
+#include "lab/measurement.h"
 #include "lab/record_scenes.h"
 
 namespace pertev {
 
-/// Of all stored figures.
-inline constexpr std::string_view kFiguresDevice = "NVIDIA H200";
-
 struct Ratio {
-    const char* program;         // for people
-    const char* key;             // in JSON: "ratio_to_" and this
+    const char *key, *title;
     std::optional<double> value; // nothing: device, scene or job are not the figure's
 };
 
@@ -55,9 +51,6 @@ struct JobRun {
     double mean = 0, samples_per_second = 0; // of all pixels
 };
 
-/// The most that a public tracer reached on the card, at a set of a scene of the record.
-double best_rays_per_second(const RecordScene& scene, std::size_t set);
-
 /// To the best public tracer.
 Ratio ratio_of(const RaysRun& run);
 /// To OptiX's builds for fast tracing (not compacted) and for fast building.
@@ -65,12 +58,9 @@ std::vector<Ratio> ratios_of(const BuildRun& run);
 /// To Mitsuba 3, Cycles and pbrt-v4.
 std::vector<Ratio> ratios_of(const JobRun& run);
 
-/// As members of a JSON object; null where there is none.
-std::string ratios_json(std::span<const Ratio> ratios);
-/// Of a table: "1.20", or "-" where there is none.
-std::string ratio_cell(const Ratio& ratio);
-/// A line for people: our rate in times the others', or what the figures of this job are of.
-std::string ratios_line(std::span<const Ratio> ratios, const RecordJob& job);
+ResultField field_of(const Ratio& ratio);
+/// A line for people: what the figures of this job are of.
+std::string why_no_ratios(const RecordJob& job);
 
 /// Of a number of ratios, at least one.
 struct RatioSummary {

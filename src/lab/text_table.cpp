@@ -28,7 +28,7 @@ std::string align_columns(const std::vector<std::vector<std::string>>& rows) {
             const std::string pad(widths[i] - characters(row[i]), ' ');
             line += i == 0 ? row[i] + pad : "  " + pad + row[i];
         }
-        line.erase(line.find_last_not_of(' ') + 1); // npos + 1 is 0: a line of blanks is empty
+        line.erase(line.find_last_not_of(' ') + 1); // npos + 1 is 0, so a line of blanks becomes empty
         text += line + '\n';
     }
     return text;

@@ -1,17 +1,18 @@
 #pragma once
 
-// Tables of plain text, for a terminal.
+// Plain-text tables for terminals.
 
 #include <string>
 #include <vector>
 
 namespace pertev {
 
-/// A line a row: the first column to the left, the others to the right, each as wide as its longest cell (in UTF-8
-/// characters), two blanks between. Rows may be shorter than others.
+/// Returns one line per row. The first column is aligned left, the others right; each is as wide as its longest cell
+/// (in UTF-8 characters), with two blanks between columns. Rows may have different lengths.
 std::string align_columns(const std::vector<std::vector<std::string>>& rows);
 
-/// With so many decimals; in two digits where these would show fewer: 0.00003 is "3e-05" and not "0.000".
+/// Formats with this many decimals, or in two significant digits where fewer would show: 0.00003 is "3e-05", not
+/// "0.000".
 std::string fixed_text(double value, int decimals);
 
 } // namespace pertev

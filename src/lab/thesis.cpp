@@ -31,7 +31,7 @@ const CombinationFigures* find(const LabReport& report, const Combination& wante
     return at == report.combinations.end() ? nullptr : &*at;
 }
 
-/// None where the variant has no figures of a frame so deep.
+/// Seconds per frame at this depth; absent if the variant was not measured there.
 std::optional<double> seconds_of(const LabReport& report, const ThesisVariant& v, int depth) {
     const CombinationFigures* c = find(report, v.combination);
     return c != nullptr && !c->wrong ? frame_seconds(report, *c, depth) : std::nullopt;
@@ -39,14 +39,14 @@ std::optional<double> seconds_of(const LabReport& report, const ThesisVariant& v
 
 using Names = std::vector<std::string>;
 
-/// The variants of these names that this kind of device has, in their own order.
+/// The variants of these names that this kind of device has, in the order of thesis_variants().
 std::vector<ThesisVariant> variants_named(const Names& names, bool is_cuda) {
     std::vector<ThesisVariant> variants = thesis_variants(is_cuda);
     std::erase_if(variants, [&](const ThesisVariant& v) { return std::ranges::find(names, v.name) == names.end(); });
     return variants;
 }
 
-/// A row for each depth, with frames per second, seconds per frame and Mrays/s of each variant. With several reports
+/// A row for each depth with frames per second, seconds per frame and Mrays/s of each variant. With several reports
 /// each row begins with the scene.
 ResultTable depth_table(std::span<const LabReport> reports, std::string name, std::string title,
                         const std::vector<ThesisVariant>& variants) {
@@ -77,7 +77,7 @@ ResultTable depth_table(std::span<const LabReport> reports, std::string name, st
     return table;
 }
 
-/// As the thesis's captions number them, and then what its figures draw and no table has.
+/// Tables in the order of the thesis's captions, followed by the data of its figures that no table contains.
 std::vector<ResultTable> tables_of(const ThesisReport& thesis) {
     const bool is_cuda = on_cuda(thesis);
     const char* const both_ways =
@@ -115,7 +115,7 @@ std::vector<ResultTable> tables_of(const ThesisReport& thesis) {
     return tables;
 }
 
-/// Why a variant has no figures, or not all; empty: it has them.
+/// Why a variant lacks some or all figures; empty if it has them.
 std::string missing(const LabReport& report, const ThesisVariant& v) {
     const CombinationFigures* c = find(report, v.combination);
     if (c == nullptr) return "it is not in the report";
@@ -129,7 +129,7 @@ std::string missing(const LabReport& report, const ThesisVariant& v) {
     return {};
 }
 
-/// What stands below the tables, a line each: interruptions, what is missing, what tests that leak lose.
+/// Lines below the tables: interruptions, missing figures, and hits that inexact tests miss.
 std::vector<std::string> notes_of(const ThesisReport& thesis) {
     std::vector<std::string> notes;
     for (const std::string& line : thesis.lacking) notes.push_back("Not made: " + line);
@@ -191,7 +191,7 @@ ResultTable scenes_of(const ThesisReport& thesis) {
 
 bool is_rendered(const ThesisPicture& picture) { return picture.stats.samples > 0; }
 
-/// Beneath a picture: what it shows, how it was made, in which time.
+/// A picture's caption: what it shows, how it was made, and how long that took.
 std::string caption_of(const ThesisPicture& picture) {
     std::string text = picture.shows;
     if (is_rendered(picture)) {

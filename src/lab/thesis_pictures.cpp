@@ -16,7 +16,8 @@
 namespace pertev {
 namespace {
 
-constexpr float kDotRadius = 1.2f; // times the scene's longest side over the picture's height: about so many pixels
+constexpr float kDotRadius = 1.2f; // times the scene's longest side over the picture's height, so about this many
+                                   // pixels
 
 const ThesisRecipe& recipe_named(std::string_view name) {
     const auto recipes = thesis_recipes();
@@ -25,7 +26,7 @@ const ThesisRecipe& recipe_named(std::string_view name) {
     return *found;
 }
 
-/// Returns the place in the thesis: "figure-3.7a" is of "Figure 3.7", "section-2.1-flat" of "Section 2.1".
+/// Returns the place in the thesis: "Figure 3.7" for "figure-3.7a", "Section 2.1" for "section-2.1-flat".
 std::string place_of(std::string_view name) {
     const std::size_t dash = name.find('-'), end = name.find_first_not_of("0123456789.", dash + 1);
     std::string place = fmt::format("{} {}", name.substr(0, dash), name.substr(dash + 1, end - dash - 1));
@@ -33,14 +34,14 @@ std::string place_of(std::string_view name) {
     return place;
 }
 
-/// Of the sums of both, `b` taken away from `a`.
+/// The difference of the films' sums, `a` minus `b`.
 Image difference(const Image& a, const Image& b) {
     Image left = a;
     for (std::size_t i = 0; i < left.pixels.size(); ++i) left.pixels[i] = std::max(0.0f, a.pixels[i] - b.pixels[i]);
     return left;
 }
 
-/// So that what is not black has a mean that shows well.
+/// Scales the picture so that the mean of its pixels that are not black displays well.
 void normalise(Image& picture) {
     constexpr double mean = 0.4;
     double sum = 0, lit = 0;
@@ -52,7 +53,7 @@ void normalise(Image& picture) {
     for (float& value : picture.pixels) value *= scale;
 }
 
-/// How a panel's light is solved in a picture of these settings.
+/// Radiosity settings of a panel in a picture with these settings.
 RadiositySettings solution_of(const RadiosityPanel& panel, const RenderSettings& settings) {
     const ThesisDetail detail = thesis_detail(settings.height);
     RadiositySettings asked;
@@ -66,7 +67,7 @@ RadiositySettings solution_of(const RadiosityPanel& panel, const RenderSettings&
     return asked;
 }
 
-/// The settings that say so.
+/// The settings' text for the command line.
 std::string settings_of(const RadiosityPanel& panel, const RadiositySettings& asked) {
     return fmt::format(" `patch_size={}` `subdivisions={}`{}{}", asked.patch_size, asked.subdivisions,
                        panel.is_early ? fmt::format(" `solver=southwell` `steps={}`", asked.steps) : "",
@@ -106,7 +107,7 @@ std::vector<std::string> thesis_picture_files() {
     return files;
 }
 
-/// What a picture is made of.
+/// The inputs that one picture is made from.
 struct ThesisPictures::Job {
     const ThesisRecipe& recipe;
     RenderSettings settings;
@@ -166,7 +167,7 @@ ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progre
     return picture;
 }
 
-/// Tells its progress as the share [from, to] of the picture's.
+/// Renders once; its progress is reported as the share [from, to] of the picture's.
 RenderResult ThesisPictures::render_once(const Job& job, const RenderSettings& settings, double from, double to) {
     RenderResult result = render_picture(queue_, job.prepared, job.camera, settings, [&](const RenderProgress& now) {
         return job.tell("rendering", from + (to - from) * now.samples_done / now.samples);
@@ -182,8 +183,8 @@ void ThesisPictures::render(const Job& job, const RenderSettings& settings, Thes
     picture.image = tone_map_image(result.picture, ToneMap::Agx, job.recipe.stops);
 }
 
-/// The light that one pass finds in maps, with a radius so small that photons do not overlap: what it finds without
-/// any is taken away.
+/// Shows the light that one pass finds in the maps, with a radius so small that photons do not overlap, minus the
+/// light that the pass finds without any photons.
 void ThesisPictures::show_photons(const Job& job, ThesisPicture& picture) {
     RenderSettings settings = job.settings;
     const Vec3 size = job.prepared.structures->bounds().size();

@@ -1,9 +1,10 @@
 #pragma once
 
-// The pictures of chapters 2 to 4 of the thesis (lab/thesis.h) anew, each by the algorithm that it shows. Figures have
-// the thesis's numbers: 3.3 hard shadows, 3.4 soft shadows, 3.6 indirect light alone, 3.7 radiosity in four panels, 3.8
-// the Cornell box with a mirror sphere, 3.9 the photon map, 3.10 the caustic under glass, 4.1 points found in a tree.
-// What else belongs to these chapters stands under its section.
+// Remakes the pictures of chapters 2 to 4 of the thesis (lab/thesis.h), each by the algorithm that it shows. Figures
+// have the thesis's numbers: 3.3 hard shadows, 3.4 soft shadows, 3.6 indirect light alone, 3.7 radiosity in four
+// panels, 3.8 the Cornell box with a mirror sphere, 3.9 the photon map, 3.10 the caustic under glass, 4.1 points
+// found
+// in a tree. Other pictures that belong to these chapters are listed under their section.
 
 #include <functional>
 #include <string>
@@ -17,38 +18,39 @@
 namespace pertev {
 
 struct ThesisPicture {
-    std::string name;       // of its file, without what follows the last point: "figure-3.7a"
-    std::string place;      // in the thesis: "Figure 3.7"; pictures of one place and title stand side by side
-    std::string title;      // "radiosity"
-    std::string shows;      // what is seen, and by which algorithm
-    std::string integrator; // its name; empty: it is not rendered
-    std::string
-        command; // that makes its very bytes on this device, with settings to phrase; empty: the laboratory alone does
-    Rgba8Image image; // of a picture without `svg`
-    std::string svg;  // a file by itself
+    std::string name;       // file name without its extension, for example "figure-3.7a"
+    std::string place;      // "Figure 3.7", for example; pictures with one place and title stand side by side
+    std::string title;      // for example "radiosity"
+    std::string shows;      // what the picture shows and by which algorithm
+    std::string integrator; // integrator's name; empty if the picture is not rendered
+    std::string command; // a command that makes the same bytes on this device, with settings still to phrase; empty if
+                         // there is none
+    Rgba8Image image;    // the pixels, unless the picture is an `svg`
+    std::string svg;     // a complete SVG file
     RenderStats stats;
-    double solve_seconds = 0; // that came before stats.render_seconds
-    bool interrupted = false; // it has fewer samples than were asked for
+    double solve_seconds = 0; // solving time, which stats.render_seconds does not include
+    bool interrupted = false; // it has fewer samples than requested
 
     std::string file() const { return name + (svg.empty() ? ".png" : ".svg"); }
 };
 
-/// Names of all pictures, in the thesis's order, and of all files that they may be in.
+/// Names of all pictures in the thesis's order, and of all files that may hold them.
 std::vector<std::string> thesis_picture_names();
 std::vector<std::string> thesis_picture_files();
 
-/// Makes pictures one by one. Each is shown at one exposure, whatever its size.
+/// Makes pictures one by one. A picture's exposure does not depend on its size.
 class ThesisPictures {
 public:
-    /// What is being done, and the share of the picture that is done; false ends it.
+    /// Called with the current work and the finished share of the picture; returning false ends it.
     using Progress = std::function<bool(const char* doing, double share)>;
 
-    /// `settings` says size, samples, depth and body. Where several pictures stand side by side each has half the width
-    /// and half the height. `queue` outlives it.
+    /// `settings` gives size, samples, depth and the path tracer's body. Pictures that stand side by side have half
+    /// the
+    /// width and height. `queue` must outlive this.
     ThesisPictures(Queue& queue, const RenderSettings& settings) : queue_(queue), settings_(settings) {}
 
-    /// The picture of this name. Throws Error(Interrupted) where it is ended before there is anything to show, what
-    /// Session and solve_radiosity throw.
+    /// Makes the picture with this name. Throws Error(Interrupted) if it is stopped before there is anything to show,
+    /// and what Session and solve_radiosity throw.
     ThesisPicture make(std::string_view name, const Progress& progress);
 
 private:

@@ -5,7 +5,7 @@
 namespace pertev {
 namespace {
 
-constexpr Rgb kAmbient = {0.02f, 0.02f, 0.02f}; // so that what the light does not reach is not black
+constexpr Rgb kAmbient = {0.02f, 0.02f, 0.02f}; // so that unlit surfaces are not black
 
 void add_ambient(RenderSettings& settings) { settings.ambient = kAmbient; }
 template <RasterShading kShading>
@@ -194,7 +194,7 @@ constexpr ThesisRecipe kRecipes[] = {
 std::span<const ThesisRecipe> thesis_recipes() { return kRecipes; }
 
 ThesisDetail thesis_detail(uint32_t panel_height) {
-    constexpr uint32_t kFullHeight = 384; // of a panel of 1024x768
+    constexpr uint32_t kFullHeight = 384; // height of a panel at 1024x768
     constexpr uint32_t kFinestMm = 80, kEarlySteps = 200, kFullPhotons = 1u << 16;
     const uint32_t mm = std::clamp(kFinestMm * kFullHeight / std::max(1u, panel_height), kFinestMm, 4 * kFinestMm);
     const uint32_t area = mm * mm, finest = kFinestMm * kFinestMm;

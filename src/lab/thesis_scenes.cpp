@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "formats/read_scene.h"
-#include "lab/transport_presets.h"
+#include "lab/record_scenes.h"
 #include "math/portable_math.h"
 #include "session/opening/choose_camera.h"
 
@@ -145,8 +145,8 @@ Scene make_thesis_scene(ThesisScene which) {
 Camera camera_of(ThesisScene which, const Scene& scene, float aspect) {
     Messages messages;
     const bool is_preset = which == ThesisScene::Caustic;
-    return choose_camera(is_preset ? camera_choice(*find_transport_preset("caustic")) : CameraChoice{}, scene, aspect,
-                         messages);
+    return choose_camera(is_preset ? camera_choice(*find_named(the_record().presets, "caustic")) : CameraChoice{},
+                         scene, aspect, messages);
 }
 
 const char* command_of(ThesisScene which) {

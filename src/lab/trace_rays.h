@@ -1,6 +1,6 @@
 #pragma once
 
-// What rays meet, as the laboratory compares it, and where that lies on a device.
+// Ray hits in the form that the laboratory compares, and their storage on a device.
 
 #include <cstdint>
 #include <functional>
@@ -13,8 +13,8 @@
 
 namespace pertev {
 
-/// Closest: the least (t, instance, primitive) of the candidates; t is the ray's own t_max where there is none. Any:
-/// {0, 0, 0} where there is a candidate, {0, kNoHit, 0} where not: which one was met first is the walk's affair.
+/// Closest hit: the least (t, instance, primitive) of the candidates; t is the ray's t_max without one. Any hit: {0,
+/// 0, 0} if there is a candidate and {0, kNoHit, 0} if not, because traversals may find different ones first.
 struct RayHit {
     float t = 0;
     uint32_t instance = kNoHit;
@@ -24,15 +24,15 @@ struct RayHit {
     bool operator==(const RayHit&) const = default;
 };
 
-/// Room for what a set of rays meets.
+/// Device memory for the hits of a ray set.
 class HitsOnDevice {
 public:
     /// Throws Error(OutOfMemory).
     HitsOnDevice(Queue& queue, std::size_t rays) : places_(queue, rays, "hits"), instances_(queue, rays, "hits") {}
 
-    /// Of the rays from number `first` on.
+    /// View of the hits of ray number `first` and the rays after it.
     HitQueueView from(std::size_t first) const { return {places_.data() + first, instances_.data() + first}; }
-    /// No ray has this result.
+    /// Fills the hits with a result that no ray has.
     void spoil() {
         places_.fill(0xff);
         instances_.fill(0xfe);
@@ -44,7 +44,7 @@ private:
     Buffer<uint32_t> instances_;
 };
 
-/// Rays [0, count) that lie in a device's memory, of which every candidate counts.
+/// Query of rays [0, count) in device memory for which every candidate counts.
 inline TraceQuery all_candidates(const Ray* rays) { return {.rays = {.rays = rays}}; }
 
 inline void trace(const Tracer& tracer, bool any_hit, const Ray* rays, uint32_t count, const HitQueueView& hits) {
@@ -55,10 +55,10 @@ inline void trace(const Tracer& tracer, bool any_hit, const Ray* rays, uint32_t 
     }
 }
 
-/// What many rays meet first; both spans are the host's and equally long.
+/// Traces closest hits of many rays; both spans are host memory and have equal length.
 using RayTracer = std::function<void(std::span<const Ray>, std::span<RayHit>)>;
 
-/// On the queue's device, where the tracer is. Both outlive it.
+/// Traces on the queue's device, which must also hold the tracer. Both must outlive the result.
 RayTracer make_ray_tracer(Queue& queue, const Tracer& tracer);
 
 } // namespace pertev

@@ -13,7 +13,7 @@
 namespace pertev {
 namespace {
 
-/// In the world; any of the scene's.
+/// A random triangle of the scene, in world space.
 BvhTriangle some_triangle(const LabTriangles& triangles, uint32_t& state) {
     const auto below = [&](std::size_t count) {
         return std::min(static_cast<std::size_t>(draw(state) * static_cast<float>(count)), count - 1);
@@ -34,7 +34,7 @@ Ray nasty_ray(Ray ray, uint32_t i, const LabTriangles& triangles) {
     uint32_t state = secondary_state(i, 99);
     const BvhTriangle t = some_triangle(triangles, state);
     switch (i % 4) {
-    case 0: { // along an axis, the other components exactly 0, of both signs
+    case 0: { // along an axis; the other components are exactly 0, with either sign
         const float sign = i & 4 ? -1.0f : 1.0f, zero = i & 8 ? -0.0f : 0.0f;
         const uint32_t axis = i / 16 % 3;
         ray.direction = {axis == 0 ? sign : zero, axis == 1 ? sign : zero, axis == 2 ? sign : zero};
@@ -42,10 +42,10 @@ Ray nasty_ray(Ray ray, uint32_t i, const LabTriangles& triangles) {
     }
     case 1:
         ray.direction = t.b - ray.origin;
-        break; // at a vertex
+        break; // through a vertex
     case 2:
         ray.direction = 0.5f * (t.a + t.c) - ray.origin;
-        break; // at an edge
+        break; // through an edge
     case 3:
         ray.direction = t.b - t.a, ray.origin = t.a - ray.direction;
         break; // along an edge

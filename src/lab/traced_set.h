@@ -1,7 +1,7 @@
 #pragma once
 
-// A set of rays with what they meet, which every combination is held to. It comes from the proven walk (lab/run_lab.h),
-// which itself was held against brute force on some of the rays.
+// A set of rays with reference hits that every combination is compared with. The proven traversal (lab/run_lab.h)
+// traces them; it is itself compared with brute force on some of the rays.
 
 #include <span>
 #include <vector>
@@ -15,29 +15,30 @@ namespace pertev {
 
 struct TracedSet {
     SetFigures figures;
-    Buffer<Ray> rays;           // on the queue's device
-    std::vector<RayHit> wanted; // in the form that HitsOnDevice::download gives for the set's kind
+    Buffer<Ray> rays;           // in the queue's device memory
+    std::vector<RayHit> wanted; // expected hits, in the form that HitsOnDevice::download returns for this kind of set
 };
 
-/// A scene's triangles, and where instances of those that are not baked stand.
+/// A scene's triangles, and transforms of the instances that are not baked.
 struct LabTriangles {
     SceneTriangles parts;
     TopLevelBvh top_level;
 };
 
-/// Some of a set's rays, spread over it, and others from their origins that run along axes or exactly through vertices
-/// and along edges of the scene's triangles. A function of its arguments.
+/// Returns some rays spread over the set, and other rays from their origins that run along axes or exactly through
+/// vertices and edges of the scene's triangles. The result depends only on the arguments.
 std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, uint32_t count, uint32_t nasty_count);
 
-/// Holds the proven walk against brute force on some of the set's rays: how many. Throws Error(DeviceFault) where they
-/// differ, with the ray as hex floats.
+/// Compares the proven traversal with brute force on some of the set's rays and returns their number. Throws
+/// Error(DeviceFault) with the ray as hex floats if they differ.
 uint64_t check_proven_walk(Queue& queue, const RaySet& set, const Tracer& proven, const BruteForce& oracle,
                            const LabTriangles& triangles, uint32_t count, uint32_t nasty_count, const PieceDone& done);
 
-/// The set by the proven walk.
+/// Traces the set by the proven traversal.
 TracedSet trace_set(Queue& queue, const RaySet& set, const Tracer& proven, const PieceDone& done);
 
-/// Rays whose result is not the one wanted: in any bit, or, where `exact` is false, in what they meet.
+/// Counts rays whose hit differs from the wanted one: in any bit, or, if `exact` is false, in the surface that is
+/// hit.
 uint64_t count_different(std::span<const RayHit> hits, std::span<const RayHit> wanted, bool exact);
 
 } // namespace pertev

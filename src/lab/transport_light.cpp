@@ -18,7 +18,8 @@ bool has_diffuse_lobe(const Material& material) {
                           (material.kind == MaterialKind::MetallicRoughness && material.metallic < 1);
     return may_have && max_component(material.base_color) > 0;
 }
-/// Lamps, whose surfaces are diffuse and black, among them.
+
+/// Whether all materials are diffuse only. Emitters count as diffuse: their surfaces are diffuse and black.
 bool is_all_diffuse(const Scene& scene) {
     return std::ranges::all_of(scene.instances, [&](const Instance& i) {
         const MaterialKind kind = scene.materials[i.material].kind;
@@ -26,7 +27,7 @@ bool is_all_diffuse(const Scene& scene) {
     });
 }
 
-/// Point, spot or directional lights, and mirrors or clear glass that send their light on.
+/// Whether point, spot or directional lights shine on mirrors or clear glass.
 bool has_caustics_of_points(const Scene& scene) {
     return std::ranges::any_of(scene.lights, [](const Light& l) { return max_component(l.intensity) > 0; }) &&
            std::ranges::any_of(scene.instances,

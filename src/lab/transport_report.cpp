@@ -10,7 +10,7 @@
 namespace pertev {
 namespace {
 
-/// The part of the way from `a` to `b` at which `x` lies, in logarithms.
+/// The position of `x` between `a` and `b` on a logarithmic scale: 0 at `a`, 1 at `b`.
 double log_share(double x, double a, double b) {
     const float ends = log(static_cast<float>(b)) - log(static_cast<float>(a));
     if (!(ends > 0)) return 1;
@@ -22,7 +22,7 @@ double between(double a, double b, double share) {
     return a * static_cast<double>(exp(static_cast<float>(share) * log(static_cast<float>(b / a))));
 }
 
-/// The last that is there by then.
+/// The last solution that was ready by then.
 std::optional<TransportFigures> solved_by(const Repetition& repetition, double seconds) {
     std::optional<TransportFigures> last;
     for (const TransportFigures& one : repetition) {
@@ -38,7 +38,7 @@ std::optional<TransportFigures> at_time(const Repetition& repetition, double sec
         if (seconds == b.seconds) return b;
         if (i == 0) return std::nullopt;
         const TransportFigures& a = repetition[i - 1];
-        const double made_s = b.made_seconds; // which comes once, however many samples follow
+        const double made_s = b.made_seconds; // spent once, however many samples follow
         const double share = log_share(seconds - made_s, a.seconds - made_s, b.seconds - made_s);
         return TransportFigures{0, seconds, between(a.rel_mse, b.rel_mse, share), between(a.flip, b.flip, share)};
     }
@@ -72,7 +72,7 @@ double student_t(uint32_t degrees) {
                                     2.2010,  2.1788, 2.1604, 2.1448, 2.1314, 2.1199, 2.1098, 2.1009, 2.0930, 2.0860,
                                     2.0796,  2.0739, 2.0687, 2.0639, 2.0595, 2.0555, 2.0518, 2.0484, 2.0452, 2.0423};
     if (degrees <= std::size(quantiles)) return quantiles[std::max(degrees, 1u) - 1];
-    // Cornish and Fisher's first terms, at most 0.0002 off from here on.
+    // the first terms of Cornish and Fisher's expansion, with an error below 0.0002 from here on
     constexpr double z = 1.959964;
     return z + (z * z * z + z) / (4.0 * degrees) +
            (5 * z * z * z * z * z + 16 * z * z * z + 3 * z) / (96.0 * degrees * degrees);
@@ -103,7 +103,8 @@ std::vector<TransportPoint> points_of(const TransportRow& row) {
 
 namespace {
 
-/// Between two figures samples go with time; what begins a picture takes time too, and the first figure has it whole.
+/// Samples at a time between two figures. Samples grow linearly with time; preparation before the first sample takes
+/// time too and belongs to the first figure.
 double samples_at(const Repetition& repetition, double seconds) {
     const auto after = std::ranges::find_if(repetition, [&](const auto& f) { return f.seconds >= seconds; });
     if (after == repetition.begin()) return after->samples;
@@ -170,7 +171,7 @@ uint32_t equal_samples(const TransportScene& scene) {
             });
             if (have_all) most = std::max(most, one.samples);
         }
-        break; // the others have no more in common
+        break; // a count that all rows have is among this row's, so other rows add none
     }
     return most;
 }

@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kFirstPatch = 4; // of the default's edge
+constexpr uint32_t kFirstPatch = 4; // first patches relative to the default's edge
 constexpr std::size_t kMostSolutionBytes = std::size_t(4) << 30;
 
 } // namespace
@@ -19,7 +19,7 @@ constexpr std::size_t kMostSolutionBytes = std::size_t(4) << 30;
 RadiositySettings solution_settings(const PreparedScene& prepared, uint32_t number, uint32_t seed) {
     RadiositySettings settings;
     settings.patch_size = patch_size_of(prepared, settings) * kFirstPatch / static_cast<float>(1u << number);
-    settings.subdivisions = 1; // more would make each cost what the next does
+    settings.subdivisions = 1; // more subdivisions would make each solution cost as much as the next
     settings.seed = seed;
     return settings;
 }
@@ -56,7 +56,7 @@ SolvedPicture solve_picture(Queue& queue, const PreparedScene& prepared, const C
         });
         return seconds;
     };
-    render(1); // memory, caches and the driver's first launch are not timed
+    render(1); // memory allocation, caches and the driver's first launch are not timed
     session.cut();
     shown.figures.seconds += render(samples);
     shown.picture = session.picture();

@@ -1,6 +1,6 @@
 #pragma once
 
-// Radiosity in the laboratory of light transport: solutions of growing detail, and a picture of each.
+// Radiosity in the light transport laboratory: solutions of growing detail, and a picture of each.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,26 +13,26 @@
 
 namespace pertev {
 
-/// Of each pixel, of a picture of a solution: for its edges, as the solution has no noise that samples would lessen.
+/// Samples per pixel in a solution's picture. They smooth its edges; the solution has no noise for samples to reduce.
 inline constexpr uint32_t kSolutionSamples = 16;
 
-/// Solution `number`: patches of a 4th, 8th, 16th, ... of the scene's longest side, which are divided once where light
-/// changes.
+/// Settings of solution `number`: patches of a 4th, 8th, 16th, ... of the scene's longest side, subdivided once where
+/// light changes.
 RadiositySettings solution_settings(const PreparedScene& prepared, uint32_t number, uint32_t seed);
 
-/// Whether there may be a solution of that number: it takes no more patches, and no more of this machine's memory, than
-/// the laboratory gives to one.
+/// Whether solution `number` is possible: its patches and its memory stay within the laboratory's limits for one
+/// solution.
 bool may_be_solved(const PreparedScene& prepared, uint32_t number);
 
 struct SolvedPicture {
     TransportFigures figures; // without errors
     Image picture;
-    std::size_t device_bytes = 0, host_bytes = 0; // the most that rendering and that solving took
+    std::size_t device_bytes = 0, host_bytes = 0; // peak memory of rendering and of solving
     uint64_t invalid_samples = 0;
 };
 
-/// Solves, and renders `samples` samples of each pixel. Timed are both, but for one sample that comes first, as of all
-/// integrators. `progress` may throw. Throws as solve_radiosity and Session.
+/// Solves and renders `samples` samples per pixel. Both are timed, except for one warm-up sample, which all
+/// integrators render first. `progress` may throw. Throws what solve_radiosity and Session throw.
 SolvedPicture solve_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,
                             uint32_t number, uint32_t samples, const SolveProgress& progress);
 

@@ -16,7 +16,7 @@ struct TableLine {
     std::optional<TransportPoint> point;
 };
 
-/// Rows with figures, the least relMSE first; those without a point last.
+/// Rows with figures, the smallest relMSE first; rows without a point come last.
 template <class PointOf>
 std::vector<TableLine> lines_of(const TransportScene& scene, const PointOf& point_of) {
     std::vector<TableLine> lines;
@@ -40,7 +40,7 @@ ResultCell value_at(const std::optional<TransportPoint>& point, const Value& val
     return point ? ResultCell(value(*point)) : ResultCell();
 }
 
-/// Errors with the half widths of their 95 % intervals, and efficiency with its ratio to that of path.
+/// Errors with half widths of their 95 % intervals, and efficiency with its ratio to path's.
 Fields point_fields(const TableLine& line, const std::optional<double>& of_path) {
     const auto own = line.point ? efficiency(*line.point) : std::nullopt;
     const auto& p = line.point;
@@ -88,7 +88,7 @@ ResultTable scenes_of(const TransportReport& report) {
     return table;
 }
 
-/// Means over repetitions with their bands, which a page draws.
+/// Adds means over repetitions with their confidence intervals, which a page draws.
 void add_points(const TransportScene& scene, ResultTable& table) {
     for (const TransportRow& row : scene.rows) {
         for (const TransportPoint& p : points_of(row)) {
@@ -161,7 +161,7 @@ Fields report_fields(const TransportReport& r) {
             {"budget_seconds", "", r.seconds}};
 }
 
-/// "cast: point, spot and ... lights alone", a line for each integrator without figures.
+/// "cast: point, spot and ... lights alone", for example: a line for each integrator without figures.
 std::vector<std::string> rows_without_figures(const TransportScene& scene) {
     std::vector<std::string> lines;
     for (const TransportRow& row : scene.rows) {
@@ -172,7 +172,7 @@ std::vector<std::string> rows_without_figures(const TransportScene& scene) {
     return lines;
 }
 
-/// Appends the rows of `part` with the scene's name in front.
+/// Appends the rows of `part`, each preceded by the scene's name.
 void add_all(const TransportScene& scene, ResultTable part, ResultTable& all) {
     all.columns = std::move(part.columns);
     all.columns.insert(all.columns.begin(), {"scene", "scene", "", ""});

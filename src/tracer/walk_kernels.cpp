@@ -4,42 +4,22 @@
 
 namespace pertev {
 
-// Each is defined in a file in kernels/.
-void add_if_if_kernels(std::vector<WalkKernel>& rows);
-void add_while_while_kernels(std::vector<WalkKernel>& rows);
-void add_speculative_kernels(std::vector<WalkKernel>& rows);
-void add_octant_kernels(std::vector<WalkKernel>& rows);
-void add_restart_trail_kernels(std::vector<WalkKernel>& rows);
-void add_short_stack_kernels(std::vector<WalkKernel>& rows);
-void add_parent_links_kernels(std::vector<WalkKernel>& rows);
-void add_skip_links_kernels(std::vector<WalkKernel>& rows);
-void add_compressed_kernels(std::vector<WalkKernel>& rows);
-void add_kd_tree_kernels(std::vector<WalkKernel>& rows);
-void add_octree_kernels(std::vector<WalkKernel>& rows);
-void add_brute_force_kernels(std::vector<WalkKernel>& rows);
-void add_wide_kernels(std::vector<WalkKernel>& rows);
-void add_warp_packet_kernels(std::vector<WalkKernel>& rows);
+// Each is defined in a file in kernels/ or kernels/lab/.
+void add_picture_kernels(std::vector<WalkKernel>& rows);
 void add_host_kernels(std::vector<WalkKernel>& rows);
+#if defined(PERTEV_LAB_KERNELS)
+void add_lab_kernels(std::vector<WalkKernel>& rows);
+#endif
 
 namespace {
 
 std::vector<WalkKernel> all_kernels() {
     std::vector<WalkKernel> rows;
-    add_if_if_kernels(rows);
-    add_while_while_kernels(rows);
-    add_speculative_kernels(rows);
-    add_octant_kernels(rows);
-    add_restart_trail_kernels(rows);
-    add_short_stack_kernels(rows);
-    add_parent_links_kernels(rows);
-    add_skip_links_kernels(rows);
-    add_compressed_kernels(rows);
-    add_kd_tree_kernels(rows);
-    add_octree_kernels(rows);
-    add_brute_force_kernels(rows);
-    add_wide_kernels(rows);
-    add_warp_packet_kernels(rows);
+    add_picture_kernels(rows);
     add_host_kernels(rows);
+#if defined(PERTEV_LAB_KERNELS)
+    add_lab_kernels(rows);
+#endif
     return rows;
 }
 
@@ -48,6 +28,9 @@ std::vector<WalkKernel> all_kernels() {
 std::optional<std::string> why_no_tracer(const Combination& c, bool on_cuda) {
     if (auto reason = why_not(c, on_cuda)) return reason;
     if (find_kernel(c, false, on_cuda) != nullptr) return std::nullopt;
+#if !defined(PERTEV_LAB_KERNELS)
+    return "left out of this build, which has only the traversals of pictures (PERTEV_LAB_KERNELS=OFF)";
+#endif
     if (!c.options.is_exact()) return "fast and woop tests are compiled with rta and near alone";
     return c.options.rta_at_pops ? "not compiled" : "RTA at nodes alone is compiled with near alone";
 }
@@ -55,7 +38,7 @@ std::optional<std::string> why_no_tracer(const Combination& c, bool on_cuda) {
 const WalkKernel* find_kernel(const Combination& c, bool any_hit, bool on_cuda) {
     static const std::vector<WalkKernel> rows = all_kernels();
     const auto at = std::ranges::find_if(rows, [&](const WalkKernel& row) {
-        // An any-hit search has no nearest hit that RTA could compare with, so both switches give the same traversal.
+        // An any-hit search has no nearest hit to skip beyond: RTA on or off, it is the same walk.
         const bool rta =
             any_hit || (row.options.rta == c.options.rta && row.options.rta_at_pops == c.options.rta_at_pops);
         return (on_cuda ? row.on_cuda : row.on_cpu) && row.walk == c.walk && row.distribution == c.distribution &&

@@ -31,9 +31,9 @@ FLAGS = {
                        "--environment-scale --two-sided-lights --threads --no-bvh-cache --animation --file-scene --strict --quiet -q --json",
     "info": "--file-scene --allow-path --up-axis --unit --settings --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
-    "bench": "--scene --size --spp --device --threads --build --structure --walk --rta --order --distribution --quiet -q --json",
-    "bench build": "--scene --runs --compare --device --threads --quiet -q --json",
-    "bench rays": "--scene --eye --target --fov --count --runs --check --device --threads --axes --build --structure --walk --rta --order --distribution --quiet -q --json",
+    "bench": "--scene --size --spp --device --threads --build --structure --walk --rta --order --distribution --report --quiet -q --json",
+    "bench build": "--scene --runs --compare --device --threads --report --quiet -q --json",
+    "bench rays": "--scene --eye --target --fov --count --runs --check --device --threads --axes --build --structure --walk --rta --order --distribution --report --quiet -q --json",
 }
 
 

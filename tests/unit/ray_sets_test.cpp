@@ -340,7 +340,8 @@ TEST_CASE("the first shadow targets in Sponza are those on the record") {
     const auto path = test_scene("crytek-sponza/sponza.obj");
     if (!path) return;
     Messages messages;
-    const Scene scene = make_record_scene(*find_record_scene("sponza"), path->parent_path().parent_path(), messages);
+    const Scene scene =
+        make_record_scene(*find_named(the_record().scenes, "sponza"), path->parent_path().parent_path(), messages);
     const auto targets = shadow_targets(bounds_of(scene));
     const float printed[6] = {31.88f, 16.88f, -64.41f, 7.11f, 89.98f, 57.20f};
     for (int i = 0; i < 6; ++i) {
@@ -353,7 +354,7 @@ TEST_CASE("as many rays hit Sponza as on the record") {
     const auto path = test_scene("crytek-sponza/sponza.obj");
     if (!path) return;
     Messages messages;
-    const RecordScene& record = *find_record_scene("sponza");
+    const RecordScene& record = *find_named(the_record().scenes, "sponza");
     Traced traced(make_record_scene(record, path->parent_path().parent_path(), messages));
     CHECK(traced.prepared.triangles == record.triangles);
     const uint32_t count = static_cast<uint32_t>(effort(40000, kRecordRays));

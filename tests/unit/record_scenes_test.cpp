@@ -96,7 +96,7 @@ TEST_CASE("the forest has its triangles, all of them in its place, for any numbe
 
 TEST_CASE("scenes of the record have the triangles stated") {
     const auto sponza = test_scene("crytek-sponza/sponza.obj"), bunny = test_scene("stanford/bunny.obj");
-    for (const RecordScene& record : record_scenes()) {
+    for (const RecordScene& record : the_record().scenes) {
         const std::string_view name = record.name;
         if ((name == "sponza" && !sponza) || (name == "bunny" && !bunny)) continue;
         if (name == "forest" && effort(0, 1) == 0) continue;
@@ -114,11 +114,11 @@ TEST_CASE("scenes of the record have the triangles stated") {
 TEST_CASE("a scene whose file is not there is refused by the file's name") {
     Messages messages;
     for (const char* name : {"sponza", "bunny"}) {
-        const RecordScene& record = *find_record_scene(name);
+        const RecordScene& record = *find_named(the_record().scenes, name);
         for (const std::filesystem::path& folder : {std::filesystem::path(), scratch_folder()}) {
             CHECK(bad_input_message([&] { make_record_scene(record, folder, messages); }).find(record.file) !=
                   std::string::npos);
         }
     }
-    CHECK(find_record_scene("sponz") == nullptr);
+    CHECK(find_named(the_record().scenes, "sponz") == nullptr);
 }

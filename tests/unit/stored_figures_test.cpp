@@ -8,6 +8,8 @@
 #include <array>
 #include <vector>
 
+#include "lab/record_scenes.h"
+
 using namespace pertev;
 
 namespace {
@@ -15,18 +17,18 @@ namespace {
 constexpr const char* kH200 = "NVIDIA H200";
 constexpr std::array kOtherDevices = {"CPU", "NVIDIA H200 NVL", "NVIDIA H200 MIG 1g.18gb", "NVIDIA H100 80GB HBM3", ""};
 
-RaysRun rays_run(const char* scene, std::size_t set, double rays_per_second) {
-    const RecordScene& record = *find_record_scene(scene);
+RaysRun rays_run(const std::string& scene, std::size_t set, double rays_per_second) {
+    const RecordScene& record = *find_named(the_record().scenes, scene);
     return {kH200, &record, set, record.triangles, kRecordRays, record.sets[set].hit_share, rays_per_second};
 }
 
-BuildRun build_run(const char* scene, double seconds) {
-    const RecordScene& record = *find_record_scene(scene);
+BuildRun build_run(const std::string& scene, double seconds) {
+    const RecordScene& record = *find_named(the_record().scenes, scene);
     return {kH200, &record, record.triangles, seconds};
 }
 
-JobRun job_run(const char* name, double samples_per_second) {
-    const RecordJob& job = *find_record_job(name);
+JobRun job_run(const std::string& name, double samples_per_second) {
+    const RecordJob& job = *find_named(the_record().jobs, name);
     return {kH200, &job, job.width, job.height, job.samples, job.triangles, job.mean, samples_per_second};
 }
 
@@ -44,17 +46,17 @@ bool has_any(const std::vector<Ratio>& ratios) {
 } // namespace
 
 TEST_CASE("all scenes and jobs of the record have stored figures") {
-    for (const RecordScene& scene : record_scenes()) {
-        for (std::size_t set = 0; set < std::size(scene.sets); ++set) {
-            CHECK(*ratio_of(rays_run(scene.name, set, 2 * best_rays_per_second(scene, set))).value ==
+    for (const RecordScene& scene : the_record().scenes) {
+        for (std::size_t set = 0; set < scene.sets.size(); ++set) {
+            CHECK(*ratio_of(rays_run(scene.name, set, 2 * scene.sets[set].best_rays_per_second)).value ==
                   doctest::Approx(2));
         }
         for (const Ratio& ratio : ratios_of(build_run(scene.name, 1e-3))) CHECK(ratio.value.value_or(0) > 0.1);
     }
-    for (const RecordJob& job : record_jobs()) {
+    for (const RecordJob& job : the_record().jobs) {
         for (const Ratio& ratio : ratios_of(job_run(job.name, 1e8))) CHECK(ratio.value.value_or(0) > 0.5);
     }
-    CHECK(find_record_job("S6") == nullptr);
+    CHECK(find_named(the_record().jobs, "S6") == nullptr);
 }
 
 TEST_CASE("a ratio is our rate in times the other's") {
@@ -115,24 +117,37 @@ TEST_CASE("what is measured must look as it did to others") {
     CHECK(!with_mean(0.9979));
 }
 
-TEST_CASE("text and JSON have ratios, or say that there are none") {
-    const RecordJob& job = *find_record_job("S5");
+TEST_CASE("ratios are fields of a measurement, empty where there are none") {
+    const RecordJob& job = *find_named(the_record().jobs, "S5");
+    const auto fields = [](const std::vector<Ratio>& ratios) {
+        Fields all;
+        for (const Ratio& ratio : ratios) all.push_back(field_of(ratio));
+        return json_of("", all);
+    };
     const auto here = ratios_of(job_run("S5", 219.4e6));
-    CHECK(ratios_json(here) == R"("ratio_to_mitsuba":2.0000,"ratio_to_cycles":4.3880,"ratio_to_pbrt":3.0472)");
-    CHECK(ratios_line(here, job) ==
-          "2.00 times Mitsuba 3, 4.39 times Cycles, 3.05 times pbrt-v4, as stored of one NVIDIA H200");
-    CHECK(ratio_cell(here[2]) == "3.05");
-
+    CHECK(field_of(here[2]).value.text("{:.4f}") == "3.0472");
+    CHECK(field_of(here[0]).value == 2.0);
     const auto elsewhere = ratios_of(changed(job_run("S5", 219.4e6), [](JobRun& run) { run.device = "CPU"; }));
-    CHECK(ratios_json(elsewhere) == R"("ratio_to_mitsuba":null,"ratio_to_cycles":null,"ratio_to_pbrt":null)");
-    CHECK(ratios_line(elsewhere, job) ==
-          "no ratios to others: their figures are of one NVIDIA H200, 1920x1080, 256 spp, "
-          "262204 triangles and a mean of 0.05784");
-    CHECK(ratio_cell(elsewhere[0]) == "-");
-    const Ratio rays = ratio_of(rays_run("sponza", 0, 5524e6));
-    CHECK(ratios_json({&rays, 1}) == R"("ratio_to_best":1.0000)");
+    CHECK(fields(elsewhere) == R"({"ratio_to_mitsuba":null,"ratio_to_cycles":null,"ratio_to_pbrt":null})");
+    CHECK(why_no_ratios(job) == "no ratios to others: their figures are of one NVIDIA H200, 1920x1080, 256 spp, "
+                                "262204 triangles and a mean of 0.05784\n");
+    CHECK(field_of(ratio_of(rays_run("sponza", 0, 5524e6))).key == std::string("ratio_to_best"));
     const auto builds = ratios_of(build_run("bunny", 1.85e-3));
-    CHECK(ratios_json(builds) == R"("ratio_to_optix_fast_trace":2.0000,"ratio_to_optix_fast_build":0.5135)");
+    CHECK(field_of(builds[0]).value == 2.0);
+    CHECK(builds[1].key == std::string("ratio_to_optix_fast_build"));
+}
+
+TEST_CASE("the table of jobs has the record's scenes and jobs and the presets of light transport") {
+    const Record& record = the_record();
+    CHECK(record.device == "NVIDIA H200");
+    REQUIRE(record.scenes.size() == 3);
+    CHECK(record.scenes[0].view.eye == Vec3{-110, 18, -2});
+    CHECK(record.scenes[2].file.empty()); // generated
+    for (const RecordScene& scene : record.scenes) CHECK(scene.sets.size() == 5);
+    CHECK(record.jobs.size() == 4);
+    REQUIRE(record.presets.size() == 6);
+    CHECK_FALSE(record.presets[0].view);
+    CHECK(camera_choice(record.presets[1]).fov_deg == 50.0f);
 }
 
 TEST_CASE("ratios are summed up by their geometric mean and the least") {
@@ -143,8 +158,8 @@ TEST_CASE("ratios are summed up by their geometric mean and the least") {
 }
 
 TEST_CASE("depths of jobs are counted as each of the others' does") {
-    CHECK(job_settings(*find_record_job("S8")).path.max_depth == 8); // scatterings
-    const RenderSettings box = job_settings(*find_record_job("cornell-box-65"));
+    CHECK(job_settings(*find_named(the_record().jobs, "S8")).path.max_depth == 8); // scatterings
+    const RenderSettings box = job_settings(*find_named(the_record().jobs, "cornell-box-65"));
     CHECK(box.path.max_depth == 64); // edges
     CHECK(box.filter == PixelFilter::Tent);
     CHECK(filter_radius_of(box) == 1);

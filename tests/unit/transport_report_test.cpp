@@ -7,9 +7,9 @@
 
 #include <doctest/doctest.h>
 
+#include "lab/record_scenes.h"
 #include "lab/run_transport.h"
 #include "lab/transport_light.h"
-#include "lab/transport_presets.h"
 #include "lab/transport_tables.h"
 #include "tests/support/small_lab_report.h"
 
@@ -216,12 +216,12 @@ TEST_CASE("seeds of repetitions differ, and the reference has none of them") {
 }
 
 TEST_CASE("each preset is a scene of the program, and all light is what three integrators find in lamps") {
-    for (const TransportPreset& preset : transport_presets()) {
+    for (const TransportPreset& preset : the_record().presets) {
         CAPTURE(preset.name);
-        CHECK(find_transport_preset(preset.name) == &preset);
+        CHECK(find_named(the_record().presets, preset.name) == &preset);
         CHECK(test::has("cornell-box caustic blind door cove many-lights", preset.scene));
     }
-    CHECK(find_transport_preset("kitchen") == nullptr);
+    CHECK(find_named(the_record().presets, "kitchen") == nullptr);
     Scene lamps, glass;
     for (const std::string& name : transport_integrators()) {
         CAPTURE(name);

@@ -170,15 +170,21 @@ void add_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
     }
 }
 
-/// Adds every useful set of switches. Tests that leak are combined only with all other switches on. Lanes are counted
-/// with the exact tests and near children first.
+/// Adds every useful set of switches except the default one, which pictures.cu may have. Tests that leak are combined
+/// only with all other switches on. Lanes are counted with the exact tests and near children first.
 template <template <WalkOptions> class Walk, bool kFast = false>
-void add_all_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
-    add_kernels<Walk, WalkOptions{true, true}, kFast>(kind, rows);
+void add_other_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
     add_kernels<Walk, WalkOptions{false, true}, kFast>(kind, rows);
     add_kernels<Walk, WalkOptions{true, false}, kFast>(kind, rows);
     add_kernels<Walk, WalkOptions{false, false}, kFast>(kind, rows);
     add_kernels<Walk, WalkOptions{true, true, TestKind::Fast}, kFast>(kind, rows);
+}
+
+/// Adds every useful set of switches.
+template <template <WalkOptions> class Walk, bool kFast = false>
+void add_all_kernels(WalkKind kind, std::vector<WalkKernel>& rows) {
+    add_kernels<Walk, WalkOptions{}, kFast>(kind, rows);
+    add_other_kernels<Walk, kFast>(kind, rows);
 }
 
 /// Adds the rows that use the transforms of accel/bvh/woop_bvh.h.

@@ -4,7 +4,7 @@
 namespace pertev {
 
 void add_while_while_kernels(std::vector<WalkKernel>& rows) {
-    add_all_kernels<WhileWhileWalk, true>(WalkKind::WhileWhile, rows);
+    add_other_kernels<WhileWhileWalk, true>(WalkKind::WhileWhile, rows);
     add_woop_kernels<WhileWhileWalk>(WalkKind::WhileWhile, rows);
 }
 

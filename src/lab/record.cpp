@@ -1,0 +1,82 @@
+#include "lab/record.h"
+
+#include "formats/json/json_value.h"
+#include "lab/report_page.h"
+
+namespace pertev {
+namespace {
+
+using gltf::JsonValue;
+
+Vec3 vector_of(const JsonValue& value) {
+    const std::array<float, 3> v = value.to_floats<3>();
+    return {v[0], v[1], v[2]};
+}
+
+RecordView view_of(const JsonValue& value) {
+    return {vector_of(value.at("eye")), vector_of(value.at("target")), value.at("fov_y_deg").to_float()};
+}
+
+uint32_t count_of(const JsonValue& value, std::string_view key) {
+    return static_cast<uint32_t>(value.at(key).to_unsigned());
+}
+double number_of(const JsonValue& value, std::string_view key) { return value.at(key).to_double(); }
+
+RecordScene scene_of(const JsonValue& value) {
+    RecordScene scene = {.name = value.string_or("name", ""),
+                         .file = value.string_or("file", ""),
+                         .triangles = count_of(value, "triangles"),
+                         .view = view_of(value),
+                         .optix_fast_trace_s = number_of(value, "optix_fast_trace_s"),
+                         .optix_fast_build_s = number_of(value, "optix_fast_build_s")};
+    for (const JsonValue& set : value.elements_of("sets")) {
+        scene.sets.push_back({set.string_or("name", ""), number_of(set, "hit_share"), number_of(set, "nodes"),
+                              number_of(set, "triangles"), number_of(set, "best_rays_per_second")});
+    }
+    return scene;
+}
+
+RecordJob job_of(const JsonValue& value) {
+    return {.name = value.string_or("name", ""),
+            .is_grey = value.bool_or("is_grey", false),
+            .width = count_of(value, "width"),
+            .height = count_of(value, "height"),
+            .samples = count_of(value, "samples"),
+            .max_depth = count_of(value, "max_depth"),
+            .triangles = value.at("triangles").to_unsigned(),
+            .mean = number_of(value, "mean"),
+            .mitsuba = number_of(value, "mitsuba"),
+            .cycles = number_of(value, "cycles"),
+            .pbrt = number_of(value, "pbrt")};
+}
+
+TransportPreset preset_of(const JsonValue& value) {
+    TransportPreset preset = {value.string_or("name", ""),
+                              value.string_or("scene", ""),
+                              value.string_or("shows", ""),
+                              value.string_or("reference_integrator", ""),
+                              {}};
+    if (value.find("eye")) preset.view = view_of(value);
+    return preset;
+}
+
+Record read_record() {
+    const std::string name = "figures.json";
+    const std::string_view text = embedded_file(name);
+    simdjson::dom::parser parser;
+    const JsonValue root(name, "", parser.parse(text.data(), text.size()).value());
+    Record read = {.device = root.string_or("device", "")};
+    for (const JsonValue& value : root.elements_of("scenes")) read.scenes.push_back(scene_of(value));
+    for (const JsonValue& value : root.elements_of("jobs")) read.jobs.push_back(job_of(value));
+    for (const JsonValue& value : root.elements_of("presets")) read.presets.push_back(preset_of(value));
+    return read;
+}
+
+} // namespace
+
+const Record& the_record() {
+    static const Record read = read_record();
+    return read;
+}
+
+} // namespace pertev

@@ -1,0 +1,78 @@
+#pragma once
+
+// The table of jobs, bench/figures.json, which the build puts into the program: scenes whose rays other tracers were
+// timed on, jobs that other renderers were timed on, scenes that show what each integrator is good at, and what other
+// programs reached on one card.
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "math/vec3.h"
+
+namespace pertev {
+
+struct RecordView {
+    Vec3 eye, target; // metres
+    float fov_y_deg;  // full vertical angle of view
+};
+
+/// What other tracers' record says of one set of rays, 8,294,400 of them: the share that hit, nodes and triangles a ray
+/// in a binary tree. A tracer that makes the same rays in the same scene has the same hit share.
+struct RecordedSet {
+    std::string name;
+    double hit_share = 0, nodes = 0, triangles = 0;
+    double best_rays_per_second = 0; // of public tracers
+};
+
+struct RecordScene {
+    std::string name;
+    std::string file;       // under the folder of public scenes; empty: generated
+    uint32_t triangles = 0; // that have an area
+    RecordView view;
+    std::vector<RecordedSet> sets; // in the order in which they are made
+    double optix_fast_trace_s = 0,
+           optix_fast_build_s = 0; // of builds for fast tracing (not compacted), for fast building
+};
+
+struct RecordJob {
+    std::string name;
+    bool is_grey = false; // S5, S8
+    uint32_t width = 0, height = 0, samples = 0;
+    uint32_t max_depth = 0; // scatterings: one less than edges from the camera to a light
+    // What tells the scene: its triangles, and the mean over channels and pixels of others' pictures.
+    uint64_t triangles = 0;
+    double mean = 0;
+    double mitsuba = 0, cycles = 0, pbrt = 0; // samples a second
+};
+
+struct TransportPreset {
+    std::string name, scene; // a built-in scene
+    std::string shows;
+    std::string reference_integrator; // which of path and bidirectional has the less noise at equal time
+    std::optional<RecordView> view;   // else the scene's own camera is taken
+};
+
+struct Record {
+    std::string device;                   // that all stored figures are of
+    std::vector<RecordScene> scenes;      // sponza, bunny, forest
+    std::vector<RecordJob> jobs;          // S5, S8, cornell-box-65, cornell-box-8
+    std::vector<TransportPreset> presets; // cornell, caustic, blind, door, cove, many-lights
+};
+
+/// Read once.
+const Record& the_record();
+
+/// The one of this name, or null.
+template <class Named>
+const Named* find_named(const std::vector<Named>& all, std::string_view name) {
+    for (const Named& one : all) {
+        if (one.name == name) return &one;
+    }
+    return nullptr;
+}
+
+} // namespace pertev
