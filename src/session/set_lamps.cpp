@@ -165,7 +165,7 @@ void set_lamps(Scene& scene, std::span<const LampStrength> lamps, double lumens_
         if (scene.environment && is_called_so({kEnvironmentName})) {
             set_environment(lamp, lumens_per_watt, *scene.environment);
         }
-        if (!is_found) refuse(lamp, "no lamp of the scene is called so; " + some_names(all));
+        if (!is_found) refuse(lamp, "no lamp of the scene has this name; " + some_names(all));
     }
 }
 

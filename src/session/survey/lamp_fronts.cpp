@@ -69,11 +69,9 @@ void warn_of_turned_lamps(const Scene& scene, const std::vector<const Instance*>
         }
         if (2 * turned <= hits.size() / 2) continue; // most of the tested triangles
         const std::string room = behind < kInfinity ? fmt::format("{:.3g} m", behind) : "most of the scene";
-        messages.warn(
-            {Place{file},
-             fmt::format("the lamp {} shines at a surface {:.3g} m before its front and has {} behind it: turn "
-                         "its faces round, or say `two_sided_lights`",
-                         shortened(lamps[i]->name), before, room)});
+        messages.warn({Place{file}, fmt::format("the lamp {} shines at a surface {:.3g} m before its front and has {} "
+                                                "behind it: flip its faces, or use `two_sided_lights`",
+                                                shortened(lamps[i]->name), before, room)});
     }
 }
 
@@ -89,11 +87,10 @@ void say_lamp_fronts(const Scene& scene, const std::string& file, Messages& mess
     }
     if (lamps.empty()) return;
     if (lamps.size() > kMostNames) names += fmt::format(" and {} more", lamps.size() - kMostNames);
-    messages.note(
-        {Place{file},
-         fmt::format("{} with light on the front alone: {}; the front is where normals point or, without any, "
-                     "from where corners run counter-clockwise (`two_sided_lights`: both faces)",
-                     counted(lamps.size(), "lamp"), names)});
+    messages.note({Place{file},
+                   fmt::format("{} with light on the front only: {}; the front is where normals point or, without any, "
+                               "from where corners run counter-clockwise (`two_sided_lights`: both faces)",
+                               counted(lamps.size(), "lamp"), names)});
     warn_of_turned_lamps(scene, lamps, file, messages);
 }
 
