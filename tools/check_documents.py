@@ -78,6 +78,9 @@ def link_faults(document, text, read):
 
 
 def source_faults(name, text, tracked):
+    for script in sorted(set(re.findall(r"`((?:tools|tests|bench)/[\w./]+)[ `]", text))):
+        if not (ROOT / script).exists() and not (ROOT / f"{script}.cpp").exists():
+            yield f"{name}: {script} is not there"
     ends = {"/".join(path.split("/")[i:]) for path in tracked for i in range(path.count("/") + 1)}
     for source in sorted({name.removeprefix("./") for name in SOURCE.findall(text.split(ON_PAPER)[0])}):
         if source not in ends and not re.search(r"NAME|FAMILY|[a-z]+_lobe\.h$", source):
