@@ -96,7 +96,7 @@ std::vector<Setting> picture_settings() {
             "The acceleration structure, by its name in pertev lab; it overrules build. It may be given for one kind "
             "of ray: camera=, bounce= or shadow=NAME.",
             On{kTracing}, Mark::NotKept),
-        row("walk", "Tracing", "[KIND=]NAME", FIELD(tracer.walks),
+        row("walk", "Tracing", "[KIND=]NAME", FIELD(tracer.traversals),
             "The traversal algorithm, by its name in pertev lab.", On{kTracing}, Mark::NotKept),
         row("rta", "Tracing", "[KIND=]WHICH", FIELD(tracer.rta), "Redundant traversal avoidance: on, nodes or off.",
             On{kTracing}, Mark::NotKept),

@@ -63,7 +63,7 @@ std::vector<Setting> scene_settings() {
             "light.",
             Choices{{"on", "off", "auto"}}, On{kRender | kView}, Mark::OpensScene),
 
-        row("lamp", "Lamps", "NAME=AMOUNT", FIELD(scene.lamps),
+        row("lamp", "Lamps", "NAME=AMOUNT", FIELD(scene.emitters),
             "The amount of light of all lamps with this name (* and ? are wildcards) in W, lm, cd, lx or nits, for "
             "example bulb=800lm. It may be given again.",
             On{kScenes}, Mark::OpensScene),
