@@ -8,7 +8,7 @@
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
 #include "trace/wide/trace_many.h"
-#include "trace/wide/walk_wide.h"
+#include "trace/wide/traverse_wide.h"
 
 namespace pertev::bench {
 namespace {
@@ -36,17 +36,17 @@ double seconds_of(const F& f) {
     return now_s() - start;
 }
 
-constexpr WalkOptions kClosest = {}, kAny = {.near_first = false}; // the options of pictures
-                                                                   // (device_scene/find_hits.h)
+constexpr TraversalOptions kClosest = {}, kAny = {.near_first = false}; // the options of pictures
+                                                                        // (device_scene/find_hits.h)
 
 double trace_one_by_one(const HostTrees& trees, std::span<const Ray> rays, bool any_hit, std::size_t& hits) {
     std::vector<Hit> results(rays.size());
     const double s = seconds_of([&] {
         for (std::size_t i = 0; i < rays.size(); ++i) {
             if (any_hit) {
-                results[i].instance = trace_any<Wide8SimdWalk<kAny>>(trees, rays[i], AcceptAll{}) ? 0 : kNoHit;
+                results[i].instance = trace_any<Wide8SimdTraversal<kAny>>(trees, rays[i], AcceptAll{}) ? 0 : kNoHit;
             } else {
-                trace_closest<Wide8SimdWalk<kClosest>>(trees, rays[i], AcceptAll{}, results[i]);
+                trace_closest<Wide8SimdTraversal<kClosest>>(trees, rays[i], AcceptAll{}, results[i]);
             }
         }
     });

@@ -1,5 +1,6 @@
-// trace_bench: the walk that pictures on a CPU take, in the trees that they take, beside Embree's in the same run, on
-// one thread. Kinds of rays are those of the record (docs/ray_sets.md) and "sun", first shadow rays to one far light.
+// trace_bench: the traversal that pictures on a CPU take, in the trees that they take, beside Embree's in the same run,
+// on one thread. Kinds of rays are those of the record (docs/ray_sets.md) and "sun", first shadow rays to one far
+// light.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -15,7 +16,7 @@
 #include "render/prepare_scene.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
-#include "trace/wide/walk_wide.h"
+#include "trace/wide/traverse_wide.h"
 
 using namespace pertev;
 using namespace pertev::bench;
@@ -33,18 +34,18 @@ struct Work {
     double nodes = 0, triangles = 0; // a ray
 };
 
-constexpr WalkOptions kClosest = {}, kAny = {.near_first = false}; // the options of pictures
-                                                                   // (device_scene/find_hits.h)
+constexpr TraversalOptions kClosest = {}, kAny = {.near_first = false}; // the options of pictures
+                                                                        // (device_scene/find_hits.h)
 
 Work count_work(const HostTrees& trees, const RaySet& set) {
     uint64_t nodes = 0, triangles = 0;
-    const WalkCounter counter{&nodes, &triangles};
+    const TraversalCounter counter{&nodes, &triangles};
     for (const Ray& ray : set.rays) {
         Hit hit;
         if (set.any_hit) {
-            trace_any<Wide8SimdWalk<kAny>>(trees, ray, AcceptAll{}, counter);
+            trace_any<Wide8SimdTraversal<kAny>>(trees, ray, AcceptAll{}, counter);
         } else {
-            trace_closest<Wide8SimdWalk<kClosest>>(trees, ray, AcceptAll{}, hit, counter);
+            trace_closest<Wide8SimdTraversal<kClosest>>(trees, ray, AcceptAll{}, hit, counter);
         }
     }
     const double n = static_cast<double>(set.rays.size());
@@ -115,7 +116,7 @@ int run_bench(const Flags& flags) {
     const auto trace = [&](std::span<const Ray> rays, std::span<RayHit> hits) {
         for (std::size_t i = 0; i < rays.size(); ++i) {
             Hit hit;
-            trace_closest<Wide8SimdWalk<kClosest>>(trees, rays[i], AcceptAll{}, hit);
+            trace_closest<Wide8SimdTraversal<kClosest>>(trees, rays[i], AcceptAll{}, hit);
             hits[i] = {hit.t, hit.instance, hit.primitive};
         }
     };

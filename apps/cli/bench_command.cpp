@@ -39,7 +39,7 @@ std::size_t tree_bytes(const PreparedScene& prepared) {
     const auto bytes = [](const Bvh& bvh) {
         return bvh.nodes.size() * sizeof(BvhNode) + bvh.triangles.size() * sizeof(BvhTriangle);
     };
-    std::size_t sum = prepared.top_level.nodes.size() * sizeof(BvhNode);
+    std::size_t sum = prepared.tlas.nodes.size() * sizeof(BvhNode);
     for (const auto& bvh : prepared.trees.parts) sum += bytes(*bvh);
     return sum;
 }

@@ -33,7 +33,7 @@ struct FramesFlags {
     uint32_t reference = 0;
 };
 
-/// A walk: forward by a thousandth of the scene a frame, looking to the left and to the right.
+/// A traversal: forward by a thousandth of the scene a frame, looking to the left and to the right.
 Camera camera_of(const Camera& first, uint32_t frame, float scene_size) {
     const float k = static_cast<float>(frame);
     return moved(first, 0.35f * sin(k * 0.05f), {0, 0, -0.001f * scene_size * k});
@@ -123,7 +123,7 @@ int bench_frames(FramesFlags& flags) {
     Reporter reporter(flags.render.report);
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, reporter);
     const auto& [queue, scene, settings, camera, prepared] = *benched;
-    if (!makes_frames(settings.integrator) && ask_for_frames(flags.render.reconstruction)) {
+    if (!makes_frames(settings.integrator) && has_frame_options(flags.render.reconstruction)) {
         throw Error(
             ErrorCode::BadInput,
             fmt::format("--integrator {}: its frames are samples as they are; --restir and --resolution-scale are "

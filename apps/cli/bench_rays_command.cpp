@@ -1,7 +1,7 @@
-// pertev bench rays: how many rays a second the walk of pictures traces, on sets of rays that other tracers can be
+// pertev bench rays: how many rays a second the traversal of pictures traces, on sets of rays that other tracers can be
 // timed on (docs/ray_sets.md). What the record says of the same sets stands beside, and our rate over the best public
 // tracer's where both are of the same rays on the same card (lab/stored_figures.h). The tree is the best one unless
-// --build asks for another. On a CPU it is walked with one ray after the other, where pictures go by packets and
+// --build asks for another. On a CPU it is traversed with one ray after the other, where pictures go by packets and
 // flights of rays (trace/wide/trace_many.h).
 
 #include <algorithm>
@@ -56,8 +56,8 @@ struct SetFigures {
 
 std::string describe(const RayHit& hit) { return fmt::format("({}, {}, {})", hit.t, hit.instance, hit.primitive); }
 
-/// Throws Error(DeviceFault) that names the first ray where the tracer of pictures on this device and the binary walk
-/// on the host differ.
+/// Throws Error(DeviceFault) that names the first ray where the tracer of pictures on this device and the binary
+/// traversal on the host differ.
 void check_hits(const std::vector<RayHit>& hits, const RaySet& set, const PreparedScene& prepared) {
     Queue cpu = Queue::make_cpu();
     RaysOnDevice rays(cpu, set);
@@ -66,7 +66,7 @@ void check_hits(const std::vector<RayHit>& hits, const RaySet& set, const Prepar
     const auto [found, want] = std::ranges::mismatch(hits, wanted);
     if (found == hits.end()) return;
     throw Error(ErrorCode::DeviceFault,
-                fmt::format("{}: ray {} of {} hits {}, by the binary walk on the CPU {}", set.name,
+                fmt::format("{}: ray {} of {} hits {}, by the binary traversal on the CPU {}", set.name,
                             found - hits.begin(), hits.size(), describe(*found), describe(*want)));
 }
 
@@ -112,8 +112,8 @@ Fields fields_of(const SetFigures& f, bool is_checked) {
                   {{"hit_share", "hits", f.hit_share, "", "{:.3f}"},
                    {"nodes", "nodes", f.work.nodes, "", "{:.1f}"},
                    {"triangles", "tri", f.work.triangles, "", "{:.1f}"},
-                   {"most_nodes", "most", f.work.most_nodes},
-                   {"most_triangles", "", f.work.most_triangles},
+                   {"most_nodes", "most", f.work.max_nodes},
+                   {"most_triangles", "", f.work.max_triangles},
                    {"checked", "", is_checked},
                    {"record", "",
                     has ? ResultCell::raw(json_of("", {{"hit_share", "", r.hit_share},
@@ -185,7 +185,8 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     print_summary(name, ratios, reporter);
     all.insert(all.end(), ratios.begin(), ratios.end());
     if (flags.check) {
-        reporter.answer(fmt::format("{}: checked, each hit is that of the binary walk on the CPU, to the bit\n", name));
+        reporter.answer(
+            fmt::format("{}: checked, each hit is that of the binary traversal on the CPU, to the bit\n", name));
     }
 }
 
@@ -214,7 +215,7 @@ void add_bench_rays_command(CLI::App& bench, int& status) {
               1u << 30)
         ->capture_default_str();
     add_whole(verb, "--runs", flags->runs, "timed, of each set (5 on the CPU, 25 in CUDA)", 1, 10000);
-    verb.add_flag("--check", flags->check, "compare every hit with the binary walk's on the CPU, bit for bit");
+    verb.add_flag("--check", flags->check, "compare every hit with the binary traversal's on the CPU, bit for bit");
     verb.add_flag("--axes", flags->axes, "two more sets: diffuse1 turned along axes, and a thousandth beside them");
     flags->tracer.default_build = TreeBuild::Best; // no tree's making is timed
     flags->settings.add(verb, kBenchRays, *flags);

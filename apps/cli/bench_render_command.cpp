@@ -56,7 +56,7 @@ JobBytes bytes_of(const RenderSettings& settings, const PreparedScene& prepared,
                                       {.width = settings.width,
                                        .height = settings.height,
                                        .samples = settings.samples,
-                                       .walks_on_host = can_walk_on_host(tracers, queue.is_cuda())},
+                                       .traverses_on_host = can_traverse_on_host(tracers, queue.is_cuda())},
                                       queue.is_cuda());
     if (queue.is_cuda() && prepared.triangles > 0) {
         bytes.of_structures =

@@ -10,8 +10,8 @@
 #include "apps/cli/bench_parts.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/make_ready.h"
 #include "apps/cli/pfm_file.h"
+#include "apps/cli/prepare_render.h"
 #include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
 #include "base/limits.h"
@@ -106,7 +106,7 @@ Rgba8Image strip_of(const std::vector<Rgba8Image>& pictures) {
     return strip;
 }
 
-Scores measure(ReadyScene& ready, Session& session, PictureRecord& record, const SequenceFlags& flags, float exposure,
+Scores measure(RenderSetup& ready, Session& session, PictureRecord& record, const SequenceFlags& flags, float exposure,
                ToneMap tone_map, Reporter& reporter) {
     const ReconstructionSettings settings = reconstruction_settings(flags.render.reconstruction);
     const RestirSettings restir = flags.render.reconstruction.sharing;
@@ -175,7 +175,7 @@ int bench_sequence(SequenceFlags& flags) {
     }
     check_motion_flags(flags.render);
     check_radiosity_flags(flags.render.radiosity, flags.render.render, flags.render.limits_memory);
-    const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, kBenchSequence, reporter);
+    const std::unique_ptr<RenderSetup> ready = prepare_render(flags.render, kBenchSequence, reporter);
     reporter.say_messages();
     listen_for_interrupt();
     BenchReport report(reporter, flags.render.report, *ready->queue, "Frames of a moving picture");

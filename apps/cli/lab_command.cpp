@@ -1,4 +1,4 @@
-// pertev lab: every structure and every walk side by side, on this machine and scene.
+// pertev lab: every structure and every traversal side by side, on this machine and scene.
 
 #include <algorithm>
 #include <memory>
@@ -33,7 +33,7 @@ namespace pertev {
 namespace {
 
 struct LabFlags : PictureOptions {
-    std::vector<std::string> structures, walks, rays = {"primary", "shadow", "diffuse"}, tests = {"exact"};
+    std::vector<std::string> structures, traversals, rays = {"primary", "shadow", "diffuse"}, tests = {"exact"};
     std::vector<std::string> rta = {"both"};
     std::string order = "on", persistent = "both", size_text, depths;
     std::string output;
@@ -49,12 +49,12 @@ std::vector<bool> on_off(const std::string& value) {
     return {value == "on"};
 }
 
-/// The switches asked for, those with the most on first: heat maps are of a walk's first.
-std::vector<WalkOptions> walk_options(const LabFlags& flags) {
+/// The switches asked for, those with the most on first: heat maps are of a traversal's first.
+std::vector<TraversalOptions> traversal_options(const LabFlags& flags) {
     const auto named = [](const std::vector<std::string>& list, std::string_view name) {
         return std::ranges::find(list, name) != list.end();
     };
-    std::vector<WalkOptions> options;
+    std::vector<TraversalOptions> options;
     for (const TestKind tests : kValuesOf<TestKind>) {
         if (!named(flags.tests, name_of(tests))) continue;
         for (const std::string rta : {"on", "nodes", "off"}) {
@@ -95,11 +95,11 @@ std::vector<Kind> chosen(const std::vector<std::string>& names) {
 LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
     LabSettings settings;
     settings.structures = chosen<StructureKind>(flags.structures);
-    settings.by_name = !flags.structures.empty() && !flags.walks.empty();
-    settings.walks = chosen<WalkKind>(flags.walks);
-    // A brute-force walk over all of a frame's rays takes hours: only when asked for.
-    if (flags.walks.empty()) std::erase(settings.walks, WalkKind::BruteForce);
-    settings.options = walk_options(flags);
+    settings.by_name = !flags.structures.empty() && !flags.traversals.empty();
+    settings.traversals = chosen<TraversalKind>(flags.traversals);
+    // A brute-force traversal over all of a frame's rays takes hours: only when asked for.
+    if (flags.traversals.empty()) std::erase(settings.traversals, TraversalKind::BruteForce);
+    settings.options = traversal_options(flags);
     settings.distributions.clear();
     if (!is_cuda && flags.persistent == "on") {
         throw Error(ErrorCode::BadInput,
@@ -135,7 +135,7 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
 
 /// A line for each refusal that the user asked for by name; the rest are in the report.
 void say_refusals(const LabFlags& flags, const LabReport& report, Reporter& reporter) {
-    if (flags.structures.empty() || flags.walks.empty()) return;
+    if (flags.structures.empty() || flags.traversals.empty()) return;
     for (const CombinationFigures& c : report.combinations) {
         if (!c.refused.empty()) reporter.say(fmt::format("{}: {}", c.name, c.refused));
     }
@@ -190,7 +190,7 @@ void add_switch(CLI::App& verb, const char* flag, std::string& value, const char
 
 void add_lab_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand(
-        "lab", "Every structure and every walk side by side, on your scene and card; or every integrator");
+        "lab", "Every structure and every traversal side by side, on your scene and card; or every integrator");
     const auto flags = std::make_shared<LabFlags>();
     CLI::Option* scene = add_scene_name(verb, flags->scene)->required(false);
     scene->description(scene->get_description() + "; or\nsponza, bunny, forest: those of bench rays");
@@ -198,10 +198,10 @@ void add_lab_command(CLI::App& app, int& status) {
         ->type_name("NAME,...")
         ->delimiter(',')
         ->check(one_of(names_of<StructureKind>()));
-    verb.add_option("--walks", flags->walks, "some of the walks (all but brute-force)")
+    verb.add_option("--walks", flags->traversals, "some of the traversals (all but brute-force)")
         ->type_name("NAME,...")
         ->delimiter(',')
-        ->check(one_of(names_of<WalkKind>()));
+        ->check(one_of(names_of<TraversalKind>()));
     verb.add_option(
             "--rta", flags->rta,
             "redundant traversal avoidance: skip what lies beyond the\nnearest hit; nodes: at nodes and not at pops "
@@ -240,7 +240,7 @@ void add_lab_command(CLI::App& app, int& status) {
                                         "under PERTEV_SCENES), depths 1-8; with -o pictures of\nchapters 2 to 4 too");
     CLI::Option* transport =
         verb.add_flag("--transport", flags->transport,
-                      "integrators side by side in place of walks: error over time,\nagainst a reference");
+                      "integrators side by side in place of traversals: error over time,\nagainst a reference");
     for (const char* flag : {"--structures", "--walks", "--rta", "--order", "--tests", "--persistent", "--rays",
                              "--count", "--no-heat-maps"}) {
         thesis->excludes(verb.get_option(flag)); // it is what the thesis compared

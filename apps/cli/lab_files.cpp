@@ -27,14 +27,15 @@ std::array<std::string, 2> heat_map_files(std::string combination) {
 std::set<std::string> all_heat_map_files() {
     std::set<std::string> files;
     for (const StructureKind structure : kValuesOf<StructureKind>) {
-        for (const WalkKind walk : kValuesOf<WalkKind>) {
-            if (why_not(structure, walk)) continue;
+        for (const TraversalKind traversal : kValuesOf<TraversalKind>) {
+            if (why_not(structure, traversal)) continue;
             for (const Distribution distribution :
                  {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
                 for (const TestKind tests : kValuesOf<TestKind>) {
                     for (int bits = 0; bits < 8; ++bits) { // rta off, at nodes alone, on
-                        const WalkOptions options = {(bits & 3) != 0, (bits & 4) != 0, tests, (bits & 3) != 1};
-                        const auto names = heat_map_files(name_of(Combination{structure, walk, options, distribution}));
+                        const TraversalOptions options = {(bits & 3) != 0, (bits & 4) != 0, tests, (bits & 3) != 1};
+                        const auto names =
+                            heat_map_files(name_of(Combination{structure, traversal, options, distribution}));
                         files.insert(names.begin(), names.end());
                     }
                 }
@@ -127,7 +128,7 @@ void fail_if_wrong(const LabReport& report) {
     }
     if (!names.empty()) {
         throw Error(ErrorCode::DeviceFault,
-                    fmt::format("{}: combinations that differ from the proven walk:{}", report.scene, names));
+                    fmt::format("{}: combinations that differ from the proven traversal:{}", report.scene, names));
     }
 }
 

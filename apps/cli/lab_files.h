@@ -34,7 +34,7 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter, const std::filesystem::path& folder = {},
                                                           const Measurement& head = {});
 
-/// Throws Error(DeviceFault) that names the combinations that differ from the proven walk, if there are any.
+/// Throws Error(DeviceFault) that names the combinations that differ from the proven traversal, if there are any.
 void fail_if_wrong(const LabReport& report);
 
 } // namespace pertev

@@ -76,7 +76,7 @@ int measure(MeasureFlags& flags) {
     Messages& messages = reporter.messages();
     flags.settings.read(flags, messages);
     const uint32_t seed = flags.render.path.seed;
-    refuse(seed > kMostMeterSeed, fmt::format("--seed {}: at most {}", seed, kMostMeterSeed));
+    refuse(seed > kMaxMeterSeed, fmt::format("--seed {}: at most {}", seed, kMaxMeterSeed));
     const MeterPlace place = place_of(flags); // before anything is read
     ComingMachine machine(flags.machine, messages);
     reporter.say_messages();

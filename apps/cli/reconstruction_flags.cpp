@@ -8,7 +8,7 @@ ReconstructionSettings reconstruction_settings(const ReconstructionOptions& opti
     return options.none ? of_samples_alone(options.settings) : options.settings;
 }
 
-bool ask_for_frames(const ReconstructionOptions& options) {
+bool has_frame_options(const ReconstructionOptions& options) {
     return options.sharing.light != RestirLight::Off || options.settings.resolution_scale != 1;
 }
 

@@ -9,7 +9,7 @@
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/make_ready.h"
+#include "apps/cli/prepare_render.h"
 #include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
 #include "apps/cli/report_display.h"
@@ -133,7 +133,7 @@ int render(RenderFlags& flags) {
     if (flags.real_time && !flags.is_given("spp")) flags.render.samples = 1;
     check_render_flags(flags, reporter.messages());
     const Stopwatch watch;
-    const std::unique_ptr<ReadyScene> ready = make_ready(flags, kRender, reporter);
+    const std::unique_ptr<RenderSetup> ready = prepare_render(flags, kRender, reporter);
     say_what_moves(flags, *ready->moving, reporter.messages());
     const RenderSettings& settings = ready->settings;
     Queue& queue = *ready->queue;

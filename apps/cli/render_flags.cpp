@@ -31,10 +31,10 @@ bool writes_any(const RenderFlags& flags, std::initializer_list<ImageFormat> for
 /// The file that is written, however it is named: without links, also one to a file that is not there yet, "." and
 /// "..".
 std::filesystem::path place_of(const std::string& file) {
-    constexpr int kMostLinks = 40; // limit of Linux
-    std::error_code fault;         // after an error the path is resolved as far as possible
+    constexpr int kMaxLinks = 40; // limit of Linux
+    std::error_code fault;        // after an error the path is resolved as far as possible
     std::filesystem::path place = std::filesystem::absolute(file, fault);
-    for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(place, fault); ++i) {
+    for (int i = 0; i < kMaxLinks && std::filesystem::is_symlink(place, fault); ++i) {
         place = place.parent_path() / std::filesystem::read_symlink(place, fault);
     }
     const std::filesystem::path known = std::filesystem::weakly_canonical(place, fault);
@@ -69,9 +69,9 @@ void check_shown_picture_flags(const RenderFlags& flags) {
     const RenderSettings settings = light_settings(flags);
     check_radiosity_flags(flags.radiosity, settings, flags.limits_memory);
     if (!flags.shutter.empty()) check_shutter(settings);
-    Camera asked; // defined by flags only
-    asked.aperture_radius = std::max(flags.scene.camera.aperture.value_or(0), 0.0f);
-    check_camera(settings, asked);
+    Camera requested; // defined by flags only
+    requested.aperture_radius = std::max(flags.scene.camera.aperture.value_or(0), 0.0f);
+    check_camera(settings, requested);
     check_scene_options(flags.scene);
 }
 

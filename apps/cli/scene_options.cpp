@@ -28,7 +28,7 @@ CLI::Option* add_scene_name(CLI::App& verb, SceneOptions& options) {
 }
 
 Scene read_any_scene(const SceneOptions& options, Messages& messages) {
-    return read_scene_and_lamps(options.scene, read_options(open_options(options)), messages);
+    return read_scene_and_emitters(options.scene, read_options(open_options(options)), messages);
 }
 
 Scene load_scene(const SceneOptions& options, SceneUse use, Messages& messages) {

@@ -218,7 +218,7 @@ void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags&
         ->check(number_above_zero(1e6f))
         ->capture_default_str();
     add(verb.add_option("--repetitions", flags.repetitions, "pictures of each integrator, by different seeds"), "N")
-        ->check(whole_between(1, kMostRepetitions))
+        ->check(whole_between(1, kMaxRepetitions))
         ->capture_default_str();
     add(verb.add_option("--spp", flags.max_samples, "samples of each pixel at most, of one repetition"), "N")
         ->check(whole_between(1, 1u << 20))

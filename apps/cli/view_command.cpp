@@ -16,7 +16,7 @@
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/make_ready.h"
+#include "apps/cli/prepare_render.h"
 #include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
 #include "apps/cli/report_display.h"
@@ -99,7 +99,7 @@ std::string camera_name(const SceneOptions& options, const Scene& scene) {
 
 /// Turns as --turntable N does at 24 frames a second. Its places are said by eye, target and up, so that flags can say
 /// them too: but for rounding they are those of render's frames.
-CameraSource turned_camera(const ReadyScene& ready, double time_s) {
+CameraSource turned_camera(const RenderSetup& ready, double time_s) {
     const double frames = std::fmod(time_s * kTurntableFps, ready.sequence.turntable);
     CameraSource source = camera_at(*ready.camera, ready.scene(), time_s, frames / ready.sequence.turntable);
     if (frames == 0) return source;
@@ -123,7 +123,7 @@ void tell_choices(const Scene& scene, ViewerStart& start) {
 }
 
 /// Sets how time moves the camera, and when all motion ends.
-void let_time_move(const ViewFlags& flags, const ReadyScene& ready, ViewerStart& start) {
+void let_time_move(const ViewFlags& flags, const RenderSetup& ready, ViewerStart& start) {
     const MovingScene& moving = *ready.moving;
     const uint32_t turntable = flags.render.turntable;
     const bool is_still = moving.is_animated() && ready.settings.radiosity.solution != nullptr;
@@ -208,8 +208,8 @@ int view(ViewFlags& flags) {
     flags.render.settings.read(flags.render, reporter.messages());
     check_host(flags.host);
     check_shown_picture_flags(flags.render);
-    const std::unique_ptr<ReadyScene> ready = make_ready(flags.render, kView, reporter);
-    if (!makes_frames(ready->settings.integrator) && ask_for_frames(flags.render.reconstruction)) {
+    const std::unique_ptr<RenderSetup> ready = prepare_render(flags.render, kView, reporter);
+    if (!makes_frames(ready->settings.integrator) && has_frame_options(flags.render.reconstruction)) {
         reporter.messages().note(fmt::format(
             "--integrator {}: its frames are samples as they are; --restir and --resolution-scale count once "
             "the panel's integrator is path or hybrid",

@@ -21,7 +21,7 @@ constexpr double kPiece = 0.2;       // seconds of the link that a piece of a PN
 
 bool Audience::open(uint32_t client, double now_s) {
     const std::lock_guard lock(mutex_);
-    if (clients_.size() >= kMostClients) return false;
+    if (clients_.size() >= kMaxClients) return false;
     Client& entry = clients_[client];
     entry.opened_s = entry.counted_s = now_s;
     return true;

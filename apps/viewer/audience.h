@@ -43,7 +43,7 @@ struct SendJob {
 
 class Audience {
 public:
-    static constexpr std::size_t kMostClients = 16;
+    static constexpr std::size_t kMaxClients = 16;
     static constexpr double kMessagesPerSecond = 400; // per client, on average; bursts may have twice as many
 
     /// `inbox` outlives it. `welcome` is the first text that each client gets.

@@ -7,7 +7,7 @@
 
 #include "image/image.h"
 #include "render/film_view.h"
-#include "trace/traversal/walk_counter.h"
+#include "trace/traversal/traversal_counter.h"
 
 namespace pertev {
 

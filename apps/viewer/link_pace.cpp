@@ -12,7 +12,7 @@ constexpr int kLowest = 30, kHighest = 92;
 // Parameters of holding back: deviation of round trips without a queue, in seconds; fraction of any excess that is
 // added at once; factor without excess; the maximum in units of the client's time per picture, more than one, because
 // otherwise a queue would never shrink.
-constexpr double kStray = 0.002, kStep = 0.5, kRelease = 0.98, kMostHold = 1.2;
+constexpr double kStray = 0.002, kStep = 0.5, kRelease = 0.98, kMaxHold = 1.2;
 
 double least_of_late(double least, double value) { return least == 0 ? value : std::min(1.01 * least, value); }
 
@@ -24,8 +24,8 @@ void LinkPace::sent(uint32_t frame, std::size_t bytes, double now_s, bool is_pie
 
 double LinkPace::may_send_at_s() const {
     if (under_way_.empty()) return 0;
-    return under_way_.size() < kMostInFlight ? under_way_.back().at_s + hold_s_
-                                             : std::numeric_limits<double>::infinity();
+    return under_way_.size() < kMaxInFlight ? under_way_.back().at_s + hold_s_
+                                            : std::numeric_limits<double>::infinity();
 }
 
 bool LinkPace::acknowledged(uint32_t frame, double now_s, double client_s) {
@@ -57,10 +57,10 @@ void LinkPace::learn(double bytes, double seconds) {
 }
 
 void LinkPace::hold(double client_s) {
-    least_round_trip_s_ = least_of_late(least_round_trip_s_, round_trip_s_);
+    min_round_trip_s_ = least_of_late(min_round_trip_s_, round_trip_s_);
     least_client_s_ = least_of_late(least_client_s_, std::max(client_s, 0.0));
-    const double late_s = round_trip_s_ - least_round_trip_s_ - kStray;
-    hold_s_ = late_s > 0 ? std::min(hold_s_ + kStep * late_s, kMostHold * least_client_s_) : kRelease * hold_s_;
+    const double late_s = round_trip_s_ - min_round_trip_s_ - kStray;
+    hold_s_ = late_s > 0 ? std::min(hold_s_ + kStep * late_s, kMaxHold * least_client_s_) : kRelease * hold_s_;
 }
 
 void LinkPace::adapt(double bytes) {

@@ -12,7 +12,7 @@ namespace pertev {
 class LinkPace {
 public:
     /// Maximum number of messages with pictures in flight to one client.
-    static constexpr std::size_t kMostInFlight = 2;
+    static constexpr std::size_t kMaxInFlight = 2;
 
     /// Earliest time for the next picture; infinity: only after an acknowledgement.
     double may_send_at_s() const;
@@ -60,7 +60,7 @@ private:
     float scale_ = 1;
     int calm_ = 0; // consecutive acknowledgements without delay
     // Recent minima, which grow by a hundredth per picture until a smaller value comes.
-    double least_round_trip_s_ = 0, least_client_s_ = 0;
+    double min_round_trip_s_ = 0, least_client_s_ = 0;
     double hold_s_ = 0;
 };
 

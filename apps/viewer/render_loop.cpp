@@ -71,12 +71,12 @@ void RenderLoop::run(const std::function<bool()>& goes_on) {
 
 void RenderLoop::handle(const Command& command) {
     is_new_ = true;
-    if (const Steer* asked = std::get_if<Steer>(&command)) {
+    if (const Steer* requested = std::get_if<Steer>(&command)) {
         try {
-            steer(*asked);
+            steer(*requested);
         } catch (const Error& error) { // from a pick, or from the light meter
             if (error.code() == ErrorCode::DeviceFault) throw;
-            tell_error(asked->client, error);
+            tell_error(requested->client, error);
         }
         return inbox_.expect(view_);
     }
@@ -85,11 +85,11 @@ void RenderLoop::handle(const Command& command) {
     if (!last_) moved_at_s_ = now_s_(); // or a small one at once, because a sample of a large picture may take long
 }
 
-void RenderLoop::steer(const Steer& asked) {
-    const ClientMessage& message = asked.message;
+void RenderLoop::steer(const Steer& requested) {
+    const ClientMessage& message = requested.message;
     if (message.input != 0) {
         input_ = message.input;
-        steerer_ = asked.client;
+        steerer_ = requested.client;
     }
     if (message.kind == MessageKind::Rate) {
         view_.screen_rate = shown_.screen_rate = message.hertz;
@@ -117,10 +117,10 @@ void RenderLoop::steer(const Steer& asked) {
     case MessageKind::Speed:
         speed_ *= pow(kSpeedStep, message.steps);
         speed_ = clamp(speed_, 1e-6f * start_.speed, 1e6f * start_.speed);
-        audience_.tell(asked.client, notice_text("note", fmt::format("speed {:.3g} m/s", speed_)));
+        audience_.tell(requested.client, notice_text("note", fmt::format("speed {:.3g} m/s", speed_)));
         break;
     case MessageKind::Pick:
-        return pick(asked);
+        return pick(requested);
     case MessageKind::Home:
         camera_.go_home(clock_.time_s, view_.lens);
         break;
@@ -134,10 +134,10 @@ void RenderLoop::steer(const Steer& asked) {
     case MessageKind::Key:
     case MessageKind::Unkey:
     case MessageKind::Follow:
-        steer_path(asked);
+        steer_path(requested);
         break;
     case MessageKind::Set:
-        return set(asked);
+        return set(requested);
     case MessageKind::Meter:
         view_.display.exposure_stops = view_.finds_exposure ? 0 : source_.meter(request());
         break;
@@ -165,12 +165,12 @@ void RenderLoop::steer_time(const ClientMessage& message) {
     tell_state();
 }
 
-void RenderLoop::steer_path(const Steer& asked) {
-    const ClientMessage& message = asked.message;
+void RenderLoop::steer_path(const Steer& requested) {
+    const ClientMessage& message = requested.message;
     if (message.kind == MessageKind::Key) {
         if (!camera_.add_key(message.at, view_.lens)) {
-            audience_.tell(asked.client,
-                           notice_text("error", fmt::format("a path has {} keys at most", ViewCamera::kMostKeys)));
+            audience_.tell(requested.client,
+                           notice_text("error", fmt::format("a path has {} keys at most", ViewCamera::kMaxKeys)));
         }
     } else if (message.kind == MessageKind::Unkey) {
         camera_.remove_key(message.index);
@@ -208,32 +208,32 @@ void RenderLoop::follow_time() {
     followed_s_ = clock_.time_s;
 }
 
-void RenderLoop::pick(const Steer& asked) {
-    const ClientMessage& message = asked.message;
+void RenderLoop::pick(const Steer& requested) {
+    const ClientMessage& message = requested.message;
     const Camera now = camera_.camera(view_.lens);
     const std::optional<PickedPoint> point = source_.pick(now, message.x, message.y);
     if (message.use == PickUse::Show) {
-        return audience_.tell(asked.client,
+        return audience_.tell(requested.client,
                               picked_text(*start_.scene, point ? &*point : nullptr, message.x, message.y));
     }
-    if (!point) return audience_.tell(asked.client, notice_text("note", "there is nothing but background"));
+    if (!point) return audience_.tell(requested.client, notice_text("note", "there is nothing but background"));
     if (message.use == PickUse::Orbit) {
         camera_.turn_about(point->position);
-        return audience_.tell(asked.client, notice_text("note", "the view now turns about this place"));
+        return audience_.tell(requested.client, notice_text("note", "the view now turns about this place"));
     }
     const Transform& from = now.world_from_camera;
     view_.lens.focus_distance = max(-dot(point->position - from.translation, column(from, 2)), 1e-6f);
     budget_s_ = kFirstBudget;
     is_done_ = false;
     const bool has_lens = view_.lens.aperture_radius > 0;
-    audience_.tell(asked.client,
+    audience_.tell(requested.client,
                    notice_text("note", fmt::format("in focus: {:.4g} m{}", view_.lens.focus_distance,
                                                    has_lens ? "" : " (the lens has no radius, so all is sharp)")));
 }
 
-void RenderLoop::set(const Steer& asked) {
-    const std::string why_not = set_view_setting(view_, asked.message.name, asked.message.value);
-    if (!why_not.empty()) audience_.tell(asked.client, notice_text("error", why_not));
+void RenderLoop::set(const Steer& requested) {
+    const std::string why_not = set_view_setting(view_, requested.message.name, requested.message.value);
+    if (!why_not.empty()) audience_.tell(requested.client, notice_text("error", why_not));
     budget_s_ = kFirstBudget;
     tell_state();
 }

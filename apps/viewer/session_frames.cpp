@@ -19,12 +19,12 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kFramesOfLayer = 32;            // at rest, after which a layer of the reconstruction does not
-                                                   // change
-constexpr uint32_t kSamplesWorthAFrame = 16;       // samples of a picture at rest from which on a frame of its size
-                                                   // comes first
-constexpr double kPass = 0.03;                     // seconds between checks whether a render is still needed
-constexpr double kLeastRate = 30, kMostRate = 240; // limits of the screen rates that a GPU's frames match, per second
+constexpr uint32_t kFramesOfLayer = 32;         // at rest, after which a layer of the reconstruction does not
+                                                // change
+constexpr uint32_t kSamplesWorthAFrame = 16;    // samples of a picture at rest from which on a frame of its size
+                                                // comes first
+constexpr double kPass = 0.03;                  // seconds between checks whether a render is still needed
+constexpr double kMinRate = 30, kMaxRate = 240; // limits of the screen rates that a GPU's frames match, per second
 
 /// Auxiliary channels that the film needs for this layer.
 uint32_t aovs_of(ShownLayer layer) {
@@ -87,9 +87,9 @@ void tell_rendering(double seconds, ShownFrame& frame) {
 } // namespace
 
 bool SessionFrames::Seen::is_of(const FrameRequest& request, uint64_t changes) const {
-    const RenderSettings& asked = request.view.picture;
+    const RenderSettings& requested = request.view.picture;
     return scale > 0 && camera == request.camera && layer == request.view.layer && scene_changes == changes &&
-           same_light(picture, asked) && picture.width == asked.width && picture.height == asked.height;
+           same_light(picture, requested) && picture.width == requested.width && picture.height == requested.height;
 }
 
 SessionFrames::SessionFrames(Session& session, MovingScene& scene, double frame_s, double soon_s)
@@ -141,7 +141,7 @@ RenderSettings SessionFrames::small_settings_for(const FrameRequest& request, fl
 float SessionFrames::scale_for(const FrameRequest& request) {
     const ViewState& view = request.view;
     if (view.on_cuda && view.screen_rate > 0) {
-        pace_.keep(1 / std::clamp(static_cast<double>(view.screen_rate), kLeastRate, kMostRate));
+        pace_.keep(1 / std::clamp(static_cast<double>(view.screen_rate), kMinRate, kMaxRate));
     }
     return view.moving_scale > 0 ? view.moving_scale : pace_.scale();
 }
@@ -189,7 +189,7 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
     const bool nodes = request.view.layer == ShownLayer::NodeHeat;
     const std::vector<RayWork> work = session_.count_camera_work();
     if (work.empty()) {
-        frame.caption = "this walk cannot count what one ray tests: its rays go together";
+        frame.caption = "this traversal cannot count what one ray tests: its rays go together";
         return shown_picture(session_, request.view.display.tone_map, frame.exposure_stops);
     }
     uint32_t most = 0;

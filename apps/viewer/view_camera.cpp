@@ -12,9 +12,9 @@
 namespace pertev {
 namespace {
 
-constexpr float kLeastFov = 0.01f, kMostFov = 179; // degrees; the limits of a path's file
-constexpr int kMostTargets = 256;                  // number of targets tried to state a position to the bit
-constexpr float kFarthest = 1e9f;                  // metres that anybody may go
+constexpr float kMinFov = 0.01f, kMaxFov = 179; // degrees; the limits of a path's file
+constexpr int kMaxTargets = 256;                // number of targets tried to state a position to the bit
+constexpr float kFarthest = 1e9f;               // metres that anybody may go
 
 bool is_finite_place(const Transform& m) {
     return is_finite(m.row0) && is_finite(m.row1) && is_finite(m.row2) && is_finite(m.translation);
@@ -28,13 +28,13 @@ void follow(float& lens, float before, float now) {
 } // namespace
 
 Pose pose_of(const CameraSource& source, const Scene& scene, float distance) {
-    const auto asked = source.target ? std::optional(in_scene(scene, *source.target)) : std::nullopt;
-    Pose pose = pose_of(source.camera, asked, source.up, distance);
+    const auto requested = source.target ? std::optional(in_scene(scene, *source.target)) : std::nullopt;
+    Pose pose = pose_of(source.camera, requested, source.up, distance);
     const Transform& placed = source.camera.world_from_camera;
-    if (asked || look_at(pose.eye, pose.target, pose.up) == placed) return pose;
+    if (requested || look_at(pose.eye, pose.target, pose.up) == placed) return pose;
     // Takes the first point near the focus that reproduces these axes; most differ in the last digit.
-    for (int i = 0; i < kMostTargets; ++i) {
-        const float away = source.camera.focus_distance * (1 + static_cast<float>(i) / kMostTargets);
+    for (int i = 0; i < kMaxTargets; ++i) {
+        const float away = source.camera.focus_distance * (1 + static_cast<float>(i) / kMaxTargets);
         const Vec3 target = told_in_file(scene, pose.eye - away * column(placed, 2));
         if (!(look_at(pose.eye, target, pose.up) == placed)) continue;
         pose.target = target;
@@ -192,12 +192,12 @@ bool ViewCamera::add_key(float time_s, const Camera& lens) {
                            .eye = in_file(scene_, pose_.eye),
                            .target = in_file(scene_, pose_.target),
                            .up = pose_.up,
-                           .fov_deg = clamp(degrees_for(lens.fov_y), kLeastFov, kMostFov)};
+                           .fov_deg = clamp(degrees_for(lens.fov_y), kMinFov, kMaxFov)};
     std::vector<CameraKey>& keys = path_.keys;
     const auto place = std::ranges::lower_bound(keys, key.time_s, {}, &CameraKey::time_s);
     if (place != keys.end() && place->time_s == key.time_s) {
         *place = key;
-    } else if (keys.size() < kMostKeys) {
+    } else if (keys.size() < kMaxKeys) {
         keys.insert(place, key);
     } else {
         return false;

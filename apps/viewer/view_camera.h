@@ -33,7 +33,7 @@ struct StartCamera {
 
 class ViewCamera {
 public:
-    static constexpr std::size_t kMostKeys = 100;
+    static constexpr std::size_t kMaxKeys = 100;
 
     /// Both outlive it. `scene` is at the clock's time whenever go_to() is called.
     ViewCamera(const StartCamera& start, const Scene& scene);

@@ -25,7 +25,7 @@ constexpr const char* kLayers[] = {"picture",   "albedo",      "normal",        
 
 constexpr const char* kScales[] = {"automatic", "1", "1/2", "1/4", "1/8"};
 constexpr float kScaleValues[] = {0, 1, 0.5f, 0.25f, 0.125f};
-constexpr double kLeastShown = 1e-6; // minimum of settings that must be above 0
+constexpr double kMinShown = 1e-6; // minimum of settings that must be above 0
 
 float number_of(const SettingValue& value) { return static_cast<float>(std::get<double>(value)); }
 const std::string& text_of(const SettingValue& value) { return std::get<std::string>(value); }
@@ -51,32 +51,32 @@ std::string set_combination(ViewState& state, const Combination& combination) {
     return {};
 }
 
-bool is_cells(WalkKind walk) { return walk == WalkKind::Kd || walk == WalkKind::Octree; }
+bool is_cells(TraversalKind traversal) { return traversal == TraversalKind::Kd || traversal == TraversalKind::Octree; }
 
 /// A structure implies a traversal that supports it if the present one does not.
 std::string set_structure(ViewState& state, const std::string& name) {
     Combination wanted = shown_combination(state);
     wanted.structure = *value_named<StructureKind>(name);
-    if (why_not(wanted.structure, wanted.walk)) {
+    if (why_not(wanted.structure, wanted.traversal)) {
         const bool is_tree = builder_of(wanted.structure).has_value();
         wanted = {.structure = wanted.structure,
-                  .walk = is_tree                                     ? WalkKind::WhileWhile
-                          : wanted.structure == StructureKind::Octree ? WalkKind::Octree
-                                                                      : WalkKind::Kd};
+                  .traversal = is_tree                                     ? TraversalKind::WhileWhile
+                               : wanted.structure == StructureKind::Octree ? TraversalKind::Octree
+                                                                           : TraversalKind::Kd};
     }
     return set_combination(state, wanted);
 }
 
 /// A traversal implies a structure that it supports if the present one is unsupported.
-std::string set_walk(ViewState& state, const std::string& name) {
+std::string set_traversal(ViewState& state, const std::string& name) {
     const Combination now = shown_combination(state);
-    Combination wanted = {.structure = now.structure, .walk = *value_named<WalkKind>(name)};
-    if (why_not(wanted.structure, wanted.walk)) {
-        wanted.structure = wanted.walk == WalkKind::Kd       ? StructureKind::KdSah
-                           : wanted.walk == WalkKind::Octree ? StructureKind::Octree
-                                                             : StructureKind::Binned;
+    Combination wanted = {.structure = now.structure, .traversal = *value_named<TraversalKind>(name)};
+    if (why_not(wanted.structure, wanted.traversal)) {
+        wanted.structure = wanted.traversal == TraversalKind::Kd       ? StructureKind::KdSah
+                           : wanted.traversal == TraversalKind::Octree ? StructureKind::Octree
+                                                                       : StructureKind::Binned;
     }
-    if (!is_cells(wanted.walk)) wanted.options = {};
+    if (!is_cells(wanted.traversal)) wanted.options = {};
     return set_combination(state, wanted);
 }
 
@@ -142,7 +142,7 @@ std::vector<ViewSetting> make_settings() {
     const auto shared_number = [&](const char* name, const char* label, const char* group, Kind kind, double step,
                                    auto get, auto set) {
         const Setting& setting = *find_setting(name);
-        const double low = setting.above ? kLeastShown : setting.low;
+        const double low = setting.above ? kMinShown : setting.low;
         numeric(name, label, group, setting.sentence, kind, low, setting.high, step, get, set);
     };
 
@@ -255,8 +255,8 @@ std::vector<ViewSetting> make_settings() {
         [](const ViewState& s) { return name_of(shown_combination(s).structure); }, set_structure);
     choice(
         "walk", "Walk", "Rays (the picture stays the same)",
-        "How rays go through the structure. Another one is faster or slower", names_of<WalkKind>(),
-        [](const ViewState& s) { return name_of(shown_combination(s).walk); }, set_walk);
+        "How rays go through the structure. Another one is faster or slower", names_of<TraversalKind>(),
+        [](const ViewState& s) { return name_of(shown_combination(s).traversal); }, set_traversal);
     choice(
         "rta", "Redundant traversal avoidance", "Rays (the picture stays the same)",
         "Rays skip what lies behind the nearest hit so far. Off: they go through it all", {"on", "nodes", "off"},

@@ -1,7 +1,7 @@
 #pragma once
 
 // Huge pages for randomly accessed memory: an array of some megabytes occupies thousands of 4 KB pages, more than a
-// CPU's TLB holds, so that most cache misses also need a page-table walk. Linux only: elsewhere, and if the system
+// CPU's TLB holds, so that most cache misses also need a page-table traversal. Linux only: elsewhere, and if the system
 // has none available, nothing happens.
 
 #include <cstddef>

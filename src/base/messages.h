@@ -32,7 +32,7 @@ public:
     void warn(Remark remark) { add(true, std::move(remark)); }
     /// The picture lacks something that the input has. For a file with many faults only the first is named.
     void leave_out(Remark remark) {
-        const bool is_one_too_many = left_out_ >= kMostLeftOut && !places_[1].contains(remark.text());
+        const bool is_one_too_many = left_out_ >= kMaxLeftOut && !places_[1].contains(remark.text());
         Message& message = all_[add(true, is_one_too_many ? Remark(kMoreLeftOut) : std::move(remark))];
         if (!message.is_left_out) ++left_out_;
         message.is_left_out = true;
@@ -59,7 +59,7 @@ public:
     std::vector<std::string> left_out() const { return texts_of(&Message::is_left_out); }
 
 private:
-    static constexpr std::size_t kMostLeftOut = 100;
+    static constexpr std::size_t kMaxLeftOut = 100;
     static constexpr const char* kMoreLeftOut = "more is left out than these warnings name";
 
     /// Returns its index in all_.

@@ -123,7 +123,7 @@ void parallel_invoke(const std::function<void()>& a, const std::function<void()>
 
 #else
 
-constexpr std::size_t kMostThreads = 4096;
+constexpr std::size_t kMaxThreads = 4096;
 
 /// The threads that work for one thread, separate from those of others.
 struct Team {
@@ -131,7 +131,7 @@ struct Team {
         // TBB has one worker less than hardware threads unless it is allowed more. Of several such permissions the
         // least counts, so there is one.
         if (count <= hardware_threads()) return;
-        static const tbb::global_control permit(tbb::global_control::max_allowed_parallelism, kMostThreads);
+        static const tbb::global_control permit(tbb::global_control::max_allowed_parallelism, kMaxThreads);
     }
     tbb::task_arena arena;
 };

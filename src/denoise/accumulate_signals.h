@@ -5,8 +5,8 @@
 // Sources: Schied et al. 2017 (above), section 4.1; NVIDIA, "Fast Denoising with Self-Stabilizing Recurrent Blurs",
 // GDC 2020 (a second mean over few frames, to which the long one is clamped).
 
-#include "denoise/light_change_view.h"
 #include "denoise/reproject.h"
+#include "denoise/temporal_gradients_view.h"
 #include "render/tiled_pixel.h"
 
 namespace pertev {
@@ -21,10 +21,10 @@ struct AccumulateSignals {
     PreviousScene scene_before;
     FrameCameras cameras;
     HistoryView now, before;
-    LightChangeView change; // change of light since the previous frame
-    Vec2* was_at;           // pixel of the previous frame that showed the same; not written at a cut
-    uint32_t longest;       // maximum number of frames of a mean
-    bool limit_fireflies;
+    TemporalGradientsView change; // change of light since the previous frame
+    Vec2* was_at;                 // pixel of the previous frame that showed the same; not written at a cut
+    uint32_t longest;             // maximum number of frames of a mean
+    bool clamp_fireflies;
     bool has_gloss;                     // false: that signal is black everywhere and neither read nor written
     bool has_history;                   // false at a cut
     static constexpr float kRecent = 4; // frames of the recent mean
@@ -134,9 +134,9 @@ private:
     HD static float ratio_of(float was, float is) { return was > 1e-12f ? is / was : 1.0f; }
 
     /// Updates `mean`, which the taps hold, by this frame's sample; its w is the number of frames.
-    HD Float4 gone_on(const Taps& taps, Float4 mean, Float4 sample, float most_frames) const {
+    HD Float4 gone_on(const Taps& taps, Float4 mean, Float4 sample, float max_frames) const {
         if (!(taps.sum > kEnoughWeight)) return with_w(rgb_of(sample), 1);
-        const float frames = min(mean.w + 1.0f, most_frames);
+        const float frames = min(mean.w + 1.0f, max_frames);
         return with_w(lerp(rgb_of(mean), rgb_of(sample), 1.0f / frames), frames);
     }
 
@@ -146,7 +146,7 @@ private:
         const int width = static_cast<int>(cameras.width), height = static_cast<int>(cameras.height);
         const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
         const Float4 own = signal[y * width + x];
-        if (!limit_fireflies) return own;
+        if (!clamp_fireflies) return own;
         // At an edge of the picture the neighbour on the other side replaces the missing one.
         const int columns[3] = {held(x, x > 0 ? -1 : 1, width), x, held(x, x + 1 < width ? 1 : -1, width)};
         const int rows[3] = {held(y, y > 0 ? -1 : 1, height), y, held(y, y + 1 < height ? 1 : -1, height)};

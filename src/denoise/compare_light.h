@@ -1,10 +1,10 @@
 #pragma once
 
-// Stages that compute temporal gradients of light (light_change_view.h): they compare the two small pictures and then
-// repeatedly average neighbours at doubling distances, because a single sample per pixel is too noisy.
+// Stages that compute temporal gradients of light (temporal_gradients_view.h): they compare the two small pictures and
+// then repeatedly average neighbours at doubling distances, because a single sample per pixel is too noisy.
 
-#include "denoise/light_change_view.h"
 #include "denoise/split_light.h"
+#include "denoise/temporal_gradients_view.h"
 #include "render/tiled_pixel.h"
 
 namespace pertev {

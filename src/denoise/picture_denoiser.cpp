@@ -12,7 +12,7 @@ namespace {
 constexpr int kPasses = 5;
 // Parameters of WaveletPass. Bumps are trusted like everything else, because with more samples their noise is less
 // than their effect.
-constexpr float kTolerance = 4, kLeastTrust = 1;
+constexpr float kTolerance = 4, kMinTrust = 1;
 constexpr std::size_t kOfGuide = 4, kOfSums = 10 + 2 * kSurfacesBeside, kOfSignals = 4; // numbers of arrays of Float4
 constexpr std::size_t kWideArrays = kOfGuide + kOfSums + kOfSignals;
 
@@ -74,9 +74,8 @@ Image PictureDenoiser::picture() {
     launch(*queue_, "smooth_guide", pixels, SmoothGuide{guide_, sums_, smooth_, packed_});
     launch(*queue_, "estimate_variance", pixels, EstimateVariance{smooth, sums_, from, width_, height_, has_gloss_});
     for (int pass = 0; pass < kPasses; ++pass) {
-        launch(
-            *queue_, "wavelet_pass", pixels,
-            WaveletPass{packed_, from, to, camera_, width_, height_, 1 << pass, kTolerance, kLeastTrust, has_gloss_});
+        launch(*queue_, "wavelet_pass", pixels,
+               WaveletPass{packed_, from, to, camera_, width_, height_, 1 << pass, kTolerance, kMinTrust, has_gloss_});
         std::swap(from, to);
     }
     launch(*queue_, "compose_samples", pixels,

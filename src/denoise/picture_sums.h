@@ -51,7 +51,7 @@ HD inline bool shows_surface(const PictureGuide& guide, const CameraView& camera
     if (!(dot(vec3_of(there), normal) > cosine)) return false;
     const Vec2 centre = {static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f};
     const Vec3 n = transform_transposed(camera.world_from_camera, vec3_of(there));
-    const float off = abs(dot(n, point - point_seen(camera, centre, there.w)));
+    const float off = abs(dot(n, point - unproject_point(camera, centre, there.w)));
     return off <= 2.0f * pixel_size(camera, abs(there.w));
 }
 

@@ -5,9 +5,9 @@
 #include "base/error.h"
 #include "denoise/accumulate_signals.h"
 #include "denoise/anti_alias.h"
+#include "denoise/clamp_history.h"
 #include "denoise/compose_picture.h"
 #include "denoise/keep_layers.h"
-#include "denoise/limit_history.h"
 #include "denoise/split_signals.h"
 #include "denoise/sum_blocks.h"
 #include "denoise/wavelet_pass.h"
@@ -22,20 +22,21 @@ constexpr std::size_t kOfHistory = 5, kOfSignals = 2; // numbers of arrays of Fl
 /// memory of the signals before these are written, its numbers at the end, after the first ones; only in tiny
 /// pictures does it need more.
 std::size_t wide_count(uint32_t width, uint32_t height) {
-    const std::size_t pixels = std::size_t(width) * height, small = LightChangeRoom::pixels(width, height);
+    const std::size_t pixels = std::size_t(width) * height, small = TemporalGradientsMemory::pixels(width, height);
     return 2 * kOfHistory * pixels +
-           std::max({2 * kOfSignals * pixels, kOfSignals * pixels + LightChangeRoom::kNumbers * small,
-                     (LightChangeRoom::kPicture + LightChangeRoom::kNumbers) * small});
+           std::max({2 * kOfSignals * pixels, kOfSignals * pixels + TemporalGradientsMemory::kNumbers * small,
+                     (TemporalGradientsMemory::kPicture + TemporalGradientsMemory::kNumbers) * small});
 }
 
 /// Number of Vec2: squares of both histories, then positions in the previous frame, or between frames the small
 /// picture of the scene as it was.
 std::size_t narrow_count(uint32_t width, uint32_t height) {
     const std::size_t pixels = std::size_t(width) * height;
-    return 2 * pixels + std::max(pixels, 2 * LightChangeRoom::kPicture * LightChangeRoom::pixels(width, height));
+    return 2 * pixels +
+           std::max(pixels, 2 * TemporalGradientsMemory::kPicture * TemporalGradientsMemory::pixels(width, height));
 }
 
-constexpr float kTolerance = 8, kLeastTrust = 0.125f; // parameters of WaveletPass
+constexpr float kTolerance = 8, kMinTrust = 0.125f; // parameters of WaveletPass
 
 } // namespace
 
@@ -44,10 +45,11 @@ Reconstruction::Reconstruction(Queue& queue, uint32_t width, uint32_t height)
       wide_(queue, wide_count(width, height), "reconstruction"),
       narrow_(queue, narrow_count(width, height), "reconstruction") {}
 
-LightChangeRoom Reconstruction::room_for_change() const {
+TemporalGradientsMemory Reconstruction::room_for_change() const {
     Float4* const signals = wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_;
     return {reinterpret_cast<Float4*>(places_before()), signals,
-            wide_.data() + wide_.size() - LightChangeRoom::kNumbers * LightChangeRoom::pixels(width_, height_)};
+            wide_.data() + wide_.size() -
+                TemporalGradientsMemory::kNumbers * TemporalGradientsMemory::pixels(width_, height_)};
 }
 
 HistoryView Reconstruction::history(uint32_t frame) const {
@@ -59,7 +61,7 @@ HistoryView Reconstruction::history(uint32_t frame) const {
 
 /// Computes the filtered light of the frame; `room` is a free array of the picture's size.
 SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
-                                   const PreviousScene& scene_before, const LightChangeView& change,
+                                   const PreviousScene& scene_before, const TemporalGradientsView& change,
                                    const ReconstructionSettings& settings, Float4*& room) {
     PERTEV_CHECK(frame.width() == width_ && frame.height() == height_);
     const uint32_t pixels = width_ * height_;
@@ -75,14 +77,14 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
     const auto accumulate = [&]<bool kFollows>() {
         launch(*queue_, "accumulate_signals", pixels,
                AccumulateSignals<kFollows>{noisy, a, scene, scene_before, cameras, now, before, change, places_before(),
-                                           settings.history, settings.limit_fireflies, has_gloss, has_history});
+                                           settings.history, settings.clamp_fireflies, has_gloss, has_history});
     };
     if (change.guide != nullptr) {
         accumulate.operator()<true>();
     } else {
         accumulate.operator()<false>();
     }
-    launch(*queue_, "limit_history", pixels, LimitHistory{now, b, width_, height_, settings.limit_history, has_gloss});
+    launch(*queue_, "limit_history", pixels, ClampHistory{now, b, width_, height_, settings.clamp_history, has_gloss});
     if (settings.keep_layers) {
         if (layers_.size() != pixels) layers_ = {*queue_, pixels, "layers of the reconstruction"};
         launch(*queue_, "keep_layers", pixels,
@@ -90,7 +92,7 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
     }
     for (uint32_t pass = 0; pass < settings.passes; ++pass) {
         launch(*queue_, "wavelet_pass", pixels,
-               WaveletPass{now.guide, b, a, camera, width_, height_, 1 << pass, kTolerance, kLeastTrust, has_gloss});
+               WaveletPass{now.guide, b, a, camera, width_, height_, 1 << pass, kTolerance, kMinTrust, has_gloss});
         std::swap(a, b);
     }
     room = a.diffuse;
@@ -98,7 +100,7 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
 }
 
 void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
-                         const PreviousScene& scene_before, const LightChangeView& change,
+                         const PreviousScene& scene_before, const TemporalGradientsView& change,
                          const ReconstructionSettings& settings) {
     if (enlarged_) cut();
     enlarged_.reset();
@@ -118,9 +120,9 @@ void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, cons
     ++frames_;
 }
 
-void Reconstruction::add_enlarged(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
-                                  const CameraView& camera, const SceneView& scene, const PreviousScene& scene_before,
-                                  const LightChangeView& change, const ReconstructionSettings& settings) {
+void Reconstruction::add_upsampled(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
+                                   const CameraView& camera, const SceneView& scene, const PreviousScene& scene_before,
+                                   const TemporalGradientsView& change, const ReconstructionSettings& settings) {
     if (!enlarged_ || enlarged_->width() != features.width() || enlarged_->height() != features.height()) {
         cut();
         enlarged_.reset(); // freed before the new one, so that both need not fit

@@ -11,10 +11,10 @@
 #include <memory>
 #include <optional>
 
-#include "denoise/enlarged_frame.h"
-#include "denoise/light_change.h"
 #include "denoise/reconstruction_settings.h"
 #include "denoise/reconstruction_view.h"
+#include "denoise/temporal_gradients.h"
+#include "denoise/upsampled_frame.h"
 #include "device/device_timer.h"
 #include "image/image.h"
 #include "image/tone_map.h"
@@ -39,16 +39,16 @@ public:
     /// Makes the picture of `frame`, which has this size, seen by `camera` in `scene`. `before` has the positions in
     /// the previous frame, and is used only if there is one. `change` is the change of light since then.
     void add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene, const PreviousScene& before,
-             const LightChangeView& change, const ReconstructionSettings& settings);
+             const TemporalGradientsView& change, const ReconstructionSettings& settings);
 
     /// Makes a picture at another resolution, that of `features`: a frame whose paths end at the first surface, seen
     /// by `camera`. `frame`, the light, is seen by `light_camera`. A change of the picture's size is a cut.
-    void add_enlarged(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
-                      const CameraView& camera, const SceneView& scene, const PreviousScene& before,
-                      const LightChangeView& change, const ReconstructionSettings& settings);
+    void add_upsampled(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
+                       const CameraView& camera, const SceneView& scene, const PreviousScene& before,
+                       const TemporalGradientsView& change, const ReconstructionSettings& settings);
 
     /// Memory for `change` of the next add(), free from one add() to the next.
-    LightChangeRoom room_for_change() const;
+    TemporalGradientsMemory room_for_change() const;
     /// Number of frames since the last cut.
     uint32_t frames() const { return frames_; }
     /// Size of the light, which is that of the picture unless it is upsampled.
@@ -82,7 +82,7 @@ private:
     HistoryView history(uint32_t frame) const;
     std::vector<Float4> kept_layers() const;
     SignalsView filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
-                       const PreviousScene& before, const LightChangeView& change,
+                       const PreviousScene& before, const TemporalGradientsView& change,
                        const ReconstructionSettings& settings, Float4*& room);
     Vec2* places_before() const { return narrow_.data() + 2 * std::size_t(width_) * height_; }
     const Float4* shown() const;
@@ -95,8 +95,8 @@ private:
     Buffer<Vec2> narrow_;
     std::unique_ptr<HostCopy> display_; // null before the first display()
     std::size_t display_bytes_ = 0;
-    Buffer<Float4> layers_;                 // empty until they are requested
-    std::optional<EnlargedFrame> enlarged_; // if the picture has another size than its light
+    Buffer<Float4> layers_;                  // empty until they are requested
+    std::optional<UpsampledFrame> enlarged_; // if the picture has another size than its light
 };
 
 } // namespace pertev

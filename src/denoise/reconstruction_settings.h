@@ -11,12 +11,12 @@ struct ReconstructionSettings {
     uint32_t history = 32;       // maximum number of frames of a mean, >= 1
     uint32_t passes = 5;         // passes of the wavelet filter, [0, 8]; 0: none. Biased: blurs what guides do not
                                  // show
-    bool limit_fireflies = true; // biased: darkens samples far brighter than all their neighbours
-    bool limit_history = true;   // biased: clamps long means to recent frames, against ghosting
-    bool follow_light = true;    // if the scene moves, updates means by the change of light (light_change_view.h).
-                                 // Biased
-    bool anti_alias = true;      // biased: the mean of shown frames is clamped to surrounding colours
-    bool keep_layers = false;    // for Reconstruction::motion() and deviation(); does not affect the frame
+    bool clamp_fireflies = true; // biased: darkens samples far brighter than all their neighbours
+    bool clamp_history = true;   // biased: clamps long means to recent frames, against ghosting
+    bool follow_light = true; // if the scene moves, updates means by the change of light (temporal_gradients_view.h).
+                              // Biased
+    bool anti_alias = true;   // biased: the mean of shown frames is clamped to surrounding colours
+    bool keep_layers = false; // for Reconstruction::motion() and deviation(); does not affect the frame
 
     /// Ratio of the sides of the light's frame and of the picture, (0, 1]. Below 1 camera rays are traced at the
     /// picture's resolution, and light is upsampled by their hits. Biased: light between edges is coarse.
@@ -29,7 +29,7 @@ struct ReconstructionSettings {
 inline ReconstructionSettings of_samples_alone(ReconstructionSettings settings) {
     settings.history = 1;
     settings.passes = 0;
-    settings.limit_fireflies = settings.limit_history = settings.follow_light = settings.anti_alias = false;
+    settings.clamp_fireflies = settings.clamp_history = settings.follow_light = settings.anti_alias = false;
     return settings;
 }
 

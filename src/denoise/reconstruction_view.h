@@ -75,9 +75,9 @@ HD inline Rgb add_scaled(Rgb sum, float scale, Rgb c) {
 HD inline int held(int x, int offset, int count) { return clamp(x + offset, 0, count - 1); }
 
 /// Minimum divisor of a signal.
-inline constexpr float kLeastAlbedo = 0.01f;
+inline constexpr float kMinAlbedo = 0.01f;
 HD inline Rgb divisor_of(Rgb albedo) {
-    return {max(albedo.r, kLeastAlbedo), max(albedo.g, kLeastAlbedo), max(albedo.b, kLeastAlbedo)};
+    return {max(albedo.r, kMinAlbedo), max(albedo.g, kMinAlbedo), max(albedo.b, kMinAlbedo)};
 }
 
 /// Divisor of the diffuse signal at a pixel: the reflectance of its diffuse lobes as the camera sees them, so that

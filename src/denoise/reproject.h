@@ -18,7 +18,7 @@ HD inline Reprojection reproject_virtual(const FrameCameras& cameras, Vec2 centr
     const Ray ray = make_camera_ray(cameras.now, centre, {0, 0});
     const Transform& m = cameras.now.world_from_camera;
     const float along = depth / -dot(transform_transposed(m, ray.direction), Vec3{0, 0, 1}); // metres along the ray
-    const SeenPoint then = see_point(cameras.before, ray.origin + (along + distance) * ray.direction);
+    const ProjectedPoint then = project_point(cameras.before, ray.origin + (along + distance) * ray.direction);
     return {then.pixel, then.depth};
 }
 
@@ -26,7 +26,7 @@ HD inline Reprojection reproject_virtual(const FrameCameras& cameras, Vec2 centr
 HD inline Vec2 reproject_sky(const FrameCameras& cameras, Vec2 centre) {
     if (has_parallel_rays(cameras.now.projection)) return centre;
     const Vec3 direction = make_camera_ray(cameras.now, centre, {0, 0}).direction;
-    return see_point(cameras.before, cameras.before.world_from_camera.translation + direction).pixel;
+    return project_point(cameras.before, cameras.before.world_from_camera.translation + direction).pixel;
 }
 
 /// Up to four pixels of the previous frame around a position, with their weights; the sum is 0 if none matches.
@@ -41,7 +41,7 @@ struct Taps {
 /// nearest matching pixel around, because along an edge a pixel sees one side or the other. `depth` <= 0 accepts any
 /// depth.
 HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras, Vec2 pixel, float depth, Vec3 normal,
-                         float least_cosine, uint32_t object) {
+                         float min_cosine, uint32_t object) {
     Taps taps = {0, {0, 0, 0, 0}, 0};
     const int w = static_cast<int>(cameras.width), h = static_cast<int>(cameras.height);
     const float x = pixel.x - 0.5f, y = pixel.y - 0.5f;
@@ -50,7 +50,7 @@ HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras,
         if (px < 0 || py < 0 || px >= w || py >= h) return false;
         const Float4 then = before.guide[py * w + px];
         if (object_of(then) != object) return false;
-        if (!(dot(normal_of(then), normal) > least_cosine)) return false;
+        if (!(dot(normal_of(then), normal) > min_cosine)) return false;
         return !(depth > 0) || is_depth_alike(depth_of(then), depth);
     };
     const float left = floor(x), top = floor(y), in_x = x - left, in_y = y - top;

@@ -16,10 +16,10 @@ struct WaveletPass {
     SignalsView from, to;
     CameraView camera;
     uint32_t width, height;
-    int step;          // pixels between taps
-    float tolerance;   // deviations of diffuse light; taps that differ by four times as much do not count
-    float least_trust; // trust in guides where light is noisy, (0, 1]; 1: as anywhere else
-    bool has_gloss;    // see AccumulateSignals
+    int step;        // pixels between taps
+    float tolerance; // deviations of diffuse light; taps that differ by four times as much do not count
+    float min_trust; // trust in guides where light is noisy, (0, 1]; 1: as anywhere else
+    bool has_gloss;  // see AccumulateSignals
 
     HD void operator()(uint32_t i) const {
         const PixelPlace at = tiled_place(i, width, height);
@@ -79,8 +79,7 @@ private:
     /// bump of a normal map would keep its noise.
     HD float trust(float light, float variance) const {
         const float square_light = fma(light, light, 1e-12f);
-        return max(least_trust,
-                   square_light / fma(2.0f, variance, square_light)); // in this order, NaN gives least_trust
+        return max(min_trust, square_light / fma(2.0f, variance, square_light)); // in this order, NaN gives least_trust
     }
 
     /// Approximates exp(-x) at a fifth of its cost: (1 - x / 4)^4, and 0 from 4 on.

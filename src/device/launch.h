@@ -4,7 +4,7 @@
 // operator()(uint32_t i) const`. Each stage has one .cu file that instantiates this (through device/launch_body.h);
 // without CUDA that file is compiled as C++.
 //
-// A stage whose threads cooperate within a block (device/list_places.h) has `HD void operator()(uint32_t i, bool
+// A stage whose threads cooperate within a block (device/block_append.h) has `HD void operator()(uint32_t i, bool
 // is_there) const` instead, which runs in whole blocks: `is_there` is false beyond the last index. It sets the block
 // size by `static constexpr BlockShape kShape`.
 

@@ -41,18 +41,18 @@ HD inline float alpha_at(const SceneView& scene, const MaterialParameters& mater
 /// the positions of its ends. A ray exactly through an edge hits the triangles on both sides of it
 /// (trace/intersect/intersect_triangle.h), and with one coin they count as one surface.
 HD inline uint32_t coin_owner(const MeshView& mesh, uint32_t primitive, float u, float v) {
-    constexpr float kLeastWeight = 0x1p-20f; // rounding of weights is at most a quarter of this
+    constexpr float kMinWeight = 0x1p-20f; // rounding of weights is at most a quarter of this
     const float w = 1.0f - u - v;
-    if (min(u, min(v, w)) >= kLeastWeight) return primitive;
+    if (min(u, min(v, w)) >= kMinWeight) return primitive;
     const auto hash_of = [&](uint32_t vertex) {
         const Vec3 p = mesh.positions[vertex];
         return hash_words(bits_of(p.x + 0.0f), bits_of(p.y + 0.0f), bits_of(p.z + 0.0f)).x; // -0 as 0
     };
     const TriangleIndices i = triangle_indices(mesh, primitive);
     uint32_t sum = 0; // symmetric, because the neighbour may have the ends in reverse order
-    if (w >= kLeastWeight) sum += hash_of(i.a);
-    if (u >= kLeastWeight) sum += hash_of(i.b);
-    if (v >= kLeastWeight) sum += hash_of(i.c);
+    if (w >= kMinWeight) sum += hash_of(i.a);
+    if (u >= kMinWeight) sum += hash_of(i.b);
+    if (v >= kMinWeight) sum += hash_of(i.c);
     return sum;
 }
 

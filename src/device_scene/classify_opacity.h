@@ -48,14 +48,14 @@ struct TexelInterval {
 
 /// Interval of lookups at coordinates within [least, most], which rounding may have moved by `error`; 1 is one image.
 HD inline TexelInterval texels_between(float least, float most, float error, TextureFilter filter, uint32_t size) {
-    constexpr float kMostTexels = 0x1p22f; // integers up to here are exact
-    constexpr float kMargin = 0x1p-6f;     // in texels; wrapping a coordinate into the image rounds by 2^-24
+    constexpr float kMaxTexels = 0x1p22f; // integers up to here are exact
+    constexpr float kMargin = 0x1p-6f;    // in texels; wrapping a coordinate into the image rounds by 2^-24
     const auto texels = static_cast<float>(size);
     const bool is_linear = filter == TextureFilter::Linear;
     const float to_centre = is_linear ? 0.5f : 0.0f;
     TexelInterval found = {(least - error) * texels - (to_centre + kMargin),
                            (most + error) * texels - (to_centre - kMargin), 0, 0, false};
-    if (!(found.least > -kMostTexels && found.most < kMostTexels && texels < 0x1p17f)) return found;
+    if (!(found.least > -kMaxTexels && found.most < kMaxTexels && texels < 0x1p17f)) return found;
     found.first = static_cast<int>(floor(found.least));
     found.last = static_cast<int>(floor(found.most)) + (is_linear ? 1 : 0);
     found.is_known = true;
@@ -135,7 +135,7 @@ HD inline ValueRange texture_range(const MeshView& mesh, const TextureRef& ref, 
     ValueRange range = range_of_texels(bounds, wrap_texels(x.first, x.last, ref.wrap_s, static_cast<int>(width)),
                                        wrap_texels(y.first, y.last, ref.wrap_t, static_cast<int>(height)));
     if (range.least == range.most) return range; // equal texels are interpolated exactly
-    const bool is_small = max(x.last - x.first, y.last - y.first) < static_cast<int>(kMostCells);
+    const bool is_small = max(x.last - x.first, y.last - y.first) < static_cast<int>(kMaxCells);
     if (is_small && ref.filter == TextureFilter::Linear) range = range_of_means({bounds, ref.wrap_s, ref.wrap_t}, x, y);
     const float rounding = 0x1p-20f * max(abs(range.least), abs(range.most));
     return {range.least - rounding, range.most + rounding};

@@ -162,7 +162,7 @@ std::vector<DeformedMesh> DeformingMeshes::deformed(const PlacedScene& prepared,
                                                     const std::vector<MeshView>& meshes) const {
     std::vector<DeformedMesh> deformed;
     for (const Deforming& mesh : meshes_) {
-        const uint32_t tree = prepared.tree_of_mesh[mesh.mesh];
+        const uint32_t tree = prepared.blas_of_mesh[mesh.mesh];
         if (mesh.pose.is_on_host || tree == kBakedMesh) continue;
         deformed.push_back({mesh.mesh, tree, mesh.version, prepared.scene->meshes[mesh.mesh].triangle_count(),
                             meshes[mesh.mesh].positions, meshes[mesh.mesh].indices});

@@ -15,7 +15,7 @@ namespace pertev {
 template <class RayOf, class AcceptOf>
 inline void find_hits(const HostTrees& trees, uint32_t count, RayOrder order, const RayOf& ray_of,
                       const AcceptOf& accept_of, Hit* hits) {
-    trace_closest_many<WalkOptions{}>(trees, count, order, ray_of, accept_of, hits);
+    trace_closest_many<TraversalOptions{}>(trees, count, order, ray_of, accept_of, hits);
 }
 
 /// Finds closest hits of camera or bounce rays. Culled backs do not count for camera rays (AcceptCameraHit).
@@ -34,7 +34,7 @@ inline void find_occlusions(const HostTrees& trees, uint32_t count, RayOrder ord
                             const AcceptOf& accept_of, bool* met) {
     // The builder's first child is the one where such searches usually end sooner. For rays without an end the
     // farthest is a better start (trace/trace_any.h).
-    trace_any_many<WalkOptions{.near_first = false}>(trees, count, order, ray_of, accept_of, met);
+    trace_any_many<TraversalOptions{.near_first = false}>(trees, count, order, ray_of, accept_of, met);
 }
 
 } // namespace pertev

@@ -8,11 +8,11 @@
 namespace pertev {
 
 /// Base colour of the material there, [0, 1] per channel.
-template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
+template <ShadingVariant kVariant = ShadingVariant::General>
 HD inline Rgb base_color_at(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
                             TriangleIndices i, float u, float v) {
     Rgb color = material.base_color;
-    if (const TextureRef& ref = material.base_color_texture; has_texture<kKnown>(ref)) {
+    if (const TextureRef& ref = material.base_color_texture; has_texture<kVariant>(ref)) {
         const Vec4 texel =
             lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, i, u, v), scene.linear_from_srgb);
         color = color * Rgb{texel.x, texel.y, texel.z};
@@ -24,10 +24,10 @@ HD inline Rgb base_color_at(const SceneView& scene, const MaterialParameters& ma
     return {clamp(color.r, 0.0f, 1.0f), clamp(color.g, 0.0f, 1.0f), clamp(color.b, 0.0f, 1.0f)};
 }
 
-template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
+template <ShadingVariant kVariant = ShadingVariant::General>
 HD inline Bsdf make_bsdf(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
                          TriangleIndices i, float u, float v, Rgb base_color) {
-    if (kKnown != MaterialsKnown::Nothing || material.kind == MaterialKind::Diffuse ||
+    if (kVariant != ShadingVariant::General || material.kind == MaterialKind::Diffuse ||
         material.kind == MaterialKind::Unlit) {
         return make_diffuse(base_color);
     }

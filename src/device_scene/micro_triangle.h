@@ -18,7 +18,7 @@ namespace pertev {
 enum class Opacity : uint32_t { Unknown = 0, Transparent = 1, Opaque = 2 };
 
 /// A word has 16 micro-triangles, so a triangle has at least one word.
-inline constexpr uint32_t kLeastMicroLevel = 2, kMostMicroLevel = 9, kMicroTrianglesPerWord = 16;
+inline constexpr uint32_t kMinMicroLevel = 2, kMaxMicroLevel = 9, kMicroTrianglesPerWord = 16;
 
 HD constexpr uint32_t micro_triangles(uint32_t level) { return 1u << 2 * level; }
 HD constexpr uint32_t words_per_triangle(uint32_t level) { return micro_triangles(level) / kMicroTrianglesPerWord; }

@@ -46,7 +46,7 @@ struct MovedHit {
 };
 
 /// Positions of emitters at a time, for sample_light and pdf_light_hit.
-struct LampsAt {
+struct EmittersAt {
     const MotionsView& motions;
     float time;
 
@@ -57,9 +57,9 @@ struct LampsAt {
 template <bool kTextures = true, class Choice = ChosenByPower>
 HD INLINE_ON_DEVICE bool draw_direct(const SceneView& scene, bool moves, const LightContext& context, SampleBits u,
                                      LightSample& sample) {
-    return moves
-               ? sample_light<kTextures, Choice>(scene.lights, context, u, sample, LampsAt{scene.motions, context.time})
-               : sample_light<kTextures, Choice>(scene.lights, context, u, sample);
+    return moves ? sample_light<kTextures, Choice>(scene.lights, context, u, sample,
+                                                   EmittersAt{scene.motions, context.time})
+                 : sample_light<kTextures, Choice>(scene.lights, context, u, sample);
 }
 
 /// Density with which draw_direct, for `context`, samples the point of `surface`, 1/sr; 0 if that is no light.
@@ -68,12 +68,12 @@ HD inline float pdf_direct(const SceneView& scene, bool moves, const LightContex
     const uint32_t light = light_of(scene.lights, surface.triangle.instance, surface.triangle.primitive);
     if (light == kNoLight) return 0;
     return moves ? pdf_light_hit<Choice>(scene.lights, light, context, surface.position,
-                                         LampsAt{scene.motions, context.time})
+                                         EmittersAt{scene.motions, context.time})
                  : pdf_light_hit<Choice>(scene.lights, light, context, surface.position);
 }
 
 /// Error that ray_to_light adds for a moving emitter.
-HD inline float lamp_error_at(const SceneView& scene, const LightSample& light, float time) {
+HD inline float emitter_error_at(const SceneView& scene, const LightSample& light, float time) {
     if (light.instance == kNoLight || scene.motions.of(light.instance) == kNoMotion) return 0;
     return scene.motions.of_instance_at(light.instance, time).error(light.light_point);
 }

@@ -12,9 +12,9 @@
 namespace pertev {
 namespace {
 
-constexpr double kTexelsEach = 1;             // maximum texels per micro-triangle
-constexpr std::size_t kMostWords = 64u << 20; // maximum for all, a quarter of a gigabyte; levels are coarser if
-                                              // needed
+constexpr double kTexelsEach = 1;            // maximum texels per micro-triangle
+constexpr std::size_t kMaxWords = 64u << 20; // maximum for all, a quarter of a gigabyte; levels are coarser if
+                                             // needed
 
 /// A mesh with a material; the material comes first, so that maps of a material are adjacent.
 using MaterialAndMesh = std::pair<uint32_t, uint32_t>;
@@ -51,8 +51,8 @@ double texels_of_a_triangle(const Scene& scene, const Mesh& mesh, const TextureR
 uint32_t level_for(const Scene& scene, const Mesh& mesh, const Material& material) {
     const double texels = std::max(texels_of_a_triangle(scene, mesh, material.base_color_texture),
                                    texels_of_a_triangle(scene, mesh, material.alpha_texture));
-    uint32_t level = kLeastMicroLevel;
-    while (level < kMostMicroLevel && texels > kTexelsEach * micro_triangles(level)) ++level;
+    uint32_t level = kMinMicroLevel;
+    while (level < kMaxMicroLevel && texels > kTexelsEach * micro_triangles(level)) ++level;
     return level;
 }
 
@@ -66,14 +66,14 @@ std::map<MaterialAndMesh, Micromap> list_micromaps(const Scene& scene, std::size
         const Mesh& mesh = scene.meshes[instance.mesh];
         place->second = {level_for(scene, mesh, scene.materials[instance.material]), mesh.triangle_count(), 0};
     }
-    for (uint32_t most = kMostMicroLevel;; --most) {
+    for (uint32_t most = kMaxMicroLevel;; --most) {
         words = 0;
         for (auto& [pair, map] : maps) {
             map.level = std::min(map.level, most);
             map.first_word = words;
             words += map.words();
         }
-        if (words <= kMostWords || most == kLeastMicroLevel) return maps;
+        if (words <= kMaxWords || most == kMinMicroLevel) return maps;
     }
 }
 

@@ -50,7 +50,7 @@ MeshPlacement place_meshes(const Scene& scene, Vec3 centre) {
     for (const Mesh& mesh : scene.meshes) own_triangles += mesh.triangle_count();
     const uint64_t limit = kFreeBakedTriangles + kMaxBakedExpansion * own_triangles;
     const std::vector<bool> moves = may_move(scene);
-    placement.tree_of_mesh.assign(scene.meshes.size(), kBakedMesh);
+    placement.blas_of_mesh.assign(scene.meshes.size(), kBakedMesh);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const bool stays_alone = uses[instance.mesh] == 1 && !moves[i];
@@ -61,8 +61,8 @@ MeshPlacement place_meshes(const Scene& scene, Vec3 centre) {
             placement.copied_triangles += scene.meshes[instance.mesh].triangle_count();
             if (placement.copied_triangles > limit) throw too_many_copies(placement, i, instance, limit);
         }
-        if (!baked && placement.tree_of_mesh[instance.mesh] == kBakedMesh) {
-            placement.tree_of_mesh[instance.mesh] = placement.mesh_tree_count++;
+        if (!baked && placement.blas_of_mesh[instance.mesh] == kBakedMesh) {
+            placement.blas_of_mesh[instance.mesh] = placement.mesh_tree_count++;
         }
     }
     return placement;
@@ -99,7 +99,7 @@ std::vector<BvhTriangle> mesh_triangles(const Mesh& mesh) {
 SceneTriangles::SceneTriangles(const Scene& scene, const MeshPlacement& placement)
     : baked(baked_triangles(scene, placement)), meshes(placement.mesh_tree_count) {
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-        const uint32_t tree = placement.tree_of_mesh[i];
+        const uint32_t tree = placement.blas_of_mesh[i];
         if (tree != kBakedMesh) meshes[tree] = mesh_triangles(scene.meshes[i]);
     }
 }
@@ -116,7 +116,7 @@ std::vector<PlacedBvh> placed_trees(const Scene& scene, const MeshPlacement& pla
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         if (placement.is_baked[i] || instance.is_hidden) continue;
-        const uint32_t tree = placement.tree_of_mesh[instance.mesh];
+        const uint32_t tree = placement.blas_of_mesh[instance.mesh];
         placed.push_back(
             {moved_to(instance.world_from_local, placement.centre), bounds[tree], tree, static_cast<uint32_t>(i)});
         if (motions == nullptr || motions->of_instance[i] == kNoMotion) continue;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "accel/bvh/bvh.h"
-#include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/tlas.h"
 #include "scene/scene.h"
 
 namespace pertev {
@@ -18,7 +18,7 @@ inline constexpr uint32_t kBakedMesh = 0xffffffffu;
 
 struct MeshPlacement {
     std::vector<bool> is_baked;         // [instance]
-    std::vector<uint32_t> tree_of_mesh; // index of the mesh's own tree, or kBakedMesh if no instance needs one
+    std::vector<uint32_t> blas_of_mesh; // index of the mesh's own tree, or kBakedMesh if no instance needs one
     uint32_t mesh_tree_count = 0;
     uint64_t copies = 0, copied_triangles = 0; // baked although their mesh is used more than once
     Vec3 centre;                               // origin of the world in which they are placed, in the scene's

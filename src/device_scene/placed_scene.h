@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/tlas.h"
 #include "scene/scene.h"
 #include "shading/build_light_set.h"
 
@@ -21,7 +21,7 @@ struct PlacedScene {
     /// [Scene::shapes] poses of meshes with moving vertices; vertices that are not on the host are at rest in
     /// everything above. For owners of such meshes (session/moving_scene.h); empty if no vertex moves.
     std::vector<MeshPose> poses;
-    std::vector<uint32_t> tree_of_mesh;        // see MeshPlacement
+    std::vector<uint32_t> blas_of_mesh;        // see MeshPlacement
     std::shared_ptr<const MotionKeys> motions; // motions of instances while a shutter is open, in the translated
                                                // world; null if none moves
 };

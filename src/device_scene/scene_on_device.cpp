@@ -84,7 +84,7 @@ PartArrays list_instances(const PlacedScene& prepared, Instances& instances, Sce
 
 PartArrays list_materials(const Scene& scene, std::vector<MaterialParameters>& materials, SceneView& view) {
     for (const Material& material : scene.materials) materials.push_back(parameters_for_device(material));
-    view.known = known_of(materials);
+    view.variant = variant_of(materials);
     PartArrays arrays;
     arrays.add(materials, view.materials);
     return arrays;
@@ -102,7 +102,7 @@ PartArrays list_textures(const Scene& scene, std::vector<TextureImageView>& imag
     return arrays;
 }
 
-void add_table(PartArrays& arrays, const OrderedTable& table, OrderedTableView& view) {
+void add_table(PartArrays& arrays, const GuidedCdf& table, GuidedCdfView& view) {
     arrays.add(table.starts, view.starts);
     arrays.add(table.guide, view.guide);
 }
@@ -133,11 +133,11 @@ PartArrays list_environment(const EnvironmentData* environment, EnvironmentView&
 
 } // namespace
 
-MaterialsKnown materials_known(const Scene& scene) {
+ShadingVariant shading_variant(const Scene& scene) {
     std::vector<MaterialParameters> materials;
     SceneView view = {};
     list_materials(scene, materials, view);
-    return view.known;
+    return view.variant;
 }
 
 SceneOnDevice::SceneOnDevice(Queue& queue, const PlacedScene& prepared) { update(queue, prepared, kAllParts); }

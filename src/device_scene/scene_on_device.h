@@ -67,7 +67,7 @@ private:
 };
 
 /// The value of SceneView::known.
-MaterialsKnown materials_known(const Scene& scene);
+ShadingVariant shading_variant(const Scene& scene);
 
 /// Bytes that SceneOnDevice allocates.
 std::size_t predicted_bytes(const PlacedScene& prepared, bool on_cuda);

@@ -11,7 +11,7 @@
 #include "math/vec3.h"
 #include "math/vec4.h"
 #include "shading/light_set.h"
-#include "shading/materials_known.h"
+#include "shading/shading_variant.h"
 #include "shading/texture_lookup.h"
 #include "trace/intersect/ray.h"
 
@@ -45,7 +45,7 @@ struct SceneView {
     const OpacityMicromapView* micromaps; // [instance_count]; null: none
     const MeshView* meshes;
     const MaterialParameters* materials;
-    MaterialsKnown known; // shading variant of all materials
+    ShadingVariant variant; // shading variant of all materials
     const TextureImageView* images;
     const float* linear_from_srgb; // [256]
     LightSetView lights;

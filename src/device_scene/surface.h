@@ -94,13 +94,13 @@ HD inline Vec3 light_point_error(Vec3 point) { return 0x1p-20f * abs(point); }
 
 /// The shadow ray from a point of a surface, known to `error`, with unit normal `normal`, to a sample point on a
 /// light, where it ends. `lamp_error` is a bound of the error that an emitter's motion adds to its point, metres.
-HD inline Ray ray_to_light(const LightSample& light, Vec3 position, Vec3 error, Vec3 normal, float lamp_error = 0) {
+HD inline Ray ray_to_light(const LightSample& light, Vec3 position, Vec3 error, Vec3 normal, float emitter_error = 0) {
     Ray ray;
     ray.origin = offset_ray_origin(position, error, normal, light.wi);
     if (light.distance < kInfinity) { // t_max = 1 is the light's point
         Vec3 end = light.light_point;
         if (light.instance != kNoLight) {
-            const Vec3 off = light_point_error(end) + Vec3{lamp_error, lamp_error, lamp_error};
+            const Vec3 off = light_point_error(end) + Vec3{emitter_error, emitter_error, emitter_error};
             end = offset_ray_origin(end, off, light.light_normal, -light.wi);
         }
         ray.direction = end - ray.origin;
@@ -193,12 +193,12 @@ HD inline float corner_tilt(const InstanceView& instance, Vec3 local_normal, Vec
 
 /// The shading frame at the hit, seen from `wo` (unit). Writes the `tilt` of the interpolated normal, before the
 /// normal map, because a map's bumps have no neighbours whose horizon matters.
-template <MaterialsKnown kKnown>
+template <ShadingVariant kVariant>
 HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instance, const MeshView& mesh,
                               const MaterialParameters& material, const PlacedTriangle& triangle, const Hit& hit,
                               Vec3 geometric_normal, Vec3 wo, float& tilt) {
     tilt = 0;
-    if (mesh.normals == nullptr && !has_texture<kKnown>(material.normal_texture)) return make_frame(geometric_normal);
+    if (mesh.normals == nullptr && !has_texture<kVariant>(material.normal_texture)) return make_frame(geometric_normal);
     const Vec3 local = mesh.normals != nullptr ? interpolate(mesh.normals, triangle.i, hit.u, hit.v) : Vec3{0, 0, 0};
     Vec3 normal = world_normal(instance.local_from_world, local, geometric_normal);
     if (mesh.normals != nullptr) {
@@ -208,7 +208,7 @@ HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instan
         tilt = terminator_tilt(sine_between(normal, geometric_normal),
                                dot(Vec3{1.0f - hit.u - hit.v, hit.u, hit.v}, corners));
     }
-    if (has_texture<kKnown>(material.normal_texture)) {
+    if (has_texture<kVariant>(material.normal_texture)) {
         const TextureRef& ref = material.normal_texture;
         const Frame frame = tangent_frame(instance, mesh, triangle, hit, normal, ref);
         const Vec4 texel = lookup_texture(scene.images, ref, texture_coordinate(mesh, ref, triangle.i, hit.u, hit.v),
@@ -221,7 +221,7 @@ HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instan
 }
 
 /// The surface at `hit` for a ray that arrives along `direction` (unit).
-template <MaterialsKnown kKnown = MaterialsKnown::Nothing>
+template <ShadingVariant kVariant = ShadingVariant::General>
 HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 direction) {
     const InstanceView& instance = scene.instances[hit.instance];
     const MeshView& mesh = scene.meshes[instance.mesh];
@@ -231,15 +231,15 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
     const Vec3 geometric_normal = front_normal(instance, mesh, triangle);
     float tilt = 0;
     const Frame frame =
-        shading_frame<kKnown>(scene, instance, mesh, material, triangle, hit, geometric_normal, -direction, tilt);
-    const Rgb albedo = base_color_at<kKnown>(scene, material, mesh, triangle.i, hit.u, hit.v);
+        shading_frame<kVariant>(scene, instance, mesh, material, triangle, hit, geometric_normal, -direction, tilt);
+    const Rgb albedo = base_color_at<kVariant>(scene, material, mesh, triangle.i, hit.u, hit.v);
     const bool is_unlit = material.kind == MaterialKind::Unlit;
     Rgb emission = {};
     if (is_unlit) {
         emission = albedo;
     } else if ((material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0) &&
                (material.two_sided_emission || dot(triangle.normal, direction) < 0)) {
-        emission = surface_emission<has_textures(kKnown)>(
+        emission = surface_emission<has_textures(kVariant)>(
             scene.lights, instance.material,
             texture_coordinate(mesh, material.emission_texture, triangle.i, hit.u, hit.v));
     }
@@ -248,7 +248,7 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
             .error = triangle.error,
             .geometric_normal = geometric_normal,
             .frame = frame,
-            .bsdf = make_bsdf<kKnown>(scene, material, mesh, triangle.i, hit.u, hit.v, albedo),
+            .bsdf = make_bsdf<kVariant>(scene, material, mesh, triangle.i, hit.u, hit.v, albedo),
             .emission = emission,
             .albedo = albedo,
             .triangle = {hit.instance, hit.primitive},

@@ -26,7 +26,7 @@ HD inline ValueRange multiply(ValueRange a, ValueRange b) {
     return {min(min(ll, lm), min(ml, mm)), max(max(ll, lm), max(ml, mm))};
 }
 
-inline constexpr uint32_t kMostBoundLevels = 32; // an image's sides are 32-bit numbers
+inline constexpr uint32_t kMaxBoundLevels = 32; // an image's sides are 32-bit numbers
 
 /// Columns or rows [first, last] of an image.
 struct TexelSpan {
@@ -35,7 +35,7 @@ struct TexelSpan {
 
 struct TexelBoundsView {
     const ValueRange*
-        levels[kMostBoundLevels];  // [k]: ceil(height / 2^k) rows of ceil(width / 2^k), down to one cell; [0] is null
+        levels[kMaxBoundLevels];   // [k]: ceil(height / 2^k) rows of ceil(width / 2^k), down to one cell; [0] is null
     const TextureImageView* image; // on the device
     uint32_t channel;
     bool is_srgb;
@@ -54,12 +54,12 @@ HD inline ValueRange cell_of(const TexelBoundsView& bounds, uint32_t level, uint
 }
 
 /// Cells along a side of a box that are read one by one.
-inline constexpr uint32_t kMostCells = 8;
+inline constexpr uint32_t kMaxCells = 8;
 
 /// Range of all texels of the box, and of some beside it.
 HD inline ValueRange range_of(const TexelBoundsView& bounds, TexelSpan x, TexelSpan y) {
     uint32_t level = 0;
-    while ((x.last >> level) - (x.first >> level) >= kMostCells || (y.last >> level) - (y.first >> level) >= kMostCells)
+    while ((x.last >> level) - (x.first >> level) >= kMaxCells || (y.last >> level) - (y.first >> level) >= kMaxCells)
         ++level;
     ValueRange range = cell_of(bounds, level, x.first >> level, y.first >> level);
     for (uint32_t row = y.first >> level; row <= y.last >> level; ++row) {

@@ -72,7 +72,7 @@ Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, 
     return scene;
 }
 
-bool tells_lamp_sides(const std::filesystem::path& path) {
+bool tells_emitter_sides(const std::filesystem::path& path) {
     const FormatReader* reader = find_reader(path);
     return reader == nullptr || reader->tells_sides;
 }

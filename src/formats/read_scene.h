@@ -19,7 +19,7 @@ namespace pertev {
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
 
 /// Whether files of this name's format can say if a surface emits from one face or from both; built-in scenes can.
-bool tells_lamp_sides(const std::filesystem::path& path);
+bool tells_emitter_sides(const std::filesystem::path& path);
 
 /// Whether files of this name's format define their unit and up axis, so that ReadOptions::space has no effect;
 /// built-in scenes do.

@@ -12,7 +12,7 @@ constexpr double kBurntShare = 0.005;
 constexpr double kBrightShare = 0.1;  // share of the counting pixels, like kBurntShare
 constexpr float kBright = 0.8f;       // displayed value; 1 is white
 constexpr double kTrimmedShare = 0.1; // at either end of the mean
-constexpr int kMostHundredths = 6000; // hundredths of a stop
+constexpr int kMaxHundredths = 6000;  // hundredths of a stop
 
 /// Light at one position of the picture, and the number of pixels that it represents.
 struct Tone {
@@ -125,7 +125,7 @@ float stops_of(int hundredths) { return static_cast<float>(hundredths) / 100.0f;
 template <class IsFine>
 int most_that_are_fine(int most, IsFine is_fine) {
     if (is_fine(stops_of(most))) return most;
-    int low = -kMostHundredths, high = most;
+    int low = -kMaxHundredths, high = most;
     while (high - low > 1) {
         const int middle = low + (high - low) / 2;
         (is_fine(stops_of(middle)) ? low : high) = middle;
@@ -160,7 +160,7 @@ float auto_exposure_stops(const Image& linear, ToneMap kind) {
     if (tones.luminance.empty()) return 0;
     const float bright = light_below(tones.largest, kBrightShare);
     const float to_grey = log2(kMiddleGrey) - trimmed_log_mean(tones.luminance);
-    int hundredths = to_int(floor(100.0f * to_grey + 0.5f), -kMostHundredths, kMostHundredths);
+    int hundredths = to_int(floor(100.0f * to_grey + 0.5f), -kMaxHundredths, kMaxHundredths);
     hundredths = most_that_are_fine(
         hundredths, [&](float stops) { return tone_map(grey(bright), kind, exposure_scale(stops)).g <= kBright; });
     hundredths =

@@ -19,8 +19,8 @@ namespace {
 constexpr uint32_t kTiled = 0x200, kDeep = 0x800, kMultiPart = 0x1000;
 constexpr uint32_t kKnownFlags = kTiled | 0x400 /* long names */ | kDeep | kMultiPart;
 constexpr uint8_t kDwaa = 8, kDwab = 9;
-constexpr std::size_t kMostParts = 1024;
-constexpr std::size_t kMostChannels = std::size_t(1) << 20;
+constexpr std::size_t kMaxParts = 1024;
+constexpr std::size_t kMaxChannels = std::size_t(1) << 20;
 
 struct Box {
     int64_t x0 = 0, y0 = 0, x1 = -1, y1 = -1; // inclusive
@@ -38,9 +38,9 @@ struct PartHeader {
     bool is_deep = false;
 };
 
-class HeaderWalk {
+class HeaderScan {
 public:
-    HeaderWalk(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+    HeaderScan(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
     ImageHeader run() {
         need(8);
@@ -55,7 +55,7 @@ public:
                 if (part == 0) fail("a file of no parts");
                 break;
             }
-            if (part >= kMostParts) fail(fmt::format("more than {} parts", kMostParts));
+            if (part >= kMaxParts) fail(fmt::format("more than {} parts", kMaxParts));
             PartHeader header;
             header.is_tiled = !is_multi_part && (version & kTiled) != 0;
             header.is_deep = !is_multi_part && (version & kDeep) != 0;
@@ -155,7 +155,7 @@ private:
             if (type < 0 || type > 2) fail(fmt::format("channel \"{}\" has the unknown pixel type {}", channel, type));
             if (x_sampling < 1 || y_sampling < 1)
                 fail(fmt::format("channel \"{}\" is sampled every {} x {} pixels", channel, x_sampling, y_sampling));
-            if (++header.channels > kMostChannels) fail(fmt::format("more than {} channels", kMostChannels));
+            if (++header.channels > kMaxChannels) fail(fmt::format("more than {} channels", kMaxChannels));
             header.bytes_per_pixel += type == 1 ? 2 : 4;
             offset_ += 16;
         }
@@ -166,7 +166,7 @@ private:
         if (!header.data || !header.display || !header.compression || header.channels == 0)
             fail("a part lacks its channels, compression, dataWindow or displayWindow");
         const uint64_t decoded_per_pixel = header.channels * sizeof(float); // half becomes float
-        const uint64_t most = most_per_byte(*header.compression) * decoded_per_pixel / header.bytes_per_pixel;
+        const uint64_t most = max_per_byte(*header.compression) * decoded_per_pixel / header.bytes_per_pixel;
         const auto check_size = [&](uint64_t width, uint64_t height) {
             const uint64_t bytes = multiply_saturated(multiply_saturated(width, height), decoded_per_pixel);
             check_image_size(name_, width, height, bytes, bytes_.size(), most);
@@ -189,7 +189,7 @@ private:
 
     // Maximum expansion of pixels: deflate reaches 1032:1; DWA stores one number for a block of 64 pixels and
     // deflates that (a black picture of 3840 x 2160: 11200:1).
-    static uint64_t most_per_byte(uint8_t compression) {
+    static uint64_t max_per_byte(uint8_t compression) {
         return compression == kDwaa || compression == kDwab ? 20000 : 2000;
     }
     static uint64_t rows_per_chunk(uint8_t compression) {
@@ -206,7 +206,7 @@ private:
 } // namespace
 
 ImageHeader check_exr_header(std::span<const std::byte> bytes, const std::string& name) {
-    return HeaderWalk(bytes, name).run();
+    return HeaderScan(bytes, name).run();
 }
 
 } // namespace pertev

@@ -8,11 +8,11 @@
 namespace pertev {
 
 void check_image_size(const std::string& name, uint64_t width, uint64_t height, uint64_t decoded_bytes,
-                      uint64_t file_bytes, uint64_t most_per_byte) {
+                      uint64_t file_bytes, uint64_t max_per_byte) {
     if (width == 0 || height == 0)
         throw Error(ErrorCode::BadInput, Place{name},
                     fmt::format("the header says {} x {} pixels; both sides must be at least 1", width, height));
-    const uint64_t could_hold = multiply_saturated(file_bytes, most_per_byte);
+    const uint64_t could_hold = multiply_saturated(file_bytes, max_per_byte);
     if (decoded_bytes > kImageBytesAlwaysAllowed && decoded_bytes - kImageBytesAlwaysAllowed > could_hold)
         throw Error(ErrorCode::BadInput, Place{name},
                     fmt::format("the header says {} x {} pixels, which {} bytes cannot hold; the file is damaged "

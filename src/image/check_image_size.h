@@ -17,7 +17,7 @@ inline constexpr uint64_t kImageBytesAlwaysAllowed = uint64_t(16) << 20;
 /// with `name` for an empty or impossible size, Error(OverLimit) for a possible one over kMaxImageSide or
 /// kMaxImagePixels or as check_decoded_bytes does.
 void check_image_size(const std::string& name, uint64_t width, uint64_t height, uint64_t decoded_bytes,
-                      uint64_t file_bytes, uint64_t most_per_byte);
+                      uint64_t file_bytes, uint64_t max_per_byte);
 
 /// Throws Error(OverLimit) that starts with `name` if a file of `file_bytes` bytes does not justify `decoded_bytes`
 /// bytes of pixels in memory. For data derived from a picture that passed check_image_size.

@@ -12,7 +12,7 @@ namespace {
 using Triple = std::array<double, 3>;
 
 constexpr double kLargest = 4;
-constexpr double kLeastDeterminant = 1e-4; // that of Rec. 709's primaries is 0.11
+constexpr double kMinDeterminant = 1e-4; // that of Rec. 709's primaries is 0.11
 
 constexpr ColorMatrix kBradford = {{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
 
@@ -58,7 +58,7 @@ std::optional<ColorMatrix> xyz_from(const ColorPrimaries& p) {
     ColorMatrix to = {{{p.red.x, p.green.x, p.blue.x},
                        {p.red.y, p.green.y, p.blue.y},
                        {1 - p.red.x - p.red.y, 1 - p.green.x - p.green.y, 1 - p.blue.x - p.blue.y}}};
-    if (std::abs(determinant(to)) < kLeastDeterminant) return std::nullopt;
+    if (std::abs(determinant(to)) < kMinDeterminant) return std::nullopt;
     const Triple amounts = multiply(inverse(to), white_of(p.white));
     for (std::size_t j = 0; j < 3; ++j) {
         if (!(amounts[j] > 0)) return std::nullopt;

@@ -17,9 +17,9 @@ namespace pertev {
 namespace {
 
 // Maximum expansion to RGBA bytes: a block of 64 pixels takes at least one bit per component.
-constexpr uint64_t kMostPerByte = 4096;
+constexpr uint64_t kMaxPerByte = 4096;
 // Each scan processes the whole picture, however few bytes it has; encoders write about ten.
-constexpr int kMostScans = 100;
+constexpr int kMaxScans = 100;
 
 // libjpeg reports errors by a call that must not return, here a jump. The steps below hold nothing that has a
 // destructor, so the jump skips none: all memory belongs to decode_jpeg, and a step returns false after a jump.
@@ -69,7 +69,7 @@ void on_message(j_common_ptr info, int level) {
 void on_output(j_common_ptr) {}
 
 void on_progress(j_common_ptr info) {
-    if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number <= kMostScans) return;
+    if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number <= kMaxScans) return;
     reader_of(info).too_many_scans = true;
     on_error(info);
 }
@@ -129,7 +129,7 @@ void convert_cmyk_row(unsigned char* row, std::size_t pixels, bool no_ink_is_255
 [[noreturn]] void fail(const JpegReader& reader, const std::string& name, std::optional<uint32_t> row) {
     std::string what = reader.error;
     if (reader.cut_short) what = "the file is cut short";
-    if (reader.too_many_scans) what = fmt::format("more than {} scans", kMostScans);
+    if (reader.too_many_scans) what = fmt::format("more than {} scans", kMaxScans);
     const std::string where = row ? fmt::format("in row {} of {}", *row, reader.info.output_height) : "in its header";
     throw Error(ErrorCode::BadInput, Place{name}, fmt::format("not a readable JPEG ({}: {})", where, what));
 }
@@ -139,7 +139,7 @@ void open(JpegReader& reader, std::span<const std::byte> bytes, const std::strin
         fail(reader, name, std::nullopt);
     const jpeg_decompress_struct& info = reader.info;
     check_image_size(name, info.image_width, info.image_height,
-                     multiply_saturated(uint64_t(info.image_width) * 4, info.image_height), bytes.size(), kMostPerByte);
+                     multiply_saturated(uint64_t(info.image_width) * 4, info.image_height), bytes.size(), kMaxPerByte);
 }
 
 } // namespace

@@ -42,8 +42,8 @@ private:
     std::size_t offset_ = 0;
 };
 
-constexpr std::size_t kMostChunkBytes = std::size_t(1) << 28; // for 16 rows, which OpenEXR compresses at once
-constexpr std::size_t kMostRowBytes = std::size_t(1) << 30;   // OpenEXR counts them in int
+constexpr std::size_t kMaxChunkBytes = std::size_t(1) << 28; // for 16 rows, which OpenEXR compresses at once
+constexpr std::size_t kMaxRowBytes = std::size_t(1) << 30;   // OpenEXR counts them in int
 
 constexpr std::size_t row_bytes(uint32_t width, std::size_t channels) { return sizeof(float) * width * channels; }
 
@@ -51,7 +51,7 @@ class Builder {
 public:
     Builder(uint32_t width, uint32_t height, std::size_t channels)
         : header(static_cast<int>(width), static_cast<int>(height)), width_(width) {
-        const bool is_wide = 16 * row_bytes(width, channels) > kMostChunkBytes;
+        const bool is_wide = 16 * row_bytes(width, channels) > kMaxChunkBytes;
         header.compression() = is_wide ? Imf::ZIPS_COMPRESSION : Imf::ZIP_COMPRESSION;
     }
 
@@ -88,10 +88,10 @@ void add_metadata(Imf::Header& header, const ExrMetadata& metadata) {
 } // namespace
 
 void check_exr_row(uint32_t width, std::size_t channels) {
-    if (row_bytes(width, channels) <= kMostRowBytes) return;
+    if (row_bytes(width, channels) <= kMaxRowBytes) return;
     throw Error(ErrorCode::OverLimit, fmt::format("{} channels of {} pixels a row: an EXR takes rows of 1 GiB at most, "
                                                   "which are {} channels of that width",
-                                                  channels, width, kMostRowBytes / row_bytes(width, 1)));
+                                                  channels, width, kMaxRowBytes / row_bytes(width, 1)));
 }
 
 std::vector<std::byte> encode_exr(const Image& picture, std::span<const ExrLayer> layers, const ExrMetadata& metadata) {
@@ -101,7 +101,7 @@ std::vector<std::byte> encode_exr(const Image& picture, std::span<const ExrLayer
 
     std::size_t channels = picture.channels;
     for (const ExrLayer& layer : layers) channels += layer.channels.size();
-    PERTEV_CHECK(row_bytes(picture.width, channels) <= kMostRowBytes);
+    PERTEV_CHECK(row_bytes(picture.width, channels) <= kMaxRowBytes);
     Builder builder(picture.width, picture.height, channels);
     constexpr const char* kNames[4][4] = {{"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
     for (uint32_t c = 0; c < picture.channels; ++c)

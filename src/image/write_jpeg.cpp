@@ -126,8 +126,8 @@ std::vector<std::byte> encode_jpeg_strips(const Rgba8Image& picture, int quality
     // An MCU is the block of pixels that a scan counts by; a restart interval counts MCUs in 16 bits.
     const uint32_t side = half_chroma ? 16 : 8, mcu_columns = (picture.width + side - 1) / side,
                    mcu_rows = (picture.height + side - 1) / side;
-    const uint32_t most_rows = std::max(1u, 65535 / mcu_columns);
-    const uint32_t strip_rows = std::clamp((mcu_rows + 15) / 16, 1u, most_rows); // 16 strips, or as many as it takes
+    const uint32_t max_rows = std::max(1u, 65535 / mcu_columns);
+    const uint32_t strip_rows = std::clamp((mcu_rows + 15) / 16, 1u, max_rows); // 16 strips, or as many as it takes
     const uint32_t count = (mcu_rows + strip_rows - 1) / strip_rows, height = strip_rows * side;
     if (count == 1) return encode_rows(picture, 0, picture.height, quality, half_chroma);
     std::vector<std::vector<std::byte>> strips(count);

@@ -28,7 +28,7 @@ struct WorkSize {
     uint32_t width = 0, height = 0; // pixels of the picture
     uint32_t samples = 1;           // samples per pixel in one call of render()
     uint64_t triangles = 0;         // in all instances of the scene
-    bool walks_on_host = false;     // CPU threads can trace rays without the tracer (SceneTracer::host_trees)
+    bool traverses_on_host = false; // CPU threads can trace rays without the tracer (SceneTracer::host_trees)
     bool has_times = false;         // something moves while the shutter is open
     bool splits_light = false;      // a frame (FilmView::frame) separates diffuse light from the rest
     bool tells_bounce = false;      // a frame records its first bounce
@@ -41,7 +41,7 @@ inline WorkSize size_of(const PictureView& picture, const SceneTracer& tracer, u
             .height = picture.camera.height,
             .samples = samples,
             .triangles = picture.scene.triangle_count,
-            .walks_on_host = tracer.host_trees() != nullptr,
+            .traverses_on_host = tracer.host_trees() != nullptr,
             .has_times = picture.scene.motions.is_there()};
 }
 
@@ -53,7 +53,7 @@ public:
     /// (Queue::make_dry_run) calls only this, to predict the memory of begin(). Throws Error(OutOfMemory).
     virtual void reserve(const WorkSize& size) = 0;
     /// Returns an upper bound of the additional host memory, in bytes, for work of this size.
-    virtual std::size_t most_host_bytes(const WorkSize& size) const {
+    virtual std::size_t max_host_bytes(const WorkSize& size) const {
         static_cast<void>(size);
         return 0;
     }
@@ -73,7 +73,7 @@ public:
     /// `goes_on` on the caller's thread, before it starts and about every tenth of a second (on a GPU between passes
     /// of kernels), with the share that is done, in [0, 1], as far as known; it never falls. Once `goes_on` returns
     /// false, it discards the data and returns false. Throws Error(DeviceFault), and what `goes_on` throws.
-    virtual bool make_ready(const std::function<bool(double share)>& goes_on) {
+    virtual bool prepare(const std::function<bool(double share)>& goes_on) {
         static_cast<void>(goes_on); // nothing to precompute
         return true;
     }

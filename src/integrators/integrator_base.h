@@ -33,7 +33,7 @@ public:
     void set_settings(const Settings& settings) { settings_ = settings; }
 
 protected:
-    bool goes_by_loop(const WorkSize& size) const { return in_loop_ && size.walks_on_host; }
+    bool goes_by_loop(const WorkSize& size) const { return in_loop_ && size.traverses_on_host; }
     /// Returns the trees that the loop traverses for the current picture, or null if it does not run by the loop.
     const HostTrees* trees_of_loop() const { return in_loop_ ? tracer_->host_trees() : nullptr; }
     bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }

@@ -40,7 +40,7 @@ public:
         is_pending_ = false;
         most_ = most;
     }
-    uint32_t most_rays() const { return most_; }
+    uint32_t max_rays() const { return most_; }
     /// Returns false once no ray is left. The host launches rounds without a wait and reads the count one round late.
     bool has_rays_left(const Counts* counts) {
         if (is_pending_) most_ = seen_.wait().rays;
@@ -71,7 +71,7 @@ public:
         for (uint32_t i = 0; i < count.value(); ++i) stage(i);
     }
     void begin_rounds(uint32_t most) { most_ = most; }
-    uint32_t most_rays() const { return most_; }
+    uint32_t max_rays() const { return most_; }
     bool has_rays_left(const Counts* counts) {
         most_ = counts->rays;
         return most_ > 0;
@@ -98,8 +98,8 @@ public:
 
 protected:
     using Base::kLoopCount, Base::queue_, Base::rays_, Base::tracer_;
-    static constexpr std::size_t kMostBytes = std::size_t(1) << 30; // maximum bytes on a device
-    static constexpr uint32_t kLeastCount = 32;                     // minimum number of samples in memory
+    static constexpr std::size_t kMaxBytes = std::size_t(1) << 30; // maximum bytes on a device
+    static constexpr uint32_t kMinCount = 32;                      // minimum number of samples in memory
 
     static std::size_t bytes_of(const Room& room) {
         Job job = {};
@@ -109,8 +109,8 @@ protected:
     /// the room of n samples.
     template <class RoomOf>
     static Room room_within(std::size_t bytes, uint64_t most, const RoomOf& room_of) {
-        const std::size_t each = bytes_of(room_of(kLeastCount)) / kLeastCount;
-        return room_of(static_cast<uint32_t>(std::min<uint64_t>(most, std::max<uint64_t>(bytes / each, kLeastCount))));
+        const std::size_t each = bytes_of(room_of(kMinCount)) / kMinCount;
+        return room_of(static_cast<uint32_t>(std::min<uint64_t>(most, std::max<uint64_t>(bytes / each, kMinCount))));
     }
 
     /// Takes the memory of the wavefront.

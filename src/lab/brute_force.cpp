@@ -3,7 +3,7 @@
 
 namespace pertev {
 
-BruteForce::BruteForce(Queue& queue, const SceneTriangles& triangles, const TopLevelBvh& top_level) : queue_(queue) {
+BruteForce::BruteForce(Queue& queue, const SceneTriangles& triangles, const Tlas& tlas) : queue_(queue) {
     triangles_.emplace_back(queue, std::span(triangles.baked), "triangles");
     std::vector<TriangleRange> meshes;
     for (const auto& mesh : triangles.meshes) {
@@ -11,7 +11,7 @@ BruteForce::BruteForce(Queue& queue, const SceneTriangles& triangles, const TopL
         meshes.push_back({triangles_.back().data(), mesh.size()});
     }
     meshes_ = Buffer<TriangleRange>(queue, std::span<const TriangleRange>(meshes), "triangle ranges");
-    instances_ = Buffer<InstanceRecord>(queue, std::span(top_level.instances), "instances");
+    instances_ = Buffer<InstanceRecord>(queue, std::span(tlas.instances), "instances");
 }
 
 std::vector<RayHit> BruteForce::trace(std::span<const Ray> rays, const PieceDone& done) const {

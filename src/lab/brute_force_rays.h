@@ -2,7 +2,7 @@
 
 // The laboratory's oracle: tests each ray against every triangle of the scene as it was read, without any tree. It
 // applies the result rule of docs/conventions.md literally, with the triangle test that the traversals use. It shares
-// nothing else with them. (trace/brute_force_walk.h tests all triangles of a tree within the traversal code and is
+// nothing else with them. (trace/brute_force_traversal.h tests all triangles of a tree within the traversal code and is
 // itself checked against this.)
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct TriangleRange {
 
 struct BruteForceRays {
     TriangleRange baked;
-    const TriangleRange* meshes; // indexed by InstanceRecord::mesh_bvh
+    const TriangleRange* meshes; // indexed by InstanceRecord::blas
     const InstanceRecord* instances;
     uint64_t instance_count;
     const Ray* rays;
@@ -37,7 +37,7 @@ struct BruteForceRays {
         test(baked, ray, kNoHit, best);
         for (uint64_t k = 0; k < instance_count; ++k) {
             const InstanceRecord record = load_aligned(instances + k);
-            test(meshes[record.mesh_bvh], transform_ray(record.local_from_world, ray), record.instance, best);
+            test(meshes[record.blas], transform_ray(record.local_from_world, ray), record.instance, best);
         }
         hits[i] = best;
     }
@@ -71,7 +71,7 @@ private:
 /// Holds the triangles in a device's memory and tests any number of rays against them.
 class BruteForce {
 public:
-    BruteForce(Queue& queue, const SceneTriangles& triangles, const TopLevelBvh& top_level);
+    BruteForce(Queue& queue, const SceneTriangles& triangles, const Tlas& tlas);
     std::vector<RayHit> trace(std::span<const Ray> rays, const PieceDone& done) const;
 
 private:

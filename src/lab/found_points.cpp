@@ -39,10 +39,10 @@ template <class Found>
 struct Watched {
     Found& inner;
     std::vector<uint32_t>& looked_at;
-    mutable uint32_t asked = 0; // counts calls for the search radius
+    mutable uint32_t requested = 0; // counts calls for the search radius
 
     float limit() const {
-        ++asked;
+        ++requested;
         return inner.limit();
     }
     void offer(const NearPoint& p) {
@@ -84,8 +84,8 @@ std::string box_at(const Vec3& lo, const Vec3& hi, const char* style) {
 FoundPoints found_in_kd_tree() {
     FoundPoints result = {.tree = "kd-tree", .points = scattered_points(), .at = kAsked};
     const PointKdTree tree = build_point_kd_tree(result.points);
-    NearPoint nearest[kPointsAsked];
-    NearestPoints heap(nearest, kPointsAsked, kInfinity);
+    NearPoint nearest[kPointsRequested];
+    NearestPoints heap(nearest, kPointsRequested, kInfinity);
     Watched<NearestPoints> watched = {heap, result.looked_at};
     search_points(view_of(tree), result.at, watched);
     const uint32_t count = heap.sort();
@@ -110,7 +110,7 @@ FoundPoints found_in_octree() {
     PointsWithin<decltype(keep)> within = {result.radius_squared, keep};
     Watched<PointsWithin<decltype(keep)>> watched = {within, result.looked_at};
     search_points(view_of(tree), result.at, watched);
-    result.visited = watched.asked; // the radius is asked for once per node
+    result.visited = watched.requested; // the radius is asked for once per node
     std::ranges::sort(result.found);
     std::ranges::sort(result.looked_at);
     result.nodes = static_cast<uint32_t>(tree.nodes.size());

@@ -32,7 +32,7 @@ struct FoundPoints {
     std::vector<Box> boxes; // octree only: the bounding boxes of each leaf's points
 };
 
-inline constexpr uint32_t kPointsAsked = 12;
+inline constexpr uint32_t kPointsRequested = 12;
 
 /// Finds the kPointsAsked nearest points. The circle passes through the farthest of them.
 FoundPoints found_in_kd_tree();

@@ -22,7 +22,7 @@ inline uint64_t first_piece_of_rays() { return 256 * static_cast<uint64_t>(threa
 /// The first part has `first` elements, and only the last part may have fewer.
 template <class Work>
 void in_pieces(uint64_t count, uint64_t first, const Work& work, const PieceDone& done) {
-    constexpr double least_s = 0.05, most_s = 0.2;
+    constexpr double min_s = 0.05, max_s = 0.2;
     uint64_t piece = first;
     for (uint64_t begin = 0; begin < count;) {
         const Stopwatch watch;
@@ -31,8 +31,8 @@ void in_pieces(uint64_t count, uint64_t first, const Work& work, const PieceDone
         begin += now;
         const double seconds = watch.seconds();
         if (done) done(static_cast<double>(begin) / static_cast<double>(count));
-        if (seconds < least_s) piece *= 2;
-        if (seconds > most_s) piece = std::max(first, piece / 2);
+        if (seconds < min_s) piece *= 2;
+        if (seconds > max_s) piece = std::max(first, piece / 2);
     }
 }
 

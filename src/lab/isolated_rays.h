@@ -18,7 +18,8 @@
 namespace pertev {
 
 /// One ray per thread over binary nodes; the record's node counts belong to this tracer.
-inline constexpr Combination kBinaryTracer = {.structure = StructureKind::Binned, .walk = WalkKind::WhileWhile};
+inline constexpr Combination kBinaryTracer = {.structure = StructureKind::Binned,
+                                              .traversal = TraversalKind::WhileWhile};
 
 /// Builds the combination's tracer. Throws Error(OutOfMemory).
 Tracer make_tracer(Queue& queue, const Combination& combination, const PreparedScene& prepared);

@@ -27,7 +27,7 @@ struct SetFigures {
 /// Figures of one combination on one set.
 struct RunFigures {
     uint32_t set = 0;                                     // index into LabReport::sets
-    double median_s = 0, least_s = 0, largest_s = 0;      // seconds that one run takes for the whole set
+    double median_s = 0, min_s = 0, largest_s = 0;        // seconds that one run takes for the whole set
     std::optional<double> nodes, triangles;               // mean number of tests per ray; the meaning of a node
                                                           // differs between layouts
     std::optional<double> node_lanes, triangle_lanes;     // mean number of active lanes of 32 during a test

@@ -12,9 +12,9 @@
 namespace pertev {
 namespace {
 
-const char* family_of(WalkKind walk) {
-    using enum WalkKind;
-    switch (walk) {
+const char* family_of(TraversalKind traversal) {
+    using enum TraversalKind;
+    switch (traversal) {
     case IfIf:
     case WhileWhile:
     case Speculative:
@@ -78,7 +78,7 @@ Fields structure_fields(const LabReport& report, const StructureFigures* s) {
 
 /// One row of the table "runs"; `run` is null for a combination without figures.
 Fields run_fields(const LabReport& report, const CombinationFigures& c, const RunFigures* run) {
-    const WalkOptions& o = c.combination.options;
+    const TraversalOptions& o = c.combination.options;
     const SetFigures* set = run != nullptr ? &report.sets[run->set] : nullptr;
     const bool of_kernel = set == nullptr || !set->any_hit;
     const std::optional<double> frame_s =
@@ -92,8 +92,8 @@ Fields run_fields(const LabReport& report, const CombinationFigures& c, const Ru
     };
     Fields fields = {{"combination", "combination", c.name},
                      {"structure", "structure", name_of(c.combination.structure)},
-                     {"walk", "traversal", name_of(c.combination.walk)},
-                     {"family", "", family_of(c.combination.walk)},
+                     {"walk", "traversal", name_of(c.combination.traversal)},
+                     {"family", "", family_of(c.combination.traversal)},
                      {"rta", "RTA", name_of_rta(o)},
                      {"near_first", "near first", o.near_first},
                      {"tests", "tests", name_of(o.tests)},
@@ -112,9 +112,9 @@ Fields run_fields(const LabReport& report, const CombinationFigures& c, const Ru
          rate(&RunFigures::median_s) ? ResultCell(*rate(&RunFigures::median_s) * 1e6) : ResultCell()},
         {"mrays", "Mrays/s", rate(&RunFigures::median_s), "", "{:.2f}"},
         {"mrays_slowest", "slowest", rate(&RunFigures::largest_s), "", "{:.2f}"},
-        {"mrays_fastest", "fastest", rate(&RunFigures::least_s), "", "{:.2f}"},
+        {"mrays_fastest", "fastest", rate(&RunFigures::min_s), "", "{:.2f}"},
         {"median_seconds", "", time(&RunFigures::median_s)},
-        {"least_seconds", "", time(&RunFigures::least_s)},
+        {"least_seconds", "", time(&RunFigures::min_s)},
         {"greatest_seconds", "", time(&RunFigures::largest_s)},
         {"frame_depth", "depth", frame_s ? ResultCell(set->depth) : ResultCell()},
         {"frames_per_second", "frames/s", frame_s ? ResultCell(1 / *frame_s) : ResultCell(), "", "{:.2f}"},
@@ -198,7 +198,7 @@ std::string speed_of(const LabReport& report, const RunFigures& run) {
         text = fixed_text(mrays(report, run), 2);
         if (report.runs > 1) {
             text += fmt::format(" [{}, {}]", fixed_text(mrays(report, run, run.largest_s), 2),
-                                fixed_text(mrays(report, run, run.least_s), 2));
+                                fixed_text(mrays(report, run, run.min_s), 2));
         }
     }
     if (run.nodes && run.triangles) {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "tracer/walk_kernels.h"
+#include "tracer/traversal_kernels.h"
 
 namespace pertev {
 namespace {
@@ -24,15 +24,16 @@ std::vector<CombinationFigures> list_combinations(const LabSettings& settings, b
     if (!settings.only.empty()) return list;
     bool brute_force_listed = false;
     for (const StructureKind structure : settings.structures) {
-        for (const WalkKind walk : settings.walks) {
-            if (walk == WalkKind::BruteForce && brute_force_listed)
+        for (const TraversalKind traversal : settings.traversals) {
+            if (traversal == TraversalKind::BruteForce && brute_force_listed)
                 continue; // brute force does not depend on the
                           // structure, so it is listed once
-            brute_force_listed = brute_force_listed || (walk == WalkKind::BruteForce && builder_of(structure));
-            if (!settings.by_name && why_not(structure, walk)) continue;
+            brute_force_listed =
+                brute_force_listed || (traversal == TraversalKind::BruteForce && builder_of(structure));
+            if (!settings.by_name && why_not(structure, traversal)) continue;
             for (const Distribution distribution : settings.distributions) {
-                for (const WalkOptions& options : settings.options) {
-                    list.push_back(figures_of({structure, walk, options, distribution}, on_cuda));
+                for (const TraversalOptions& options : settings.options) {
+                    list.push_back(figures_of({structure, traversal, options, distribution}, on_cuda));
                 }
             }
         }

@@ -10,8 +10,8 @@ WorkSummary summarize_work(const std::vector<RayWork>& work) {
     for (const RayWork& ray : work) {
         nodes += ray.nodes;
         triangles += ray.triangles;
-        summary.most_nodes = max(summary.most_nodes, ray.nodes);
-        summary.most_triangles = max(summary.most_triangles, ray.triangles);
+        summary.max_nodes = max(summary.max_nodes, ray.nodes);
+        summary.max_triangles = max(summary.max_triangles, ray.triangles);
     }
     const double rays = static_cast<double>(std::max<std::size_t>(work.size(), 1));
     summary.nodes = static_cast<double>(nodes) / rays;

@@ -49,7 +49,7 @@ private:
 /// Work of a ray set: its means, and the most expensive ray, which one GPU lane traces alone at the end.
 struct WorkSummary {
     double nodes = 0, triangles = 0; // mean per ray
-    uint32_t most_nodes = 0, most_triangles = 0;
+    uint32_t max_nodes = 0, max_triangles = 0;
 };
 
 WorkSummary summarize_work(const std::vector<RayWork>& work);

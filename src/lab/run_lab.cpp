@@ -31,12 +31,12 @@ struct Stopped {};
 
 /// The proven traversal. Some of its rays are compared with brute force, so that every other combination can be
 /// compared with it on all rays.
-constexpr Combination kProven = {.structure = StructureKind::Binned, .walk = WalkKind::WhileWhile};
+constexpr Combination kProven = {.structure = StructureKind::Binned, .traversal = TraversalKind::WhileWhile};
 
 /// Builds the top level over instances that have their own tree, in the file's coordinates, which the ray sets use
 /// too.
-TopLevelBvh top_level_over(const Scene& scene, const BinaryTrees& trees) {
-    return build_top_level_bvh(placed_trees(scene, place_meshes(scene), trees.mesh_bounds()));
+Tlas tlas_over(const Scene& scene, const BinaryTrees& trees) {
+    return build_tlas(placed_trees(scene, place_meshes(scene), trees.mesh_bounds()));
 }
 
 uint64_t host_memory_bytes() {
@@ -112,17 +112,17 @@ private:
 
     /// Makes the rays of a frame, traces them by the proven traversal and compares that with brute force.
     void make_sets() {
-        progress("building the tree of the proven walk");
+        progress("building the tree of the proven traversal");
         const BinaryTrees binary = build_binary_trees(triangles_.parts, BvhBuilder::Binned);
-        triangles_.top_level = top_level_over(scene_, binary);
+        triangles_.tlas = tlas_over(scene_, binary);
         const Tracer proven = tracer_over(kProven, binary);
-        const BruteForce oracle(queue_, triangles_.parts, triangles_.top_level);
+        const BruteForce oracle(queue_, triangles_.parts, triangles_.tlas);
         with_memory_for_rays([&] { trace_sets(proven, oracle); });
         note_heat_maps();
     }
 
     Tracer tracer_over(const Combination& combination, const BinaryTrees& trees) {
-        const auto built = std::make_shared<const BuiltStructure>(triangles_.top_level, combination.structure,
+        const auto built = std::make_shared<const BuiltStructure>(triangles_.tlas, combination.structure,
                                                                   layout_of(combination), trees);
         return {queue_, combination, built};
     }
@@ -156,11 +156,11 @@ private:
     }
 
     void add_set(const RaySet& set, const Tracer& proven, const BruteForce& oracle, int depth) {
-        const std::string checking = fmt::format("{}: the proven walk against brute force", set.name);
+        const std::string checking = fmt::format("{}: the proven traversal against brute force", set.name);
         progress(checking);
-        const uint64_t checked = check_proven_walk(queue_, set, proven, oracle, triangles_, kOracleRays,
-                                                   kOracleNastyRays, progress_of(checking));
-        const std::string tracing = fmt::format("{}: what the proven walk hits", set.name);
+        const uint64_t checked = check_proven_traversal(queue_, set, proven, oracle, triangles_, kOracleRays,
+                                                        kOracleNastyRays, progress_of(checking));
+        const std::string tracing = fmt::format("{}: what the proven traversal hits", set.name);
         sets_.push_back(trace_set(queue_, set, proven, progress_of(tracing)));
         sets_.back().figures.brute_force_rays = checked;
         sets_.back().figures.depth = depth;
@@ -248,10 +248,10 @@ private:
                     binary = build_binary_trees(triangles_.parts, *builder);
                     progress(fmt::format("converting {}", name_of(structure)));
                 }
-                const TopLevelBvh& top_level = triangles_.top_level;
-                const auto on_host =
-                    builder ? std::make_shared<const BuiltStructure>(top_level, structure, layout, *binary)
-                            : std::make_shared<const BuiltStructure>(top_level, structure, triangles_.parts);
+                const Tlas& tlas = triangles_.tlas;
+                const auto on_host = builder
+                                         ? std::make_shared<const BuiltStructure>(tlas, structure, layout, *binary)
+                                         : std::make_shared<const BuiltStructure>(tlas, structure, triangles_.parts);
                 const auto built = std::make_shared<const StructureOnDevice>(queue_, on_host);
                 report_.structures.push_back(on_host->figures());
                 for (CombinationFigures* c : combinations) {
@@ -357,8 +357,8 @@ private:
             count_different(hits.download(set.figures.any_hit), set.wanted, c.combination.options.is_exact());
         if (run.different == 0 || !c.combination.options.is_exact()) return true;
         c.wrong = true;
-        c.refused = fmt::format("WRONG: {} of {} {} rays differ from the proven walk; please report it", run.different,
-                                set.rays.size(), set.figures.name);
+        c.refused = fmt::format("WRONG: {} of {} {} rays differ from the proven traversal; please report it",
+                                run.different, set.rays.size(), set.figures.name);
         return false;
     }
 
@@ -369,7 +369,7 @@ private:
         };
         const RunTimes times =
             time_runs(queue_, settings_.warm_ups, settings_.runs, trace_set, [&] { progress(doing); });
-        run.median_s = times.median, run.least_s = times.least, run.largest_s = times.greatest;
+        run.median_s = times.median, run.min_s = times.least, run.largest_s = times.greatest;
     }
 
     void count(const CombinationFigures& c, const TracedSet& set, const Tracer& tracer, const std::string& doing,
@@ -403,7 +403,7 @@ private:
     /// One heat map per structure and traversal, from the first combination, which has the most options on.
     bool wants_heat_map(const CombinationFigures& c, const TracedSet& set) const {
         const auto is_same = [&](const Combination& other) {
-            return other.structure == c.combination.structure && other.walk == c.combination.walk;
+            return other.structure == c.combination.structure && other.traversal == c.combination.traversal;
         };
         return settings_.heat_maps && set.figures.name == kCameraSet && set.rays.size() >= pixels() &&
                std::ranges::none_of(mapped_, is_same);

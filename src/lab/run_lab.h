@@ -20,8 +20,8 @@ struct LabSettings {
     std::string scene;  // the scene's name in the report
     std::string camera; // describe_camera's text in the front end's words, for the report
     std::vector<StructureKind> structures;
-    std::vector<WalkKind> walks;
-    std::vector<WalkOptions> options; // each is combined with every structure and traversal
+    std::vector<TraversalKind> traversals;
+    std::vector<TraversalOptions> options; // each is combined with every structure and traversal
     std::vector<Distribution> distributions = {Distribution::OneAThread};
     bool by_name = false; // structures and traversals were both named, so pairs that make no sense are listed with
                           // the reason

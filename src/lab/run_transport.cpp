@@ -38,7 +38,7 @@ RenderSettings settings_of(const TransportSettings& settings, const std::string&
 /// Returns an upper bound on the integrator's use of host memory.
 std::size_t host_bytes_of(const RenderSettings& picture) {
     Queue queue = Queue::make_dry_run(false);
-    return make_integrator(queue, picture)->most_host_bytes({.width = picture.width, .height = picture.height});
+    return make_integrator(queue, picture)->max_host_bytes({.width = picture.width, .height = picture.height});
 }
 
 /// The mean of two pictures with equal sample counts, which is the picture of all samples.

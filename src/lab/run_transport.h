@@ -19,7 +19,7 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kMostRepetitions = 1024;
+inline constexpr uint32_t kMaxRepetitions = 1024;
 
 struct TransportSettings {
     std::string camera;                   // describe_camera's text in the front end's words, for the report

@@ -11,15 +11,15 @@ namespace {
 
 constexpr const char* kTree = "Every column traverses the same tree: binned, top down by the surface area heuristic.";
 
-constexpr WalkOptions kWithRta = {.rta = true, .near_first = true};
-constexpr WalkOptions kWithoutRta = {.rta = false, .near_first = true};
-constexpr WalkOptions kWoop = {.rta = true, .near_first = true, .tests = TestKind::Woop};
+constexpr TraversalOptions kWithRta = {.rta = true, .near_first = true};
+constexpr TraversalOptions kWithoutRta = {.rta = false, .near_first = true};
+constexpr TraversalOptions kWoop = {.rta = true, .near_first = true, .tests = TestKind::Woop};
 
-Combination speculative(const WalkOptions& options, Distribution distribution) {
-    return {StructureKind::Binned, WalkKind::Speculative, options, distribution};
+Combination speculative(const TraversalOptions& options, Distribution distribution) {
+    return {StructureKind::Binned, TraversalKind::Speculative, options, distribution};
 }
-Combination packet(const WalkOptions& options, Distribution distribution) {
-    return {StructureKind::Binned, WalkKind::Packet, options, distribution};
+Combination packet(const TraversalOptions& options, Distribution distribution) {
+    return {StructureKind::Binned, TraversalKind::Packet, options, distribution};
 }
 
 bool on_cuda(const ThesisReport& thesis) { return !thesis.scenes.empty() && thesis.scenes.front().device != "CPU"; }

@@ -56,21 +56,21 @@ void normalise(Image& picture) {
 /// Radiosity settings of a panel in a picture with these settings.
 RadiositySettings solution_of(const RadiosityPanel& panel, const RenderSettings& settings) {
     const ThesisDetail detail = thesis_detail(settings.height);
-    RadiositySettings asked;
-    asked.seed = settings.path.seed;
-    asked.patch_size = detail.patch_size;
-    asked.subdivisions = panel.is_flat ? 0 : 1;
+    RadiositySettings requested;
+    requested.seed = settings.path.seed;
+    requested.patch_size = detail.patch_size;
+    requested.subdivisions = panel.is_flat ? 0 : 1;
     if (panel.is_early) {
-        asked.solver = RadiositySolver::Southwell;
-        asked.steps = detail.early_steps;
+        requested.solver = RadiositySolver::Southwell;
+        requested.steps = detail.early_steps;
     }
-    return asked;
+    return requested;
 }
 
 /// The settings' text for the command line.
-std::string settings_of(const RadiosityPanel& panel, const RadiositySettings& asked) {
-    return fmt::format(" `patch_size={}` `subdivisions={}`{}{}", asked.patch_size, asked.subdivisions,
-                       panel.is_early ? fmt::format(" `solver=southwell` `steps={}`", asked.steps) : "",
+std::string settings_of(const RadiosityPanel& panel, const RadiositySettings& requested) {
+    return fmt::format(" `patch_size={}` `subdivisions={}`{}{}", requested.patch_size, requested.subdivisions,
+                       panel.is_early ? fmt::format(" `solver=southwell` `steps={}`", requested.steps) : "",
                        panel.is_flat ? " `flat_patches`" : "");
 }
 
@@ -141,8 +141,9 @@ ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progre
     settings.path.max_depth = std::min(settings.path.max_depth, most_depth(settings.integrator));
     if (recipe.set != nullptr) recipe.set(settings);
     if (recipe.way == ThesisWay::Work) {
-        settings.tracers = same_for_all(
-            {.structure = recipe.structure, .walk = only_walk_of(recipe.structure).value_or(WalkKind::WhileWhile)});
+        settings.tracers =
+            same_for_all({.structure = recipe.structure,
+                          .traversal = only_traversal_of(recipe.structure).value_or(TraversalKind::WhileWhile)});
     }
     Messages messages;
     job.prepared = prepare_scene(job.scene, prepare_options(settings, queue_.is_cuda()), messages);
@@ -221,13 +222,13 @@ void ThesisPictures::count_work(const Job& job, ThesisPicture& picture) {
 
 void ThesisPictures::show_radiosity(const Job& job, ThesisPicture& picture) {
     const RadiosityPanel& panel = job.recipe.panel;
-    const RadiositySettings asked = solution_of(panel, job.settings);
+    const RadiositySettings requested = solution_of(panel, job.settings);
     const SolvedRadiosity solved = solve_radiosity(
-        job.prepared, asked, [&](const char* what, double share) { return job.tell(what, 0.5 * share); });
+        job.prepared, requested, [&](const char* what, double share) { return job.tell(what, 0.5 * share); });
     if (solved.stats.was_interrupted) throw Error(ErrorCode::Interrupted, "interrupted");
     const SolveStats& stats = solved.stats;
     picture.solve_seconds = stats.factor_seconds + stats.solve_seconds + stats.divide_seconds;
-    const std::string steps = panel.is_early ? fmt::format(" {} steps;", asked.steps) : "";
+    const std::string steps = panel.is_early ? fmt::format(" {} steps;", requested.steps) : "";
     picture.shows += fmt::format("{} {} patches send, {} are shown.", steps, stats.patches, stats.shown);
     RenderSettings settings = job.settings;
     auto solution = std::make_shared<RadiositySolution>(solved.solution);

@@ -28,16 +28,16 @@ Bounds3 bounds_of(const Scene& scene, const Instance& instance) {
 
 /// A light without size in the middle of the lamp, a centimetre below it, of the intensity that the lamp has straight
 /// down: its radiance times its area.
-void replace_lamp(Scene& scene) {
-    const uint32_t lamp = instance_named(scene, "light");
-    const Bounds3 bounds = bounds_of(scene, scene.instances[lamp]);
+void replace_emitter(Scene& scene) {
+    const uint32_t emitter = instance_named(scene, "light");
+    const Bounds3 bounds = bounds_of(scene, scene.instances[emitter]);
     const Vec3 size = bounds.size();
     Light light;
     light.name = "point";
     light.position = bounds.centre() - Vec3{0, 0.01f, 0};
-    light.intensity = (size.x * size.z) * scene.materials[scene.instances[lamp].material].emission;
+    light.intensity = (size.x * size.z) * scene.materials[scene.instances[emitter].material].emission;
     scene.lights.push_back(light);
-    scene.instances[lamp].is_hidden = true;
+    scene.instances[emitter].is_hidden = true;
 }
 
 /// To where the eye sees what it lights: under the ceiling, near the open front.
@@ -122,18 +122,18 @@ Scene make_thesis_scene(ThesisScene which) {
     case ThesisScene::Caustic:
         break;
     case ThesisScene::PointLight:
-        replace_lamp(scene);
+        replace_emitter(scene);
         break;
     case ThesisScene::MirrorBall:
         replace_block(scene, "short block", mirror(), kSmoothRings);
         break;
     case ThesisScene::PlasticBall:
-        replace_lamp(scene);
+        replace_emitter(scene);
         move_light_forward(scene);
         replace_block(scene, "short block", plastic(), kCoarseRings);
         break;
     case ThesisScene::TwoBalls:
-        replace_lamp(scene);
+        replace_emitter(scene);
         move_light_forward(scene);
         replace_block(scene, "short block", mirror(), kSmoothRings);
         replace_block(scene, "tall block", glass(), kSmoothRings);

@@ -18,12 +18,12 @@ BvhTriangle some_triangle(const LabTriangles& triangles, uint32_t& state) {
     const auto below = [&](std::size_t count) {
         return std::min(static_cast<std::size_t>(draw(state) * static_cast<float>(count)), count - 1);
     };
-    const auto& instances = triangles.top_level.instances;
+    const auto& instances = triangles.tlas.instances;
     const bool baked = instances.empty() || (!triangles.parts.baked.empty() && draw(state) < 0.5f);
     if (baked) return triangles.parts.baked[below(triangles.parts.baked.size())];
     const InstanceRecord& record = instances[below(instances.size())];
     const Transform world_from_local = inverse(record.local_from_world);
-    BvhTriangle t = triangles.parts.meshes[record.mesh_bvh][below(triangles.parts.meshes[record.mesh_bvh].size())];
+    BvhTriangle t = triangles.parts.meshes[record.blas][below(triangles.parts.meshes[record.blas].size())];
     t.a = transform_point(world_from_local, t.a);
     t.b = transform_point(world_from_local, t.b);
     t.c = transform_point(world_from_local, t.c);
@@ -90,8 +90,9 @@ std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, u
     return rays;
 }
 
-uint64_t check_proven_walk(Queue& queue, const RaySet& set, const Tracer& proven, const BruteForce& oracle,
-                           const LabTriangles& triangles, uint32_t count, uint32_t nasty_count, const PieceDone& done) {
+uint64_t check_proven_traversal(Queue& queue, const RaySet& set, const Tracer& proven, const BruteForce& oracle,
+                                const LabTriangles& triangles, uint32_t count, uint32_t nasty_count,
+                                const PieceDone& done) {
     const std::vector<Ray> some = oracle_rays(set, triangles, count, nasty_count);
     const std::vector<RayHit> truth = oracle.trace(some, done);
     const std::vector<RayHit> found =
@@ -99,7 +100,7 @@ uint64_t check_proven_walk(Queue& queue, const RaySet& set, const Tracer& proven
     for (std::size_t i = 0; i < some.size(); ++i) {
         if (found[i] == wanted_of(truth[i], set.any_hit)) continue;
         throw Error(ErrorCode::DeviceFault,
-                    fmt::format("the proven walk differs from brute force on {} ({}): instance {} in place of {}, "
+                    fmt::format("the proven traversal differs from brute force on {} ({}): instance {} in place of {}, "
                                 "primitive {} in place of {}, t {:a} in place of {:a}; please report it",
                                 set.name, text_of(some[i]), found[i].instance, truth[i].instance, found[i].primitive,
                                 truth[i].primitive, found[i].t, truth[i].t));

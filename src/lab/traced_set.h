@@ -22,7 +22,7 @@ struct TracedSet {
 /// A scene's triangles, and transforms of the instances that are not baked.
 struct LabTriangles {
     SceneTriangles parts;
-    TopLevelBvh top_level;
+    Tlas tlas;
 };
 
 /// Returns some rays spread over the set, and other rays from their origins that run along axes or exactly through
@@ -31,8 +31,9 @@ std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, u
 
 /// Compares the proven traversal with brute force on some of the set's rays and returns their number. Throws
 /// Error(DeviceFault) with the ray as hex floats if they differ.
-uint64_t check_proven_walk(Queue& queue, const RaySet& set, const Tracer& proven, const BruteForce& oracle,
-                           const LabTriangles& triangles, uint32_t count, uint32_t nasty_count, const PieceDone& done);
+uint64_t check_proven_traversal(Queue& queue, const RaySet& set, const Tracer& proven, const BruteForce& oracle,
+                                const LabTriangles& triangles, uint32_t count, uint32_t nasty_count,
+                                const PieceDone& done);
 
 /// Traces the set by the proven traversal.
 TracedSet trace_set(Queue& queue, const RaySet& set, const Tracer& proven, const PieceDone& done);

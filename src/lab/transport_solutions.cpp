@@ -12,7 +12,7 @@ namespace pertev {
 namespace {
 
 constexpr uint32_t kFirstPatch = 4; // first patches relative to the default's edge
-constexpr std::size_t kMostSolutionBytes = std::size_t(4) << 30;
+constexpr std::size_t kMaxSolutionBytes = std::size_t(4) << 30;
 
 } // namespace
 
@@ -27,7 +27,7 @@ RadiositySettings solution_settings(const PreparedScene& prepared, uint32_t numb
 bool may_be_solved(const PreparedScene& prepared, uint32_t number) {
     try {
         const RadiositySettings settings = solution_settings(prepared, number, 0);
-        return predict_memory(prepared, settings, thread_count()).bytes <= kMostSolutionBytes;
+        return predict_memory(prepared, settings, thread_count()).bytes <= kMaxSolutionBytes;
     } catch (const Error& error) {
         if (error.code() != ErrorCode::OverLimit) throw;
         return false; // too many patches

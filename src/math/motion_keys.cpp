@@ -156,7 +156,7 @@ FittedMotions fit_motions(std::span<const PlacedBox> things, const PlacesAt& pla
         for (std::size_t i = 0; i < things.size(); ++i) {
             fitted.motions.push_back(motion_through(things[i], of_thing[i]));
         }
-        if (segments == kMostMotionSegments) return fitted;
+        if (segments == kMaxMotionSegments) return fitted;
         bool is_good = std::ranges::all_of(looks, is_good_at);
         for (uint32_t k = 0; k < segments && is_good; ++k) {
             // No even parts of a segment: what comes back in such parts would be seen at its ends alone.

@@ -14,7 +14,7 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kFewestMotionSegments = 8, kMostMotionSegments = 64;
+inline constexpr uint32_t kFewestMotionSegments = 8, kMaxMotionSegments = 64;
 
 /// An object whose motion is fitted: a box in its own space, and its transform at rest.
 struct PlacedBox {

@@ -46,7 +46,7 @@ SolvedSystem solve_by_gauss_seidel(const RadiositySystem& system, double toleran
         ++solved.steps;
         solved.left = sweep.all > 0 ? sweep.changed / sweep.all : 0;
         goes_on = !keep_going || keep_going(solved.left);
-    } while (goes_on && solved.left > tolerance && solved.steps < kMostSweeps);
+    } while (goes_on && solved.left > tolerance && solved.steps < kMaxSweeps);
     solved.reached_limit = goes_on && solved.left > tolerance;
     return solved;
 }

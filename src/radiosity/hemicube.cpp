@@ -59,7 +59,7 @@ HemicubePixels::Face HemicubePixels::face(const Frame& frame, uint32_t number) c
     }
 }
 
-bool see_triangle(const HemicubePixels::Face& face, const Vec3 (&corners)[3], HemicubeTriangle& seen) {
+bool project_to_face(const HemicubePixels::Face& face, const Vec3 (&corners)[3], HemicubeTriangle& seen) {
     DoubleVec3 p[3]; // right, up, depth
     double size = 0;
     bool any_before = false;

@@ -61,7 +61,7 @@ struct HemicubeTriangle {
 
 /// Corners are in metres relative to the hemicube's middle. Returns false if no part of the triangle is visible on
 /// the face.
-bool see_triangle(const HemicubePixels::Face& face, const Vec3 (&corners)[3], HemicubeTriangle& seen);
+bool project_to_face(const HemicubePixels::Face& face, const Vec3 (&corners)[3], HemicubeTriangle& seen);
 
 /// Coordinate of a pixel's column or row on a face, at distance 1.
 inline double place_of_pixel(uint32_t pixel, uint32_t pixels, double lowest, double extent) {

@@ -40,7 +40,7 @@ class HemicubeRows final : public RowMaker {
 public:
     HemicubeRows(const RowScene& scene, const RadiositySettings& settings, const HemicubeScene& hemicube)
         : scene_(scene), seed_(settings.seed), hemicube_(hemicube) {
-        if (scene.scene.view().lights.choice.starts != nullptr) rays_.count = max(settings.rays / 4, kLeastPatchRays);
+        if (scene.scene.view().lights.choice.starts != nullptr) rays_.count = max(settings.rays / 4, kMinPatchRays);
     }
 
     void make(const Patch& patch, uint32_t number, FormFactorRow& row) override {
@@ -74,7 +74,7 @@ private:
             const Vec3 corners[] = {placed.at[0] - middle, placed.at[1] - middle, placed.at[2] - middle};
             if (!(max(dot(corners[0], normal), max(dot(corners[1], normal), dot(corners[2], normal))) > 0)) continue;
             HemicubeTriangle seen;
-            if (!see_triangle(face, corners, seen)) continue;
+            if (!project_to_face(face, corners, seen)) continue;
             draw(face, placed, seen, key);
             work += uint64_t(seen.x1 - seen.x0) * (seen.y1 - seen.y0);
         }
@@ -125,7 +125,7 @@ private:
 
 } // namespace
 
-std::size_t most_hemicube_bytes(uint32_t resolution) {
+std::size_t max_hemicube_bytes(uint32_t resolution) {
     return std::size_t(resolution) * resolution * (sizeof(double) + sizeof(SeenAt));
 }
 

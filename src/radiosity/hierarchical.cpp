@@ -12,7 +12,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kMostPasses = 24, kSweeps = 3;
+constexpr uint32_t kMaxPasses = 24, kSweeps = 3;
 constexpr uint64_t kLinksAtOnce = 256; // whose rays are traced together
 constexpr float kRaysOfLimit = 8;      // rays of a link whose possible error equals the limit
 
@@ -24,8 +24,8 @@ struct TooManyLinks {};
 class Refiner {
 public:
     Refiner(const SolvedScene& scene, LinkNodes& nodes, const RadiositySettings& settings, WorkWatch& watch,
-            uint64_t most_links)
-        : scene_(scene), nodes_(nodes), watch_(watch), seed_(settings.seed), most_links_(most_links),
+            uint64_t max_links)
+        : scene_(scene), nodes_(nodes), watch_(watch), seed_(settings.seed), max_links_(max_links),
           limit_(settings.link_error * nodes.mean_direct()) {}
 
     /// Divides links until each is as good as it has to be or waits for a patch to be divided: links of one size after
@@ -49,7 +49,7 @@ public:
                     sort_out({open.data() + first, last - first}, factors, sorted[chunk]);
                     const uint64_t made = sorted[chunk].kept.size() + sorted[chunk].open.size();
                     // Once the watch is over no more are made, and what there is has to be kept.
-                    if (count.fetch_add(made) + made > most_links_ && !watch_.is_over()) throw TooManyLinks{};
+                    if (count.fetch_add(made) + made > max_links_ && !watch_.is_over()) throw TooManyLinks{};
                 }
             });
             open = {};
@@ -74,7 +74,7 @@ private:
     };
 
     void sort_out(std::span<Link> links, LinkFactors& factors, Sorted& sorted) {
-        std::vector<Link*> asked;
+        std::vector<Link*> queued;
         factors.clear();
         for (Link& link : links) {
             if (watch_.is_over()) {
@@ -82,32 +82,32 @@ private:
                 continue;
             }
             if (faces_away(link)) continue;
-            const float most = most_light(link);
+            const float most = max_light(link);
             const NodeCode divided = divided_of(link);
-            if (most * least_share(link) > limit_ && divided != kNoPatch && !is_patch(divided)) {
+            if (most * min_share(link) > limit_ && divided != kNoPatch && !is_patch(divided)) {
                 split(link, divided, sorted.open);
                 continue;
             }
             const uint32_t rays = rays_for(most, divided);
             if (most > 0 && rays > 2 * link.rays) {
-                factors.ask(link, rays);
-                asked.push_back(&link);
+                factors.queue(link, rays);
+                queued.push_back(&link);
             } else {
                 decide(link, most, sorted);
             }
         }
-        if (asked.empty()) return;
+        if (queued.empty()) return;
         factors.trace();
-        for (Link* link : asked) {
+        for (Link* link : queued) {
             factors.answer(*link);
-            decide(*link, most_light(*link), sorted);
+            decide(*link, max_light(*link), sorted);
         }
     }
 
     /// `divided`: what can be divided of the link.
     uint32_t rays_for(float most, NodeCode divided) const {
         const bool is_last = divided == kNoPatch || is_patch(divided);
-        const float largest = is_last ? kMostRaysOfLink / kRaysOfLimit : 1.0f;
+        const float largest = is_last ? kMaxRaysOfLink / kRaysOfLimit : 1.0f;
         const float share = limit_ > 0 ? min(most / limit_, largest) : largest;
         return max(1u, static_cast<uint32_t>(share * kRaysOfLimit));
     }
@@ -126,11 +126,11 @@ private:
     }
 
     /// Irradiance that a link could stand for, were all of its source seen.
-    float most_light(const Link& link) const {
-        const float sent = nodes_.most_sent(link.source);
+    float max_light(const Link& link) const {
+        const float sent = nodes_.max_sent(link.source);
         if (!(sent > 0)) return 0;
         const Ball &here = nodes_.ball(link.receiver), &there = nodes_.ball(link.source);
-        float most = most_form_factor(here, there, nodes_.area(link.source)) * sent;
+        float most = max_form_factor(here, there, nodes_.area(link.source)) * sent;
         if (!is_cluster(link.receiver)) { // no more arrives than leaves, all over the receiver
             most = min(most, luminance(nodes_.power(link.source)) / nodes_.area(link.receiver));
         }
@@ -155,7 +155,7 @@ private:
     /// near.
     float share(const Link& link) const { return is_even(link) || link.rays == 0 ? 1.0f : link.visible(); }
     /// The least that it could turn out to be.
-    float least_share(const Link& link) const { return is_even(link) ? 1.0f : 1.0f / (kRaysOfLimit + 2); }
+    float min_share(const Link& link) const { return is_even(link) ? 1.0f : 1.0f / (kRaysOfLimit + 2); }
     bool is_even(const Link& link) const {
         const bool any_cluster = is_cluster(link.receiver) || is_cluster(link.source);
         return any_cluster && balls_meet(nodes_.ball(link.receiver), nodes_.ball(link.source));
@@ -190,21 +190,21 @@ private:
     LinkNodes& nodes_;
     WorkWatch& watch_;
     uint32_t seed_;
-    uint64_t most_links_;
+    uint64_t max_links_;
     float limit_;                 // maximum light that a link may represent, W/m2
     std::vector<uint8_t> wishes_; // [patches] whether to divide
 };
 
 HierarchicalSolution solve_by_links(const SolvedScene& scene, PatchTree coarse, float patch_size,
-                                    const RadiositySettings& settings, WorkWatch& watch, uint64_t most_links) {
+                                    const RadiositySettings& settings, WorkWatch& watch, uint64_t max_links) {
     LinkNodes nodes(scene, std::move(coarse), patch_size, settings, watch);
-    Refiner refiner(scene, nodes, settings, watch, most_links);
+    Refiner refiner(scene, nodes, settings, watch, max_links);
     HierarchicalSolution solution;
     solution.link_error = settings.link_error;
     solution.without_direct = nodes.without_direct();
     std::vector<Link> links = {{nodes.root(), nodes.root()}};
     bool is_done = false;
-    while (!is_done && !watch.is_over() && solution.passes < kMostPasses) {
+    while (!is_done && !watch.is_over() && solution.passes < kMaxPasses) {
         if (solution.passes > 0 && refiner.any_wish()) {
             nodes.divide(refiner.wishes());
             for (Link& link : links) link = nodes.after_division(link);
@@ -226,20 +226,20 @@ HierarchicalSolution solve_by_links(const SolvedScene& scene, PatchTree coarse, 
 }
 } // namespace
 
-std::size_t most_hierarchical_bytes(uint64_t patches, uint64_t triangles) {
+std::size_t max_hierarchical_bytes(uint64_t patches, uint64_t triangles) {
     const uint64_t nodes = 3 * patches; // clusters, patches and what was divided into them
-    const uint64_t most = nodes < 100000 ? nodes * nodes : kMostLinks;
-    const std::size_t links = 3 * std::min(most, kMostLinks) * sizeof(Link);
-    return std::max(links, LinkNodes::most_first_bytes(std::min(patches, 2 * triangles))) +
+    const uint64_t most = nodes < 100000 ? nodes * nodes : kMaxLinks;
+    const std::size_t links = 3 * std::min(most, kMaxLinks) * sizeof(Link);
+    return std::max(links, LinkNodes::max_first_bytes(std::min(patches, 2 * triangles))) +
            LinkNodes::most_bytes(patches, patches);
 }
 
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,
-                                          const RadiositySettings& settings, WorkWatch& watch, uint64_t most_links) {
+                                          const RadiositySettings& settings, WorkWatch& watch, uint64_t max_links) {
     RadiositySettings tried = settings;
     for (;; tried.link_error *= 2) {
         try {
-            return solve_by_links(scene, coarse, patch_size, tried, watch, most_links);
+            return solve_by_links(scene, coarse, patch_size, tried, watch, max_links);
         } catch (const TooManyLinks&) {
             if (tried.link_error > kLargestLinkError / 2) break;
             watch.set_note(fmt::format(", anew by `link_error={}`", 2 * tried.link_error));
@@ -247,7 +247,7 @@ HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree co
     }
     throw Error(
         ErrorCode::OverLimit, "solver", "hierarchical",
-        fmt::format("more than {} links by any `link_error` (a larger `patch_size`, or another `solver`)", most_links));
+        fmt::format("more than {} links by any `link_error` (a larger `patch_size`, or another `solver`)", max_links));
 }
 
 } // namespace pertev

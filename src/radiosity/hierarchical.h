@@ -35,11 +35,11 @@ struct HierarchicalSolution {
 /// requesting that error directly. Throws Error(OverLimit) if no error up to kLargestLinkError has so few.
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,
                                           const RadiositySettings& settings, WorkWatch& watch,
-                                          uint64_t most_links = kMostLinks);
+                                          uint64_t max_links = kMaxLinks);
 
 inline constexpr float kLargestLinkError = 1e6f;
 
 /// Maximum memory in bytes, if all patches were as small as possible.
-std::size_t most_hierarchical_bytes(uint64_t patches, uint64_t triangles);
+std::size_t max_hierarchical_bytes(uint64_t patches, uint64_t triangles);
 
 } // namespace pertev

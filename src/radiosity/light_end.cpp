@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-constexpr double kLeastLoss = 1e-6; // share of the light that a patch gathers, beyond rounding
+constexpr double kMinLoss = 1e-6; // share of the light that a patch gathers, beyond rounding
 
 double channel(Rgb c, int k) { return static_cast<double>(k == 0 ? c.r : k == 1 ? c.g : c.b); }
 
@@ -27,7 +27,7 @@ uint64_t count_endless(const RadiositySystem& system, int k) {
             reached = reached || channel(source.exitance, k) > 0;
             return static_cast<double>(row[j].factor) * channel(source.reflectance, k);
         });
-        loses[i] = kept < 1 - kLeastLoss ? 1 : 0;
+        loses[i] = kept < 1 - kMinLoss ? 1 : 0;
         is_lit[i] = reached ? 1 : 0;
     }
     for (bool changes = true; changes;) { // repeated as often as light passes from patch to patch
@@ -52,7 +52,7 @@ uint64_t count_endless(const RadiositySystem& system, int k) {
 void check_light_ends(const RadiositySystem& system) {
     float largest = 0;
     for (const SystemPatch& patch : system.patches) largest = max(largest, max_component(patch.reflectance));
-    if (static_cast<double>(largest) < 1 - kLeastLoss) return;
+    if (static_cast<double>(largest) < 1 - kMinLoss) return;
     for (int k = 0; k < 3; ++k) {
         const uint64_t endless = count_endless(system, k);
         if (endless == 0) continue;

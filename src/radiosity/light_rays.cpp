@@ -9,12 +9,12 @@ namespace {
 
 constexpr uint32_t kRaysAtOnce = 64;
 
-struct AskedLight {
+struct QueuedLight {
     Ray ray;
     TriangleId target;
-    Rgb irradiance;            // irradiance of lights that are no patches
-    PatchCode lamp = kNoPatch; // else the patch,
-    float factor = 0;          // and its form factor
+    Rgb irradiance;               // irradiance of lights that are no patches
+    PatchCode emitter = kNoPatch; // else the patch,
+    float factor = 0;             // and its form factor
     uint32_t key = 0;
 };
 
@@ -42,7 +42,7 @@ void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, co
     const SceneView& view = scene.scene.view();
     const LightSetView& lights = view.lights;
     if (lights.choice.starts == nullptr) return;
-    AskedLight asked[kRaysAtOnce];
+    QueuedLight queued[kRaysAtOnce];
     bool met[kRaysAtOnce];
     const float each = 1.0f / static_cast<float>(rays.count);
     for (uint32_t first = 0; first < rays.count; first += kRaysAtOnce) {
@@ -57,16 +57,16 @@ void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, co
             if (!sample_light(lights, place.position, u, light)) continue;
             const float cosine = dot(light.wi, place.normal);
             if (!(cosine > 0)) continue;
-            const bool is_lamp = light.instance != kNoLight;
-            if (is_lamp && !rays.finds_lamps) continue;
-            AskedLight& to = asked[count];
+            const bool is_emitter = light.instance != kNoLight;
+            if (is_emitter && !rays.finds_emitters) continue;
+            QueuedLight& to = queued[count];
             to = {};
             to.key = coin_key(of_ray, 0, true);
-            if (is_lamp) {
+            if (is_emitter) {
                 const uint32_t side = side_met(view, light.instance, light.primitive, light.wi);
                 Vec3 weights = {1.0f - light.b1 - light.b2, light.b1, light.b2};
-                to.lamp = scene.sources.view().find(face_of(view, light.instance, light.primitive, side), weights);
-                if (!is_patch(to.lamp)) continue;
+                to.emitter = scene.sources.view().find(face_of(view, light.instance, light.primitive, side), weights);
+                if (!is_patch(to.emitter)) continue;
                 const bool is_hole = view.any_alpha != 0 && !AcceptHit{view, {}, {}, to.key}.passes_alpha(
                                                                 light.instance, light.primitive, light.b1, light.b2);
                 if (is_hole) continue;
@@ -81,16 +81,16 @@ void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, co
             ++count;
         }
         const auto accept_of = [&](uint32_t i) {
-            return AcceptHit{view, {patch.instance, patch.primitive}, asked[i].target, asked[i].key};
+            return AcceptHit{view, {patch.instance, patch.primitive}, queued[i].target, queued[i].key};
         };
         find_occlusions(
-            scene.scene.trees(), count, RayOrder::Scattered, [&](uint32_t i) { return asked[i].ray; }, accept_of, met);
+            scene.scene.trees(), count, RayOrder::Scattered, [&](uint32_t i) { return queued[i].ray; }, accept_of, met);
         for (uint32_t i = 0; i < count; ++i) {
             if (met[i]) continue;
-            if (is_patch(asked[i].lamp)) {
-                row.factors.push_back({number_of(asked[i].lamp), asked[i].factor});
+            if (is_patch(queued[i].emitter)) {
+                row.factors.push_back({number_of(queued[i].emitter), queued[i].factor});
             } else {
-                row.direct += asked[i].irradiance;
+                row.direct += queued[i].irradiance;
             }
         }
     }

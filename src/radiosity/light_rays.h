@@ -11,7 +11,7 @@ namespace pertev {
 struct LightRays {
     uint32_t count = 0;          // rays
     uint32_t hemisphere = 0;     // number of rays of the other kind, with cosine density; 0: they find no light
-    bool finds_lamps = false;    // otherwise form factors account for emitters
+    bool finds_emitters = false; // otherwise form factors account for emitters
     bool finds_sky_alone = true; // no other rays find the environment
 
     /// Weight of a sample with density `light_pdf`, 1/sr, and the `cosine` of its direction: the power heuristic for

@@ -26,30 +26,30 @@ float form_factor_at(const PatchPlace& place, const LinkedPatch& source) {
 } // namespace
 
 void LinkFactors::clear() {
-    sights_.clear();
-    asked_.clear();
+    visibility_rays_.clear();
+    queued_.clear();
     next_ = 0;
 }
 
-void LinkFactors::ask(const Link& link, uint32_t rays) {
-    Asked asked;
-    asked.first = static_cast<uint32_t>(sights_.size());
+void LinkFactors::queue(const Link& link, uint32_t rays) {
+    QueuedLink queued;
+    queued.first = static_cast<uint32_t>(visibility_rays_.size());
     const uint32_t key = hash_words(link.receiver, link.source, rays, 0x6c696e6bu).x;
     if (is_cluster(link.receiver) || is_cluster(link.source)) {
-        ask_clusters(link, rays, key, asked);
+        queue_clusters(link, rays, key, queued);
     } else {
-        ask_patches(link, rays, key, asked);
+        queue_patches(link, rays, key, queued);
     }
-    asked.count = static_cast<uint32_t>(sights_.size()) - asked.first;
-    asked_.push_back(asked);
+    queued.count = static_cast<uint32_t>(visibility_rays_.size()) - queued.first;
+    queued_.push_back(queued);
 }
 
 /// The mean, over places on the receiver, of the form factor from there where the source is seen.
-void LinkFactors::ask_patches(const Link& link, uint32_t rays, uint32_t key, Asked& asked) {
+void LinkFactors::queue_patches(const Link& link, uint32_t rays, uint32_t key, QueuedLink& queued) {
     const Patch &receiver = nodes_.patch(link.receiver), &source = nodes_.patch(link.source);
     const LinkedPatch& shape = nodes_.shape(link.source);
     const float each = 1.0f / static_cast<float>(rays);
-    asked.rays = rays;
+    queued.rays = rays;
     for (uint32_t k = 0; k < rays; ++k) {
         const SampleKey of_ray = {key, k, seed_};
         const Vec2 on_receiver = sample_2d(SamplerKind::Sobol, of_ray, 0);
@@ -58,8 +58,8 @@ void LinkFactors::ask_patches(const Link& link, uint32_t rays, uint32_t key, Ask
         const float factor = each * form_factor_at(start, shape);
         if (!(factor > 0)) continue;
         if (look(receiver, start, source, place_on_patch(scene_.view(), source, on_source), factor)) continue;
-        asked.known += factor; // the place drawn lies below the horizon
-        ++asked.seen;
+        queued.known += factor; // the place drawn lies below the horizon
+        ++queued.seen;
     }
 }
 
@@ -69,18 +69,18 @@ PatchCode LinkFactors::triangle_of(NodeCode code, double u) const {
 
 /// Between triangles by their areas, at places that face each other: what share of the light gets through; and where
 /// there is no direction between the two, how much of it arrives.
-void LinkFactors::ask_clusters(const Link& link, uint32_t rays, uint32_t key, Asked& asked) {
+void LinkFactors::queue_clusters(const Link& link, uint32_t rays, uint32_t key, QueuedLink& queued) {
     const Ball &here = nodes_.ball(link.receiver), &there = nodes_.ball(link.source);
     const bool is_even = balls_meet(here, there);
     const float area = nodes_.area(link.source) / static_cast<float>(kDraws * rays);
     float weights = 0;
-    for (uint32_t k = 0; k < kDraws * rays && sights_.size() - asked.first < rays; ++k) {
+    for (uint32_t k = 0; k < kDraws * rays && visibility_rays_.size() - queued.first < rays; ++k) {
         const SampleKey of_ray = {key, k, seed_};
         const Vec2 triangles = sample_2d(SamplerKind::Sobol, of_ray, 1);
         const PatchCode receiving = triangle_of(link.receiver, static_cast<double>(triangles.x));
         const PatchCode sending = triangle_of(link.source, static_cast<double>(triangles.y));
         if (!is_before(nodes_.shape(receiving), nodes_.shape(sending))) continue;
-        ++asked.rays; // the mean is that of what faces the source
+        ++queued.rays; // the mean is that of what faces the source
         if (!is_before(nodes_.shape(sending), nodes_.shape(receiving))) continue;
         const Vec2 on_receiver = sample_2d(SamplerKind::Sobol, of_ray, 0);
         const Vec2 on_source = sample_2d(SamplerKind::Sobol, of_ray, 0, Pair::Last);
@@ -95,18 +95,18 @@ void LinkFactors::ask_clusters(const Link& link, uint32_t rays, uint32_t key, As
         if (look(receiver, start, source, target, weight)) weights += weight;
     }
     if (is_even) {
-        asked.rays = max(asked.rays, 1u);
-        asked.scale = 1.0f / static_cast<float>(asked.rays);
+        queued.rays = max(queued.rays, 1u);
+        queued.scale = 1.0f / static_cast<float>(queued.rays);
     } else {
-        const uint32_t looked = static_cast<uint32_t>(sights_.size()) - asked.first;
-        asked.rays = looked > 0 ? looked : rays; // none faces the other
+        const uint32_t looked = static_cast<uint32_t>(visibility_rays_.size()) - queued.first;
+        queued.rays = looked > 0 ? looked : rays; // none faces the other
         const Vec3 way = there.centre - here.centre;
         const float squared = length_squared(way);
         float cosine = 1;
         if (!is_cluster(link.receiver)) {
             cosine = max(dot(way, nodes_.shape(link.receiver).normal), 0.0f) / sqrt(squared);
         }
-        asked.scale = weights > 0 ? cosine * kInvPi / (squared * weights) : 0.0f;
+        queued.scale = weights > 0 ? cosine * kInvPi / (squared * weights) : 0.0f;
     }
 }
 
@@ -118,45 +118,46 @@ bool LinkFactors::look(const Patch& from, const PatchPlace& start, const Patch& 
     if (!(squared > 0)) return false;
     const Vec3 direction = (1.0f / sqrt(squared)) * way;
     if (!(dot(direction, start.normal) > 0) || !(dot(direction, target.normal) < 0)) return false;
-    Sight sight;
-    sight.ray.origin = offset_ray_origin(start.position, start.error, start.normal, direction);
-    sight.ray.direction =
-        offset_ray_origin(target.position, target.error, target.normal, -direction) - sight.ray.origin;
-    sight.ray.t_min = 0;
-    sight.ray.t_max = 1;
-    sight.start = {from.instance, from.primitive};
-    sight.target = {to.instance, to.primitive};
-    sight.weight = weight;
-    sights_.push_back(sight);
+    VisibilityRay visibility_ray;
+    visibility_ray.ray.origin = offset_ray_origin(start.position, start.error, start.normal, direction);
+    visibility_ray.ray.direction =
+        offset_ray_origin(target.position, target.error, target.normal, -direction) - visibility_ray.ray.origin;
+    visibility_ray.ray.t_min = 0;
+    visibility_ray.ray.t_max = 1;
+    visibility_ray.start = {from.instance, from.primitive};
+    visibility_ray.target = {to.instance, to.primitive};
+    visibility_ray.weight = weight;
+    visibility_rays_.push_back(visibility_ray);
     return true;
 }
 
 void LinkFactors::trace() {
-    if (sights_.size() > most_met_) {
-        most_met_ = 2 * sights_.size();
-        met_ = std::make_unique<bool[]>(most_met_);
+    if (visibility_rays_.size() > max_met_) {
+        max_met_ = 2 * visibility_rays_.size();
+        met_ = std::make_unique<bool[]>(max_met_);
     }
     find_occlusions(
-        scene_.trees(), static_cast<uint32_t>(sights_.size()), RayOrder::Scattered,
-        [&](uint32_t i) { return sights_[i].ray; },
+        scene_.trees(), static_cast<uint32_t>(visibility_rays_.size()), RayOrder::Scattered,
+        [&](uint32_t i) { return visibility_rays_[i].ray; },
         [&](uint32_t i) {
-            return AcceptHit{scene_.view(), sights_[i].start, sights_[i].target, hash_word(seed_ + i)};
+            return AcceptHit{scene_.view(), visibility_rays_[i].start, visibility_rays_[i].target,
+                             hash_word(seed_ + i)};
         },
         met_.get());
 }
 
 void LinkFactors::answer(Link& link) {
-    const Asked& asked = asked_[next_++];
-    float sum = asked.known;
-    uint32_t seen = asked.seen;
-    for (uint32_t i = asked.first; i < asked.first + asked.count; ++i) {
+    const QueuedLink& queued = queued_[next_++];
+    float sum = queued.known;
+    uint32_t seen = queued.seen;
+    for (uint32_t i = queued.first; i < queued.first + queued.count; ++i) {
         if (met_[i]) continue;
-        sum += sights_[i].weight;
+        sum += visibility_rays_[i].weight;
         ++seen;
     }
-    link.factor = asked.scale * sum;
-    link.rays = static_cast<uint16_t>(asked.rays);
-    link.seen = static_cast<uint16_t>(min(seen, asked.rays));
+    link.factor = queued.scale * sum;
+    link.rays = static_cast<uint16_t>(queued.rays);
+    link.seen = static_cast<uint16_t>(min(seen, queued.rays));
 }
 
 } // namespace pertev

@@ -20,36 +20,36 @@ public:
 
     void clear();
     /// Requests the factor of `link` with `rays` rays, at most kMostRaysOfLink.
-    void ask(const Link& link, uint32_t rays);
+    void queue(const Link& link, uint32_t rays);
     /// Traces the rays of all requests.
     void trace();
     /// Returns the next result, in the order of the requests.
     void answer(Link& link);
 
 private:
-    struct Sight {
+    struct VisibilityRay {
         Ray ray;
         TriangleId start, target;
         float weight; // weight if it is visible
     };
-    struct Asked {
+    struct QueuedLink {
         uint32_t first = 0, count = 0; // range of sights
         float known = 0;               // sum of what is visible without a ray
         float scale = 1;               // factor of the sum of weights
         uint32_t rays = 0, seen = 0;   // rays traced, and free without a ray
     };
-    void ask_patches(const Link& link, uint32_t rays, uint32_t key, Asked& asked);
-    void ask_clusters(const Link& link, uint32_t rays, uint32_t key, Asked& asked);
+    void queue_patches(const Link& link, uint32_t rays, uint32_t key, QueuedLink& queued);
+    void queue_clusters(const Link& link, uint32_t rays, uint32_t key, QueuedLink& queued);
     PatchCode triangle_of(NodeCode code, double u) const;
     bool look(const Patch& from, const PatchPlace& start, const Patch& to, const PatchPlace& target, float weight);
 
     const SolvedScene& scene_;
     const LinkNodes& nodes_;
     uint32_t seed_;
-    std::vector<Sight> sights_;
-    std::vector<Asked> asked_;
+    std::vector<VisibilityRay> visibility_rays_;
+    std::vector<QueuedLink> queued_;
     std::unique_ptr<bool[]> met_;
-    std::size_t most_met_ = 0;
+    std::size_t max_met_ = 0;
     std::size_t next_ = 0;
 };
 

@@ -69,7 +69,7 @@ LinkNodes::LinkNodes(const SolvedScene& scene, PatchTree coarse, float patch_siz
     cluster_sent_.resize(clusters_.clusters.size());
     cluster_received_.resize(clusters_.clusters.size());
     cluster_gathered_.resize(clusters_.clusters.size());
-    most_sent_.resize(clusters_.clusters.size());
+    max_sent_.resize(clusters_.clusters.size());
     pass_on();
 }
 
@@ -219,11 +219,11 @@ void LinkNodes::send() {
         if (cluster.count == 1) {
             const PatchCode face = tree_.roots[clusters_.faces[cluster.first]];
             cluster_sent_[i].add(shape(face).normal, shape(face).area * sent(face));
-            most_sent_[i] = luminance(sent(face));
+            max_sent_[i] = luminance(sent(face));
         } else {
             cluster_sent_[i].add(cluster_sent_[cluster.left]);
             cluster_sent_[i].add(cluster_sent_[cluster.right]);
-            most_sent_[i] = max(most_sent_[cluster.left], most_sent_[cluster.right]);
+            max_sent_[i] = max(max_sent_[cluster.left], max_sent_[cluster.right]);
         }
     }
 }
@@ -246,7 +246,7 @@ void LinkNodes::sort(std::vector<Link>& links) const {
 void LinkNodes::divide(std::span<const uint8_t> wishes) {
     became_.assign(wishes.size(), kNoPatch);
     for (uint32_t i = 0; i < wishes.size(); ++i) {
-        if (wishes[i] == 0 || tree_.patches.size() + 3 > kMostPatches) continue;
+        if (wishes[i] == 0 || tree_.patches.size() + 3 > kMaxPatches) continue;
         const auto quad = static_cast<uint32_t>(tree_.quads.size());
         quad_shapes_.push_back(patch_shapes_[i]);
         quad_patches_.push_back(tree_.patches[i]);
@@ -325,7 +325,7 @@ bool LinkNodes::find_direct(uint32_t number, RowMaker& of_whole, RowMaker& of_qu
     return true;
 }
 
-std::size_t LinkNodes::most_first_bytes(uint64_t faces) {
+std::size_t LinkNodes::max_first_bytes(uint64_t faces) {
     return faces * (sizeof(std::vector<FormFactor>) + kOfAllocation + 4 * (kDirectRays + 16) * sizeof(FormFactor));
 }
 

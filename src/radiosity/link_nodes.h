@@ -51,8 +51,8 @@ public:
 
     /// Reflected light that leaves it, W/m2; for a cluster the maximum of its triangles.
     Rgb sent(PatchCode code) const { return is_patch(code) ? patch_sent_[number_of(code)] : quad_sent_[code]; }
-    float most_sent(NodeCode code) const {
-        return is_cluster(code) ? most_sent_[cluster_of(code)] : luminance(sent(code));
+    float max_sent(NodeCode code) const {
+        return is_cluster(code) ? max_sent_[cluster_of(code)] : luminance(sent(code));
     }
     /// Sum of A B max(cosine, 0) towards `direction` (unit), W; and without the cosine.
     Rgb power_towards(NodeCode code, Vec3 direction) const;
@@ -93,7 +93,7 @@ public:
     /// Maximum bytes for these numbers of patches and triangle sides.
     static std::size_t most_bytes(uint64_t patches, uint64_t faces);
     /// Additional maximum bytes during construction, before there are links.
-    static std::size_t most_first_bytes(uint64_t faces);
+    static std::size_t max_first_bytes(uint64_t faces);
 
 private:
     NodeCode now(NodeCode code) const {
@@ -137,7 +137,7 @@ private:
     std::vector<float> direct_spread_;                                                         // luminance, W/m2
     std::vector<SentLight> cluster_sent_, cluster_received_; // the latter W/m2, by direction of arrival
     std::vector<Rgb> cluster_gathered_;                      // independent of direction, W/m2
-    std::vector<float> most_sent_;
+    std::vector<float> max_sent_;
     std::vector<PatchCode> became_;                   // [patches] quads that replaced them
     std::vector<uint32_t> stale_;                     // patches whose direct light must be found
     std::vector<std::vector<FormFactor>> first_rows_; // [patches] until there are links

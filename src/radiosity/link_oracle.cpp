@@ -30,7 +30,7 @@ bool is_before(const LinkedPatch& patch, const LinkedPatch& other) {
 
 bool balls_meet(const Ball& a, const Ball& b) { return !(length(a.centre - b.centre) > a.radius + b.radius); }
 
-float most_form_factor(const Ball& receiver, const Ball& source, float area) {
+float max_form_factor(const Ball& receiver, const Ball& source, float area) {
     const float nearest = length(source.centre - receiver.centre) - receiver.radius; // to its middle
     if (!(nearest > source.radius)) return 1;
     const float of_ball = square(source.radius / nearest); // upper bound for a sphere that is faced directly

@@ -25,6 +25,6 @@ bool is_before(const LinkedPatch& patch, const LinkedPatch& other);
 bool balls_meet(const Ball& a, const Ball& b);
 
 /// Upper bound of the form factor from any point in `receiver` to a source with this sphere and area.
-float most_form_factor(const Ball& receiver, const Ball& source, float area);
+float max_form_factor(const Ball& receiver, const Ball& source, float area);
 
 } // namespace pertev

@@ -15,7 +15,7 @@ inline constexpr NodeCode kIsCluster = 0x40000000u;
 constexpr bool is_cluster(NodeCode code) { return code < kIsPatch && (code & kIsCluster) != 0; }
 constexpr uint32_t cluster_of(NodeCode code) { return code & ~kIsCluster; }
 
-inline constexpr uint32_t kMostRaysOfLink = 16;
+inline constexpr uint32_t kMaxRaysOfLink = 16;
 
 struct Link {
     NodeCode receiver, source;

@@ -63,13 +63,13 @@ SolvedSystem solve_direct_light(const RadiositySystem& system) {
 } // namespace
 
 void check_matrix_size(std::size_t patches) {
-    if (patches <= kMostMatrixPatches) return;
+    if (patches <= kMaxMatrixPatches) return;
     throw Error(
         ErrorCode::OverLimit, "solver", "matrix",
         fmt::format(
             "{} patches; at most {} (`solver=gauss-seidel` or southwell solves more, a larger `patch_size` makes "
             "fewer)",
-            patches, kMostMatrixPatches));
+            patches, kMaxMatrixPatches));
 }
 
 SolvedSystem solve_by_matrix(const RadiositySystem& system, const KeepSolving& keep_going) {

@@ -148,9 +148,9 @@ uint64_t count_patches(const SceneView& scene, float patch_size) {
 }
 
 void check_patch_count(uint64_t patches, float patch_size) {
-    if (patches <= kMostPatches) return;
+    if (patches <= kMaxPatches) return;
     throw Error(ErrorCode::OverLimit, "patch_size", fmt::format("{}", patch_size),
-                fmt::format("it divides this scene into {} patches; at most {}", patches, kMostPatches));
+                fmt::format("it divides this scene into {} patches; at most {}", patches, kMaxPatches));
 }
 
 PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watch) {

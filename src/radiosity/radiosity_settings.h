@@ -48,11 +48,11 @@ struct RadiositySettings {
 };
 
 inline constexpr float kPatchOfScene = 1.0f / 16;
-inline constexpr uint32_t kMostPatches = 1u << 25;
-inline constexpr uint32_t kMostSubdivisions = 8;
-inline constexpr uint32_t kLeastPatchRays = 16, kMostPatchRays = 1u << 20;
-inline constexpr uint32_t kLeastHemicube = 8, kMostHemicube = 2048;
-inline constexpr uint64_t kMostLinks = uint64_t(1) << 26; // RadiositySolver::Hierarchical: 1 GiB
-inline constexpr uint32_t kMostMatrixPatches = 6000;      // RadiositySolver::Matrix: 275 MiB, a minute
+inline constexpr uint32_t kMaxPatches = 1u << 25;
+inline constexpr uint32_t kMaxSubdivisions = 8;
+inline constexpr uint32_t kMinPatchRays = 16, kMaxPatchRays = 1u << 20;
+inline constexpr uint32_t kMinHemicube = 8, kMaxHemicube = 2048;
+inline constexpr uint64_t kMaxLinks = uint64_t(1) << 26; // RadiositySolver::Hierarchical: 1 GiB
+inline constexpr uint32_t kMaxMatrixPatches = 6000;      // RadiositySolver::Matrix: 275 MiB, a minute
 
 } // namespace pertev

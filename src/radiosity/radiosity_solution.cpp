@@ -66,10 +66,10 @@ void take(std::span<const std::byte>& bytes, std::span<T> to) {
 
 /// Whether looking up ends, at a patch that is there.
 bool is_sound(const RadiositySolution& solution) {
-    const auto is_code = [&](PatchCode code, std::size_t least_quad) {
+    const auto is_code = [&](PatchCode code, std::size_t min_quad) {
         if (code == kNoPatch) return true;
         if (is_patch(code)) return number_of(code) < solution.patches.size();
-        return code >= least_quad && code < solution.quads.size();
+        return code >= min_quad && code < solution.quads.size();
     };
     const auto is_root = [&](PatchCode code) { return is_code(code, 0); };
     if (!std::ranges::all_of(solution.roots, is_root)) return false;

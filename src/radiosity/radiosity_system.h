@@ -59,7 +59,7 @@ struct SolvedSystem {
 
 /// Maximum number of sweeps over all patches; for Southwell, which sends from one at a time, the maximum per patch.
 /// It is insufficient only if next to nothing absorbs light.
-inline constexpr uint64_t kMostSweeps = 10000;
+inline constexpr uint64_t kMaxSweeps = 10000;
 
 /// Throws Error(BadInput) if light never ends because it reaches patches that reflect all of it only to each other.
 /// Then the system has no solution.

@@ -19,9 +19,9 @@ constexpr uint32_t kRaysAtOnce = 128;
 class RayRows final : public RowMaker {
 public:
     RayRows(const RowScene& scene, const RadiositySettings& settings) : scene_(scene), seed_(settings.seed) {
-        rays_ = {.count = max(settings.rays / 4, kLeastPatchRays),
+        rays_ = {.count = max(settings.rays / 4, kMinPatchRays),
                  .hemisphere = settings.rays,
-                 .finds_lamps = true,
+                 .finds_emitters = true,
                  .finds_sky_alone = false};
         if (scene.scene.view().lights.choice.starts == nullptr) rays_.count = 0;
     }
@@ -30,7 +30,7 @@ public:
         row.clear();
         const SampleKey key = {number, 0, seed_};
         const float each = 1.0f / static_cast<float>(rays_.hemisphere);
-        double lamps = 0, others = 0; // others: patches without light of their own, the sky, and where light ends
+        double emitters = 0, others = 0; // others: patches without light of their own, the sky, and where light ends
         for (uint32_t first = 0; first < rays_.hemisphere; first += kRaysAtOnce) {
             if (scene_.is_over()) return;
             const uint32_t count = min(rays_.hemisphere - first, kRaysAtOnce);
@@ -40,13 +40,13 @@ public:
         if (rays_.count > 0) add_light_rays(scene_, patch, key, rays_, row);
         row.sort();
         for (const FormFactor& factor : row.factors) {
-            if (is_lamp(factor.patch)) lamps += static_cast<double>(factor.factor);
+            if (is_emitter(factor.patch)) emitters += static_cast<double>(factor.factor);
         }
-        close(lamps, others, row);
+        close(emitters, others, row);
     }
 
 private:
-    bool is_lamp(uint32_t patch) const { return !is_black(scene_.sources.patches[patch].exitance); }
+    bool is_emitter(uint32_t patch) const { return !is_black(scene_.sources.patches[patch].exitance); }
 
     void send(const Patch& patch, SampleKey key, uint32_t first, uint32_t count) {
         const SceneView& view = scene_.scene.view();
@@ -90,7 +90,7 @@ private:
         const PatchCode met = scene_.sources.view().find(face_of(view, hit.instance, hit.primitive, side), weights);
         if (!is_patch(met)) return static_cast<double>(each);
         const uint32_t patch = number_of(met);
-        if (!is_lamp(patch)) {
+        if (!is_emitter(patch)) {
             row.factors.push_back({patch, each});
             return static_cast<double>(each);
         }
@@ -103,11 +103,11 @@ private:
 
     /// All form factors of a patch, the sky's and that of where light ends are 1 together. What lamps cover is known
     /// better than the rest, which takes what they leave.
-    void close(double lamps, double others, FormFactorRow& row) const {
-        const double of_lamps = others > 0 && lamps <= 1 ? 1 : 1 / lamps;
-        const double of_others = others > 0 ? std::max(0.0, 1 - lamps) / others : 0;
+    void close(double emitters, double others, FormFactorRow& row) const {
+        const double of_emitters = others > 0 && emitters <= 1 ? 1 : 1 / emitters;
+        const double of_others = others > 0 ? std::max(0.0, 1 - emitters) / others : 0;
         for (FormFactor& factor : row.factors) {
-            const double scale = is_lamp(factor.patch) ? of_lamps : of_others;
+            const double scale = is_emitter(factor.patch) ? of_emitters : of_others;
             factor.factor = static_cast<float>(scale * static_cast<double>(factor.factor));
         }
     }

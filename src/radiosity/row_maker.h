@@ -52,7 +52,7 @@ std::unique_ptr<RowMaker> make_hemicube_rows(const RowScene& scene, const Radios
                                              const HemicubeScene& hemicube);
 
 /// Maximum bytes of a thread's hemicube, besides the row.
-std::size_t most_hemicube_bytes(uint32_t resolution);
+std::size_t max_hemicube_bytes(uint32_t resolution);
 
 /// Makes row makers according to the settings.
 class RowMakers {

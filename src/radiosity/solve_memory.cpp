@@ -34,7 +34,7 @@ std::size_t tree_bytes(uint64_t patches, uint64_t triangles) {
 
 /// Form factors that a row is made of, before those of one patch are added.
 uint64_t found_factors(const RadiositySettings& s) {
-    const uint64_t of_lights = std::max(s.rays / 4, kLeastPatchRays);
+    const uint64_t of_lights = std::max(s.rays / 4, kMinPatchRays);
     return s.form_factors == FormFactors::Rays ? s.rays + of_lights : 3 * uint64_t(s.hemicube) * s.hemicube;
 }
 
@@ -44,7 +44,7 @@ Parts making_rows(const RadiositySettings& s, const Counts& counts, uint64_t thr
     Parts parts = {{"rows being made", threads * (list + 65536)}};
     if (s.form_factors == FormFactors::Hemicube) {
         const uint64_t pixels = uint64_t(s.hemicube) * s.hemicube;
-        parts.push_back({"hemicubes: pixels", threads * most_hemicube_bytes(s.hemicube) + 9 * sizeof(double) * pixels});
+        parts.push_back({"hemicubes: pixels", threads * max_hemicube_bytes(s.hemicube) + 9 * sizeof(double) * pixels});
         parts.push_back({"hemicubes: triangles", counts.triangles * sizeof(HemicubeScene::PlacedCorners)});
     }
     return parts;
@@ -58,7 +58,7 @@ Parts solving_rows(const RadiositySettings& s, const Counts& counts, uint64_t th
         solving = {{"form factors by sender", entries * sizeof(FormFactor) + 2 * n * sizeof(uint64_t)},
                    {"unsent light", 2 * std::bit_ceil(n) * sizeof(double) + 2 * n * sizeof(Rgb)}};
     } else if (s.solver == RadiositySolver::Matrix) {
-        const uint64_t side = std::min<uint64_t>(n, kMostMatrixPatches);
+        const uint64_t side = std::min<uint64_t>(n, kMaxMatrixPatches);
         solving = {{"matrix", side * (side + 8) * sizeof(double)}};
     } else {
         solving = {{"radiosities", n * sizeof(Rgb)}};
@@ -95,11 +95,11 @@ SolveMemory predict_memory(const PreparedScene& prepared, const RadiositySetting
     const uint64_t all = count_patches(view, patch_size);
     memory.patches = all;
     if (settings.solver == RadiositySolver::Hierarchical) {
-        memory.patches = std::min<uint64_t>(memory.patches, kMostPatches); // it divides what it has to
+        memory.patches = std::min<uint64_t>(memory.patches, kMaxPatches); // it divides what it has to
     } else {
         check_patch_count(memory.patches, patch_size);
     }
-    memory.shown = std::min<uint64_t>(memory.patches << std::min(2 * settings.subdivisions, 30u), kMostPatches);
+    memory.shown = std::min<uint64_t>(memory.patches << std::min(2 * settings.subdivisions, 30u), kMaxPatches);
     Counts counts = {memory.patches, std::max(memory.shown, memory.patches), view.triangle_count, 0};
     for (const Instance& instance : prepared.scene->instances) {
         counts.vertices += prepared.scene->meshes[instance.mesh].positions.size();
@@ -107,13 +107,13 @@ SolveMemory predict_memory(const PreparedScene& prepared, const RadiositySetting
     const auto many = static_cast<uint64_t>(std::max(threads, 1));
     const Parts showing_them = showing(settings, counts, many);
     const bool is_linked = settings.solver == RadiositySolver::Hierarchical;
-    const Parts solving = is_linked ? Parts{{"links", most_hierarchical_bytes(counts.patches, counts.triangles)},
+    const Parts solving = is_linked ? Parts{{"links", max_hierarchical_bytes(counts.patches, counts.triangles)},
                                             {"patches", 2 * tree_bytes(counts.patches, counts.triangles)}}
                                     : solving_rows(settings, counts, many);
     memory.parts = sum_of(solving) > sum_of(showing_them) ? solving : showing_them;
     memory.parts.push_back({"scene", scene.bytes()});
     memory.bytes = sum_of(memory.parts);
-    if (is_linked && all <= kMostPatches) {
+    if (is_linked && all <= kMaxPatches) {
         RadiositySettings rows = settings;
         rows.solver = RadiositySolver::GaussSeidel;
         memory.by_rows = std::max(sum_of(solving_rows(rows, counts, many)), sum_of(showing_them)) + scene.bytes();

@@ -127,7 +127,7 @@ private:
         std::vector<uint32_t> wholes;
         {
             const std::vector<PatchLight> lights = light_corners(scene_.view(), tree, irradiance);
-            const std::size_t most = (kMostPatches - tree.patches.size()) / 3;
+            const std::size_t most = (kMaxPatches - tree.patches.size()) / 3;
             for (uint32_t i = 0; i < lights.size() && wholes.size() < most; ++i) {
                 if (is_black(tree.patches[i].reflectance)) continue;
                 if (changes(lights[i], ambient_, settings_.contrast)) wholes.push_back(i);
@@ -228,10 +228,10 @@ SolvedPatches solve_rows(const SolvedScene& scene, float patch_size, const Radio
 }
 
 SolvedPatches solve_links(const SolvedScene& scene, float patch_size, const RadiositySettings& settings,
-                          WorkWatch& watch, uint64_t most_links, SolveStats& stats) {
+                          WorkWatch& watch, uint64_t max_links, SolveStats& stats) {
     const Stopwatch time;
     HierarchicalSolution solution = solve_hierarchically(scene, make_patches(scene.view(), kInfinity, &watch),
-                                                         patch_size, settings, watch, most_links);
+                                                         patch_size, settings, watch, max_links);
     stats.factors = solution.links;
     stats.steps = solution.passes;
     stats.left = solution.left;
@@ -261,14 +261,14 @@ SolvedExtent extent_of(const SolveStats& stats, RadiositySolver solver) {
 } // namespace
 
 SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySettings& settings,
-                                const SolveProgress& progress, uint64_t most_links) {
+                                const SolveProgress& progress, uint64_t max_links) {
     WorkWatch watch(progress);
     const SolvedScene scene(prepared);
     const float patch_size = patch_size_of(prepared, settings);
     SolvedRadiosity solved;
     SolveStats& stats = solved.stats;
     SolvedPatches shown = settings.solver == RadiositySolver::Hierarchical
-                              ? solve_links(scene, patch_size, settings, watch, most_links, stats)
+                              ? solve_links(scene, patch_size, settings, watch, max_links, stats)
                               : solve_rows(scene, patch_size, settings, watch, stats);
     stats.patches = shown.tree.patches.size();
     SolvedExtent extent;
@@ -307,7 +307,7 @@ void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, 
             {"link_error", fmt::format("{}", settings.link_error),
              fmt::format("radiosity has more than {} links, which is the most there may be; {} by "
                          "`link_error={}` (which, given at once, takes less time)",
-                         kMostLinks, stats.was_interrupted ? "it was ended while it was solved" : "it is solved",
+                         kMaxLinks, stats.was_interrupted ? "it was ended while it was solved" : "it is solved",
                          stats.link_error)});
     }
     if (!stats.reached_limit) return;

@@ -41,7 +41,7 @@ float patch_size_of(const PreparedScene& prepared, const RadiositySettings& sett
 /// factors, Error(Interrupted) is thrown; later the solution is as far as it got. Throws as SolvedScene, make_patches
 /// and check_light_ends. `most_links` is for solve_hierarchically.
 SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySettings& settings,
-                                const SolveProgress& progress = {}, uint64_t most_links = kMostLinks);
+                                const SolveProgress& progress = {}, uint64_t max_links = kMaxLinks);
 
 /// Warns of a complete solution that does not meet the request.
 void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, Messages& messages);

@@ -46,8 +46,8 @@ public:
             hasher_.add_value(material.metallic);
             add(material.metallic_texture);
         }
-        hasher_.add_value(static_cast<uint32_t>(material.is_lamp()));
-        if (material.is_lamp()) {
+        hasher_.add_value(static_cast<uint32_t>(material.is_emitter()));
+        if (material.is_emitter()) {
             add_bytes(hasher_, material.emission);
             add(material.emission_texture);
             hasher_.add_value(static_cast<uint32_t>(material.two_sided_emission));

@@ -72,8 +72,8 @@ private:
     std::vector<double> most_;
 };
 
-constexpr double kLeastAbsorbed = 1e-6;
-constexpr uint64_t kLeastWork = 64; // fixed cost of a sending patch, in units of receiving patches
+constexpr double kMinAbsorbed = 1e-6;
+constexpr uint64_t kMinWork = 64; // fixed cost of a sending patch, in units of receiving patches
 
 double light_of(const SystemPatch& patch, Rgb unsent) {
     return static_cast<double>(patch.area) *
@@ -115,7 +115,7 @@ Rgb ambient_of(const RadiositySystem& system, const std::vector<Rgb>& unsent) {
     const double area = spread.area;
     if (!(area > 0)) return {};
     const auto of = [&](int k) {
-        const double absorbed = std::max(1 - spread.reflected[k] / area, kLeastAbsorbed);
+        const double absorbed = std::max(1 - spread.reflected[k] / area, kMinAbsorbed);
         return static_cast<float>(spread.arrives[k] / area / absorbed * (spread.squared / area));
     };
     return {of(0), of(1), of(2)};
@@ -142,10 +142,10 @@ SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance,
     const auto count_left = [&] { solved.left = all > 0 ? all_unsent() / all : 0; };
     count_left();
     Receivers receivers(system);
-    const uint64_t most_steps = steps > 0 ? steps : kMostSweeps * count;
+    const uint64_t max_steps = steps > 0 ? steps : kMaxSweeps * count;
     uint64_t work = 0; // since the last look at whether to go on
     bool goes_on = receivers.find(system, keep_going);
-    while (goes_on && solved.left > tolerance && solved.steps < most_steps) {
+    while (goes_on && solved.left > tolerance && solved.steps < max_steps) {
         const std::size_t sender = most.first();
         const Rgb sent = unsent[sender];
         unsent[sender] = {};
@@ -158,8 +158,8 @@ SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance,
             most.set(receiver.patch, light_of(patch, unsent[receiver.patch]));
         }
         ++solved.steps;
-        work += receivers.of(sender).size() + kLeastWork;
-        if (work < kLeastWork * 256 + count) continue;
+        work += receivers.of(sender).size() + kMinWork;
+        if (work < kMinWork * 256 + count) continue;
         work = 0;
         count_left();
         goes_on = !keep_going || keep_going(solved.left);

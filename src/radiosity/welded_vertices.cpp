@@ -12,9 +12,9 @@ namespace {
 
 constexpr uint32_t kNone = 0xffffffffu;
 constexpr int kCellLevel = 20; // a cell's side is 2^-20 of the power of two below the largest coordinate
-constexpr int kLeastLevel = -100;
+constexpr int kMinLevel = -100;
 
-int level_of(float largest) { return largest > 0 ? std::max(std::ilogb(largest), kLeastLevel) : kLeastLevel; }
+int level_of(float largest) { return largest > 0 ? std::max(std::ilogb(largest), kMinLevel) : kMinLevel; }
 
 struct Cell {
     int32_t x, y, z;

@@ -98,7 +98,7 @@ KindMoments look_from(const SurfacePoint& point, uint32_t i, float offset, const
 SceneBvhView view_on_host(const PreparedScene& prepared, std::vector<BvhView>& meshes) {
     const auto& parts = prepared.trees.parts;
     for (std::size_t part = 1; part < parts.size(); ++part) meshes.push_back(view_of(*parts[part]));
-    const TopLevelBvh& top = prepared.top_level;
+    const Tlas& top = prepared.tlas;
     return {view_of(*parts.front()),
             top.nodes.data(),
             top.instances.data(),
@@ -140,7 +140,7 @@ void balance_lights(PreparedScene& prepared, const float* linear_from_srgb) {
     }
     const double near = std::sqrt(near_sum), far = std::sqrt(far_sum);
     const double share = near + far > 0 ? far / (near + far) : kEvenShare;
-    share_draws(data, std::clamp(share, kLeastShare, 1 - kLeastShare));
+    share_draws(data, std::clamp(share, kMinShare, 1 - kMinShare));
 }
 
 } // namespace pertev

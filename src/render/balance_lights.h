@@ -13,6 +13,6 @@ namespace pertev {
 /// must be built. The result depends only on the scene and is the same on every machine.
 void balance_lights(PreparedScene& prepared, const float* linear_from_srgb);
 
-inline constexpr double kLeastShare = 1.0 / 32;
+inline constexpr double kMinShare = 1.0 / 32;
 
 } // namespace pertev

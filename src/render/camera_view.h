@@ -1,8 +1,8 @@
 #pragma once
 
 // The device form of a camera: its rays (pinhole, thin lens and orthographic) and the projection of points;
-// render/see_vertex.h projects through the lens. Only these files distinguish kinds of cameras. A pixel position is
-// in pixels from the picture's upper left corner.
+// render/connect_to_camera.h projects through the lens. Only these files distinguish kinds of cameras. A pixel position
+// is in pixels from the picture's upper left corner.
 
 #include <cstdint>
 
@@ -66,14 +66,14 @@ HD inline Ray make_camera_ray(const CameraView& camera, Vec2 pixel, Vec2 lens) {
 }
 
 /// Projection of a point: pixels from the picture's upper left corner, and metres along the camera's axis.
-struct SeenPoint {
+struct ProjectedPoint {
     Vec2 pixel;
     float depth;
 };
 
 /// Projects `point` (world space) through a pinhole. The pixel is meaningless for a point behind a perspective camera
 /// (depth <= 0).
-HD inline SeenPoint see_point(const CameraView& camera, Vec3 point) {
+HD inline ProjectedPoint project_point(const CameraView& camera, Vec3 point) {
     const Vec3 local = transform_transposed(camera.world_from_camera, point - camera.world_from_camera.translation);
     const float depth = -local.z;
     const float scale = 1.0f / growth_at(camera, depth);
@@ -83,13 +83,13 @@ HD inline SeenPoint see_point(const CameraView& camera, Vec3 point) {
 }
 
 /// The point in camera space that a pinhole sees at `pixel` and `depth`.
-HD inline Vec3 point_seen(const CameraView& camera, Vec2 pixel, float depth) {
+HD inline Vec3 unproject_point(const CameraView& camera, Vec2 pixel, float depth) {
     const Vec2 at = place_in_view(camera, pixel);
     const float scale = growth_at(camera, depth);
     return {scale * at.x, scale * at.y, -depth};
 }
 
-/// Whether see_point is valid at `depth`: in front of the camera, or for an orthographic camera.
+/// Whether project_point is valid at `depth`: in front of the camera, or for an orthographic camera.
 HD inline bool is_projected(const CameraView& camera, float depth) {
     return depth > 0 || has_parallel_rays(camera.projection);
 }

@@ -10,7 +10,7 @@
 #include "math/float4.h"
 #include "math/rgb.h"
 #include "math/vec3.h"
-#include "shading/light_place.h"
+#include "shading/emitter_point.h"
 
 namespace pertev {
 
@@ -21,7 +21,7 @@ inline constexpr float kFarAway = 0x1p40f;
 struct FirstBounceView {
     // The samples omit direct light at the first surface, except by its delta lobes. Stored here is the sample point
     // on the light that the first bounce hit, if any.
-    LightPlace* light = nullptr;
+    EmitterPoint* light = nullptr;
 
     // These are null unless the light from the point that the first bounce hit is needed too (the samples include
     // it):

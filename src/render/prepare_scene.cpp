@@ -66,13 +66,13 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
         Bvh bvh = load_or_build_bvh(list, builders, options.bvh, options.bvh_cache, messages, &taken);
         prepared.trees.add(taken, std::move(bvh), list.size());
     }
-    prepared.tree_of_mesh = placement.tree_of_mesh;
+    prepared.blas_of_mesh = placement.blas_of_mesh;
     prepared.placed = placed_trees(scene, placement, prepared.trees.mesh_bounds(), options.motions);
     prepared.motions = options.motions;
-    prepared.top_level = build_top_level_bvh(prepared.placed);
+    prepared.tlas = build_tlas(prepared.placed);
     prepared.triangles = triangles.count();
     prepared.trees.build_s = watch.seconds();
-    prepared.structures = std::make_shared<SceneStructures>(builders.front(), prepared.trees, prepared.top_level);
+    prepared.structures = std::make_shared<SceneStructures>(builders.front(), prepared.trees, prepared.tlas);
     if (options.tracers) {
         for (const RayKind kind : kValuesOf<RayKind>) prepared.structures->get((*options.tracers)[kind]);
     }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "accel/builders/build_bvh.h"
-#include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/tlas.h"
 #include "base/messages.h"
 #include "device_scene/placed_scene.h"
 #include "tracer/scene_structures.h"
@@ -34,11 +34,11 @@ struct PrepareOptions {
 struct PreparedScene : PlacedScene {
     BinaryTrees trees;                           // in the translated world and in local spaces, by
                                                  // structures->builder()
-    TopLevelBvh top_level;                       // over the instances that are not baked
+    Tlas tlas;                                   // over the instances that are not baked
     std::shared_ptr<SceneStructures> structures; // structures from `trees`, and others, which are built at the first
                                                  // request
     uint64_t triangles = 0;                      // in all trees
-    std::vector<PlacedBvh> placed;               // contents of top_level
+    std::vector<PlacedBvh> placed;               // contents of tlas
     double build_seconds = 0; // seconds for placement, trees (built or read from the cache) and the requested
                               // structures
 };

@@ -50,9 +50,9 @@ HD inline Reprojection reproject_surface(const FrameCameras& cameras, const Scen
                                          const PreviousScene& before, Vec2 centre, Float4 place) {
     const Vec3 point = point_at(scene.instances, scene.meshes, place);
     const bool is_still = before.instances == scene.instances && before.meshes == scene.meshes;
-    const SeenPoint now = see_point(cameras.now, point);
-    const SeenPoint then =
-        see_point(cameras.before, is_still ? point : point_at(before.instances, before.meshes, place));
+    const ProjectedPoint now = project_point(cameras.now, point);
+    const ProjectedPoint then =
+        project_point(cameras.before, is_still ? point : point_at(before.instances, before.meshes, place));
     return {centre + (then.pixel - now.pixel), then.depth};
 }
 

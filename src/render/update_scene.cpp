@@ -18,7 +18,7 @@ std::vector<PartChange> changes_of(const Scene& scene, const MeshPlacement& plac
     const auto raise = [&](std::size_t part, PartChange change) { changes[part] = std::max(changes[part], change); };
     const auto mesh_changes = [&](const std::vector<uint32_t>& meshes, PartChange change) {
         for (const uint32_t mesh : meshes) {
-            if (placement.tree_of_mesh[mesh] != kBakedMesh) raise(1 + placement.tree_of_mesh[mesh], change);
+            if (placement.blas_of_mesh[mesh] != kBakedMesh) raise(1 + placement.blas_of_mesh[mesh], change);
             for (std::size_t i = 0; i < scene.instances.size(); ++i) {
                 if (placement.is_baked[i] && scene.instances[i].mesh == mesh) raise(0, change);
             }
@@ -39,7 +39,7 @@ SceneTriangles changed_triangles(const Scene& scene, const MeshPlacement& placem
     triangles.meshes.resize(placement.mesh_tree_count);
     if (changes[0] != PartChange::None) triangles.baked = baked_triangles(scene, placement);
     for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
-        const uint32_t tree = placement.tree_of_mesh[mesh];
+        const uint32_t tree = placement.blas_of_mesh[mesh];
         if (tree == kBakedMesh || changes[1 + tree] == PartChange::None) continue;
         triangles.meshes[tree] = mesh_triangles(scene.meshes[mesh]);
     }
@@ -66,8 +66,8 @@ PreparedScene update_scene(const PreparedScene& before, const Scene& scene, cons
     after.trees = update_binary_trees(before.trees, before.structures->builder(), changes, triangles);
     after.placed = placed_trees(scene, placement, after.trees.mesh_bounds(), motions);
     after.motions = std::move(motions);
-    after.top_level = build_top_level_bvh(after.placed);
-    after.structures = before.structures->updated(after.trees, after.top_level, changes, triangles);
+    after.tlas = build_tlas(after.placed);
+    after.structures = before.structures->updated(after.trees, after.tlas, changes, triangles);
     after.triangles = after.trees.triangle_count();
     after.build_seconds = watch.seconds();
     after.lights =

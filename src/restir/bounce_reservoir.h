@@ -4,10 +4,10 @@
 // send; 48 bytes.
 //
 // Diffuse lobes beneath a reflecting layer send A(wo) B: the transmittance on the way out, times the light that has
-// entered, which does not depend on the direction (shading/lobes/passage.h). B is stored, so that a point sends the
-// right light to any receiver. Thus reuse is exact; light of other lobes at the point stays with the path that found
-// it. If a normal map's normal is bent towards the viewer at grazing angles (shading_frame.h), the two differ
-// slightly.
+// entered, which does not depend on the direction (shading/lobes/layer_transmittance.h). B is stored, so that a point
+// sends the right light to any receiver. Thus reuse is exact; light of other lobes at the point stays with the path
+// that found it. If a normal map's normal is bent towards the viewer at grazing angles (shading_frame.h), the two
+// differ slightly.
 //
 // Densities of points are measured in barycentric weights of their triangle. The ratio of solid angles between two
 // pixels (the Jacobian of Ouyang et al., "ReSTIR GI: Path Resampling for Real-Time Path Tracing", HPG 2021, equation
@@ -32,14 +32,14 @@ struct alignas(16) BounceReservoir {
 static_assert(sizeof(BounceReservoir) == 48);
 
 /// A reservoir's point as seen from a surface.
-struct SeenPlace {
+struct Reconnection {
     Vec3 wi;       // unit, towards it
     float measure; // solid angle per barycentric measure
     float side;    // which side is seen, in the sense of BounceReservoir::side
     bool is_there;
 };
 
-HD inline SeenPlace see_place(const PlacedTriangle& triangle, Vec3 from) {
+HD inline Reconnection reconnect(const PlacedTriangle& triangle, Vec3 from) {
     const Vec3 way = triangle.position - from;
     const float distance_squared = length_squared(way);
     const Vec3 wi = way / sqrt(distance_squared), normal = cross(triangle.ab, triangle.ac);
@@ -53,7 +53,7 @@ HD inline PlacedTriangle place_of(const SceneView& scene, const BounceReservoir&
 }
 
 /// A(wo) of a surface, times its colours' luminance; 0 if it has no diffuse lobes.
-HD inline float diffuse_passage(const Surface& surface, Vec3 wo) {
+HD inline float diffuse_transmittance(const Surface& surface, Vec3 wo) {
     const Vec3 local = surface.frame.to_local(wo);
     return luminance(surface.bsdf.evaluate(local, {0, 0, copysign(1.0f, local.z)}, only(LobeClass::Diffuse)).f);
 }
@@ -62,15 +62,15 @@ HD inline float diffuse_passage(const Surface& surface, Vec3 wo) {
 /// not need.
 HD inline Rgb light_scattered(const SceneView& scene, const Surface& surface, Vec3 wo,
                               const BounceReservoir& reservoir) {
-    const SeenPlace seen = see_place(place_of(scene, reservoir), surface.position);
+    const Reconnection seen = reconnect(place_of(scene, reservoir), surface.position);
     if (!seen.is_there || seen.side != reservoir.side) return {};
     return seen.measure * (surface.evaluate(wo, seen.wi, only(LobeClass::Diffuse)).f * reservoir.sent);
 }
 
-HD inline bool find_sight(const SceneView& scene, const BounceReservoir& reservoir, const PlacedTriangle& from,
-                          uint32_t coin, Ray& ray, TriangleId& target) {
+HD inline bool make_visibility_ray(const SceneView& scene, const BounceReservoir& reservoir, const PlacedTriangle& from,
+                                   uint32_t coin, Ray& ray, TriangleId& target) {
     const PlacedTriangle place = place_of(scene, reservoir);
-    const SeenPlace seen = see_place(place, from.position);
+    const Reconnection seen = reconnect(place, from.position);
     if (!seen.is_there || seen.side != reservoir.side) return false;
     ray.origin = offset_ray_origin(from.position, from.error, from.normal, seen.wi);
     ray.direction = offset_ray_origin(place.position, place.error, place.normal, -seen.wi) - ray.origin;

@@ -10,11 +10,11 @@
 namespace pertev {
 
 inline constexpr uint32_t kNoPixel = 0xffffffffu;
-inline constexpr uint32_t kMostNeighbours = 3;
+inline constexpr uint32_t kMaxNeighbours = 3;
 
 /// Up to kMostNeighbours pixels, followed by kNoPixel.
 struct alignas(16) Neighbours {
-    uint32_t pixels[kMostNeighbours] = {kNoPixel, kNoPixel, kNoPixel};
+    uint32_t pixels[kMaxNeighbours] = {kNoPixel, kNoPixel, kNoPixel};
     uint32_t unused = 0;
 };
 
@@ -62,7 +62,7 @@ struct FindBeside {
             const int x = static_cast<int>(pixel) % width, y = static_cast<int>(pixel) / width;
             const Float4 own = normal[pixel];
             uint32_t count = 0;
-            for (uint32_t k = 0; k < neighbours && k < kMostNeighbours; ++k) {
+            for (uint32_t k = 0; k < neighbours && k < kMaxNeighbours; ++k) {
                 const Vec2 u = sample_2d(here.sampler, here.key(pixel), kGroupNeighbours + k);
                 const Vec2 offset = radius * sample_uniform_disk_concentric(u);
                 const int to_x = x + to_int(floor(offset.x + 0.5f), -width, width),

@@ -3,12 +3,12 @@
 // A pixel's reservoir of direct light: one sample point on a light that represents all; 32 bytes.
 
 #include "restir/pixel_surfaces.h"
-#include "shading/light_place.h"
+#include "shading/emitter_point.h"
 
 namespace pertev {
 
 struct alignas(16) LightReservoir {
-    LightPlace place;
+    EmitterPoint place;
     float weight = 0;    // contribution weight W: the integral over points is about W times the integrand; 0 if empty
     float count = 0;     // number of candidates that it represents (M, confidence)
     float seen = 0;      // while reservoirs are combined: sum of the shares of pixels that see the point
@@ -28,8 +28,8 @@ HD inline Rgb light_scattered(const SceneView& scene, const Surface& surface, Ve
 
 /// Makes the shadow ray from a surface's triangle to the reservoir's point, which ends before `target`. Returns false
 /// if nothing can arrive. `coin` belongs to the surface's pixel.
-HD inline bool find_sight(const SceneView& scene, const LightReservoir& reservoir, const PlacedTriangle& from,
-                          uint32_t coin, Ray& ray, TriangleId& target) {
+HD inline bool make_visibility_ray(const SceneView& scene, const LightReservoir& reservoir, const PlacedTriangle& from,
+                                   uint32_t coin, Ray& ray, TriangleId& target) {
     LightSample light;
     float measure = 1;
     if (!find_light(scene.lights, reservoir.place, from.position, light, measure)) return false;

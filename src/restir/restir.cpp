@@ -4,13 +4,13 @@
 #include "device/launch.h"
 #include "restir/add_direct_light.h"
 #include "restir/add_indirect_light.h"
-#include "restir/draw_candidates.h"
-#include "restir/take_bounces.h"
+#include "restir/initial_candidates.h"
+#include "restir/initial_gi_reservoirs.h"
 
 namespace pertev {
 namespace {
 
-constexpr uint32_t kMostTraces = 20; // maximum number of traces per frame
+constexpr uint32_t kMaxTraces = 20; // maximum number of traces per frame
 constexpr std::size_t kBounceArrays = 4;
 
 } // namespace
@@ -22,7 +22,7 @@ Restir::Restir(Queue& queue, uint32_t width, uint32_t height, RestirLight light)
       shares_(queue, pixels_, "reservoirs"), rays_(queue, pixels_, "reservoirs' rays"),
       ray_ends_(queue, std::size_t(2) * pixels_, "reservoirs' rays"),
       ray_words_(queue, std::size_t(2) * pixels_, "reservoirs' rays"),
-      ray_counts_(queue, kMostTraces, "reservoirs' rays") {
+      ray_counts_(queue, kMaxTraces, "reservoirs' rays") {
     if (light == RestirLight::Indirect) {
         bounces_ = {queue, std::size_t(2) * pixels_, "reservoirs"};
         bounce_numbers_ = {queue, kBounceArrays * pixels_, "first bounces"};
@@ -60,9 +60,11 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
 
     BounceReservoir *const fresh_bounces = bounces_.data(), *const kept_bounces = fresh_bounces + pixels_;
     const bool has_bounces = light_ == RestirLight::Indirect;
-    if (has_bounces) launch(*queue_, "take_bounces", pixels_, TakeBounces{scene, here, film, fresh_bounces});
-    launch(*queue_, "draw_candidates", pixels_, DrawCandidates{scene, here, met_.data(), fresh, settings.candidates});
-    ask(scene, here, fresh, tracer, 0);
+    if (has_bounces)
+        launch(*queue_, "initial_gi_reservoirs", pixels_, MakeInitialGiReservoirs{scene, here, film, fresh_bounces});
+    launch(*queue_, "initial_candidates", pixels_,
+           SampleInitialCandidates{scene, here, met_.data(), fresh, settings.candidates});
+    test_visibility(scene, here, fresh, tracer, 0);
     if (has_history_ && settings.history > 0) {
         const FrameCameras cameras = {picture.camera.view, camera_before_.view, width_, height_};
         launch(*queue_, "find_before", pixels_,
@@ -76,10 +78,10 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
     }
     launch(*queue_, "find_beside", pixels_,
            FindBeside{here, noisy.normal, settings.neighbours, settings.radius, neighbours_.data()});
-    reuse(scene, here, here, fresh, fresh, kept, kInfinity, kMostEntries, tracer, kGroupReuse + 2);
+    reuse(scene, here, here, fresh, fresh, kept, kInfinity, kMaxEntries, tracer, kGroupReuse + 2);
     launch(*queue_, "add_direct_light", pixels_, AddDirectLight{scene, here, kept, film});
     if (has_bounces) {
-        reuse(scene, here, here, fresh_bounces, fresh_bounces, kept_bounces, kInfinity, kMostEntries, tracer,
+        reuse(scene, here, here, fresh_bounces, fresh_bounces, kept_bounces, kInfinity, kMaxEntries, tracer,
               kGroupReuse + 3);
         launch(*queue_, "add_indirect_light", pixels_, AddIndirectLight{scene, here, kept_bounces, film});
     }
@@ -95,31 +97,32 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
 /// each.
 template <class Reservoir>
 void Restir::reuse(const SceneView& scene, const PixelSurfaces& here, const PixelSurfaces& there, const Reservoir* own,
-                   const Reservoir* others, Reservoir* to, float most_count, uint32_t entries, SceneTracer& tracer,
+                   const Reservoir* others, Reservoir* to, float max_count, uint32_t entries, SceneTracer& tracer,
                    uint32_t group) {
     launch(*queue_, "reuse_reservoirs", pixels_,
            ReuseReservoirs<Reservoir>{scene, here, there, own, others, neighbours_.data(), to, shares_.data(),
-                                      most_count, group});
+                                      max_count, group});
     for (uint32_t entry = 0; entry < entries; ++entry) {
-        ask(scene, entry == 0 ? here : there, to, tracer, entry);
+        test_visibility(scene, entry == 0 ? here : there, to, tracer, entry);
     }
     launch(*queue_, "finish_reuse", pixels_, FinishReuse<Reservoir>{to});
 }
 
 /// Finds whether the pixel of entry `entry` sees the points of `reservoirs`.
 template <class Reservoir>
-void Restir::ask(const SceneView& scene, const PixelSurfaces& surfaces, Reservoir* reservoirs, SceneTracer& tracer,
-                 uint32_t entry) {
-    PERTEV_CHECK(traced_ < kMostTraces);
+void Restir::test_visibility(const SceneView& scene, const PixelSurfaces& surfaces, Reservoir* reservoirs,
+                             SceneTracer& tracer, uint32_t entry) {
+    PERTEV_CHECK(traced_ < kMaxTraces);
     uint32_t* const count = ray_counts_.data() + traced_++;
-    const SightRaysView rays = {
+    const VisibilityRaysView rays = {
         rays_.data(), ray_ends_.data(), ray_ends_.data() + pixels_, ray_words_.data(), ray_words_.data() + pixels_,
         count};
-    launch(*queue_, "ask_for_sight", pixels_,
-           AskForSight<Reservoir>{scene, surfaces, neighbours_.data(), shares_.data(), reservoirs, rays, entry});
-    const WorkCount asked = {pixels_, count};
-    tracer.find_occlusions(rays.query(), asked, {nullptr, rays.keys});
-    launch(*queue_, "count_sight", asked, CountSight<Reservoir>{rays, shares_.data(), reservoirs, entry});
+    launch(
+        *queue_, "queue_visibility_rays", pixels_,
+        QueueVisibilityRays<Reservoir>{scene, surfaces, neighbours_.data(), shares_.data(), reservoirs, rays, entry});
+    const WorkCount visibility_rays = {pixels_, count};
+    tracer.find_occlusions(rays.query(), visibility_rays, {nullptr, rays.keys});
+    launch(*queue_, "count_visible", visibility_rays, CountVisible<Reservoir>{rays, shares_.data(), reservoirs, entry});
 }
 
 } // namespace pertev

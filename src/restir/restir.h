@@ -52,11 +52,11 @@ public:
 private:
     template <class Reservoir>
     void reuse(const SceneView& scene, const PixelSurfaces& here, const PixelSurfaces& there, const Reservoir* own,
-               const Reservoir* others, Reservoir* to, float most_count, uint32_t entries, SceneTracer& tracer,
+               const Reservoir* others, Reservoir* to, float max_count, uint32_t entries, SceneTracer& tracer,
                uint32_t group);
     template <class Reservoir>
-    void ask(const SceneView& scene, const PixelSurfaces& surfaces, Reservoir* reservoirs, SceneTracer& tracer,
-             uint32_t entry);
+    void test_visibility(const SceneView& scene, const PixelSurfaces& surfaces, Reservoir* reservoirs,
+                         SceneTracer& tracer, uint32_t entry);
 
     Queue* queue_;
     uint32_t width_, height_, pixels_;
@@ -64,7 +64,7 @@ private:
     bool has_history_ = false;
     CameraRays camera_before_ = {};
     SampleNumbers numbers_before_ = {};
-    Buffer<LightPlace> met_;
+    Buffer<EmitterPoint> met_;
     Buffer<LightReservoir> reservoirs_; // two arrays: this frame's candidates, and the final reservoirs, with which
                                         // the next frame begins
     Buffer<BounceReservoir> bounces_;   // two arrays like `reservoirs_`, for indirect light

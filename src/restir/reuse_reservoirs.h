@@ -2,28 +2,28 @@
 
 // Spatial and temporal reuse: combines a pixel's reservoir with those of its neighbours, in the previous frame and
 // again in the same frame. It works for any reservoir with the functions of light_reservoir.h and bounce_reservoir.h:
-// light_scattered and find_sight.
+// light_scattered and make_visibility_ray.
 //
 // Item i, the reservoir of pixel i, is picked by share(i, item i) target(own pixel, item i) weight i, with
 //   share(j, x) = count j target(j, x) / sum over all k of count k target(k, x)
 // This is the generalised balance heuristic over target functions without visibility (Lin et al., "Generalized
 // Resampled Importance Sampling", SIGGRAPH 2022, section 5.1). Each pixel sees its own item, so of the picked item's
-// shares only those of pixels that see it count: AskForSight and CountSight test them, one pixel after the other, and
-// the weight is divided by their sum. Thus no light is lost or counted twice, whatever the occlusion, at one ray per
-// neighbour.
+// shares only those of pixels that see it count: QueueVisibilityRays and CountVisible test them, one pixel after the
+// other, and the weight is divided by their sum. Thus no light is lost or counted twice, whatever the occlusion, at one
+// ray per neighbour.
 
 #include "restir/find_neighbours.h"
-#include "restir/sight_rays.h"
-#include "restir/weighted_pick.h"
+#include "restir/ris_selection.h"
+#include "restir/visibility_rays.h"
 
 namespace pertev {
 
 /// Number of pixels whose reservoirs are combined; the pixel itself is entry 0.
-inline constexpr uint32_t kMostEntries = kMostNeighbours + 1;
+inline constexpr uint32_t kMaxEntries = kMaxNeighbours + 1;
 
 /// Shares of the picked item, by entry.
 struct alignas(16) Shares {
-    float of[kMostEntries] = {};
+    float of[kMaxEntries] = {};
 };
 
 template <class Reservoir>
@@ -34,8 +34,8 @@ struct ReuseReservoirs {
     const Neighbours* neighbours;
     Reservoir* to;
     Shares* shares;
-    float most_count; // maximum count of a neighbour
-    uint32_t group;   // group of random numbers
+    float max_count; // maximum count of a neighbour
+    uint32_t group;  // group of random numbers
 
     HD void operator()(uint32_t pixel) const {
         const Reservoir first = own[pixel];
@@ -50,13 +50,13 @@ struct ReuseReservoirs {
 
 private:
     HD void combine(uint32_t pixel, const Reservoir& first, Reservoir& result, Shares& result_shares) const {
-        Reservoir entries[kMostEntries];
-        float targets[kMostEntries][kMostEntries]; // [j][i] target function of pixel j for item i
+        Reservoir entries[kMaxEntries];
+        float targets[kMaxEntries][kMaxEntries]; // [j][i] target function of pixel j for item i
         entries[0] = first;
         uint32_t count = 1;
-        for (uint32_t k = 0; k < kMostNeighbours && neighbours[pixel].pixels[k] != kNoPixel; ++k) {
+        for (uint32_t k = 0; k < kMaxNeighbours && neighbours[pixel].pixels[k] != kNoPixel; ++k) {
             entries[count] = others[neighbours[pixel].pixels[k]];
-            entries[count].count = min(entries[count].count, most_count);
+            entries[count].count = min(entries[count].count, max_count);
             ++count;
         }
         for (uint32_t j = 0; j < count; ++j) {
@@ -71,7 +71,7 @@ private:
                 targets[j][i] = luminance(light_scattered(scene, surface, -direction, entries[i]));
             }
         }
-        WeightedPick pick = {sample_1d(here.sampler, here.key(pixel), group)};
+        RisSelection pick = {sample_1d(here.sampler, here.key(pixel), group)};
         result = {};
         float picked_sum = 0, all = 0;
         for (uint32_t i = 0; i < count; ++i) {
@@ -90,7 +90,7 @@ private:
         const uint32_t picked = result.source;
         result.weight = pick.sum / targets[0][picked];
         if (!is_finite(result.weight)) result.weight = 0;
-        for (uint32_t j = 0; j < kMostEntries; ++j) {
+        for (uint32_t j = 0; j < kMaxEntries; ++j) {
             result_shares.of[j] = j < count ? entries[j].count * targets[j][picked] / picked_sum : 0.0f;
         }
         result.seen = result_shares.of[picked];
@@ -99,13 +99,13 @@ private:
 
 /// Makes a shadow ray to the picked item from the pixel of entry `entry`, if its visibility is unknown.
 template <class Reservoir>
-struct AskForSight {
+struct QueueVisibilityRays {
     SceneView scene;
     PixelSurfaces surfaces; // surfaces of that entry
     const Neighbours* neighbours;
     const Shares* shares;
     Reservoir* reservoirs;
-    SightRaysView rays;
+    VisibilityRaysView rays;
     uint32_t entry;
 
     HD void operator()(uint32_t pixel) const {
@@ -117,7 +117,7 @@ struct AskForSight {
         const uint32_t coin = surfaces.coin(from);
         Ray ray;
         TriangleId target;
-        if (find_sight(scene, reservoir, triangle, coin, ray, target)) {
+        if (make_visibility_ray(scene, reservoir, triangle, coin, ray, target)) {
             const Hit at = surfaces.hit(from);
             rays.add(ray, {at.instance, at.primitive}, target, coin, pixel);
         } else if (entry == 0) {
@@ -128,8 +128,8 @@ struct AskForSight {
 
 /// Evaluates the traced shadow rays.
 template <class Reservoir>
-struct CountSight {
-    SightRaysView rays;
+struct CountVisible {
+    VisibilityRaysView rays;
     const Shares* shares;
     Reservoir* reservoirs;
     uint32_t entry;

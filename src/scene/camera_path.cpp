@@ -5,7 +5,7 @@
 namespace pertev {
 namespace {
 
-constexpr float kLeastFovDeg = 0.01f, kMostFovDeg = 179; // limits of `fov`
+constexpr float kMinFovDeg = 0.01f, kMaxFovDeg = 179; // limits of `fov`
 
 /// One component of the keys over time.
 template <class Number>
@@ -56,7 +56,7 @@ CameraKey sample_path(const CameraPath& path, double time_s) {
     now.up = to_float(vector(&CameraKey::up));
     if (now.fov_deg > 0) {
         const double fov_deg = number([](const CameraKey& key) { return key.fov_deg; });
-        now.fov_deg = clamp(static_cast<float>(fov_deg), kLeastFovDeg, kMostFovDeg);
+        now.fov_deg = clamp(static_cast<float>(fov_deg), kMinFovDeg, kMaxFovDeg);
     }
     return now;
 }

@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kMostNamed = 10;
+constexpr std::size_t kMaxNamed = 10;
 
 /// The greatest value of a texture's channel; at most 1.
 float greatest_texel(const Scene& scene, const TextureRef& ref, std::size_t channel) {
@@ -63,7 +63,7 @@ void warn_of_invisible_materials(const Scene& scene, const std::string& file, Me
     }
     std::size_t invisible = 0;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        if (unseen[i] == 0 || seen[i] > 0 || invisible++ >= kMostNamed) continue;
+        if (unseen[i] == 0 || seen[i] > 0 || invisible++ >= kMaxNamed) continue;
         const Material& material = scene.materials[i];
         messages.warn(
             {Place{file},
@@ -73,9 +73,9 @@ void warn_of_invisible_materials(const Scene& scene, const std::string& file, Me
                          material.origin.empty() ? "" : fmt::format(" ({})", material.origin),
                          counted(unseen[i], "surface"))});
     }
-    if (invisible > kMostNamed) {
-        messages.warn({Place{file}, fmt::format("{} {} invisible", counted(invisible - kMostNamed, "further material"),
-                                                is_or_are(invisible - kMostNamed))});
+    if (invisible > kMaxNamed) {
+        messages.warn({Place{file}, fmt::format("{} {} invisible", counted(invisible - kMaxNamed, "further material"),
+                                                is_or_are(invisible - kMaxNamed))});
     }
 }
 

@@ -54,7 +54,7 @@ struct MaterialParameters {
     bool is_emissive() const { return max_component(emission) > 0; }
     /// Whether it is sampled as an emitter. An unlit one is not: rays from the camera or a surface that hit it return
     /// its colour.
-    bool is_lamp() const { return is_emissive() && kind != MaterialKind::Unlit; }
+    bool is_emitter() const { return is_emissive() && kind != MaterialKind::Unlit; }
 };
 
 /// Calls number(value, name, least, most) for each number of a material and each channel of its colours, and

@@ -14,9 +14,9 @@ namespace {
 bool has_punctual_light(const Scene& scene) {
     return std::ranges::any_of(scene.lights, [](const Light& light) { return max_component(light.intensity) > 0; });
 }
-bool has_lamp(const Scene& scene) {
-    return std::ranges::any_of(scene.instances,
-                               [&](const Instance& instance) { return scene.materials[instance.material].is_lamp(); });
+bool has_emitter(const Scene& scene) {
+    return std::ranges::any_of(
+        scene.instances, [&](const Instance& instance) { return scene.materials[instance.material].is_emitter(); });
 }
 auto is_unlit_in(const Scene& scene) {
     return [&](const Instance& instance) { return scene.materials[instance.material].kind == MaterialKind::Unlit; };
@@ -34,7 +34,7 @@ bool gives_light(const Environment& environment) {
     return false;
 }
 bool has_any_light(const Scene& scene) {
-    return has_punctual_light(scene) || has_lamp(scene) || is_all_unlit(scene) ||
+    return has_punctual_light(scene) || has_emitter(scene) || is_all_unlit(scene) ||
            (scene.environment && gives_light(*scene.environment));
 }
 /// A list such as "no lamp, no point, spot or directional light, no environment".
@@ -61,7 +61,7 @@ bool has_own_ambient(const RenderSettings& settings, const Scene& scene) {
 std::string lights_of(const Scene& scene) {
     const bool has_environment = scene.environment && gives_light(*scene.environment);
     const std::string others =
-        fmt::format("{}{}{}", has_lamp(scene) ? "lamps" : "", has_lamp(scene) && has_environment ? " and " : "",
+        fmt::format("{}{}{}", has_emitter(scene) ? "lamps" : "", has_emitter(scene) && has_environment ? " and " : "",
                     has_environment ? "an environment" : "");
     return others.empty() ? "this scene has none" : fmt::format("this scene has {} alone", others);
 }
@@ -95,8 +95,8 @@ void check_integrator(const RenderSettings& settings) {
         !has_room_for_photons(photons.photons, settings.path.max_depth)) {
         throw Error(ErrorCode::OverLimit, "photons", fmt::format("{}", photons.photons),
                     fmt::format("with `max_depth={}` a pass may leave more than {} photons; at most {}",
-                                settings.path.max_depth, kMostStored,
-                                kMostStored / (2 * uint64_t(settings.path.max_depth - 1))));
+                                settings.path.max_depth, kMaxStored,
+                                kMaxStored / (2 * uint64_t(settings.path.max_depth - 1))));
     }
 }
 

@@ -102,7 +102,7 @@ uint32_t FilmRender::render(SampleRange range, const KeepGoing& keep_going) {
         if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) return false;
         return !keep_going || keep_going({before, before + count, seconds, integrator.rays(), made_share, seconds});
     };
-    if (!integrator.make_ready(goes_on)) return 0;
+    if (!integrator.prepare(goes_on)) return 0;
     const double made_seconds = makes ? watch.seconds() : 0;
     for (uint32_t done = 0; done < count;) {
         const auto now = [&] {

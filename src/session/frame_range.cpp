@@ -10,9 +10,9 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kMostFrames = 1'000'000'000;
+constexpr uint32_t kMaxFrames = 1'000'000'000;
 
-constexpr double kMostShutter = 1e6; // seconds, positive or negative
+constexpr double kMaxShutter = 1e6; // seconds, positive or negative
 
 /// Parses a number; infinite if it is too large.
 std::optional<double> seconds_in(std::string_view text) {
@@ -49,9 +49,9 @@ std::optional<Shutter> shutter(const PictureOptions& options) {
     const std::optional<double> close = seconds_in(std::string_view(options.shutter).substr(comma + 1)); // npos + 1: 0
     const auto open = comma == std::string::npos ? 0.0 : seconds_in(std::string_view(options.shutter).substr(0, comma));
     if (open && close) {
-        if (std::fabs(*open) <= kMostShutter && std::fabs(*close) <= kMostShutter) return Shutter{*open, *close};
+        if (std::fabs(*open) <= kMaxShutter && std::fabs(*close) <= kMaxShutter) return Shutter{*open, *close};
         throw Error(ErrorCode::BadInput, "shutter", options.shutter,
-                    fmt::format("OPEN and CLOSE are {:g} s at most, either way", kMostShutter));
+                    fmt::format("OPEN and CLOSE are {:g} s at most, either way", kMaxShutter));
     }
     throw Error(ErrorCode::BadInput, "shutter", options.shutter,
                 "expected SECONDS, or OPEN,CLOSE, both counted from the picture's time");
@@ -70,10 +70,10 @@ std::optional<FrameRange> frame_range(const PictureOptions& options) {
     const std::size_t dash = options.frames.find('-');
     const auto first = parse_whole_number(options.frames.substr(0, dash));
     const auto last = dash == std::string::npos ? first : parse_whole_number(options.frames.substr(dash + 1));
-    if (!first || !last || *first > *last || *last > kMostFrames) {
+    if (!first || !last || *first > *last || *last > kMaxFrames) {
         throw Error(ErrorCode::BadInput, "frames", options.frames,
                     fmt::format("expected A-B, two whole numbers of which the second is not the smaller, up to {}",
-                                kMostFrames));
+                                kMaxFrames));
     }
     sequence.first = static_cast<uint32_t>(*first);
     sequence.last = static_cast<uint32_t>(*last);

@@ -58,12 +58,13 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
     of_light.height = scaled_side(settings.height, reconstruction);
     number_ = number;
     NoisyFrame& frame = fit_frame(scene, sample_, of_light.width, of_light.height);
-    if (!reconstruction_ || !light_change_ || !light_change_->fits(frame)) { // another size, or other signals
-        light_change_.reset();
+    if (!reconstruction_ || !temporal_gradients_ ||
+        !temporal_gradients_->fits(frame)) { // another size, or other signals
+        temporal_gradients_.reset();
         reconstruction_.reset(); // freed before the new one, so that two need not fit
         reconstruction_.emplace(pictures_.queue(), of_light.width, of_light.height);
-        light_change_.emplace(pictures_.queue(), of_light.width, of_light.height, frame.splits_light(),
-                              reconstruction_->room_for_change());
+        temporal_gradients_.emplace(pictures_.queue(), of_light.width, of_light.height, frame.splits_light(),
+                                    reconstruction_->room_for_change());
     }
     if (camera_before_) { // belongs to another sequence
         camera_before_.reset();
@@ -72,7 +73,7 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
     Restir* const shared = restir_for(restir, of_light);
     rays_ = {};
     kind_seconds_ = {};
-    const LightChangeView change = look_for_change(of_light, reconstruction);
+    const TemporalGradientsView change = look_for_change(of_light, reconstruction);
     frame.leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
     take_sample(number, camera, of_light, frame, pictures_.abandon_flag());
     if (pictures_.is_abandoned()) { // parts of the sample may be missing
@@ -95,8 +96,8 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
         NoisyFrame& features = fit_frame(scene, features_, settings.width, settings.height);
         take_sample(number, camera, of_features, features);
         const CameraView feature_camera = pictures_.view_of(camera, of_features).camera.view;
-        reconstruction_->add_enlarged(frame, light.camera.view, features, feature_camera, light.scene, before, change,
-                                      reconstruction);
+        reconstruction_->add_upsampled(frame, light.camera.view, features, feature_camera, light.scene, before, change,
+                                       reconstruction);
     } else {
         features_.reset();
         reconstruction_->add(frame, light.camera.view, light.scene, before, change, reconstruction);
@@ -124,21 +125,22 @@ void FrameSequence::take_sample(uint32_t number, const Camera& camera, RenderSet
 }
 
 /// Returns the change of light since the previous frame, if that has left a small picture of its scene.
-LightChangeView FrameSequence::look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings) {
+TemporalGradientsView FrameSequence::look_for_change(const RenderSettings& of_light,
+                                                     const ReconstructionSettings& settings) {
     // The picture can be used once, because the frame reuses its memory.
     const std::optional<LightBefore> before = std::exchange(light_before_, {});
     const bool is_known = settings.follow_light && scene_has_changed_ && before && reconstruction_->frames() > 0 &&
                           before->path == of_light.path;
     if (!is_known) return {};
-    take_sample(before->number, before->camera, of_light, light_change_->after());
-    return light_change_->compare();
+    take_sample(before->number, before->camera, of_light, temporal_gradients_->after());
+    return temporal_gradients_->compare();
 }
 
 /// Leaves that picture for the next frame if `goes_on`, because motion usually continues.
 void FrameSequence::keep_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on) {
     light_before_.reset();
     if (!goes_on) return;
-    take_sample(number, camera, of_light, light_change_->before());
+    take_sample(number, camera, of_light, temporal_gradients_->before());
     light_before_ = {camera, number, of_light.path};
 }
 

@@ -7,8 +7,8 @@
 
 #include <optional>
 
-#include "denoise/light_change.h"
 #include "denoise/reconstruction.h"
+#include "denoise/temporal_gradients.h"
 #include "device/device_timer.h"
 #include "restir/restir.h"
 #include "session/picture_renderer.h"
@@ -56,7 +56,7 @@ public:
 private:
     void take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
                      const std::atomic<bool>* abandon = nullptr);
-    LightChangeView look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings);
+    TemporalGradientsView look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings);
     void keep_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on);
     Restir* restir_for(const RestirSettings& settings, const RenderSettings& of_light);
 
@@ -71,8 +71,8 @@ private:
                                           // positions
     std::optional<Camera> camera_before_; // camera of keep_as_before()
     bool scene_has_changed_ = false;      // since the last frame
-    std::optional<LightChange> light_change_;
-    /// The frame whose scene is in light_change_.
+    std::optional<TemporalGradients> temporal_gradients_;
+    /// The frame whose scene is in temporal_gradients_.
     struct LightBefore {
         Camera camera;
         uint32_t number = 0;

@@ -17,7 +17,7 @@
 namespace pertev {
 namespace {
 
-constexpr float kMostScale = 0x1p20f; // limit of |scale| of heights
+constexpr float kMaxScale = 0x1p20f; // limit of |scale| of heights
 
 [[noreturn]] void refuse(const HeightMapText& map, const std::string& why) {
     throw Error(ErrorCode::BadInput, "displacement", map.text, why);
@@ -55,9 +55,9 @@ Image first_channel(const std::variant<Rgba8Image, Image>& decoded) {
 
 Image read_heights(const HeightMapText& map, Messages* messages) {
     Image heights = first_channel(decode_image(read_file(map.file), map.file, messages));
-    const auto is_bad = [](float h) { return !(std::abs(h) <= kMostScale); };
+    const auto is_bad = [](float h) { return !(std::abs(h) <= kMaxScale); };
     if (std::ranges::any_of(heights.pixels, is_bad)) {
-        refuse(map, fmt::format("a height that is not finite, or beyond {}", kMostScale));
+        refuse(map, fmt::format("a height that is not finite, or beyond {}", kMaxScale));
     }
     return heights;
 }
@@ -87,8 +87,8 @@ HeightMapText parse_height_map(std::string_view text) {
     if (before) map.middle = *last;
     map.file = rest;
     if (map.file.empty()) fail();
-    if (!(std::abs(map.scale) <= kMostScale && std::abs(map.middle) <= kMostScale)) {
-        refuse(map, fmt::format("SCALE and MIDDLE are within {} and {}", -kMostScale, kMostScale));
+    if (!(std::abs(map.scale) <= kMaxScale && std::abs(map.middle) <= kMaxScale)) {
+        refuse(map, fmt::format("SCALE and MIDDLE are within {} and {}", -kMaxScale, kMaxScale));
     }
     return map;
 }

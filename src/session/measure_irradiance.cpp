@@ -11,14 +11,14 @@
 namespace pertev {
 namespace {
 
-RenderSettings probe_settings(const RenderSettings& asked) {
+RenderSettings probe_settings(const RenderSettings& requested) {
     RenderSettings settings;
     settings.integrator = IntegratorKind::Path;
-    settings.path = asked.path;
-    settings.body = asked.body;
-    settings.batch = asked.batch;
-    settings.tracers = asked.tracers;
-    settings.samples = asked.samples;
+    settings.path = requested.path;
+    settings.body = requested.body;
+    settings.batch = requested.batch;
+    settings.tracers = requested.tracers;
+    settings.samples = requested.samples;
     settings.width = settings.height = kMeterSide;
     settings.filter = PixelFilter::Box;
     return settings;
@@ -54,14 +54,14 @@ Camera meter_camera(const Scene& scene, const MeterPlace& place) {
 }
 
 Irradiance measure_irradiance(Queue& queue, const PreparedScene& scene, const MeterPlace& place,
-                              const RenderSettings& asked, const std::function<bool(double)>& keep_going) {
-    PERTEV_CHECK(asked.path.seed <= kMostMeterSeed);
-    RenderSettings settings = probe_settings(asked);
+                              const RenderSettings& requested, const std::function<bool(double)>& keep_going) {
+    PERTEV_CHECK(requested.path.seed <= kMaxMeterSeed);
+    RenderSettings settings = probe_settings(requested);
     Session session(queue, scene, meter_camera(*scene.scene, place), settings);
     Irradiance result;
     double estimates[4][kMeterRepeats];
     for (uint32_t repeat = 0; repeat < kMeterRepeats; ++repeat) {
-        settings.path.seed = asked.path.seed * kMeterRepeats + repeat;
+        settings.path.seed = requested.path.seed * kMeterRepeats + repeat;
         session.set_settings(settings);
         session.cut();
         session.render(settings.samples, [&](const RenderProgress& now) {

@@ -28,7 +28,7 @@ struct Irradiance {
 /// Number of independent estimates, and the side of each one's picture.
 inline constexpr uint32_t kMeterRepeats = 32, kMeterSide = 16;
 /// Limit of the seed: the first estimate's seed is the seed times kMeterRepeats, so that two seeds share no estimate.
-inline constexpr uint32_t kMostMeterSeed = UINT32_MAX / kMeterRepeats;
+inline constexpr uint32_t kMaxMeterSeed = UINT32_MAX / kMeterRepeats;
 
 /// Position and direction of a meter, in metres in the coordinates of the scene's file.
 struct MeterPlace {

@@ -36,8 +36,8 @@ Rgb light_of(const float* pixel) { return {pixel[0], pixel[1], pixel[2]}; }
 Image scattered_light(Image light, const Image& emitted) {
     for (std::size_t i = 0; i < light.pixels.size(); i += 4) {
         float* pixel = &light.pixels[i];
-        const Rgb lamps = light_of(&emitted.pixels[i]), rest = light_of(pixel) - lamps;
-        const bool counts = luminance(rest) >= luminance(lamps);
+        const Rgb emitters = light_of(&emitted.pixels[i]), rest = light_of(pixel) - emitters;
+        const bool counts = luminance(rest) >= luminance(emitters);
         pixel[0] = counts ? max(rest.r, 0.0f) : 0.0f;
         pixel[1] = counts ? max(rest.g, 0.0f) : 0.0f;
         pixel[2] = counts ? max(rest.b, 0.0f) : 0.0f;
@@ -61,9 +61,9 @@ float meter_exposure(const RenderSettings& settings, ToneMap tone_map,
     RenderSettings meter = meter_settings(settings);
     meter.transparent = true; // without the sky
     const Image light = render(meter);
-    RenderSettings lamps = meter;
-    lamps.path.max_depth = 0;
-    const Image scattered = scattered_light(light, render(lamps));
+    RenderSettings emitters = meter;
+    emitters.path.max_depth = 0;
+    const Image scattered = scattered_light(light, render(emitters));
     if (share_that_counts(scattered) >= kFewestThatCount) return auto_exposure_stops(scattered, tone_map);
     meter.transparent = settings.transparent;
     return auto_exposure_stops(settings.transparent ? light : render(meter), tone_map);

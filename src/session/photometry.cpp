@@ -5,8 +5,8 @@
 
 namespace pertev {
 
-double lumens_per_watt(const std::string& scene, double asked_for) {
-    if (asked_for > 0) return asked_for;
+double lumens_per_watt(const std::string& scene, double requested) {
+    if (requested > 0) return requested;
     const std::string extension = lower_case_extension(scene);
     return extension == ".gltf" || extension == ".glb" ? 1 : kLumensPerWatt;
 }

@@ -28,7 +28,7 @@ std::string amount(std::size_t bytes, std::size_t other = 0) {
 }
 
 std::string limit_text(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit) {
-    if (limit.is_asked) return fmt::format("`max_memory` allows {}", amount(limit.bytes, bytes));
+    if (limit.is_requested) return fmt::format("`max_memory` allows {}", amount(limit.bytes, bytes));
     return fmt::format("{} has {}, and the finished picture takes {}",
                        is_memory_of_group() ? "the container or service that this runs in" : "this machine",
                        amount(machine_memory_bytes(), bytes), amount(result_bytes(settings)));
@@ -39,19 +39,21 @@ std::string advice(const RenderSettings& settings, bool is_cuda) {
     const std::vector<std::string> layer_names = light_layers_of(settings);
     const std::size_t layers = layer_names.size();
     const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs, layer_names);
-    const std::size_t own = predicted_bytes(
-        settings,
-        {.width = settings.width, .height = settings.height, .samples = settings.samples, .walks_on_host = !is_cuda},
-        is_cuda);
+    const std::size_t own = predicted_bytes(settings,
+                                            {.width = settings.width,
+                                             .height = settings.height,
+                                             .samples = settings.samples,
+                                             .traverses_on_host = !is_cuda},
+                                            is_cuda);
     if (settings.integrator == IntegratorKind::PhotonMap && own > film) {
         return fmt::format("Photons take {} (`photons={}`, `max_depth={}`): a smaller one of either takes less",
                            amount(own), settings.photon_map.photons, settings.path.max_depth);
     }
     if (settings.integrator == IntegratorKind::IrradianceCache && own > film) {
-        const bool has_walks = is_cuda || settings.body == PathBody::Wavefront;
+        const bool has_traversals = is_cuda || settings.body == PathBody::Wavefront;
         return fmt::format("Records of {}x{} pixels{} take {}: a smaller `size`{} takes less", settings.width,
-                           settings.height, has_walks ? " and their rays" : "", amount(own),
-                           has_walks ? ", or fewer `hemisphere_rays`," : "");
+                           settings.height, has_traversals ? " and their rays" : "", amount(own),
+                           has_traversals ? ", or fewer `hemisphere_rays`," : "");
     }
     return fmt::format("{}x{} pixels{} take {} in a film: {} smaller `size`{} takes less", settings.width,
                        settings.height, layers > 0 ? " and " + counted(layers, "layer") + " of `lpe`" : "",
@@ -61,8 +63,9 @@ std::string advice(const RenderSettings& settings, bool is_cuda) {
 
 } // namespace
 
-MemoryLimit memory_to_render_in(const Queue& queue, const RenderSettings& settings, std::optional<std::size_t> asked) {
-    if (asked) return {*asked, true, queue.is_cuda()};
+MemoryLimit memory_to_render_in(const Queue& queue, const RenderSettings& settings,
+                                std::optional<std::size_t> requested) {
+    if (requested) return {*requested, true, queue.is_cuda()};
     if (queue.is_cuda()) return {SIZE_MAX, false, true};
     const std::size_t all = machine_memory_bytes(), result = result_bytes(settings);
     return {all > result ? all - result : 0, false, false};

@@ -5,16 +5,16 @@
 #include <set>
 #include <vector>
 
-#include "denoise/enlarged_frame.h"
 #include "denoise/motion_vectors.h"
 #include "denoise/picture_denoiser.h"
+#include "denoise/upsampled_frame.h"
 #include "session/session.h"
 #include "tracer/deforming_tree.h"
 
 namespace pertev {
 namespace {
 
-bool splits_light(const PreparedScene& scene) { return materials_known(*scene.scene) == MaterialsKnown::Nothing; }
+bool splits_light(const PreparedScene& scene) { return shading_variant(*scene.scene) == ShadingVariant::General; }
 
 /// Allocations that pictures and frames share: the scene, its trees, and the integrator with its queues.
 class Tracing {
@@ -27,12 +27,12 @@ public:
         for (const Instance& instance : scene.scene->instances) {
             size.triangles += scene.scene->meshes[instance.mesh].triangle_count();
         }
-        size.walks_on_host = can_walk_on_host(tracers, queue.is_cuda());
+        size.traverses_on_host = can_traverse_on_host(tracers, queue.is_cuda());
         size.has_times = scene.motions != nullptr;
         integrator_->reserve(size);
         take_deforming_trees(scene, tracers);
         if (queue.is_cuda()) beside_ += scene.structures->device_bytes(tracers);
-        if (!queue.is_cuda()) beside_ += integrator_->most_host_bytes(size);
+        if (!queue.is_cuda()) beside_ += integrator_->max_host_bytes(size);
     }
     std::size_t bytes() const { return queue_.allocated_bytes() + beside_; }
 
@@ -44,13 +44,13 @@ private:
         const auto may_deform = [&](TreeLayout layout) { return can_deform(layout, queue_.is_cuda()); };
         if (scene.poses.empty() || !std::ranges::all_of(layouts, may_deform)) return;
         for (const TreeLayout layout : layouts) {
-            beside_ += scene.top_level.nodes.size() * sizeof(BvhNode) +
-                       scene.top_level.instances.size() * sizeof(InstanceRecord) +
+            beside_ += scene.tlas.nodes.size() * sizeof(BvhNode) +
+                       scene.tlas.instances.size() * sizeof(InstanceRecord) +
                        scene.trees.parts.size() * sizeof(CompressedBvhView) + 3 * 256;
             if (layout != TreeLayout::Compressed) continue; // the host's other trees are not counted
             for (std::size_t i = 0; i < scene.poses.size(); ++i) {
                 const uint32_t mesh = scene.scene->shapes[i].mesh;
-                if (scene.poses[i].is_on_host || scene.tree_of_mesh[mesh] == kBakedMesh) continue;
+                if (scene.poses[i].is_on_host || scene.blas_of_mesh[mesh] == kBakedMesh) continue;
                 trees_.emplace_back(queue_, scene.scene->meshes[mesh].triangle_count());
             }
         }
@@ -100,7 +100,7 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
     std::optional<Restir> sharing;
     if (restir.light != RestirLight::Off) sharing.emplace(queue, of_light[0], of_light[1], restir.light);
     std::optional<NoisyFrame> features;
-    std::optional<EnlargedFrame> enlarged;
+    std::optional<UpsampledFrame> enlarged;
     if (reconstruction.resolution_scale < 1) {
         features.emplace(queue, width, height, splits);
         enlarged.emplace(queue, width, height);

@@ -30,7 +30,7 @@ struct SceneOptions {
     std::string environment; // a file, or "r,g,b"
     float environment_rotation_deg = 0, environment_scale = 1;
     std::string ground = "auto"; // or on, off
-    std::vector<std::string> lamps;
+    std::vector<std::string> emitters;
     float efficacy = 0; // lm/W; 0: by the kind of file
     bool two_sided_lights = false, show_back_faces = false;
 };
@@ -39,10 +39,10 @@ struct SceneOptions {
 struct TracerOptions {
     TreeBuild default_build = kDefaultBuild; // used if `build` is empty; not a setting
     std::string build;
-    std::vector<std::string> structures, walks, rta, order, distributions;
+    std::vector<std::string> structures, traversals, rta, order, distributions;
 
     bool are_empty() const {
-        return build.empty() && structures.empty() && walks.empty() && rta.empty() && order.empty() &&
+        return build.empty() && structures.empty() && traversals.empty() && rta.empty() && order.empty() &&
                distributions.empty();
     }
 };

@@ -98,7 +98,7 @@ std::vector<Setting> picture_settings() {
             "The scene is sorted for rays so, as pertev lab names it, whatever build says. It may be given for one "
             "kind of ray: camera=, bounce= or shadow=NAME.",
             On{kTracing}, Mark::NotKept),
-        row("walk", "Tracing", "[KIND=]NAME", FIELD(tracer.walks),
+        row("walk", "Tracing", "[KIND=]NAME", FIELD(tracer.traversals),
             "Rays traverse it by this algorithm, as pertev lab names it.", On{kTracing}, Mark::NotKept),
         row("rta", "Tracing", "[KIND=]WHICH", FIELD(tracer.rta), "Redundant traversal avoidance: on, nodes or off.",
             On{kTracing}, Mark::NotKept),

@@ -62,7 +62,7 @@ std::vector<Setting> scene_settings() {
             "A made-up ground catches the shadow. auto puts it where camera and light are made up around a thing.",
             Choices{{"on", "off", "auto"}}, On{kRender | kView}, Mark::OpensScene),
 
-        row("lamp", "Lamps", "NAME=AMOUNT", FIELD(scene.lamps),
+        row("lamp", "Lamps", "NAME=AMOUNT", FIELD(scene.emitters),
             "Every lamp of this name (* and ? stand for letters) gives so much light, in W, lm, cd, lx or nits, as in "
             "bulb=800lm. It may be given again.",
             On{kScenes}, Mark::OpensScene),

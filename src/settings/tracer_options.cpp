@@ -39,13 +39,14 @@ std::string list_of() {
 
 /// A structure with only one traversal implies that traversal, without the switches of the default traversal, and
 /// vice versa.
-void complete(Combination& c, bool structure_named, bool walk_named) {
-    if (structure_named && !walk_named) {
-        if (const auto walk = only_walk_of(c.structure)) c = {.structure = c.structure, .walk = *walk};
+void complete(Combination& c, bool structure_named, bool traversal_named) {
+    if (structure_named && !traversal_named) {
+        if (const auto traversal = only_traversal_of(c.structure))
+            c = {.structure = c.structure, .traversal = *traversal};
     }
-    if (walk_named && !structure_named) {
-        if (c.walk == WalkKind::Kd) c.structure = StructureKind::KdSah;
-        if (c.walk == WalkKind::Octree) c.structure = StructureKind::Octree;
+    if (traversal_named && !structure_named) {
+        if (c.traversal == TraversalKind::Kd) c.structure = StructureKind::KdSah;
+        if (c.traversal == TraversalKind::Octree) c.structure = StructureKind::Octree;
     }
 }
 
@@ -60,22 +61,22 @@ std::optional<TracerChoice> tracer_choice(const TracerOptions& options, bool on_
     if (options.are_empty() && options.default_build == kDefaultBuild) return std::nullopt;
     TracerChoice choice =
         default_tracers(on_cuda, value_named<TreeBuild>(options.build).value_or(options.default_build));
-    std::set<const Combination*> structure_named, walk_named;
+    std::set<const Combination*> structure_named, traversal_named;
     apply("structure", options.structures, choice, list_of<StructureKind>(),
           [&](Combination& c, const std::string& name) {
               const auto kind = value_named<StructureKind>(name);
               if (kind) c.structure = *kind, structure_named.insert(&c);
               return kind.has_value();
           });
-    apply("walk", options.walks, choice, list_of<WalkKind>(), [&](Combination& c, const std::string& name) {
-        const auto kind = value_named<WalkKind>(name);
+    apply("walk", options.traversals, choice, list_of<TraversalKind>(), [&](Combination& c, const std::string& name) {
+        const auto kind = value_named<TraversalKind>(name);
         // Switches and the distribution of the default traversal do not apply to this one.
-        if (kind) c = {.structure = c.structure, .walk = *kind}, walk_named.insert(&c);
+        if (kind) c = {.structure = c.structure, .traversal = *kind}, traversal_named.insert(&c);
         return kind.has_value();
     });
     for (const RayKind kind : kValuesOf<RayKind>) {
         Combination& c = choice[kind];
-        complete(c, structure_named.contains(&c), walk_named.contains(&c));
+        complete(c, structure_named.contains(&c), traversal_named.contains(&c));
     }
     apply("rta", options.rta, choice, "on, nodes or off", [](Combination& c, const std::string& name) {
         const auto switches = rta_named(name, c.options);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The tracers of pictures, from the settings `build`, `structure`, `walk` and their switches. None changes the
+// The tracers of pictures, from the settings `build`, `structure`, `traversal` and their switches. None changes the
 // picture. `build` selects the tree for all rays; `structure` names one for some or all of them exactly, and takes
 // precedence. A text is "NAME" for all rays, or "KIND=NAME" for camera, bounce or shadow rays; the last one that
 // applies to a ray counts.

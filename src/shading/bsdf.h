@@ -1,8 +1,8 @@
 #pragma once
 
-// A BSDF: a base with layers on it, each a lobe (lobes/passage.h), as one plain struct without references. A new lobe
-// needs a file in lobes/, a kind, a member and a case in each switch of Lobe (the compiler names the missing ones), a
-// make function, and a line in tests/statistical/bsdf_cases.h.
+// A BSDF: a base with layers on it, each a lobe (lobes/layer_transmittance.h), as one plain struct without references.
+// A new lobe needs a file in lobes/, a kind, a member and a case in each switch of Lobe (the compiler names the missing
+// ones), a make function, and a line in tests/statistical/bsdf_cases.h.
 
 #include <cstdint>
 
@@ -121,22 +121,22 @@ struct Lobe {
         return {};
     }
     /// Value and density that the lobe adds under `way`; a layer then moves `way` beneath itself.
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, Passage& way) const {
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, LayerTransmittance& transmittance) const {
         switch (kind) {
         case LobeKind::None:
             break;
         case LobeKind::Diffuse:
-            return diffuse.evaluate(wo, wi, way);
+            return diffuse.evaluate(wo, wi, transmittance);
         case LobeKind::Conductor:
-            return conductor.evaluate(wo, wi, way);
+            return conductor.evaluate(wo, wi, transmittance);
         case LobeKind::Dielectric:
-            return dielectric.evaluate(wo, wi, way);
+            return dielectric.evaluate(wo, wi, transmittance);
         case LobeKind::Schlick:
-            return schlick.evaluate(wo, wi, beneath, way);
+            return schlick.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Coat:
-            return coat.evaluate(wo, wi, beneath, way);
+            return coat.evaluate(wo, wi, beneath, transmittance);
         case LobeKind::Sheen:
-            return sheen.evaluate(wo, wi, beneath, way);
+            return sheen.evaluate(wo, wi, beneath, transmittance);
         }
         return {};
     }
@@ -264,16 +264,17 @@ private:
         if (!classes.has(lobe_class)) value.f = {};
         return value;
     }
-    HD BsdfValue evaluate_diffuse(Vec3 wo, Vec3 wi, const Passage& way) const {
-        return base.kind == LobeKind::Diffuse ? base.diffuse.evaluate(wo, wi, way) : BsdfValue{};
+    HD BsdfValue evaluate_diffuse(Vec3 wo, Vec3 wi, const LayerTransmittance& transmittance) const {
+        return base.kind == LobeKind::Diffuse ? base.diffuse.evaluate(wo, wi, transmittance) : BsdfValue{};
     }
     HD BsdfValue evaluate_lobes(Vec3 wo, Vec3 wi, LobeClasses classes) const {
         if (is_stacked) return evaluate_stack(*this, wo, wi, classes);
-        Passage way;
-        if (layer_count == 0) return masked(base.lobe_class(), base.evaluate(wo, wi, way), classes);
-        const BsdfValue layer = layers[0].schlick.evaluate(wo, wi, layers[0].beneath, way);
+        LayerTransmittance transmittance;
+        if (layer_count == 0) return masked(base.lobe_class(), base.evaluate(wo, wi, transmittance), classes);
+        const BsdfValue layer = layers[0].schlick.evaluate(wo, wi, layers[0].beneath, transmittance);
         const LobeClass layer_class = layers[0].schlick.lobe_class();
-        return masked(layer_class, layer, classes) + masked(LobeClass::Diffuse, evaluate_diffuse(wo, wi, way), classes);
+        return masked(layer_class, layer, classes) +
+               masked(LobeClass::Diffuse, evaluate_diffuse(wo, wi, transmittance), classes);
     }
     HD BsdfSample sample_lobes(Vec3 wo, float u_lobe, Vec2 u) const {
         if (is_stacked) return sample_stack(*this, wo, u_lobe, u);
@@ -296,16 +297,17 @@ private:
     }
 
     /// Evaluates the layers from `last` inwards; `way` then describes what is beneath them.
-    HD BsdfValue evaluate_layers(int last, Vec3 wo, Vec3 wi, LobeClasses classes, Passage& way) const {
+    HD BsdfValue evaluate_layers(int last, Vec3 wo, Vec3 wi, LobeClasses classes,
+                                 LayerTransmittance& transmittance) const {
         BsdfValue sum;
         for (int i = layer_count - 1; i >= last; --i)
-            sum = sum + masked(layers[i].lobe_class(), layers[i].evaluate(wo, wi, way), classes);
+            sum = sum + masked(layers[i].lobe_class(), layers[i].evaluate(wo, wi, transmittance), classes);
         return sum;
     }
     HD_CALL static BsdfValue evaluate_stack(Bsdf bsdf, Vec3 wo, Vec3 wi, LobeClasses classes) {
-        Passage way;
-        const BsdfValue layers = bsdf.evaluate_layers(0, wo, wi, classes, way);
-        return layers + masked(bsdf.base.lobe_class(), bsdf.base.evaluate(wo, wi, way), classes);
+        LayerTransmittance transmittance;
+        const BsdfValue layers = bsdf.evaluate_layers(0, wo, wi, classes, transmittance);
+        return layers + masked(bsdf.base.lobe_class(), bsdf.base.evaluate(wo, wi, transmittance), classes);
     }
     HD_CALL static SpecularBranches specular_of_lobes(Bsdf bsdf, Vec3 wo) {
         SpecularBranches sum;
@@ -323,9 +325,9 @@ private:
         return bsdf.is_stacked ? light_through_stack(bsdf, last, wo, wi) : 1.0f;
     }
     HD_CALL static float light_through_stack(Bsdf bsdf, int last, Vec3 wo, Vec3 wi) {
-        Passage way;
-        bsdf.evaluate_layers(last, wo, wi, kAllLobeClasses, way);
-        return way.light;
+        LayerTransmittance transmittance;
+        bsdf.evaluate_layers(last, wo, wi, kAllLobeClasses, transmittance);
+        return transmittance.light;
     }
     HD_CALL static bool has_delta_layers_only(Bsdf bsdf) {
         for (int i = 0; i < bsdf.layer_count; ++i)
@@ -344,10 +346,10 @@ private:
         }
         BsdfSample sample = bsdf.finish(draw, lobe_class, wo);
         if (!sample.is_delta()) return sample;
-        Passage way;
-        bsdf.evaluate_layers(i, wo, sample.wi, kAllLobeClasses, way);
-        sample.weight = (way.light / way.reach) * sample.weight;
-        sample.pdf = way.reach * sample.pdf;
+        LayerTransmittance transmittance;
+        bsdf.evaluate_layers(i, wo, sample.wi, kAllLobeClasses, transmittance);
+        sample.weight = (transmittance.light / transmittance.reach) * sample.weight;
+        sample.pdf = transmittance.reach * sample.pdf;
         return sample;
     }
 };

@@ -9,7 +9,7 @@
 #include "base/limits.h"
 #include "base/parallel_for.h"
 #include "math/hilbert_curve.h"
-#include "shading/brightness_pyramid.h"
+#include "shading/hierarchical_warp.h"
 
 namespace pertev {
 namespace {
@@ -21,7 +21,7 @@ double mean_of_channels(Rgb c) {
 }
 
 /// Pyramids of the textures of emitters in the scene, one per (image, encoding).
-using Pyramids = std::map<std::pair<int32_t, bool>, BrightnessPyramid>;
+using Pyramids = std::map<std::pair<int32_t, bool>, HierarchicalWarp>;
 
 Pyramids build_pyramids(const LightSetData& data, const std::vector<TextureImageView>& images,
                         const float* linear_from_srgb) {
@@ -46,7 +46,7 @@ double triangle_power(const LightSetData& data, const Pyramids& pyramids, const 
     const double untextured = faces * kPiDouble * area * mean_of_channels(surface.emission);
     const TextureRef& ref = surface.texture;
     if (ref.image == kNoImage) return untextured;
-    const BrightnessPyramid& pyramid = pyramids.at({ref.image, ref.is_srgb});
+    const HierarchicalWarp& pyramid = pyramids.at({ref.image, ref.is_srgb});
     return untextured * pyramid.mean_over_triangle(ref, triangle.uv0, triangle.uv1, triangle.uv2);
 }
 
@@ -66,7 +66,7 @@ void add_triangles(const Scene& scene, Vec3 centre, LightSetData& data) {
     data.first_light.assign(scene.instances.size(), kNoLight);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
-        if (instance.is_hidden || !scene.materials[instance.material].is_lamp()) continue;
+        if (instance.is_hidden || !scene.materials[instance.material].is_emitter()) continue;
         data.first_light[i] = static_cast<uint32_t>(count);
         const uint64_t triangles = scene.meshes[instance.mesh].triangle_count();
         data.emitters.push_back(
@@ -210,7 +210,7 @@ std::vector<double> build_triangle_tables(LightSetData& data, const Pyramids& py
         for (uint32_t k = 0; k < emitter.triangle_count; ++k) {
             in_order[k] = triangle_powers[emitter.first_triangle + data.triangle_order[emitter.first_triangle + k]];
         }
-        powers[i] = build_ordered_table(
+        powers[i] = build_guided_cdf(
             in_order, std::span(data.triangle_starts).subspan(emitter.first_start, emitter.triangle_count + 1),
             std::span(data.triangle_guides).subspan(emitter.first_guide, (std::size_t(1) << emitter.guide_bits) + 1));
     });
@@ -238,7 +238,7 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
                              std::shared_ptr<const EnvironmentData> environment) {
     LightSetData data;
     for (const Material& material : scene.materials) {
-        data.emissions.push_back({material.is_lamp() ? material.emission : Rgb{}, material.emission_texture});
+        data.emissions.push_back({material.is_emitter() ? material.emission : Rgb{}, material.emission_texture});
     }
     add_triangles(scene, centre, data);
     for (const Light& light : scene.lights) {
@@ -290,14 +290,14 @@ void share_draws(LightSetData& data, double far_share) {
         for (auto weight = weights.begin(); weight != first_far; ++weight) *weight *= (1 - far_share) / near_sum;
         for (auto weight = first_far; weight != weights.end(); ++weight) *weight *= far_share / far_sum;
     }
-    data.choice = build_ordered_table(weights);
+    data.choice = build_guided_cdf(weights);
     store_probabilities(data);
 }
 
 uint64_t count_emissive_triangles(const Scene& scene) {
     uint64_t count = 0;
     for (const Instance& instance : scene.instances) {
-        if (!instance.is_hidden && scene.materials[instance.material].is_lamp())
+        if (!instance.is_hidden && scene.materials[instance.material].is_emitter())
             count += scene.meshes[instance.mesh].triangle_count();
     }
     return count;

@@ -17,7 +17,7 @@
 namespace pertev {
 
 struct LightSetData {
-    OrderedTable choice; // over sources; empty if there is no light
+    GuidedCdf choice; // over sources; empty if there is no light
     std::vector<Emitter> emitters;
     std::vector<EmissiveTriangle> triangles;
     std::vector<uint32_t> triangle_order, triangle_starts, triangle_guides;

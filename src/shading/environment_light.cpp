@@ -80,7 +80,7 @@ EnvironmentData build_environment_light(const Environment& environment, Messages
     if (data.is_constant) {
         data.pixels = {data.constant};
         data.mean_radiance = data.constant;
-        data.rows = build_ordered_table(std::array{static_cast<double>(max_component(data.constant))});
+        data.rows = build_guided_cdf(std::array{static_cast<double>(max_component(data.constant))});
         return data;
     }
 
@@ -120,14 +120,14 @@ EnvironmentData build_environment_light(const Environment& environment, Messages
             add(row_sums[y].g, corners.upper_left.g, corners.lower_left.g);
             add(row_sums[y].b, corners.upper_left.b, corners.lower_left.b);
         }
-        row_weights[y] = build_ordered_table(weights, std::span(data.columns.starts).subspan(y * starts, starts),
-                                             std::span(data.columns.guide).subspan(y * guide, guide));
+        row_weights[y] = build_guided_cdf(weights, std::span(data.columns.starts).subspan(y * starts, starts),
+                                          std::span(data.columns.guide).subspan(y * guide, guide));
     });
     Sums sum;
     for (const Sums& s : row_sums) sum = {sum.r + s.r, sum.g + s.g, sum.b + s.b};
     const auto mean = [&](double s) { return static_cast<float>(s / data.width); };
     data.mean_radiance = {mean(sum.r), mean(sum.g), mean(sum.b)};
-    data.rows = build_ordered_table(row_weights);
+    data.rows = build_guided_cdf(row_weights);
     return data;
 }
 

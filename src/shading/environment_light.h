@@ -22,7 +22,7 @@
 #include "math/vec2.h"
 #include "math/vec3.h"
 #include "scene/light.h"
-#include "shading/ordered_table.h"
+#include "shading/guided_cdf.h"
 
 namespace pertev {
 
@@ -30,8 +30,8 @@ struct EnvironmentView {
     uint32_t width = 1, height = 1;
     const Rgb* pixels = nullptr;       // [height * width], W/(sr m2), scale applied, 0 or within [2^-100, 2^120]
     const float* row_bounds = nullptr; // [height / 2 + 2], sin^2(theta / 2) at the upper edge of each row of patches
-    OrderedTableView rows;             // [height + 1] rows of patches; empty if black
-    OrderedTableView columns;          // [width] for row 0, followed by the tables of the other rows
+    GuidedCdfView rows;                // [height + 1] rows of patches; empty if black
+    GuidedCdfView columns;             // [width] for row 0, followed by the tables of the other rows
     float rotation_turns = 0;          // [0, 1): rotation around +y, 1 is a full turn
     bool is_constant = true;           // radiance is uniform, `constant`; pixels and row_bounds are not read
     Rgb constant;
@@ -120,8 +120,8 @@ HD inline float patches_per_steradian(const EnvironmentView& view, const Panoram
 }
 
 /// Table of the patches in row `row`.
-HD inline OrderedTableView environment_columns(const EnvironmentView& view, uint32_t row) {
-    const OrderedTableView& first = view.columns;
+HD inline GuidedCdfView environment_columns(const EnvironmentView& view, uint32_t row) {
+    const GuidedCdfView& first = view.columns;
     return {first.starts + uint64_t(row) * (first.count + 1),
             first.guide + uint64_t(row) * ((uint64_t(1) << first.guide_bits) + 1), first.count, first.guide_bits};
 }
@@ -136,8 +136,7 @@ HD inline float sine_squared_of_half(Vec3 direction, bool is_south) {
 /// Density of a direction in a patch, 1/sr; 0 if the patch is black.
 HD inline float panorama_pdf(const EnvironmentView& view, const PanoramaPlace& place, const PanoramaCorners& corners,
                              Vec3 direction) {
-    const float pmf =
-        ordered_pmf(view.rows, place.row) * ordered_pmf(environment_columns(view, place.row), place.column);
+    const float pmf = cdf_pmf(view.rows, place.row) * cdf_pmf(environment_columns(view, place.row), place.column);
     if (!(pmf > 0)) return 0;
     const PanoramaRow row = panorama_row(view, place.row);
     float greatest;
@@ -195,14 +194,14 @@ HD inline bool sample_environment(const EnvironmentView& view, SampleBits u, Env
         return true;
     }
     const uint32_t more = bits_behind(u);
-    const OrderedDraw row_draw = draw_ordered(view.rows, u.y, more);
-    const OrderedDraw draw = draw_ordered(environment_columns(view, row_draw.index), u.x, more);
+    const CdfDraw row_draw = draw_ordered(view.rows, u.y, more);
+    const CdfDraw draw = draw_ordered(environment_columns(view, row_draw.index), u.x, more);
     const PanoramaRow row = panorama_row(view, row_draw.index);
     const PanoramaCorners corners = panorama_corners(view, draw.index, row_draw.index);
     float greatest;
     const BilinearPatch density = panorama_density(corners, greatest);
     const Vec2 at = density.sample({rest_of(draw), rest_of(row_draw)});
-    const float pmf = ordered_pmf(row_draw.owned) * ordered_pmf(draw.owned);
+    const float pmf = cdf_pmf(row_draw.owned) * cdf_pmf(draw.owned);
 
     const float s = lerp(row.lower, row.upper, row.is_south ? 1.0f - at.y : at.y);
     const float column = static_cast<float>(draw.index) + 0.5f + at.x;
@@ -219,7 +218,7 @@ struct EnvironmentData {
     uint32_t width = 1, height = 1;
     std::vector<Rgb> pixels;
     std::vector<float> row_bounds;
-    OrderedTable rows, columns; // tables of EnvironmentView; no rows if black
+    GuidedCdf rows, columns; // tables of EnvironmentView; no rows if black
     float rotation_turns = 0;
     bool is_constant = true;
     Rgb constant;

@@ -30,7 +30,7 @@
 #include "math/vec3.h"
 #include "scene/texture.h"
 #include "shading/environment_light.h"
-#include "shading/ordered_table.h"
+#include "shading/guided_cdf.h"
 #include "shading/punctual_light.h"
 #include "shading/texture_lookup.h"
 
@@ -70,7 +70,7 @@ struct SurfaceEmission {
 enum class SourceKind : uint8_t { Triangle, Punctual, Environment };
 
 struct LightSetView {
-    OrderedTableView choice; // over all sources; empty if there are none
+    GuidedCdfView choice; // over all sources; empty if there are none
     const Emitter* emitters = nullptr;
     const EmissiveTriangle* triangles = nullptr;
     const uint32_t* triangle_order = nullptr;  // [triangles] for each emitter: its primitives in the order of its
@@ -92,7 +92,7 @@ struct LightSetView {
         if (source < emitter_count) return SourceKind::Triangle;
         return source != environment_source ? SourceKind::Punctual : SourceKind::Environment;
     }
-    HD OrderedTableView triangles_of(uint32_t source) const {
+    HD GuidedCdfView triangles_of(uint32_t source) const {
         const Emitter& emitter = emitters[source];
         return {triangle_starts + emitter.first_start, triangle_guides + emitter.first_guide, emitter.triangle_count,
                 emitter.guide_bits};
@@ -182,7 +182,7 @@ HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3
 }
 
 /// Motion of emitters for sample_light: all are at rest.
-struct LampsAtRest {};
+struct EmittersAtRest {};
 
 /// Selects a light by its power by `u` and returns the result of the function of `to` for its kind. Each function
 /// gets the probability of the light, and the rest of `u`. Returns false if there are no lights.
@@ -193,21 +193,21 @@ template <class ToKind>
 HD INLINE_ON_DEVICE bool draw_light(const LightSetView& view, SampleBits u, const ToKind& to) {
     if (!view.has_lights()) return false;
     const uint32_t more = bits_behind(u);
-    const OrderedDraw source = draw_ordered(view.choice, u.x, more);
+    const CdfDraw source = draw_ordered(view.choice, u.x, more);
     switch (view.kind_of(source.index)) {
     case SourceKind::Triangle: {
-        const OrderedDraw triangle = draw_ordered(view.triangles_of(source.index), u.y, more);
+        const CdfDraw triangle = draw_ordered(view.triangles_of(source.index), u.y, more);
         const uint32_t first = view.emitters[source.index].first_triangle;
         const uint32_t light = first + view.triangle_order[first + triangle.index];
         return to.triangle(light, sample_uniform_triangle({rest_of(source), rest_of(triangle)}),
                            view.triangles[light].pmf);
     }
     case SourceKind::Punctual:
-        return to.punctual(source.index - view.emitter_count, ordered_pmf(source.owned));
+        return to.punctual(source.index - view.emitter_count, cdf_pmf(source.owned));
     case SourceKind::Environment:
         break;
     }
-    return to.environment(ordered_pmf(source.owned), SampleBits{number_of_rest(source), u.y});
+    return to.environment(cdf_pmf(source.owned), SampleBits{number_of_rest(source), u.y});
 }
 
 /// Selects lights by their power, independently of the context. `draw` is draw_light for a context. The other
@@ -224,23 +224,23 @@ struct ChosenByPower {
         return view.triangles[light].pmf;
     }
     HD static float pmf_of_environment(const LightSetView& view, const LightContext&) {
-        return ordered_pmf(view.choice, view.environment_source);
+        return cdf_pmf(view.choice, view.environment_source);
     }
 };
 
 /// The functions with which sample_light computes a context's sample for each kind of light.
-template <bool kTextures, class Lamps>
+template <bool kTextures, class Emitters>
 struct SampleOfKind {
     const LightSetView& view;
     const LightContext& context;
-    const Lamps& lamps;
+    const Emitters& emitters;
     LightSample& sample;
 
     HD bool triangle(uint32_t light, Vec2 b, float pmf) const {
-        if constexpr (std::is_same_v<Lamps, LampsAtRest>) {
+        if constexpr (std::is_same_v<Emitters, EmittersAtRest>) {
             return triangle_light_at<kTextures>(view, light, pmf, context.point, b, sample);
         } else {
-            const auto motion = lamps(view.triangles[light].instance);
+            const auto motion = emitters(view.triangles[light].instance);
             const Vec3 from_point = motion.move_back(context.point);
             if (!triangle_light_at<kTextures>(view, light, pmf, from_point, b, sample)) return false;
             sample.wi = motion.turn(sample.wi);
@@ -270,22 +270,22 @@ struct SampleOfKind {
 /// spot of a triangle, outside a cone, edge-on; that sample counts as 0. Occlusion and alpha are up to the caller: if
 /// the triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives. `lamps`
 /// returns the rigid motion of an instance's emitter at the context's time (math/rigid_motion.h).
-template <bool kTextures = true, class Choice = ChosenByPower, class Lamps = LampsAtRest>
+template <bool kTextures = true, class Choice = ChosenByPower, class Emitters = EmittersAtRest>
 HD inline bool sample_light(const LightSetView& view, const LightContext& context, SampleBits u, LightSample& sample,
-                            const Lamps& lamps = {}) {
-    return Choice::draw(view, context, u, SampleOfKind<kTextures, Lamps>{view, context, lamps, sample});
+                            const Emitters& emitters = {}) {
+    return Choice::draw(view, context, u, SampleOfKind<kTextures, Emitters>{view, context, emitters, sample});
 }
 
 /// Density with which sample_light samples, for `context`, the direction to `hit_point` on triangle light `light`,
 /// 1/sr. It equals LightSample::pdf exactly if hit_point is the sampled light_point, and is 0 if that cannot be
 /// sampled, for example from behind a triangle that emits only from its front.
-template <class Choice = ChosenByPower, class Lamps = LampsAtRest>
+template <class Choice = ChosenByPower, class Emitters = EmittersAtRest>
 HD inline float pdf_light_hit(const LightSetView& view, uint32_t light, const LightContext& context, Vec3 hit_point,
-                              const Lamps& lamps = {}) {
+                              const Emitters& emitters = {}) {
     const EmissiveTriangle& triangle = view.triangles[light];
     Vec3 from_point = context.point;
-    if constexpr (!std::is_same_v<Lamps, LampsAtRest>) {
-        const auto motion = lamps(triangle.instance);
+    if constexpr (!std::is_same_v<Emitters, EmittersAtRest>) {
+        const auto motion = emitters(triangle.instance);
         from_point = motion.move_back(from_point);
         hit_point = motion.move_back(hit_point);
     }

@@ -4,7 +4,7 @@
 
 #include "base/host_device.h"
 #include "shading/bsdf.h"
-#include "shading/materials_known.h"
+#include "shading/shading_variant.h"
 
 namespace pertev {
 

@@ -29,7 +29,7 @@ inline constexpr float kTerminatorReach = 6.0f;
 /// still lies behind the triangle is lost.
 inline constexpr float kLargestTilt = 1.0f / 3.0f, kHopelessTilt = 0.75f;
 /// Smaller tilts (below 0.06 degrees) are ignored, because flat meshes may have normals.
-inline constexpr float kLeastTilt = 1e-3f;
+inline constexpr float kMinTilt = 1e-3f;
 
 /// Sine of the angle between two unit vectors, from the cross product, because the cosine is imprecise for small
 /// angles.
@@ -42,7 +42,7 @@ HD inline float sine_between(Vec3 a, Vec3 b) { return length(cross(a, b)); }
 HD inline float terminator_tilt(float here, float at_corners) {
     const float sine = max(here, at_corners);
     const float tilt = min(min(sine, kLargestTilt), kHopelessTilt - sine);
-    return tilt < kLeastTilt ? 0.0f : tilt;
+    return tilt < kMinTilt ? 0.0f : tilt;
 }
 
 struct RaisedDirection {

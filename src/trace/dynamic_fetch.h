@@ -2,11 +2,11 @@
 
 // Persistent threads with dynamic fetch: lanes whose rays are done get new ones while others are still in traversal,
 // as soon as fewer than Place::kRefillBelow of a warp's lanes are active. The loop of the traversal is the kernel, so
-// it works for traversals that can be suspended between two turns (WhileWhileWalk, SpeculativeWalk, CompressedWalk).
-// In a scene with instances each lane proceeds from tree to tree independently (trace/scene_place.h). Only .cu files
-// include this (device/launch_body.h).
+// it works for traversals that can be suspended between two turns (WhileWhileTraversal, SpeculativeTraversal,
+// CompressedTraversal). In a scene with instances each lane proceeds from tree to tree independently
+// (trace/scene_place.h). Only .cu files include this (device/launch_body.h).
 //
-// Besides the common interface (trace/walk_scene.h), such a traversal has
+// Besides the common interface (trace/traverse_scene.h), such a traversal has
 //   Place(Place::Slot[Place::kSlots])                  the state of a ray, initially done; is_done(), stop()
 //   start(tree, ray, visitor, place)                   puts the ray at the root
 //   turn(tree, ray, instance, place, visitor, counter, lanes, working)    advances it; returns true if the visitor
@@ -73,14 +73,14 @@ __device__ inline uint32_t fetch_from_pool(uint32_t* pool, uint32_t wanted) {
     return __shfl_sync(0xffffffffu, first, 0);
 }
 
-template <class Walk, bool kAny, class Scene, class Rays, class Counter>
-__global__ void __launch_bounds__(kWalkThreads, kBlocksWanted<Scene>)
+template <class Traversal, bool kAny, class Scene, class Rays, class Counter>
+__global__ void __launch_bounds__(kTraversalThreads, kBlocksWanted<Scene>)
     run_dynamic_fetch(Scene scene, Rays rays, WorkCount work, uint32_t* pool, Counter counter) {
     constexpr LaneMask kWarp = 0xffffffffu;
     constexpr uint32_t kNoRay = 0xffffffffu;
     uint32_t count = work.value(); // 0 once the pool is empty; equal in all lanes, like every exit of this loop
-    typename Walk::Place::Slot slots[Walk::Place::kSlots];
-    ScenePlace<Walk, Scene> place(slots); // initially done, as whenever there is no ray
+    typename Traversal::Place::Slot slots[Traversal::Place::kSlots];
+    ScenePlace<Traversal, Scene> place(slots); // initially done, as whenever there is no ray
     auto accept = rays.accept(kNoRay);
     // Number of the lane's ray. Closest-hit searches have no register for it beside accept.i; with a separate one
     // any-hit searches are 1 % faster.
@@ -110,7 +110,7 @@ __global__ void __launch_bounds__(kWalkThreads, kBlocksWanted<Scene>)
                                                              // cheapest
             place.turn(scene, ray, search.visitor, counter, kWarp, working);
             working = count_working();
-            if (count != 0 && working < Walk::Place::kRefillBelow) break;
+            if (count != 0 && working < Traversal::Place::kRefillBelow) break;
         }
         if (index != kNoRay && place.is_done()) {
             rays.store(index, search.hit());
@@ -129,17 +129,17 @@ __global__ void __launch_bounds__(kWalkThreads, kBlocksWanted<Scene>)
 /// (trace/trace_closest.h) with a member `i` that names its ray, and `void store(uint32_t i, const Hit&) const`. Of
 /// an any-hit search only the hit's instance counts: kNoHit or not. `pool` is a counter in the queue's memory, 0 when
 /// the launch runs. The queue is a GPU's.
-template <class Walk, bool kAny, class Scene, class Rays, class Counter = NoWalkCounter>
+template <class Traversal, bool kAny, class Scene, class Rays, class Counter = NoTraversalCounter>
 void launch_dynamic_fetch(Queue& queue, const char* name, const Scene& scene, const Rays& rays, WorkCount count,
                           uint32_t* pool, const Counter& counter = {}) {
     PERTEV_CHECK(queue.is_cuda() && count.most <= kMaxPoolCount);
     if (count.most == 0) return;
     const Queue::Scope scope(queue, name);
     static LimitsByDevice limits;
-    const uint32_t blocks =
-        blocks_that_fit(limits.of(run_dynamic_fetch<Walk, kAny, Scene, Rays, Counter>), count.most, queue.streams());
-    run_dynamic_fetch<Walk, kAny>
-        <<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(scene, rays, count, pool, counter);
+    const uint32_t blocks = blocks_that_fit(limits.of(run_dynamic_fetch<Traversal, kAny, Scene, Rays, Counter>),
+                                            count.most, queue.streams());
+    run_dynamic_fetch<Traversal, kAny><<<blocks, kTraversalThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(
+        scene, rays, count, pool, counter);
     queue.check_launch();
 }
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "accel/bvh/bvh.h"
-#include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/tlas.h"
 #include "accel/bvh/wide_bvh.h"
 #include "base/host_device.h"
 #include "math/rigid_motion.h"
@@ -20,14 +20,14 @@ namespace pertev {
 template <class Tree>
 struct SceneTrees {
     Tree baked; // world space; triangles carry their instance
-    const BvhNode* top_nodes = nullptr;
+    const BvhNode* tlas_nodes = nullptr;
     const InstanceRecord* instances = nullptr; // indexed by leaf links of the top level
-    const Tree* meshes = nullptr;              // [InstanceRecord::mesh_bvh], local space
-    uint32_t top_root = kNoLink;
-    float top_reach = 0, top_growth = 0; // values of TopLevelBvh
+    const Tree* meshes = nullptr;              // [InstanceRecord::blas], local space
+    uint32_t tlas_root = kNoLink;
+    float tlas_reach = 0, tlas_growth = 0; // values of Tlas
 };
 using SceneBvhView = SceneTrees<BvhView>;
-using HostTrees = SceneTrees<WideBvhView<8>>; // the CPU's default structure (trace/wide/walk_wide.h)
+using HostTrees = SceneTrees<WideBvhView<8>>; // the CPU's default structure (trace/wide/traverse_wide.h)
 
 /// A scene whose triangles are all baked. Its traversal has no top level, which saves registers in a kernel.
 template <class Tree>

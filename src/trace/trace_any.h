@@ -7,13 +7,13 @@
 // (to a sky or a sun) that is its far end: surfaces there are large and simple (the walls of a room, the ground),
 // while near its origin many boxes are entered without a hit. Rays to the sky from Sponza's surfaces visit half of
 // the nodes that they visit with near children first, and four fifths in the open (a forest). So some tree traversals
-// start there (walk_scene.h; not the one over instances). For a ray that ends in the scene the best order depends on
-// the scene: docs/performance.md, "Rays to the sky".
+// start there (traverse_scene.h; not the one over instances). For a ray that ends in the scene the best order depends
+// on the scene: docs/performance.md, "Rays to the sky".
 
 #include <cstdint>
 
 #include "base/host_device.h"
-#include "trace/walk_scene.h"
+#include "trace/traverse_scene.h"
 
 namespace pertev {
 
@@ -32,10 +32,10 @@ struct AnyVisitor {
     }
 };
 
-template <class Walk = PlainWalk, class Scene, class Accept, class Counter = NoWalkCounter>
+template <class Traversal = PlainTraversal, class Scene, class Accept, class Counter = NoTraversalCounter>
 HD inline bool trace_any(const Scene& scene, const Ray& ray, const Accept& accept, const Counter& counter = {}) {
     AnyVisitor<Accept> visitor = {accept, ray.t_max};
-    walk_scene<Walk>(scene, ray, visitor, counter);
+    traverse_scene<Traversal>(scene, ray, visitor, counter);
     return visitor.found;
 }
 

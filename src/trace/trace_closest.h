@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "base/host_device.h"
-#include "trace/walk_scene.h"
+#include "trace/traverse_scene.h"
 
 namespace pertev {
 
@@ -35,12 +35,12 @@ struct ClosestVisitor {
 /// Returns true and sets `hit` if there is a candidate; otherwise returns false and sets hit.instance to kNoHit.
 /// `accept(instance, primitive, u, v)` is a pure function: a traversal may call it in any order, for any subset of
 /// candidates that determines the result. `scene` is SceneTrees or SingleTree of the traversal's structure.
-template <class Walk = PlainWalk, class Scene, class Accept, class Counter = NoWalkCounter>
+template <class Traversal = PlainTraversal, class Scene, class Accept, class Counter = NoTraversalCounter>
 HD inline bool trace_closest(const Scene& scene, const Ray& ray, const Accept& accept, Hit& hit,
                              const Counter& counter = {}) {
     ClosestVisitor<Accept> visitor = {accept, {}};
     visitor.best.t = ray.t_max;
-    walk_scene<Walk>(scene, ray, visitor, counter);
+    traverse_scene<Traversal>(scene, ray, visitor, counter);
     hit = visitor.best;
     return hit.instance != kNoHit;
 }

@@ -26,33 +26,33 @@ constexpr ValueName<TreeLayout> kSuffixes[] = {{TreeLayout::Woop, " woop"},
 } // namespace
 
 TreeLayout layout_of(const Combination& combination) {
-    switch (combination.walk) {
-    case WalkKind::BruteForce:
+    switch (combination.traversal) {
+    case TraversalKind::BruteForce:
         return TreeLayout::Triangles;
-    case WalkKind::WhileWhile:
-    case WalkKind::Speculative:
-    case WalkKind::Octants:
+    case TraversalKind::WhileWhile:
+    case TraversalKind::Speculative:
+    case TraversalKind::Octants:
         return combination.options.tests == TestKind::Woop ? TreeLayout::Woop : TreeLayout::Binary;
-    case WalkKind::IfIf:
-    case WalkKind::RestartTrail:
-    case WalkKind::ShortStack:
-    case WalkKind::Packet:
+    case TraversalKind::IfIf:
+    case TraversalKind::RestartTrail:
+    case TraversalKind::ShortStack:
+    case TraversalKind::Packet:
         return TreeLayout::Binary;
-    case WalkKind::ParentLinks:
+    case TraversalKind::ParentLinks:
         return TreeLayout::Linked;
-    case WalkKind::SkipLinks:
+    case TraversalKind::SkipLinks:
         return TreeLayout::Skip;
-    case WalkKind::Wide4:
+    case TraversalKind::Wide4:
         return TreeLayout::Wide4;
-    case WalkKind::Wide8:
+    case TraversalKind::Wide8:
         return TreeLayout::Wide8;
-    case WalkKind::Wide8Simd:
+    case TraversalKind::Wide8Simd:
         return TreeLayout::Wide8Simd;
-    case WalkKind::Compressed:
+    case TraversalKind::Compressed:
         return TreeLayout::Compressed;
-    case WalkKind::Kd:
+    case TraversalKind::Kd:
         return TreeLayout::Kd;
-    case WalkKind::Octree:
+    case TraversalKind::Octree:
         return TreeLayout::Octree;
     }
     return TreeLayout::Binary;
@@ -73,7 +73,7 @@ void BuiltStructure::list(const std::vector<T>& values) {
 }
 
 template <class Tree, class ViewOf>
-void BuiltStructure::take(const TopLevelBvh& top_level, const std::vector<std::shared_ptr<const Tree>>& parts,
+void BuiltStructure::take(const Tlas& tlas, const std::vector<std::shared_ptr<const Tree>>& parts,
                           const ViewOf& view_of_part) {
     using View = decltype(view_of_part(*parts.front()));
     std::size_t largest = 0; // the tree whose cost and depth are reported
@@ -106,16 +106,16 @@ void BuiltStructure::take(const TopLevelBvh& top_level, const std::vector<std::s
             meshes->push_back(view);
         }
     }
-    const auto top = std::make_shared<const TopLevelBvh>(top_level);
+    const auto top = std::make_shared<const Tlas>(tlas);
     list_bytes(std::as_bytes(std::span(*meshes)));
     list_bytes(std::as_bytes(std::span(top->nodes)));
     list_bytes(std::as_bytes(std::span(top->instances)));
     scene.meshes = meshes->data();
-    scene.top_nodes = top->nodes.data();
+    scene.tlas_nodes = top->nodes.data();
     scene.instances = top->instances.data();
-    scene.top_root = top->root;
-    scene.top_reach = top->reach;
-    scene.top_growth = top->growth;
+    scene.tlas_root = top->root;
+    scene.tlas_reach = top->reach;
+    scene.tlas_growth = top->growth;
     has_instances_ = !top->instances.empty();
     trees_ = scene;
     parts_.assign(parts.begin(), parts.end());
@@ -124,7 +124,7 @@ void BuiltStructure::take(const TopLevelBvh& top_level, const std::vector<std::s
 
 /// Builds and times each part's tree, except for parts that did not change.
 template <class Make>
-void BuiltStructure::build(const TopLevelBvh& top_level, std::size_t count, const Before* before, const Make& make) {
+void BuiltStructure::build(const Tlas& tlas, std::size_t count, const Before* before, const Make& make) {
     using Tree = std::remove_cvref_t<decltype(make(std::size_t(0)))>;
     std::vector<std::shared_ptr<const Tree>> parts;
     const Stopwatch watch;
@@ -136,11 +136,11 @@ void BuiltStructure::build(const TopLevelBvh& top_level, std::size_t count, cons
         }
     }
     figures_.build_s += watch.seconds();
-    take<Tree>(top_level, parts, [](const Tree& tree) { return view_of(tree); });
+    take<Tree>(tlas, parts, [](const Tree& tree) { return view_of(tree); });
 }
 
-BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, TreeLayout layout,
-                               const BinaryTrees& trees, const Before* before) {
+BuiltStructure::BuiltStructure(const Tlas& tlas, StructureKind kind, TreeLayout layout, const BinaryTrees& trees,
+                               const Before* before) {
     figures_.name = name_of(kind);
     for (const auto& [value, suffix] : kSuffixes) {
         if (value == layout) figures_.name += suffix;
@@ -148,15 +148,15 @@ BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind,
     figures_.build_s = trees.build_s;
     const std::vector<std::shared_ptr<const Bvh>>& parts = trees.parts;
     const auto convert = [&](const auto& make) {
-        build(top_level, parts.size(), before, [&](std::size_t part) { return make(*parts[part]); });
+        build(tlas, parts.size(), before, [&](std::size_t part) { return make(*parts[part]); });
     };
     switch (layout) {
     case TreeLayout::Triangles:
-        take<Bvh>(top_level, parts, triangle_array_of);
+        take<Bvh>(tlas, parts, triangle_array_of);
         figures_.sah_cost.reset(), figures_.depth.reset(); // these belong to the tree, which is not traversed
         break;
     case TreeLayout::Binary:
-        take<Bvh>(top_level, parts, [](const Bvh& bvh) { return view_of(bvh); });
+        take<Bvh>(tlas, parts, [](const Bvh& bvh) { return view_of(bvh); });
         break;
     case TreeLayout::Linked:
         convert([](Bvh bvh) {
@@ -205,15 +205,14 @@ BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind,
     }
 }
 
-BuiltStructure::BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, const SceneTriangles& triangles,
+BuiltStructure::BuiltStructure(const Tlas& tlas, StructureKind kind, const SceneTriangles& triangles,
                                const Before* before) {
     figures_.name = std::string(name_of(kind));
     if (kind == StructureKind::Octree) {
-        build(top_level, triangles.parts(), before,
-              [&](std::size_t part) { return build_octree(triangles.part(part)); });
+        build(tlas, triangles.parts(), before, [&](std::size_t part) { return build_octree(triangles.part(part)); });
     } else {
         const KdTreeSettings settings = {.split = kind == StructureKind::KdSah ? KdSplit::Sah : KdSplit::SpatialMedian};
-        build(top_level, triangles.parts(), before,
+        build(tlas, triangles.parts(), before,
               [&](std::size_t part) { return build_kd_tree(triangles.part(part), settings); });
     }
 }

@@ -14,12 +14,12 @@
 
 #include "accel/bvh/compressed_bvh.h"
 #include "accel/bvh/skip_bvh.h"
-#include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/tlas.h"
 #include "accel/bvh/wide_bvh.h"
 #include "accel/bvh/woop_bvh.h"
 #include "accel/kd_tree/kd_tree.h"
 #include "accel/octree/octree.h"
-#include "trace/brute_force_walk.h"
+#include "trace/brute_force_traversal.h"
 #include "trace/scene_trees.h"
 #include "tracer/binary_trees.h"
 #include "tracer/combination.h"
@@ -68,11 +68,11 @@ public:
 
     /// Makes a structure of the given layout from binary trees of the builder that `kind` names. `trees` need not
     /// outlive the call. Throws Error(OverLimit), std::bad_alloc.
-    BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, TreeLayout layout, const BinaryTrees& trees,
+    BuiltStructure(const Tlas& tlas, StructureKind kind, TreeLayout layout, const BinaryTrees& trees,
                    const Before* before = nullptr);
     /// Builds a kd-tree or an octree. Their planes are fixed in space, so deformed parts are rebuilt. Throws
     /// Error(OverLimit), std::bad_alloc.
-    BuiltStructure(const TopLevelBvh& top_level, StructureKind kind, const SceneTriangles& triangles,
+    BuiltStructure(const Tlas& tlas, StructureKind kind, const SceneTriangles& triangles,
                    const Before* before = nullptr);
 
     /// The structure as a traversal on the host reads it.
@@ -94,10 +94,9 @@ public:
 
 private:
     template <class Make>
-    void build(const TopLevelBvh& top_level, std::size_t parts, const Before* before, const Make& make);
+    void build(const Tlas& tlas, std::size_t parts, const Before* before, const Make& make);
     template <class Tree, class ViewOf>
-    void take(const TopLevelBvh& top_level, const std::vector<std::shared_ptr<const Tree>>& parts,
-              const ViewOf& view_of_part);
+    void take(const Tlas& tlas, const std::vector<std::shared_ptr<const Tree>>& parts, const ViewOf& view_of_part);
     template <class T>
     void list(const std::vector<T>& values);
     void list_bytes(std::span<const std::byte> bytes);

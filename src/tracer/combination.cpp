@@ -10,17 +10,19 @@ namespace {
 bool is_kd(StructureKind kind) { return kind == StructureKind::KdMedian || kind == StructureKind::KdSah; }
 
 /// Whether the traversal can visit the nearer child first.
-bool has_order(WalkKind walk) { return walk != WalkKind::BruteForce && walk != WalkKind::SkipLinks; }
+bool has_order(TraversalKind traversal) {
+    return traversal != TraversalKind::BruteForce && traversal != TraversalKind::SkipLinks;
+}
 
 } // namespace
 
 std::optional<BvhBuilder> builder_of(StructureKind kind) { return value_named<BvhBuilder>(name_of(kind)); }
 
-const char* name_of_rta(const WalkOptions& options) {
+const char* name_of_rta(const TraversalOptions& options) {
     return !options.rta ? "off" : options.rta_at_pops ? "on" : "nodes";
 }
 
-std::optional<WalkOptions> rta_named(const std::string& name, WalkOptions options) {
+std::optional<TraversalOptions> rta_named(const std::string& name, TraversalOptions options) {
     for (const auto& [rta, rta_at_pops] : {std::pair(true, true), std::pair(true, false), std::pair(false, true)}) {
         options.rta = rta;
         options.rta_at_pops = rta_at_pops;
@@ -30,53 +32,56 @@ std::optional<WalkOptions> rta_named(const std::string& name, WalkOptions option
 }
 
 std::string name_of(const Combination& c) {
-    std::string name = fmt::format("{} {}", name_of(c.structure), name_of(c.walk));
+    std::string name = fmt::format("{} {}", name_of(c.structure), name_of(c.traversal));
     name += !c.options.rta ? " no-rta" : c.options.rta_at_pops ? " rta" : " rta-at-nodes";
     // A traversal without an order is named without one. If its switch is off, "unordered" is part of the name,
     // because that combination is refused and its message needs a name.
-    if (has_order(c.walk) || !c.options.near_first) name += c.options.near_first ? " near" : " unordered";
+    if (has_order(c.traversal) || !c.options.near_first) name += c.options.near_first ? " near" : " unordered";
     if (!c.options.is_exact()) name += fmt::format(" {}-tests", name_of(c.options.tests));
     if (c.distribution != Distribution::OneAThread) name += fmt::format(" {}", name_of(c.distribution));
     return name;
 }
 
-std::optional<WalkKind> only_walk_of(StructureKind structure) {
-    if (is_kd(structure)) return WalkKind::Kd;
-    if (structure == StructureKind::Octree) return WalkKind::Octree;
+std::optional<TraversalKind> only_traversal_of(StructureKind structure) {
+    if (is_kd(structure)) return TraversalKind::Kd;
+    if (structure == StructureKind::Octree) return TraversalKind::Octree;
     return std::nullopt;
 }
 
-std::optional<std::string> why_not(StructureKind structure, WalkKind walk) {
-    if ((walk == WalkKind::Kd) != is_kd(structure)) {
-        return walk == WalkKind::Kd
-                   ? "the kd walk goes over a kd-tree's planes; the structures for it are kd-median and kd-sah"
-                   : "a kd-tree has planes in place of boxes; the walk for it is kd";
+std::optional<std::string> why_not(StructureKind structure, TraversalKind traversal) {
+    if ((traversal == TraversalKind::Kd) != is_kd(structure)) {
+        return traversal == TraversalKind::Kd
+                   ? "the kd traversal goes over a kd-tree's planes; the structures for it are kd-median and kd-sah"
+                   : "a kd-tree has planes in place of boxes; the traversal for it is kd";
     }
-    if ((walk == WalkKind::Octree) != (structure == StructureKind::Octree)) {
-        return walk == WalkKind::Octree ? "the octree walk goes over an octree's cells; the structure for it is octree"
-                                        : "an octree has eight cells a node; the walk for it is octree";
+    if ((traversal == TraversalKind::Octree) != (structure == StructureKind::Octree)) {
+        return traversal == TraversalKind::Octree
+                   ? "the octree traversal goes over an octree's cells; the structure for it is octree"
+                   : "an octree has eight cells a node; the traversal for it is octree";
     }
     return std::nullopt;
 }
 
 std::optional<std::string> why_not(const Combination& c, bool on_cuda) {
-    if (auto reason = why_not(c.structure, c.walk)) return reason;
-    if (!c.options.near_first && !has_order(c.walk)) return "there is no order of children to switch off";
-    if (!c.options.rta && c.walk == WalkKind::BruteForce) return "without nodes there is no redundant traversal";
-    if (!c.options.rta_at_pops && c.walk != WalkKind::Compressed) {
-        return "RTA at nodes alone is for the compressed walk; the stacks of the others hold distances anyway";
+    if (auto reason = why_not(c.structure, c.traversal)) return reason;
+    if (!c.options.near_first && !has_order(c.traversal)) return "there is no order of children to switch off";
+    if (!c.options.rta && c.traversal == TraversalKind::BruteForce)
+        return "without nodes there is no redundant traversal";
+    if (!c.options.rta_at_pops && c.traversal != TraversalKind::Compressed) {
+        return "RTA at nodes alone is for the compressed traversal; the stacks of the others hold distances anyway";
     }
-    if (c.options.tests == TestKind::Woop && c.walk != WalkKind::WhileWhile && c.walk != WalkKind::Speculative) {
-        return "Woop's triangle test is for the walks of Aila and Laine: while-while and speculative";
+    if (c.options.tests == TestKind::Woop && c.traversal != TraversalKind::WhileWhile &&
+        c.traversal != TraversalKind::Speculative) {
+        return "Woop's triangle test is for the traversals of Aila and Laine: while-while and speculative";
     }
-    if (c.walk == WalkKind::Wide8Simd && on_cuda)
+    if (c.traversal == TraversalKind::Wide8Simd && on_cuda)
         return "eight boxes at once by the CPU's vector unit; on a GPU take wide8";
     if (c.distribution != Distribution::OneAThread && !on_cuda) {
         return "threads of a CPU take rays from a pool anyway";
     }
-    if (c.distribution == Distribution::DynamicFetch && c.walk != WalkKind::WhileWhile &&
-        c.walk != WalkKind::Speculative && c.walk != WalkKind::Compressed) {
-        return "rays are refilled inside the walk: while-while, speculative and compressed are made for that";
+    if (c.distribution == Distribution::DynamicFetch && c.traversal != TraversalKind::WhileWhile &&
+        c.traversal != TraversalKind::Speculative && c.traversal != TraversalKind::Compressed) {
+        return "rays are refilled inside the traversal: while-while, speculative and compressed are made for that";
     }
     return std::nullopt;
 }

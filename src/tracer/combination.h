@@ -10,7 +10,7 @@
 
 #include "accel/builders/builders.h"
 #include "base/value_names.h"
-#include "trace/traversal/walk_options.h"
+#include "trace/traversal/traversal_options.h"
 
 namespace pertev {
 
@@ -30,7 +30,7 @@ enum class StructureKind {
     Octree,
 };
 
-enum class WalkKind {
+enum class TraversalKind {
     IfIf,
     WhileWhile,
     Speculative,
@@ -71,36 +71,36 @@ inline constexpr ValueName<StructureKind> kStructureNames[] = {
     {StructureKind::KdMedian, "kd-median"},
     {StructureKind::KdSah, "kd-sah"},
     {StructureKind::Octree, "octree"}};
-inline constexpr ValueName<WalkKind> kWalkNames[] = {{WalkKind::IfIf, "if-if"},
-                                                     {WalkKind::WhileWhile, "while-while"},
-                                                     {WalkKind::Speculative, "speculative"},
-                                                     {WalkKind::Octants, "octants"},
-                                                     {WalkKind::BruteForce, "brute-force"},
-                                                     {WalkKind::RestartTrail, "restart-trail"},
-                                                     {WalkKind::ShortStack, "short-stack"},
-                                                     {WalkKind::ParentLinks, "parent-links"},
-                                                     {WalkKind::SkipLinks, "skip-links"},
-                                                     {WalkKind::Packet, "packet"},
-                                                     {WalkKind::Wide4, "wide4"},
-                                                     {WalkKind::Wide8, "wide8"},
-                                                     {WalkKind::Wide8Simd, "wide8-simd"},
-                                                     {WalkKind::Compressed, "compressed"},
-                                                     {WalkKind::Kd, "kd"},
-                                                     {WalkKind::Octree, "octree"}};
+inline constexpr ValueName<TraversalKind> kTraversalNames[] = {{TraversalKind::IfIf, "if-if"},
+                                                               {TraversalKind::WhileWhile, "while-while"},
+                                                               {TraversalKind::Speculative, "speculative"},
+                                                               {TraversalKind::Octants, "octants"},
+                                                               {TraversalKind::BruteForce, "brute-force"},
+                                                               {TraversalKind::RestartTrail, "restart-trail"},
+                                                               {TraversalKind::ShortStack, "short-stack"},
+                                                               {TraversalKind::ParentLinks, "parent-links"},
+                                                               {TraversalKind::SkipLinks, "skip-links"},
+                                                               {TraversalKind::Packet, "packet"},
+                                                               {TraversalKind::Wide4, "wide4"},
+                                                               {TraversalKind::Wide8, "wide8"},
+                                                               {TraversalKind::Wide8Simd, "wide8-simd"},
+                                                               {TraversalKind::Compressed, "compressed"},
+                                                               {TraversalKind::Kd, "kd"},
+                                                               {TraversalKind::Octree, "octree"}};
 inline constexpr ValueName<Distribution> kDistributionNames[] = {{Distribution::OneAThread, "one-a-thread"},
                                                                  {Distribution::Persistent, "persistent"},
                                                                  {Distribution::DynamicFetch, "dynamic-fetch"}};
 inline constexpr ValueName<TestKind> kTestNames[] = {
     {TestKind::Exact, "exact"}, {TestKind::Fast, "fast"}, {TestKind::Woop, "woop"}};
 constexpr const auto& names_of_all(StructureKind) { return kStructureNames; }
-constexpr const auto& names_of_all(WalkKind) { return kWalkNames; }
+constexpr const auto& names_of_all(TraversalKind) { return kTraversalNames; }
 constexpr const auto& names_of_all(Distribution) { return kDistributionNames; }
 constexpr const auto& names_of_all(TestKind) { return kTestNames; }
 
 struct Combination {
     StructureKind structure = StructureKind::Binned;
-    WalkKind walk = WalkKind::WhileWhile;
-    WalkOptions options;
+    TraversalKind traversal = TraversalKind::WhileWhile;
+    TraversalOptions options;
     Distribution distribution = Distribution::OneAThread;
     bool operator==(const Combination&) const = default;
 };
@@ -109,17 +109,17 @@ struct Combination {
 std::optional<BvhBuilder> builder_of(StructureKind kind);
 
 /// "on", "nodes" (at nodes alone) or "off".
-const char* name_of_rta(const WalkOptions& options);
+const char* name_of_rta(const TraversalOptions& options);
 /// `options` with RTA set as `name` says; nothing if the name is unknown.
-std::optional<WalkOptions> rta_named(const std::string& name, WalkOptions options);
+std::optional<TraversalOptions> rta_named(const std::string& name, TraversalOptions options);
 /// The full name, for example "sbvh while-while rta near persistent".
 std::string name_of(const Combination& combination);
 
 /// The only traversal for structures of this kind; nothing if there are several.
-std::optional<WalkKind> only_walk_of(StructureKind structure);
+std::optional<TraversalKind> only_traversal_of(StructureKind structure);
 
 /// Why the traversal cannot handle structures of this kind; nothing if it can.
-std::optional<std::string> why_not(StructureKind structure, WalkKind walk);
+std::optional<std::string> why_not(StructureKind structure, TraversalKind traversal);
 /// Why the combination is invalid on this kind of device; nothing if it is valid.
 std::optional<std::string> why_not(const Combination& combination, bool on_cuda);
 

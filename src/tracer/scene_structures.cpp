@@ -34,10 +34,10 @@ SceneTriangles triangles_of(const BinaryTrees& trees) {
 
 } // namespace
 
-TopLevelBvh top_level_over(std::span<const PlacedBvh> placed, const std::map<uint32_t, Bounds3>& bounds_of_trees) {
+Tlas tlas_over(std::span<const PlacedBvh> placed, const std::map<uint32_t, Bounds3>& bounds_of_trees) {
     std::vector<PlacedBvh> now(placed.begin(), placed.end());
     for (PlacedBvh& tree : now) {
-        const auto bounds = bounds_of_trees.find(tree.mesh_bvh);
+        const auto bounds = bounds_of_trees.find(tree.blas);
         if (bounds == bounds_of_trees.end()) continue;
         tree.local_bounds = bounds->second;
         if (tree.local_bounds.is_empty() || lies_near(tree.world_from_local, tree.local_bounds)) continue;
@@ -46,21 +46,21 @@ TopLevelBvh top_level_over(std::span<const PlacedBvh> placed, const std::map<uin
                                 "scene down",
                                 tree.instance));
     }
-    return build_top_level_bvh(now);
+    return build_tlas(now);
 }
 
-SceneStructures::SceneStructures(BvhBuilder builder, BinaryTrees trees, TopLevelBvh top_level)
-    : builder_(builder), top_level_(std::move(top_level)) {
+SceneStructures::SceneStructures(BvhBuilder builder, BinaryTrees trees, Tlas tlas)
+    : builder_(builder), tlas_(std::move(tlas)) {
     triangle_count_ = trees.triangle_count();
     baked_bounds_ = trees.baked().bounds;
     binary_.emplace(builder, std::move(trees));
 }
 
-std::shared_ptr<SceneStructures> SceneStructures::updated(BinaryTrees trees, TopLevelBvh top_level,
+std::shared_ptr<SceneStructures> SceneStructures::updated(BinaryTrees trees, Tlas tlas,
                                                           const std::vector<PartChange>& changes,
                                                           const SceneTriangles& triangles) {
     const std::lock_guard lock(mutex_);
-    const auto after = std::make_shared<SceneStructures>(builder_, std::move(trees), std::move(top_level));
+    const auto after = std::make_shared<SceneStructures>(builder_, std::move(trees), std::move(tlas));
     for (const auto& [builder, before] : binary_) {
         if (builder == builder_) continue;
         after->binary_.emplace(builder, update_binary_trees(before, builder, changes, triangles));
@@ -70,10 +70,10 @@ std::shared_ptr<SceneStructures> SceneStructures::updated(BinaryTrees trees, Top
         const BuiltStructure::Before before = {*structure, changes};
         auto& built = after->built_[what];
         if (const auto builder = builder_of(kind)) {
-            built = std::make_shared<const BuiltStructure>(after->top_level_, kind, layout, after->binary_.at(*builder),
+            built = std::make_shared<const BuiltStructure>(after->tlas_, kind, layout, after->binary_.at(*builder),
                                                            &before);
         } else {
-            built = std::make_shared<const BuiltStructure>(after->top_level_, kind, triangles, &before);
+            built = std::make_shared<const BuiltStructure>(after->tlas_, kind, triangles, &before);
         }
     }
     return after;
@@ -95,8 +95,8 @@ std::shared_ptr<SceneStructures> SceneStructures::fitted(Queue& queue, std::span
     BinaryTrees trees = update_binary_trees(before, builder_, changes, triangles);
     std::map<uint32_t, Bounds3> bounds;
     for (const DeformedMesh& mesh : meshes) bounds.emplace(mesh.tree, trees.parts[1 + mesh.tree]->bounds);
-    TopLevelBvh top_level = top_level_over(placed, bounds);
-    return updated(std::move(trees), std::move(top_level), changes, triangles);
+    Tlas tlas = tlas_over(placed, bounds);
+    return updated(std::move(trees), std::move(tlas), changes, triangles);
 }
 
 const BinaryTrees& SceneStructures::binary_trees(BvhBuilder builder) {
@@ -113,10 +113,10 @@ std::shared_ptr<const BuiltStructure> SceneStructures::get(const Combination& co
     auto& built = built_[{kind, layout}];
     if (built != nullptr) return built;
     if (const auto builder = builder_of(kind)) {
-        built = std::make_shared<const BuiltStructure>(top_level_, kind, layout, binary_trees(*builder));
+        built = std::make_shared<const BuiltStructure>(tlas_, kind, layout, binary_trees(*builder));
     } else {
         const SceneTriangles triangles = triangles_of(binary_.at(builder_));
-        built = std::make_shared<const BuiltStructure>(top_level_, kind, triangles);
+        built = std::make_shared<const BuiltStructure>(tlas_, kind, triangles);
     }
     return built;
 }

@@ -18,18 +18,18 @@ namespace pertev {
 
 /// Builds the top level over instances, with bounds in place of those in `placed` for the meshes that `bounds` lists.
 /// Throws Error(OverLimit) that names an instance farther out than kMaxCoordinate.
-TopLevelBvh top_level_over(std::span<const PlacedBvh> placed, const std::map<uint32_t, Bounds3>& bounds_of_trees);
+Tlas tlas_over(std::span<const PlacedBvh> placed, const std::map<uint32_t, Bounds3>& bounds_of_trees);
 
 class SceneStructures {
 public:
     /// `trees` are those of `builder`. Trees of other builders are made from their triangles.
-    SceneStructures(BvhBuilder builder, BinaryTrees trees, TopLevelBvh top_level);
+    SceneStructures(BvhBuilder builder, BinaryTrees trees, Tlas tlas);
 
     /// Returns the scene after a change. `trees` are the original ones, updated. Every other structure that has been
     /// built is updated too, and shares its unchanged parts. Only `triangles` of parts that change are read. Throws
     /// as get().
-    std::shared_ptr<SceneStructures> updated(BinaryTrees trees, TopLevelBvh top_level,
-                                             const std::vector<PartChange>& changes, const SceneTriangles& triangles);
+    std::shared_ptr<SceneStructures> updated(BinaryTrees trees, Tlas tlas, const std::vector<PartChange>& changes,
+                                             const SceneTriangles& triangles);
 
     /// Returns the scene with new vertices for some meshes. It works like updated(), on the host, for layouts whose
     /// trees are not kept on the device (can_deform). `placed` lists what the top level contains.
@@ -47,7 +47,7 @@ public:
     const Bounds3& baked_bounds() const { return baked_bounds_; }
     Bounds3 bounds() const {
         Bounds3 all = baked_bounds_;
-        all.extend(top_level_.bounds);
+        all.extend(tlas_.bounds);
         return all;
     }
 
@@ -58,7 +58,7 @@ private:
     const BinaryTrees& binary_trees(BvhBuilder builder);
 
     BvhBuilder builder_;
-    TopLevelBvh top_level_;
+    Tlas tlas_;
     Bounds3 baked_bounds_;
     uint64_t triangle_count_ = 0;
     std::mutex mutex_;

@@ -15,7 +15,7 @@ namespace {
 /// Returns the structure for a combination. Throws Error(OverLimit).
 std::shared_ptr<const BuiltStructure> structure_for(const Combination& c, SceneStructures& structures) {
     const uint64_t triangles = structures.triangle_count();
-    if (c.walk != WalkKind::BruteForce || triangles <= kMaxBruteForceTriangles) return structures.get(c);
+    if (c.traversal != TraversalKind::BruteForce || triangles <= kMaxBruteForceTriangles) return structures.get(c);
     throw Error(ErrorCode::OverLimit,
                 fmt::format("{}: each ray would test all {} triangles of the scene; pictures of at most {} are made so",
                             name_of(c), triangles, kMaxBruteForceTriangles));
@@ -35,7 +35,7 @@ SceneTracer::SceneTracer(Queue& queue, SceneStructures& structures, const Tracer
         structures_.push_back(structure);
         tracers_.push_back(std::make_unique<Tracer>(queue, choice[kind], structure));
     }
-    if (can_walk_on_host(choice, queue.is_cuda())) {
+    if (can_traverse_on_host(choice, queue.is_cuda())) {
         host_trees_ = &std::get<HostTrees>(tracers_.front()->structure().trees());
     }
 }
@@ -61,10 +61,10 @@ void SceneTracer::deform(std::span<const DeformedMesh> meshes, std::span<const P
         const std::vector<Bounds3> bounds = structure->deform(meshes);
         for (std::size_t i = 0; i < meshes.size(); ++i) bounds_of_trees[meshes[i].tree] = bounds[i];
     }
-    const TopLevelBvh top_level = top_level_over(placed, bounds_of_trees);
-    for (const auto& structure : all) structure->place(meshes, top_level);
+    const Tlas tlas = tlas_over(placed, bounds_of_trees);
+    for (const auto& structure : all) structure->place(meshes, tlas);
     bounds_ = baked_bounds_;
-    bounds_.extend(top_level.bounds);
+    bounds_.extend(tlas.bounds);
 }
 
 void SceneTracer::set_surfaces(const SceneView& scene) {

@@ -41,7 +41,7 @@ SceneTrees<View> StructureOnDevice::moved_scene(SceneTrees<View> scene, const Bu
         memory_.upload_at(array.offset, bytes);
     }
     scene.meshes = moved(scene.meshes);
-    scene.top_nodes = moved(scene.top_nodes);
+    scene.tlas_nodes = moved(scene.tlas_nodes);
     scene.instances = moved(scene.instances);
     return scene;
 }
@@ -104,7 +104,7 @@ std::vector<Bounds3> StructureOnDevice::deform(std::span<const DeformedMesh> mes
     return bounds;
 }
 
-void StructureOnDevice::place(std::span<const DeformedMesh> meshes, const TopLevelBvh& top_level) {
+void StructureOnDevice::place(std::span<const DeformedMesh> meshes, const Tlas& tlas) {
     const auto place_in = [&]<class View>(SceneTrees<View>& scene) {
         const View* const own = std::get<SceneTrees<View>>(structure_->trees()).meshes;
         std::vector<View> views(own, own + structure_->mesh_count());
@@ -120,12 +120,12 @@ void StructureOnDevice::place(std::span<const DeformedMesh> meshes, const TopLev
         }
         PartArrays arrays;
         arrays.add(views, scene.meshes);
-        arrays.add(top_level.nodes, scene.top_nodes);
-        arrays.add(top_level.instances, scene.instances);
+        arrays.add(tlas.nodes, scene.tlas_nodes);
+        arrays.add(tlas.instances, scene.instances);
         arrays.upload(queue_, placed_, "top level of what moves");
-        scene.top_root = top_level.root;
-        scene.top_reach = top_level.reach;
-        scene.top_growth = top_level.growth;
+        scene.tlas_root = tlas.root;
+        scene.tlas_reach = tlas.reach;
+        scene.tlas_growth = tlas.growth;
     };
     std::visit(place_in, trees_);
 }

@@ -36,7 +36,7 @@ public:
     std::vector<Bounds3> deform(std::span<const DeformedMesh> meshes);
     /// After deform(): uses the trees of exactly these meshes, and this top level over all instances, in place of the
     /// structure's own until the next update with another structure.
-    void place(std::span<const DeformedMesh> meshes, const TopLevelBvh& top_level);
+    void place(std::span<const DeformedMesh> meshes, const Tlas& tlas);
 
     const AnyTrees& trees() const { return trees_; }
     const BuiltStructure& built() const { return *structure_; }

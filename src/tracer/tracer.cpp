@@ -19,16 +19,17 @@ uint32_t* Tracer::empty_pool() const {
     return pool;
 }
 
-void Tracer::trace(const WalkKernel& kernel, const TraceQuery& query, WorkCount count, const HitQueueView& hits,
+void Tracer::trace(const TraversalKernel& kernel, const TraceQuery& query, WorkCount count, const HitQueueView& hits,
                    uint32_t* pool) const {
     if (count.most == 0) return;
     kernel.trace(queue_, structure_->trees(), {query, count, pool != nullptr ? pool : empty_pool()}, hits);
 }
 
 bool Tracer::count_work(bool any_hit, const TraceQuery& query, uint32_t count, RayWork* work) const {
-    const WalkKernel* counting = &kernel(any_hit);
+    const TraversalKernel* counting = &kernel(any_hit);
     // The tests of a ray do not depend on its thread, except in traversals where a warp decides together.
-    const bool company = combination_.walk == WalkKind::Speculative || combination_.walk == WalkKind::Packet;
+    const bool company =
+        combination_.traversal == TraversalKind::Speculative || combination_.traversal == TraversalKind::Packet;
     if (counting->count == nullptr && !company) {
         Combination plain = combination_;
         plain.distribution = Distribution::OneAThread;

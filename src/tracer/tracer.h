@@ -12,7 +12,7 @@
 #include "device/buffer.h"
 #include "tracer/combination.h"
 #include "tracer/structure_on_device.h"
-#include "tracer/walk_kernels.h"
+#include "tracer/traversal_kernels.h"
 
 namespace pertev {
 
@@ -52,16 +52,16 @@ public:
     const StructureOnDevice& structure() const { return *structure_; }
 
 private:
-    void trace(const WalkKernel& kernel, const TraceQuery& query, WorkCount count, const HitQueueView& hits,
+    void trace(const TraversalKernel& kernel, const TraceQuery& query, WorkCount count, const HitQueueView& hits,
                uint32_t* pool) const;
     uint32_t* empty_pool() const;
-    const WalkKernel& kernel(bool any_hit) const { return any_hit ? *any_ : *closest_; }
+    const TraversalKernel& kernel(bool any_hit) const { return any_hit ? *any_ : *closest_; }
 
     Queue& queue_;
     Combination combination_;
     std::shared_ptr<const StructureOnDevice> structure_;
-    const WalkKernel* closest_;
-    const WalkKernel* any_;
+    const TraversalKernel* closest_;
+    const TraversalKernel* any_;
     Buffer<uint32_t> pool_; // [stream]
 };
 

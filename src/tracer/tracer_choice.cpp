@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "tracer/walk_kernels.h"
+#include "tracer/traversal_kernels.h"
 
 namespace pertev {
 
@@ -25,14 +25,14 @@ TracerChoice default_tracers(bool on_cuda, TreeBuild build) {
     const StructureKind structure = structure_of(build);
     if (on_cuda) { // camera rays are coherent: packets over binary nodes; other rays: single rays over compressed
                    // nodes
-        const Combination together = {.structure = structure, .walk = WalkKind::Octants};
+        const Combination together = {.structure = structure, .traversal = TraversalKind::Octants};
         const Combination alone = {.structure = structure,
-                                   .walk = WalkKind::Compressed,
+                                   .traversal = TraversalKind::Compressed,
                                    .options = {.rta_at_pops = false},
                                    .distribution = Distribution::DynamicFetch};
         return {together, alone, alone};
     }
-    TracerChoice choice = same_for_all({.structure = structure, .walk = WalkKind::Wide8Simd});
+    TracerChoice choice = same_for_all({.structure = structure, .traversal = TraversalKind::Wide8Simd});
     // Any-hit searches end sooner if they visit the first child first (for rays without an end: trace/trace_any.h).
     choice.shadow.options.near_first = false;
     return choice;
@@ -45,12 +45,13 @@ BvhBuilder builder_of(const TracerChoice& choice) {
     return *builder_of(structure_of(kDefaultBuild));
 }
 
-bool can_walk_on_host(const TracerChoice& choice, bool on_cuda) {
+bool can_traverse_on_host(const TracerChoice& choice, bool on_cuda) {
     if (on_cuda) return false;
     for (const RayKind kind : kValuesOf<RayKind>) {
         Combination c = choice[kind];
         if (kind == RayKind::Shadow) c.options.near_first = true; // the order does not change the result
-        if (!(c == Combination{.structure = choice.camera.structure, .walk = WalkKind::Wide8Simd})) return false;
+        if (!(c == Combination{.structure = choice.camera.structure, .traversal = TraversalKind::Wide8Simd}))
+            return false;
     }
     return true;
 }

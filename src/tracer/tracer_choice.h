@@ -50,7 +50,7 @@ BvhBuilder builder_of(const TracerChoice& choice);
 
 /// Whether a ray loop on the host may traverse the chosen structure directly (device_scene/find_hits.h): one
 /// structure for all kinds, eight boxes at a time, every switch on.
-bool can_walk_on_host(const TracerChoice& choice, bool on_cuda);
+bool can_traverse_on_host(const TracerChoice& choice, bool on_cuda);
 
 /// Throws Error(BadInput) if a chosen tracer is invalid there, was not compiled, or uses tests that leak.
 void check_choice(const TracerChoice& choice, bool on_cuda);

@@ -20,7 +20,7 @@
 #include "tests/support/random.h"
 #include "tests/support/render_scenes.h"
 #include "tracer/deforming_tree.h"
-#include "tracer/walk_kernels.h"
+#include "tracer/traversal_kernels.h"
 
 using namespace pertev;
 
@@ -115,11 +115,11 @@ TEST_CASE("vertices that are made on the device give the picture of those made o
     std::vector<Hash128> expected;
     for (const double time_s : kTimes) expected.push_back(hash_by_host(rest, time_s, settings));
     CHECK(expected[0] != expected[1]);
-    Queue queue = test::queue_asked_for();
-    for (const WalkKind walk : kValuesOf<WalkKind>) {
-        Combination c = {.structure = StructureKind::SpatialSplits, .walk = walk};
-        if (walk == WalkKind::Kd) c.structure = StructureKind::KdSah;
-        if (walk == WalkKind::Octree) c.structure = StructureKind::Octree;
+    Queue queue = test::requested_queue();
+    for (const TraversalKind traversal : kValuesOf<TraversalKind>) {
+        Combination c = {.structure = StructureKind::SpatialSplits, .traversal = traversal};
+        if (traversal == TraversalKind::Kd) c.structure = StructureKind::KdSah;
+        if (traversal == TraversalKind::Octree) c.structure = StructureKind::Octree;
         if (why_no_tracer(c, queue.is_cuda())) continue;
         CAPTURE(name_of(c));
         settings.tracers = same_for_all(c);
@@ -142,10 +142,10 @@ TEST_CASE("vertices that are made on the device give the picture of those made o
 
 TEST_CASE("a step in time uploads joints and weights, not vertices, and takes no memory") {
     Messages messages;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = test::layered_settings();
-    for (const WalkKind walk : {WalkKind::Wide8Simd, WalkKind::Compressed}) {
-        const Combination c = {.structure = StructureKind::Binned, .walk = walk};
+    for (const TraversalKind traversal : {TraversalKind::Wide8Simd, TraversalKind::Compressed}) {
+        const Combination c = {.structure = StructureKind::Binned, .traversal = traversal};
         if (why_no_tracer(c, queue.is_cuda())) continue;
         CAPTURE(name_of(c));
         settings.tracers = same_for_all(c);
@@ -167,7 +167,7 @@ TEST_CASE("a step in time uploads joints and weights, not vertices, and takes no
 
 TEST_CASE("what deforms takes the bytes that are said beforehand") {
     Messages messages;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const MovingScene moving(make_bending_scene(), 0.25, {}, messages);
     const SceneOnDevice scene(queue, moving.prepared());
     CHECK(queue.allocated_bytes() == predicted_bytes(moving.prepared(), queue.is_cuda()));
@@ -253,8 +253,8 @@ TEST_CASE("what a skin or morph targets move is looked for where it was in the f
                                    mesh.positions[mesh.indices[3 * primitive]]);
         };
         for (uint32_t primitive = 0; primitive < rest.meshes[instance].triangle_count(); primitive += 7) {
-            const SeenPoint now = see_point(view, world(at_1, primitive)),
-                            then = see_point(view, world(at_0, primitive));
+            const ProjectedPoint now = project_point(view, world(at_1, primitive)),
+                                 then = project_point(view, world(at_0, primitive));
             const Reprojection found =
                 reproject_surface(cameras, scene.view(), {instances_before.data(), scene.meshes_before()}, now.pixel,
                                   {float_of(instance), float_of(primitive), 0, 0});
@@ -290,7 +290,7 @@ TEST_CASE("frames of bending meshes have the same bytes on every device, by ever
     RenderSettings wavefront = settings;
     wavefront.body = PathBody::Wavefront;
     CHECK(hash_of_frames(cpu, wavefront) == expected);
-    wavefront.tracers = same_for_all({.structure = StructureKind::Hploc, .walk = WalkKind::Compressed});
+    wavefront.tracers = same_for_all({.structure = StructureKind::Hploc, .traversal = TraversalKind::Compressed});
     CHECK(hash_of_frames(cpu, wavefront) == expected);
     if (test::cuda_requested()) {
         Queue cuda = test::make_cuda_queue();
@@ -324,7 +324,7 @@ TEST_CASE("motion vectors follow skins and morph targets, and are a function of 
     Queue cpu = Queue::make_cpu();
     const Image motion = motion_of_frame(cpu, settings, 5, 5);
     CHECK(motion_of_frame(cpu, settings, 1, 5).pixels == motion.pixels);
-    settings.tracers = same_for_all({.structure = StructureKind::Binned, .walk = WalkKind::Compressed});
+    settings.tracers = same_for_all({.structure = StructureKind::Binned, .traversal = TraversalKind::Compressed});
     CHECK(motion_of_frame(cpu, settings, 4, 5).pixels == motion.pixels);
     const auto moving_pixels = [&](uint32_t begin, uint32_t end) { // columns
         int moving = 0;
@@ -368,7 +368,7 @@ TEST_CASE("vertices that give light, mirror or are baked are made on the host, a
         CHECK(left_at(rest, 0.5, shape));
         CHECK(!left_at(rest, 1.5, shape));
         Messages messages;
-        Queue queue = test::queue_asked_for();
+        Queue queue = test::requested_queue();
         MovingScene moving(rest, 0.5, {}, messages);
         Session session(queue, moving.prepared(), camera_of_bending(), settings);
         for (const double time_s : {1.5, 2.0, 1.0, 0.75}) {
@@ -385,7 +385,7 @@ TEST_CASE("vertices that are moved further than a scene may reach are refused, a
     rest.animations[0].channels.push_back(
         {3, AnimatedPart::Translation, Interpolation::Step, {0, 1, 2}, {0, 0, 0, 1e13f, 0, 0, 0, 0, 0}});
     Messages messages;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const RenderSettings settings = test::layered_settings();
     MovingScene moving(rest, 0.5, {}, messages);
     Session session(queue, moving.prepared(), camera_of_bending(), settings);

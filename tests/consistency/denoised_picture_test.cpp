@@ -81,7 +81,7 @@ TEST_CASE("the film beside a denoised picture has the bytes it has without, with
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     RenderSettings settings = denoised_settings();
     settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
     settings.transparent = true;
@@ -119,7 +119,7 @@ TEST_CASE("a denoised picture is nearer to that of many samples than its samples
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     RenderSettings settings = denoised_settings();
     Session session(queue, prepared, mixed_scene_camera(), settings);
     session.render(4);
@@ -139,16 +139,16 @@ TEST_CASE("a denoised picture takes the bytes that are said beforehand") {
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
-        Queue queue = queue_asked_for();
+        Queue queue = requested_queue();
         RenderSettings settings = denoised_settings();
         settings.body = body;
         settings.samples = 2;
         RenderSettings plain = settings;
         plain.denoise = Denoise::None;
         plain.samples = 1; // queues hold no more, as samples are taken one by one
-        const auto bytes_of = [&](const RenderSettings& asked) {
-            Session session(queue, prepared, mixed_scene_camera(), asked);
-            session.render(asked.samples);
+        const auto bytes_of = [&](const RenderSettings& requested) {
+            Session session(queue, prepared, mixed_scene_camera(), requested);
+            session.render(requested.samples);
             return queue.allocated_bytes();
         };
         const std::size_t more = bytes_of(settings) - bytes_of(plain);

@@ -29,7 +29,7 @@ template <class MakeStage>
 void check_same_bits(uint32_t count, const MakeStage& make_stage) {
     std::vector<uint32_t> results[2];
     for (int device = 0; device < 2; ++device) {
-        Queue queue = device == 0 ? Queue::make_cpu() : test::queue_asked_for();
+        Queue queue = device == 0 ? Queue::make_cpu() : test::requested_queue();
         const Buffer<uint32_t> out(queue, count, "results");
         make_stage(queue, out.data(), count);
         queue.wait();
@@ -64,7 +64,7 @@ void check_same_hits(const Scene& scene, uint32_t count) {
     std::vector<Hit> hits[2];
     std::vector<uint32_t> occluded[2];
     for (int device = 0; device < 2; ++device) {
-        Queue queue = device == 0 ? Queue::make_cpu() : test::queue_asked_for();
+        Queue queue = device == 0 ? Queue::make_cpu() : test::requested_queue();
         const Tracer tracer = test::make_tracer(queue, prepared);
         const Buffer<Ray> in(queue, std::span<const Ray>(rays), "rays");
         const Buffer<Float4> places(queue, count, "hits");

@@ -1,7 +1,7 @@
-// The code that only a GPU runs gives the hits that the host's walks give, whatever a warp does: persistent threads,
-// dynamic fetch, packets of a warp, triangles and leaves put off, counts of live lanes. It runs on emulated warps
-// (tests/support/emulated_warp.h): no vote may name a lane that does not come, each ray is stored once, the pool ends
-// where it must. A failure tells the seed, which replays it.
+// The code that only a GPU runs gives the hits that the host's traversals give, whatever a warp does: persistent
+// threads, dynamic fetch, packets of a warp, triangles and leaves put off, counts of live lanes. It runs on emulated
+// warps (tests/support/emulated_warp.h): no vote may name a lane that does not come, each ray is stored once, the pool
+// ends where it must. A failure tells the seed, which replays it.
 
 #include <doctest/doctest.h>
 
@@ -11,14 +11,14 @@
 
 #include "accel/builders/build_bvh.h"
 #include "accel/bvh/compressed_bvh.h"
-#include "tests/support/check_walk.h"
-#include "tests/support/emulated_walks.h"
+#include "tests/support/check_traversal.h"
+#include "tests/support/emulated_traversals.h"
 #include "tests/support/instanced_scene.h"
 #include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
-#include "trace/binary/while_while_walk.h"
+#include "trace/binary/while_while_traversal.h"
 #include "trace/warps/lane_counter.h"
-#include "trace/wide/compressed_walk.h"
+#include "trace/wide/compressed_traversal.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -29,9 +29,9 @@ constexpr uint32_t kThreads = 128; // a block
 
 // AddressSanitizer takes twenty times as long.
 #if defined(__SANITIZE_ADDRESS__)
-constexpr uint32_t kRays = 67, kMostRays = 203, kFew = 1;
+constexpr uint32_t kRays = 67, kMaxRays = 203, kFew = 1;
 #else
-constexpr uint32_t kRays = 331, kMostRays = 2000, kFew = 3;
+constexpr uint32_t kRays = 331, kMaxRays = 2000, kFew = 3;
 #endif
 
 /// The host's hits as a batch stores them.
@@ -54,16 +54,16 @@ struct Expected {
 
 /// Runs a batch on warps, of `blocks` blocks where they share a pool, and holds what it stored to what is expected.
 template <class Run>
-void check_batch(const EmulatedWalk& walk, const Expected& expected, uint32_t blocks, uint32_t seed, const Run& run,
-                 LaneCounts* lanes = nullptr) {
-    const std::string way = walk.distribution;
+void check_batch(const EmulatedTraversal& traversal, const Expected& expected, uint32_t blocks, uint32_t seed,
+                 const Run& run, LaneCounts* lanes = nullptr) {
+    const std::string way = traversal.distribution;
     const auto count = static_cast<uint32_t>(expected.rays.size());
-    CAPTURE(std::string(walk.walk));
+    CAPTURE(std::string(traversal.traversal));
     CAPTURE(way);
-    CAPTURE(walk.rta);
-    CAPTURE(std::string(walk.tests));
-    CAPTURE(walk.any);
-    CAPTURE(walk.cut_outs);
+    CAPTURE(traversal.rta);
+    CAPTURE(std::string(traversal.tests));
+    CAPTURE(traversal.any);
+    CAPTURE(traversal.cut_outs);
     CAPTURE(count);
     CAPTURE(blocks);
     CAPTURE(seed);
@@ -75,7 +75,7 @@ void check_batch(const EmulatedWalk& walk, const Expected& expected, uint32_t bl
     REQUIRE(fault == "");
     CHECK(std::count(stores.begin(), stores.end() - 1, 1u) == count);
     CHECK(stores[count] == 0);
-    const std::vector<Hit> want = as_stored(expected.hits, expected.rays, walk.any);
+    const std::vector<Hit> want = as_stored(expected.hits, expected.rays, traversal.any);
     const auto wrong = std::mismatch(hits.begin(), hits.end(), want.begin());
     if (wrong.first != hits.end()) {
         const auto i = static_cast<std::size_t>(wrong.first - hits.begin());
@@ -106,39 +106,41 @@ struct TestTrees {
         : bvh(build_bvh(triangles)), compressed_bvh(make_compressed_bvh(bvh)), woop_bvh(make_woop_bvh(bvh)),
           binary(view_of(bvh)), compressed(view_of(compressed_bvh)), woop(view_of(woop_bvh)) {}
 
-    std::string run(const EmulatedWalk& walk, const EmulatedBatch& batch) const {
-        return walk.run({&binary, &compressed, &woop}, batch);
+    std::string run(const EmulatedTraversal& traversal, const EmulatedBatch& batch) const {
+        return traversal.run({&binary, &compressed, &woop}, batch);
     }
 };
 
-/// The host's hits by the same tests; exact ones are those of every walk.
+/// The host's hits by the same tests; exact ones are those of every traversal.
 struct HostHits {
     std::vector<Hit> exact, cut_outs, fast_binary, fast_compressed, woop;
 
     HostHits(const TestTrees& trees, const std::vector<Ray>& rays) {
-        constexpr WalkOptions kFast = {.tests = TestKind::Fast}, kWoop = {.tests = TestKind::Woop};
+        constexpr TraversalOptions kFast = {.tests = TestKind::Fast}, kWoop = {.tests = TestKind::Woop};
         const SingleTree<BvhView> binary = {trees.binary};
         for (const Ray& ray : rays) {
             trace_closest(binary, ray, AcceptAll{}, exact.emplace_back());
             trace_closest(binary, ray, AcceptSome{}, cut_outs.emplace_back());
-            trace_closest<WhileWhileWalk<kFast>>(binary, ray, AcceptAll{}, fast_binary.emplace_back());
-            trace_closest<CompressedWalk<kFast>>(SingleTree<CompressedBvhView>{trees.compressed}, ray, AcceptAll{},
-                                                 fast_compressed.emplace_back());
-            trace_closest<WhileWhileWalk<kWoop>>(SingleTree<WoopBvhView>{trees.woop}, ray, AcceptAll{},
-                                                 woop.emplace_back());
+            trace_closest<WhileWhileTraversal<kFast>>(binary, ray, AcceptAll{}, fast_binary.emplace_back());
+            trace_closest<CompressedTraversal<kFast>>(SingleTree<CompressedBvhView>{trees.compressed}, ray, AcceptAll{},
+                                                      fast_compressed.emplace_back());
+            trace_closest<WhileWhileTraversal<kWoop>>(SingleTree<WoopBvhView>{trees.woop}, ray, AcceptAll{},
+                                                      woop.emplace_back());
         }
     }
-    const std::vector<Hit>& of(const EmulatedWalk& walk) const {
-        if (walk.cut_outs) return cut_outs;
-        const std::string tests = walk.tests;
+    const std::vector<Hit>& of(const EmulatedTraversal& traversal) const {
+        if (traversal.cut_outs) return cut_outs;
+        const std::string tests = traversal.tests;
         if (tests == "woop") return woop;
-        return tests == "exact" ? exact : std::string(walk.walk) == "compressed" ? fast_compressed : fast_binary;
+        return tests == "exact"                                   ? exact
+               : std::string(traversal.traversal) == "compressed" ? fast_compressed
+                                                                  : fast_binary;
     }
 };
 
 } // namespace
 
-TEST_CASE("on warps, every walk by every way of handing out rays gives each ray its hit, once") {
+TEST_CASE("on warps, every traversal by every way of handing out rays gives each ray its hit, once") {
     const uint32_t rounds = static_cast<uint32_t>(effort(1, 40));
     uint32_t seed = 0;
     for (const NastyMesh& c : nasty_meshes(500)) {
@@ -148,12 +150,13 @@ TEST_CASE("on warps, every walk by every way of handing out rays gives each ray 
         for (uint32_t round = 0; round < rounds; ++round) {
             const std::vector<Ray> rays = nasty_rays(kRays, c, 7 + round);
             const HostHits host(trees, rays);
-            for (const EmulatedWalk& walk : emulated_walks()) {
+            for (const EmulatedTraversal& traversal : emulated_traversals()) {
                 // By tests that leak what is hit at a tie depends on what was skipped before.
-                if (walk.run == nullptr || walk.counts_lanes || (walk.tests != std::string("exact") && has_ties))
+                if (traversal.run == nullptr || traversal.counts_lanes ||
+                    (traversal.tests != std::string("exact") && has_ties))
                     continue;
-                check_batch(walk, {rays, host.of(walk)}, 2, ++seed,
-                            [&](const EmulatedBatch& batch) { return trees.run(walk, batch); });
+                check_batch(traversal, {rays, host.of(traversal)}, 2, ++seed,
+                            [&](const EmulatedBatch& batch) { return trees.run(traversal, batch); });
             }
         }
     }
@@ -166,17 +169,16 @@ TEST_CASE("so they do for any number of rays and of warps") {
     struct Size {
         uint32_t rays, blocks;
     };
-    const Size sizes[] = {{0, 1},  {1, 1},  {1, 3},   {5, 2},   {31, 1},
-                          {32, 1}, {33, 2}, {100, 4}, {257, 9}, {kMostRays, 3}};
+    const Size sizes[] = {{0, 1}, {1, 1}, {1, 3}, {5, 2}, {31, 1}, {32, 1}, {33, 2}, {100, 4}, {257, 9}, {kMaxRays, 3}};
     for (const auto [count, blocks] : sizes) {
         const std::vector<Ray> rays = nasty_rays(count, mesh, 3);
         const HostHits host(trees, rays);
-        for (const EmulatedWalk& walk : emulated_walks()) {
-            if (walk.run == nullptr || walk.counts_lanes) continue;
+        for (const EmulatedTraversal& traversal : emulated_traversals()) {
+            if (traversal.run == nullptr || traversal.counts_lanes) continue;
             const uint32_t rounds = static_cast<uint32_t>(effort(count < 1000 ? kFew : 1, 100));
             for (uint32_t round = 0; round < rounds; ++round) {
-                check_batch(walk, {rays, host.of(walk)}, blocks, ++seed,
-                            [&](const EmulatedBatch& batch) { return trees.run(walk, batch); });
+                check_batch(traversal, {rays, host.of(traversal)}, blocks, ++seed,
+                            [&](const EmulatedBatch& batch) { return trees.run(traversal, batch); });
             }
         }
     }
@@ -198,13 +200,13 @@ TEST_CASE("so they do over instances, where rays of a warp come to different mes
     std::vector<Hit> expected(s.rays.size());
     for (std::size_t i = 0; i < s.rays.size(); ++i) trace_closest(binary_scene, s.rays[i], AcceptAll{}, expected[i]);
     int runs = 0;
-    for (const EmulatedWalk& walk : emulated_walks()) {
-        if (walk.run_scene == nullptr) continue;
-        check_batch(walk, {s.rays, expected}, 2, static_cast<uint32_t>(++runs), [&](const EmulatedBatch& batch) {
-            return walk.run_scene({&binary_scene, &compressed_scene}, batch);
+    for (const EmulatedTraversal& traversal : emulated_traversals()) {
+        if (traversal.run_scene == nullptr) continue;
+        check_batch(traversal, {s.rays, expected}, 2, static_cast<uint32_t>(++runs), [&](const EmulatedBatch& batch) {
+            return traversal.run_scene({&binary_scene, &compressed_scene}, batch);
         });
     }
-    CHECK(runs == 26); // four walks, two ways, and three by dynamic fetch too; closest and any
+    CHECK(runs == 26); // four traversals, two ways, and three by dynamic fetch too; closest and any
 }
 
 TEST_CASE("on warps, live lanes add up to the visits of the rays") {
@@ -216,22 +218,23 @@ TEST_CASE("on warps, live lanes add up to the visits of the rays") {
     for (Ray& ray : rays) {
         ray.origin = random.point(-3, 3);
         ray.direction = random.point(-1, 1) - ray.origin;
-        trace_closest<WhileWhileWalk<WalkOptions{}>>(SingleTree<BvhView>{trees.binary}, ray, AcceptAll{},
-                                                     expected.emplace_back(), WalkCounter{&nodes, &triangles});
+        trace_closest<WhileWhileTraversal<TraversalOptions{}>>(SingleTree<BvhView>{trees.binary}, ray, AcceptAll{},
+                                                               expected.emplace_back(),
+                                                               TraversalCounter{&nodes, &triangles});
     }
     int runs = 0;
-    for (const EmulatedWalk& walk : emulated_walks()) {
-        if (!walk.counts_lanes) continue;
-        CAPTURE(std::string(walk.walk));
+    for (const EmulatedTraversal& traversal : emulated_traversals()) {
+        if (!traversal.counts_lanes) continue;
+        CAPTURE(std::string(traversal.traversal));
         LaneCounts sums;
         check_batch(
-            walk, {rays, expected}, 2, static_cast<uint32_t>(++runs),
-            [&](const EmulatedBatch& batch) { return trees.run(walk, batch); }, &sums);
-        if (std::string(walk.walk) == "while-while") {
+            traversal, {rays, expected}, 2, static_cast<uint32_t>(++runs),
+            [&](const EmulatedBatch& batch) { return trees.run(traversal, batch); }, &sums);
+        if (std::string(traversal.traversal) == "while-while") {
             CHECK(sums.node_lanes == nodes);
             CHECK(sums.triangle_lanes == triangles);
         }
-        const bool is_compressed = std::string(walk.walk) == "compressed";
+        const bool is_compressed = std::string(traversal.traversal) == "compressed";
         CHECK(sums.node_steps > 0);
         CHECK(sums.node_steps <= sums.node_lanes);
         CHECK(sums.node_lanes <= 32 * sums.node_steps);

@@ -1,5 +1,5 @@
-// Pictures by every structure, walk, switch and way of handing rays out that this device has, with exact tests: one
-// hash. What makes no sense says why. With --device cuda the GPU's.
+// Pictures by every structure, traversal, switch and way of handing rays out that this device has, with exact tests:
+// one hash. What makes no sense says why. With --device cuda the GPU's.
 
 #include <string>
 
@@ -10,7 +10,7 @@
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/tell_if_stuck.h"
-#include "tracer/walk_kernels.h"
+#include "tracer/traversal_kernels.h"
 
 using namespace pertev;
 
@@ -43,8 +43,8 @@ Scene make_opaque(Scene scene) {
     return scene;
 }
 
-std::vector<WalkOptions> all_switches() {
-    std::vector<WalkOptions> all;
+std::vector<TraversalOptions> all_switches() {
+    std::vector<TraversalOptions> all;
     for (const bool rta : {true, false}) {
         for (const bool near_first : {true, false}) all.push_back({.rta = rta, .near_first = near_first});
     }
@@ -67,14 +67,14 @@ Tally check_all(const Scene& scene) {
     Queue cpu = Queue::make_cpu();
     const Camera camera = test::mixed_scene_camera();
     const Hash128 wanted = test::render_hash(render_picture(cpu, prepared, camera, settings));
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Session session(queue, prepared, camera, settings);
     Tally tally;
     for (const StructureKind structure : kValuesOf<StructureKind>) {
-        for (const WalkKind walk : kValuesOf<WalkKind>) {
-            for (const WalkOptions& options : all_switches()) {
+        for (const TraversalKind traversal : kValuesOf<TraversalKind>) {
+            for (const TraversalOptions& options : all_switches()) {
                 for (const Distribution distribution : kDistributions) {
-                    const Combination c = {structure, walk, options, distribution};
+                    const Combination c = {structure, traversal, options, distribution};
                     if (const auto reason = why_no_tracer(c, queue.is_cuda())) {
                         tally.refused += reason->empty() ? 0 : 1;
                         continue;
@@ -120,13 +120,13 @@ TEST_CASE("each kind of ray may have a tracer of its own") {
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     RenderSettings settings = tracer_settings();
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Session session(queue, prepared, test::mixed_scene_camera(), settings);
     session.render(settings.samples);
     const Hash128 wanted = test::render_hash(session.result());
-    const Combination kd = {.structure = StructureKind::KdSah, .walk = WalkKind::Kd},
-                      octree = {.structure = StructureKind::Octree, .walk = WalkKind::Octree},
-                      wide = {.structure = StructureKind::SpatialSplits, .walk = WalkKind::Compressed};
+    const Combination kd = {.structure = StructureKind::KdSah, .traversal = TraversalKind::Kd},
+                      octree = {.structure = StructureKind::Octree, .traversal = TraversalKind::Octree},
+                      wide = {.structure = StructureKind::SpatialSplits, .traversal = TraversalKind::Compressed};
     for (const TracerChoice& choice :
          {TracerChoice{kd, octree, wide}, TracerChoice{wide, kd, octree}, TracerChoice{octree, wide, kd}}) {
         settings.tracers = choice;
@@ -137,11 +137,11 @@ TEST_CASE("each kind of ray may have a tracer of its own") {
     }
 }
 
-TEST_CASE("pictures are refused by tests that leak, and by walks that a device has not") {
+TEST_CASE("pictures are refused by tests that leak, and by traversals that a device has not") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = tracer_settings();
     Session session(queue, prepared, test::mixed_scene_camera(), settings);
     session.render(1);
@@ -155,13 +155,13 @@ TEST_CASE("pictures are refused by tests that leak, and by walks that a device h
         }
         return false;
     };
-    CHECK(refuses({.walk = WalkKind::WhileWhile, .options = {.tests = TestKind::Fast}}));
-    CHECK(refuses({.walk = WalkKind::WhileWhile, .options = {.tests = TestKind::Woop}}));
-    CHECK(refuses({.structure = StructureKind::KdSah, .walk = WalkKind::WhileWhile}));
+    CHECK(refuses({.traversal = TraversalKind::WhileWhile, .options = {.tests = TestKind::Fast}}));
+    CHECK(refuses({.traversal = TraversalKind::WhileWhile, .options = {.tests = TestKind::Woop}}));
+    CHECK(refuses({.structure = StructureKind::KdSah, .traversal = TraversalKind::WhileWhile}));
     if (queue.is_cuda()) {
-        CHECK(refuses({.walk = WalkKind::Wide8Simd}));
+        CHECK(refuses({.traversal = TraversalKind::Wide8Simd}));
     } else {
-        CHECK(refuses({.walk = WalkKind::WhileWhile, .distribution = Distribution::DynamicFetch}));
+        CHECK(refuses({.traversal = TraversalKind::WhileWhile, .distribution = Distribution::DynamicFetch}));
     }
     settings.tracers.reset(); // and goes on with what it can do
     session.set_settings(settings);

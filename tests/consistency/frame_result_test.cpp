@@ -98,7 +98,7 @@ TEST_CASE("layers of a frame are those of its own sample, whatever order samples
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     RenderSettings settings = result_settings();
     settings.aovs = kAovAlbedo | kAovDepth | kAovIds;
     Session session(queue, prepared, mixed_scene_camera(), settings);
@@ -128,7 +128,7 @@ TEST_CASE("the bytes that are predicted of frames are those that a session takes
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
         for (const RestirLight light : {RestirLight::Off, RestirLight::Direct, RestirLight::Indirect}) {
             for (const float scale : {1.0f, 0.5f}) {

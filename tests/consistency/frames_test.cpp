@@ -99,7 +99,7 @@ TEST_CASE("another size or another scene begins the history anew, and so does th
     RenderSettings smaller = frame_settings();
     smaller.width = 56, smaller.height = 40;
     constexpr uint32_t kFew = 5;
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     const auto hash_of_new_session = [&](const PreparedScene& of, const RenderSettings& settings) {
         Session session(queue, of, camera, settings);
         return hash_of_frames(session, camera, kFew, {});
@@ -202,7 +202,7 @@ TEST_CASE("a frame with ReSTIR counts its rays") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     const RenderSettings settings = frame_settings();
     Session session(queue, prepared, mixed_scene_camera(), settings);
     session.render_frame(0, {});
@@ -218,10 +218,10 @@ TEST_CASE("a frame that is not reconstructed is the film's picture of the same s
     for (const Scenes& s : scenes()) {
         Messages messages;
         const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
-        Queue queue = queue_asked_for();
+        Queue queue = requested_queue();
         Session session(queue, prepared, s.camera, settings_of_frames(frame_settings()));
         session.render_frame(
-            0, {.history = 1, .passes = 0, .limit_fireflies = false, .limit_history = false, .anti_alias = false});
+            0, {.history = 1, .passes = 0, .clamp_fireflies = false, .clamp_history = false, .anti_alias = false});
         session.render(1);
         const Image frame = session.frame().picture(), film = session.picture();
         double difference = 0, light = 0;
@@ -238,13 +238,13 @@ TEST_CASE("the mean of frames from a still camera is the picture's, but for what
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     RenderSettings settings = frame_settings();
     Session session(queue, prepared, mixed_scene_camera(), settings);
     session.render(256);
     const double expected = mean_of(session.picture());
     ReconstructionSettings unbounded;
-    unbounded.limit_fireflies = unbounded.limit_history = false;
+    unbounded.clamp_fireflies = unbounded.clamp_history = false;
     double mean = 0, bounded = 0;
     constexpr uint32_t kMeasured = 64;
     for (const bool bounds : {false, true}) {

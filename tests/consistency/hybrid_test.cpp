@@ -31,7 +31,7 @@ RenderSettings hybrid_settings() {
 
 /// Picture, layers and ids of what hybrid and path see.
 void check_as_path(const Scene& scene, const Camera& camera, RenderSettings settings) {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     settings.integrator = IntegratorKind::Hybrid;
     const RenderResult hybrid = test::render(queue, scene, camera, settings);
     settings.integrator = IntegratorKind::Path;
@@ -256,7 +256,7 @@ TEST_CASE("hybrid's memory is said beforehand, and other cameras and sizes give 
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     RenderSettings settings = hybrid_settings();
     settings.body = PathBody::Wavefront;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Session session(queue, prepared, test::mixed_scene_camera(), settings);
     session.render(settings.samples);
     const std::size_t predicted = predicted_bytes(prepared, settings, queue.is_cuda());

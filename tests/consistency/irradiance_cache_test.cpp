@@ -1,5 +1,6 @@
 // The one-picture law for irradiance caching: the same bytes for any number of threads, any split of the samples, all
-// stages over all walks or a few walks a thread, any number of them in flight. With --device cuda the GPU joins in.
+// stages over all subpaths or a few subpaths a thread, any number of them in flight. With --device cuda the GPU joins
+// in.
 
 #include <doctest/doctest.h>
 
@@ -38,7 +39,8 @@ Scene scene_with_mirror() {
 
 } // namespace
 
-TEST_CASE("pictures by irradiance caching do not depend on threads, passes, bodies, or how many walks are in flight") {
+TEST_CASE(
+    "pictures by irradiance caching do not depend on threads, passes, bodies, or how many subpaths are in flight") {
     for (const bool shows_records : {false, true}) {
         RenderSettings settings = cache_settings();
         settings.irradiance_cache.show_records = shows_records;
@@ -49,7 +51,7 @@ TEST_CASE("pictures by irradiance caching do not depend on threads, passes, bodi
 }
 
 TEST_CASE("irradiance caching tells the same of the first surface as path tracing, and of light scattered once") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const auto layers_of = [&](IntegratorKind integrator, bool shows_records = false) {
         RenderSettings settings = cache_settings();
         settings.irradiance_cache.show_records = shows_records;
@@ -74,7 +76,7 @@ TEST_CASE("irradiance caching tells the same of the first surface as path tracin
 }
 
 TEST_CASE("a session goes to irradiance caching and back, ends early and goes on, and each picture is whole") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -109,7 +111,7 @@ uint64_t rays_of_a_sample(Session& session) {
 } // namespace
 
 TEST_CASE("records are made once for a picture, and anew for another") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -167,7 +169,7 @@ TEST_CASE("records are made once for a picture, and anew for another") {
 }
 
 TEST_CASE("a meter and looks aside trace no ray of the picture that goes on, and leave its bytes as they are") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -193,7 +195,7 @@ TEST_CASE("a meter and looks aside trace no ray of the picture that goes on, and
 }
 
 TEST_CASE("an overture tells how far it is, from nothing to all, and never less than before") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -231,7 +233,7 @@ TEST_CASE("an overture tells how far it is, from nothing to all, and never less 
 }
 
 TEST_CASE("what is invalid of records is told with sample 0, whatever was rendered before") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Scene scene = test::make_mixed_scene();
     test::add(scene, test::sheet({0, 3, 0}, {1, 0, 0}, {0, 0, 1}),
               {{.two_sided_emission = true, .emission = {1e18f, 0, 0}}, "too bright"}); // for the film
@@ -255,7 +257,7 @@ TEST_CASE("what is invalid of records is told with sample 0, whatever was render
 }
 
 TEST_CASE("an overture is broken off by who watches, by the time and by abandoning, and leaves no trace") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -267,12 +269,12 @@ TEST_CASE("an overture is broken off by who watches, by the time and by abandoni
         settings.batch = 500; // many parts
         Session session(queue, prepared, test::camera_with_lens(), settings);
         for (int most = 0; most < 12; ++most) { // before the first part, between rounds, among records
-            int asked = 0;
+            int connections = 0;
             CHECK(session.render(2, [&](const RenderProgress& now) {
                 CHECK(now.samples_done == 0);
-                return asked++ < most;
+                return connections++ < most;
             }) == 0);
-            CHECK(asked == most + 1);
+            CHECK(connections == most + 1);
             CHECK(session.history().samples == 0);
             CHECK(session.stats().invalid_samples == 0);
         }
@@ -280,8 +282,8 @@ TEST_CASE("an overture is broken off by who watches, by the time and by abandoni
             std::atomic<bool> is_abandoned = true;
             session.abandon_when(&is_abandoned);
             CHECK(session.render(2) == 0);
-            int asked = 0;
-            CHECK(session.render(2, [&](const RenderProgress&) { return is_abandoned = ++asked > 5; }) == 0);
+            int connections = 0;
+            CHECK(session.render(2, [&](const RenderProgress&) { return is_abandoned = ++connections > 5; }) == 0);
             session.abandon_when(nullptr);
         }
         RenderSettings short_of_time = settings;
@@ -307,7 +309,7 @@ TEST_CASE("memory of irradiance caching is said beforehand") {
             settings.path.max_depth = 1; // room for records is taken, and none is made
             settings.batch = 1000;       // less than the rays of one record
             const uint64_t pixels = uint64_t(settings.width) * settings.height;
-            test::check_predicted_bytes(prepared, settings, false, RecordStore::most_host_bytes(pixels));
+            test::check_predicted_bytes(prepared, settings, false, RecordStore::max_host_bytes(pixels));
         }
     }
 }

@@ -1,5 +1,5 @@
-// Every combination of structure, walk and switches gives the hits of the proven walk, bit for bit, and that walk
-// those of brute force: in public scenes and in meshes made to break them, with instances and without.
+// Every combination of structure, traversal and switches gives the hits of the proven traversal, bit for bit, and that
+// traversal those of brute force: in public scenes and in meshes made to break them, with instances and without.
 
 #include <doctest/doctest.h>
 
@@ -31,8 +31,8 @@ constexpr uint64_t kRaysAKind = 50'000;
 constexpr const char* kFiles[] = {"crytek-sponza/sponza.obj", "sibenik/sibenik.obj"};
 #endif
 
-std::vector<WalkOptions> exact_options() {
-    std::vector<WalkOptions> options;
+std::vector<TraversalOptions> exact_options() {
+    std::vector<TraversalOptions> options;
     for (const bool rta : {true, false}) {
         for (const bool near_first : {true, false}) options.push_back({rta, near_first});
     }
@@ -44,8 +44,8 @@ std::vector<WalkOptions> exact_options() {
 LabSettings all_combinations(bool is_cuda, bool brute_force) {
     LabSettings settings;
     settings.structures.assign(kValuesOf<StructureKind>.begin(), kValuesOf<StructureKind>.end());
-    settings.walks.assign(kValuesOf<WalkKind>.begin(), kValuesOf<WalkKind>.end());
-    if (!brute_force) std::erase(settings.walks, WalkKind::BruteForce);
+    settings.traversals.assign(kValuesOf<TraversalKind>.begin(), kValuesOf<TraversalKind>.end());
+    if (!brute_force) std::erase(settings.traversals, TraversalKind::BruteForce);
     settings.options = exact_options();
     if (is_cuda) {
         settings.distributions = {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch};
@@ -55,30 +55,30 @@ LabSettings all_combinations(bool is_cuda, bool brute_force) {
     return settings;
 }
 
-/// Lists every walk with every switch over trees with spatial splits, kd-trees and octrees, and every structure with
-/// all switches on, in the long setting with RTA at nodes alone too. A GPU and the long setting trace each combination
-/// in all scenes. The short setting traces those of the first trees with all switches on in both scenes, and each other
-/// combination in one of the two: a fourth of the pairs of structure and walk in the larger one, and half of the
-/// switches. Thus each structure, each walk and each switch still meets the rays of both scenes.
+/// Lists every traversal with every switch over trees with spatial splits, kd-trees and octrees, and every structure
+/// with all switches on, in the long setting with RTA at nodes alone too. A GPU and the long setting trace each
+/// combination in all scenes. The short setting traces those of the first trees with all switches on in both scenes,
+/// and each other combination in one of the two: a fourth of the pairs of structure and traversal in the larger one,
+/// and half of the switches. Thus each structure, each traversal and each switch still meets the rays of both scenes.
 LabSettings some_combinations(bool is_cuda, std::size_t scene) {
     const bool all_scenes = is_cuda || test::effort(0, 1) != 0 || std::size(kFiles) == 1,
                at_nodes = test::effort(0, 1) != 0;
     const LabSettings all = all_combinations(is_cuda, false);
     LabSettings settings = all;
     for (const Distribution distribution : all.distributions) {
-        for (const WalkKind walk : all.walks) {
+        for (const TraversalKind traversal : all.traversals) {
             for (const StructureKind structure : all.structures) {
-                if (why_not(structure, walk)) continue;
-                const bool every_switch =
-                    structure == StructureKind::SpatialSplits || walk == WalkKind::Kd || walk == WalkKind::Octree;
-                const std::size_t pair = static_cast<std::size_t>(walk) + static_cast<std::size_t>(structure);
+                if (why_not(structure, traversal)) continue;
+                const bool every_switch = structure == StructureKind::SpatialSplits || traversal == TraversalKind::Kd ||
+                                          traversal == TraversalKind::Octree;
+                const std::size_t pair = static_cast<std::size_t>(traversal) + static_cast<std::size_t>(structure);
                 const std::size_t dealt_to = pair % 4 == 0 ? 0 : 1;
                 for (std::size_t i = 0; i < all.options.size(); ++i) {
-                    const WalkOptions& options = all.options[i];
+                    const TraversalOptions& options = all.options[i];
                     const bool switched_on = options.rta && options.near_first && (options.rta_at_pops || at_nodes);
                     const bool here = every_switch ? switched_on || (pair + i) % 2 == scene : dealt_to == scene;
                     if ((every_switch || switched_on) && (here || all_scenes)) {
-                        settings.only.push_back({structure, walk, options, distribution});
+                        settings.only.push_back({structure, traversal, options, distribution});
                     }
                 }
             }
@@ -184,14 +184,14 @@ TEST_CASE("CUDA: every combination gives the same hits") {
 }
 
 TEST_CASE("tests that leak miss a few rays, which are counted") {
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     const Vec3 centre = {1.5e5f, 0, -1.5e5f}; // 150 km away: a float's last bits are centimetres there
     const Scene scene = scene_of({"soup", make_soup(1500, 1.5e5f), centre});
     LabSettings settings;
     for (const TestKind tests : kValuesOf<TestKind>) {
-        for (const WalkKind walk : {WalkKind::WhileWhile, WalkKind::Speculative}) {
+        for (const TraversalKind traversal : {TraversalKind::WhileWhile, TraversalKind::Speculative}) {
             for (const Distribution distribution : all_combinations(queue.is_cuda(), false).distributions) {
-                settings.only.push_back({StructureKind::Binned, walk, {.tests = tests}, distribution});
+                settings.only.push_back({StructureKind::Binned, traversal, {.tests = tests}, distribution});
             }
         }
     }
@@ -219,10 +219,10 @@ TEST_CASE("tests that leak miss a few rays, which are counted") {
 }
 
 TEST_CASE("Woop's tests go through instances: but for few rays the hits are those of pictures") {
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     LabSettings settings;
-    for (const WalkKind walk : {WalkKind::WhileWhile, WalkKind::Speculative}) {
-        settings.only.push_back({StructureKind::SpatialSplits, walk, {.tests = TestKind::Woop}});
+    for (const TraversalKind traversal : {TraversalKind::WhileWhile, TraversalKind::Speculative}) {
+        settings.only.push_back({StructureKind::SpatialSplits, traversal, {.tests = TestKind::Woop}});
     }
     settings.width = 256, settings.height = 192;
     settings.runs = settings.warm_ups = 0;
@@ -259,7 +259,7 @@ TEST_CASE("the laboratory can be stopped inside each stage of long work, and say
     set_thread_count(1); // pieces are as many rays as threads want
     Camera camera;
     camera.world_from_camera = look_at({1.5f, 0.7f, 3}, {}, {0, 1, 0});
-    for (const char* stage : {"making rays", "against brute force", "what the proven walk hits", "building binned",
+    for (const char* stage : {"making rays", "against brute force", "what the proven traversal hits", "building binned",
                               "converting binned", "binned if-if"}) {
         CAPTURE(stage);
         bool stopped = false;

@@ -97,7 +97,7 @@ TEST_CASE("layers do not depend on threads, passes, bodies and batches") {
 }
 
 TEST_CASE("the picture beside layers is the one without them, and so are the auxiliary layers") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = with_light_layers(test::make_mixed_scene());
     RenderResult with = render_mixed_layers(queue, settings);
     settings.light_paths = nullptr;
@@ -108,7 +108,7 @@ TEST_CASE("the picture beside layers is the one without them, and so are the aux
 }
 
 TEST_CASE("layers that share out all paths add up to the picture within 1e-6") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     for (const LightStrategy strategy : test::kLightStrategies) {
         RenderSettings settings = with_light_layers(test::make_mixed_scene());
         settings.path.strategy = strategy;
@@ -146,12 +146,12 @@ TEST_CASE("each of 33, 64, 65 and 100 layers has the bytes that it has alone") {
     settings.aovs = kAovDepth;
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    const auto layers_by = [&](Session& session, std::span<const std::string> asked) {
-        settings.light_paths = light_layers_in(scene, asked);
+    const auto layers_by = [&](Session& session, std::span<const std::string> requested) {
+        settings.light_paths = light_layers_in(scene, requested);
         session.set_settings(settings);
         session.render(settings.samples);
         std::vector<FilmLayer> layers = session.layers();
-        CHECK(layers.size() == 1 + asked.size());
+        CHECK(layers.size() == 1 + requested.size());
         layers.erase(layers.begin()); // depth
         return layers;
     };
@@ -188,7 +188,7 @@ TEST_CASE("each of 33, 64, 65 and 100 layers has the bytes that it has alone") {
 }
 
 TEST_CASE("a session goes from layers to none and to others, and has the pictures of fresh ones") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Scene scene = test::make_mixed_scene();
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -213,10 +213,11 @@ TEST_CASE("what layers take is said beforehand, by either body") {
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     RenderSettings settings = with_light_layers(scene);
     const auto few = settings.light_paths, many = light_layers_in(scene, hundred_expressions());
-    for (const auto& [body, layers_asked] : {std::pair(PathBody::Loop, few), std::pair(PathBody::Wavefront, few),
-                                             std::pair(PathBody::Loop, many), std::pair(PathBody::Wavefront, many)}) {
+    for (const auto& [body, requested_layers] :
+         {std::pair(PathBody::Loop, few), std::pair(PathBody::Wavefront, few), std::pair(PathBody::Loop, many),
+          std::pair(PathBody::Wavefront, many)}) {
         settings.body = body;
-        settings.light_paths = layers_asked;
+        settings.light_paths = requested_layers;
         Queue queue = Queue::make_cpu();
         Session session(queue, prepared, test::mixed_scene_camera(), settings);
         session.render(settings.samples);
@@ -226,16 +227,16 @@ TEST_CASE("what layers take is said beforehand, by either body") {
         RenderSettings without = settings;
         without.light_paths = nullptr;
         const std::size_t pixels = settings.width * settings.height, paths = pixels * settings.samples;
-        const std::size_t layers = pixels * layers_asked->count() * 3 * sizeof(FixedSum);
+        const std::size_t layers = pixels * requested_layers->count() * 3 * sizeof(FixedSum);
         const std::size_t queues = body == PathBody::Wavefront ? paths * 48 : 0;
         CHECK(said - predicted_bytes(prepared, without, false) == doctest::Approx(layers + queues).epsilon(0.01));
         check_render_memory(said, settings, {said, true, false});
         const auto error = test::thrown_error([&] { check_render_memory(said, settings, {said - 1, true, false}); });
         REQUIRE((error && error->code() == ErrorCode::OutOfMemory));
-        CHECK(test::says(error, fmt::format("{} layers of `lpe`", layers_asked->count())));
+        CHECK(test::says(error, fmt::format("{} layers of `lpe`", requested_layers->count())));
         CHECK(memory_to_render_in(queue, settings, said).bytes == said);
         const std::size_t of_machine = memory_to_render_in(queue, settings, {}).bytes;
-        const std::size_t channels = 4 + 3 + 1 + 3 * layers_asked->count(); // with albedo and depth
+        const std::size_t channels = 4 + 3 + 1 + 3 * requested_layers->count(); // with albedo and depth
         CHECK(of_machine == machine_memory_bytes() - pixels * channels * sizeof(float));
     }
 }

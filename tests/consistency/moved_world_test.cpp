@@ -36,7 +36,7 @@ struct Staged {
         settings.width = 96, settings.height = 64;
         settings.samples = 4;
         settings.aovs = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
-        Queue queue = queue_asked_for();
+        Queue queue = requested_queue();
         return test::render(queue, scene, camera, settings);
     }
 };

@@ -101,7 +101,7 @@ Hash128 hash_at(const Scene& rest, double time_s, const Camera& camera, const Re
 void check_steps(const Scene& rest, const std::vector<double>& times, const Camera& camera,
                  const RenderSettings& settings) {
     Messages messages;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     PrepareOptions options;
     options.tracers = default_tracers(queue.is_cuda());
     MovingScene moving(rest, std::nullopt, options, messages);

@@ -6,7 +6,7 @@
 #include "base/parallel_for.h"
 #include "image/picture_hash.h"
 #include "integrators/path/path_integrator.h"
-#include "shading/materials_known.h"
+#include "shading/shading_variant.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -88,35 +88,35 @@ TEST_CASE("the wavefront gives the bytes of the loop, however lights are found")
 namespace {
 
 /// The mixed scene in materials of which something is known.
-Scene scene_of(MaterialsKnown known) {
+Scene scene_with(ShadingVariant variant) {
     Scene scene = test::make_mixed_scene();
     for (Material& material : scene.materials) {
-        if (known != MaterialsKnown::Nothing) material.kind = MaterialKind::Diffuse;
-        if (known != MaterialsKnown::PlainDiffuse) continue;
+        if (variant != ShadingVariant::General) material.kind = MaterialKind::Diffuse;
+        if (variant != ShadingVariant::PlainDiffuse) continue;
         material.alpha_mode = AlphaMode::Opaque;
         material.base_color_texture = material.normal_texture = material.emission_texture = {};
     }
     return scene;
 }
 
-MaterialsKnown known_of(const Scene& scene) {
+ShadingVariant variant_of(const Scene& scene) {
     std::vector<MaterialParameters> views;
     for (const Material& material : scene.materials) views.push_back(parameters_for_device(material));
-    return pertev::known_of(views);
+    return pertev::variant_of(views);
 }
 
 } // namespace
 
 TEST_CASE("bodies that know something of materials give the bytes of those that do not") {
     Hash128 before = {};
-    for (const MaterialsKnown known :
-         {MaterialsKnown::Nothing, MaterialsKnown::Diffuse, MaterialsKnown::PlainDiffuse}) {
-        CAPTURE(static_cast<int>(known));
-        const Scene scene = scene_of(known);
-        CHECK(known_of(scene) == known);
+    for (const ShadingVariant variant :
+         {ShadingVariant::General, ShadingVariant::Diffuse, ShadingVariant::PlainDiffuse}) {
+        CAPTURE(static_cast<int>(variant));
+        const Scene scene = scene_with(variant);
+        CHECK(variant_of(scene) == variant);
         Scene of_any = scene; // nothing is known of it, for a material that no instance has
         of_any.materials.push_back({{.kind = MaterialKind::Conductor}, "unused"});
-        CHECK(known_of(of_any) == MaterialsKnown::Nothing);
+        CHECK(variant_of(of_any) == ShadingVariant::General);
         RenderSettings settings = odd_settings();
         settings.samples = 2;
         std::vector<Queue> queues;
@@ -135,12 +135,12 @@ TEST_CASE("bodies that know something of materials give the bytes of those that 
             CHECK(hash(queue, of_any) == expected);
         }
     }
-    Scene unlit = scene_of(MaterialsKnown::PlainDiffuse);
+    Scene unlit = scene_with(ShadingVariant::PlainDiffuse);
     unlit.materials.back().kind = MaterialKind::Unlit;
-    CHECK(known_of(unlit) == MaterialsKnown::Nothing);
-    Scene blended = scene_of(MaterialsKnown::PlainDiffuse);
+    CHECK(variant_of(unlit) == ShadingVariant::General);
+    Scene blended = scene_with(ShadingVariant::PlainDiffuse);
     blended.materials.back().alpha_mode = AlphaMode::Blend;
-    CHECK(known_of(blended) == MaterialsKnown::Diffuse);
+    CHECK(variant_of(blended) == ShadingVariant::Diffuse);
 }
 
 TEST_CASE("the picture does not depend on how the trees were built") {
@@ -223,7 +223,7 @@ TEST_CASE("frames that split light after a picture of many samples keep to the b
         if (!renders_before) continue;
         const std::size_t film = Film::predicted_bytes(1920, 1080, 0);
         CHECK(gpu.allocated_bytes() <= predicted_frame_bytes(prepared, settings, {}, {}, true) + film + 8192);
-        CHECK(before > PathIntegrator::kMostQueueBytes - 10'000'000);
+        CHECK(before > PathIntegrator::kMaxQueueBytes - 10'000'000);
     }
     CHECK(hashes[0] == hashes[1]);
 }

@@ -1,6 +1,6 @@
 // The one-picture law for photon mapping: the same bytes for any number of threads, any split of the passes, all stages
-// over all walks or a few walks a thread, any number of them in flight, and by whatever structure photons are found.
-// With --device cuda the GPU joins in.
+// over all subpaths or a few subpaths a thread, any number of them in flight, and by whatever structure photons are
+// found. With --device cuda the GPU joins in.
 
 #include <doctest/doctest.h>
 
@@ -77,7 +77,7 @@ TEST_CASE("pictures by photons that crowd do not depend on them either, with pla
 }
 
 TEST_CASE("photon mapping tells the same of the first surface as path tracing, and of what emits") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const auto layers_of = [&](IntegratorKind integrator) {
         RenderSettings settings = photon_settings();
         settings.integrator = integrator;
@@ -93,7 +93,7 @@ TEST_CASE("photon mapping tells the same of the first surface as path tracing, a
 }
 
 TEST_CASE("a session goes to photon mapping and back, ends early and goes on, and each picture is whole") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -51,7 +51,7 @@ TEST_CASE("pictures of a radiosity solution do not depend on threads, passes, bo
 }
 
 TEST_CASE("a picture of radiosity tells the same of the first surface as path tracing, and of what emits") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = shown(look_at_mixed_scene(2));
     const auto layers_of = [&](IntegratorKind integrator) {
         settings.integrator = integrator;
@@ -66,7 +66,7 @@ TEST_CASE("a picture of radiosity tells the same of the first surface as path tr
 }
 
 TEST_CASE("a session goes to radiosity, another solution and back, ends early and goes on, and each picture is whole") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -48,7 +48,7 @@ TEST_CASE("pictures of trees of rays do not depend on threads, passes, bodies or
 }
 
 TEST_CASE("every integrator tells the same of the first surface") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const auto layers_of = [&](IntegratorKind integrator) {
         RenderSettings settings = tree_settings(integrator);
         settings.samples = 2;
@@ -59,7 +59,7 @@ TEST_CASE("every integrator tells the same of the first surface") {
 }
 
 TEST_CASE("a session goes from one integrator to another, and each picture is that of a fresh one") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = tree_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -78,7 +78,7 @@ TEST_CASE("a session goes from one integrator to another, and each picture is th
 }
 
 TEST_CASE("a picture of trees that is abandoned leaves no sample behind, and the next one is whole") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = tree_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

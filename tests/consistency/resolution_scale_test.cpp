@@ -29,7 +29,7 @@ ReconstructionSettings scaled(float scale) {
     return settings;
 }
 
-Hash128 hash_of_walk(Session& session, uint32_t frames, const ReconstructionSettings& settings) {
+Hash128 hash_of_traversal(Session& session, uint32_t frames, const ReconstructionSettings& settings) {
     Camera camera = mixed_scene_camera();
     for (uint32_t k = 0; k < frames; ++k) {
         session.set_camera(camera);
@@ -100,27 +100,27 @@ TEST_CASE("frames at half the resolution have the same bytes on every device, by
     Queue cpu = Queue::make_cpu();
     const RenderSettings settings = settings_of(95, 63);
     Session session(cpu, prepared, mixed_scene_camera(), settings);
-    const Hash128 expected = hash_of_walk(session, 12, scaled(0.5f));
-    const Hash128 whole = hash_of_walk(session, 12, {}); // another scale is a cut
+    const Hash128 expected = hash_of_traversal(session, 12, scaled(0.5f));
+    const Hash128 whole = hash_of_traversal(session, 12, {}); // another scale is a cut
     CHECK(whole != expected);
-    CHECK(hash_of_walk(session, 12, scaled(0.5f)) == expected);
+    CHECK(hash_of_traversal(session, 12, scaled(0.5f)) == expected);
     CHECK(session.frame().picture().width == 95);
     session.frame().display(ToneMap::Agx, 0);
     const Rgba8Image shown = session.frame().displayed();
     REQUIRE(shown.pixels.size() == std::size_t(4) * 95 * 63);
     CHECK(shown.pixels[std::size_t(4) * 95 * 63 - 1] == 255); // the last alpha
     Session fresh(cpu, prepared, mixed_scene_camera(), settings);
-    CHECK(hash_of_walk(fresh, 12, {}) == whole);
+    CHECK(hash_of_traversal(fresh, 12, {}) == whole);
 
     RenderSettings wavefront = settings;
     wavefront.body = PathBody::Wavefront;
     wavefront.batch = 1000; // several rounds begin paths
     Session other(cpu, prepared, mixed_scene_camera(), wavefront);
-    CHECK(hash_of_walk(other, 12, scaled(0.5f)) == expected);
+    CHECK(hash_of_traversal(other, 12, scaled(0.5f)) == expected);
     if (cuda_requested()) {
         Queue cuda = make_cuda_queue();
         Session there(cuda, prepared, mixed_scene_camera(), settings);
-        CHECK(hash_of_walk(there, 12, scaled(0.5f)) == expected);
+        CHECK(hash_of_traversal(there, 12, scaled(0.5f)) == expected);
     }
 }
 
@@ -128,7 +128,7 @@ TEST_CASE("at edges a frame at half the resolution is nearer to the picture than
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     Session session(queue, prepared, mixed_scene_camera(), settings_of(96, 64));
     session.render(256);
     const Image reference = session.picture();

@@ -59,7 +59,7 @@ struct EndingSink : Sink {
 
 TEST_CASE("frames, the meter and post steps work without a session") {
     const MixedWorld world;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = part_settings();
     settings.denoise = Denoise::Svgf;
     settings.transparent = true;
@@ -124,7 +124,7 @@ TEST_CASE("two sessions with different thread counts run at once on two threads,
 
 TEST_CASE("a sink hears how far a session is, and ends it at a whole sample") {
     const MixedWorld world;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = part_settings();
     settings.pass_samples = 1;
     Session session(queue, world.prepared, test::mixed_scene_camera(), settings);

@@ -91,7 +91,7 @@ void change_a_setting(RenderSettings& settings, test::Random& random) {
 
 TEST_CASE("a session that has changed scene, camera, size and settings gives the bytes of a fresh render") {
     const World world;
-    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     std::size_t scene = 0, camera = 0;
     RenderSettings settings = changing_settings();
     Session session(queue, world.prepared[scene], world.cameras[camera], settings);
@@ -120,7 +120,7 @@ TEST_CASE("a session that has changed scene, camera, size and settings gives the
 
 TEST_CASE("samples that are added later give the bytes of samples rendered at once") {
     const World world;
-    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     RenderSettings settings = changing_settings();
     settings.aovs = kAllAovs;
     settings.samples = 8;
@@ -141,7 +141,7 @@ TEST_CASE("samples that are added later give the bytes of samples rendered at on
 
 TEST_CASE("settings of the machine go on with the film that another body began") {
     const World world;
-    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     RenderSettings settings = changing_settings();
     settings.samples = 6;
     const Hash128 at_once = hash_of(render_picture(cpu, world.prepared[0], world.cameras[0], settings));
@@ -158,7 +158,7 @@ TEST_CASE("settings of the machine go on with the film that another body began")
 
 TEST_CASE("two sessions on one queue do not see each other") {
     const World world;
-    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     RenderSettings settings = changing_settings(), other = changing_settings();
     other.width = 31;
     other.filter = PixelFilter::Gaussian;
@@ -174,7 +174,7 @@ TEST_CASE("two sessions on one queue do not see each other") {
 
 TEST_CASE("a session that takes parts of a changed scene gives the picture of the changed scene, and copies no more") {
     const World world;
-    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     RenderSettings settings = changing_settings();
     Session session(queue, world.prepared[0], world.cameras[0], settings);
     session.render(settings.samples);
@@ -202,7 +202,7 @@ TEST_CASE("a session that takes parts of a changed scene gives the picture of th
 
 TEST_CASE("an integrator that knows nothing of the path tracer renders through the same seam") {
     const World world;
-    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     const Camera camera = camera_from({0, 0.5f, 5}); // along -z
     const auto render = [&](Queue& on, uint32_t in_first_call) {
         const SceneOnDevice scene(on, world.prepared[1]);
@@ -231,7 +231,7 @@ TEST_CASE("an integrator that knows nothing of the path tracer renders through t
 }
 
 TEST_CASE("a picture whose time ran out again and again is that of one render, whatever the integrator") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Scene scene = test::make_mixed_scene();
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -288,7 +288,7 @@ void check_early_end(Queue& queue, const PreparedScene& prepared, RenderSettings
 } // namespace
 
 TEST_CASE("a render ends at a whole sample when it is told to, and goes on from there") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

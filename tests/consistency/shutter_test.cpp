@@ -21,7 +21,7 @@
 #include "tests/support/random.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/thrown_error.h"
-#include "tracer/walk_kernels.h"
+#include "tracer/traversal_kernels.h"
 
 using namespace pertev;
 
@@ -125,7 +125,7 @@ TEST_CASE("a blur of the camera alone is the same by stages as by the loop, dept
     Messages messages;
     MovingScene still(make_rushing_scene(false), 0.3, {}, messages, kHalfASecond);
     REQUIRE(still.prepared().motions == nullptr);
-    Queue cpu = Queue::make_cpu(), queue = test::queue_asked_for();
+    Queue cpu = Queue::make_cpu(), queue = test::requested_queue();
     for (const IntegratorKind integrator : kWithShutter) {
         CAPTURE(static_cast<int>(integrator));
         RenderSettings settings = blurred_settings(integrator);
@@ -144,14 +144,14 @@ TEST_CASE("every tracer finds the same in a scene that moves") {
     settings.width = 24, settings.height = 16, settings.samples = 2;
     Queue cpu = Queue::make_cpu();
     const Hash128 wanted = picture_of(cpu, moving.prepared(), rushing_camera(), settings);
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Session session(queue, moving.prepared(), rushing_camera(), settings);
     int pictures = 0, wrong = 0;
     for (const StructureKind structure : kValuesOf<StructureKind>) {
-        for (const WalkKind walk : kValuesOf<WalkKind>) {
+        for (const TraversalKind traversal : kValuesOf<TraversalKind>) {
             for (const Distribution distribution :
                  {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch}) {
-                const Combination c = {structure, walk, {}, distribution};
+                const Combination c = {structure, traversal, {}, distribution};
                 if (why_no_tracer(c, queue.is_cuda())) continue;
                 settings.tracers = same_for_all(c);
                 session.set_settings(settings);
@@ -230,7 +230,7 @@ TEST_CASE("each sample of a blurred picture shows the scene that stands still at
     Camera camera = test::mixed_scene_camera();
     camera.aperture_radius = 0.05f;
     camera.focus_distance = 6;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const auto show = [&](const PreparedScene& prepared) {
         Session session(queue, prepared, camera, settings);
         session.render(1);
@@ -259,7 +259,7 @@ TEST_CASE("each sample of a blurred picture shows the scene that stands still at
 
 TEST_CASE("a shutter before which nothing moves changes nothing") {
     Messages messages;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Scene scene = make_rushing_scene(false);
     for (const IntegratorKind integrator : kWithShutter) {
         const RenderSettings settings = blurred_settings(integrator);
@@ -272,7 +272,7 @@ TEST_CASE("a shutter before which nothing moves changes nothing") {
 
 TEST_CASE("frames with a shutter are the same whatever frames came before") {
     Messages messages;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const RenderSettings settings = blurred_settings(IntegratorKind::Path);
     MovingScene moving(make_rushing_scene(), 0, {}, messages, kHalfASecond);
     Session session(queue, moving.prepared(), rushing_camera(), settings);
@@ -317,7 +317,7 @@ TEST_CASE(
     Queue cpu = Queue::make_cpu();
     const Hash128 loop = picture_of(cpu, moving.prepared(), rushing_camera(), settings);
     settings.body = PathBody::Wavefront;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     CHECK(picture_of(queue, moving.prepared(), rushing_camera(), settings) == loop);
     Session session(queue, moving.prepared(), rushing_camera(), settings);
     session.render(settings.samples);

@@ -1,5 +1,5 @@
-// The one-picture law for walks from the lights: light and bidirectional give the same bytes for any number of threads,
-// any split of the samples, all stages over all walks or a few walks a thread, any number of them in flight. With
+// The one-picture law for light subpaths: light and bidirectional give the same bytes for any number of threads,
+// any split of the samples, all stages over all subpaths or a few subpaths a thread, any number of them in flight. With
 // --device cuda the GPU joins in.
 
 #include <doctest/doctest.h>
@@ -14,9 +14,9 @@ using namespace pertev;
 
 namespace {
 
-constexpr IntegratorKind kWalks[] = {IntegratorKind::Light, IntegratorKind::Bidirectional};
+constexpr IntegratorKind kSubpaths[] = {IntegratorKind::Light, IntegratorKind::Bidirectional};
 
-RenderSettings walk_settings(IntegratorKind integrator) {
+RenderSettings subpath_settings(IntegratorKind integrator) {
     RenderSettings settings;
     settings.width = 37; // odd on purpose: tiles do not fit
     settings.height = 21;
@@ -30,44 +30,44 @@ RenderSettings walk_settings(IntegratorKind integrator) {
 
 } // namespace
 
-TEST_CASE("pictures of walks from the lights do not depend on threads, passes, bodies or how many are in flight") {
-    for (const IntegratorKind integrator : kWalks) {
+TEST_CASE("pictures of light subpaths do not depend on threads, passes, bodies or how many are in flight") {
+    for (const IntegratorKind integrator : kSubpaths) {
         CAPTURE(static_cast<int>(integrator));
         const test::CheckedPicture reference =
-            test::check_one_picture(test::make_mixed_scene(), walk_settings(integrator));
+            test::check_one_picture(test::make_mixed_scene(), subpath_settings(integrator));
         CHECK(reference.rays.bounce > 37 * 21);
         CHECK(reference.rays.shadow > 37 * 21);
     }
 }
 
-TEST_CASE("walks from the camera tell the same of the first surface as path tracing") {
-    Queue queue = test::queue_asked_for();
+TEST_CASE("camera subpaths tell the same of the first surface as path tracing") {
+    Queue queue = test::requested_queue();
     const auto layers_of = [&](IntegratorKind integrator) {
-        RenderSettings settings = walk_settings(integrator);
+        RenderSettings settings = subpath_settings(integrator);
         settings.samples = 2;
         return test::hash_of_layers(queue, test::make_mixed_scene(), settings);
     };
     const Hash128 of_path = layers_of(IntegratorKind::Path);
-    for (const IntegratorKind integrator : kWalks) CHECK(layers_of(integrator) == of_path);
+    for (const IntegratorKind integrator : kSubpaths) CHECK(layers_of(integrator) == of_path);
 }
 
 TEST_CASE("without a scattering all that is left is what the camera looks straight at, whatever the integrator") {
-    Queue queue = test::queue_asked_for();
-    RenderSettings settings = walk_settings(IntegratorKind::Path);
+    Queue queue = test::requested_queue();
+    RenderSettings settings = subpath_settings(IntegratorKind::Path);
     settings.path.max_depth = 0;
     const Hash128 of_path = test::checked_picture(queue, test::make_mixed_scene(), settings).hash;
-    for (const IntegratorKind integrator : kWalks) {
+    for (const IntegratorKind integrator : kSubpaths) {
         settings.integrator = integrator;
         CHECK(test::checked_picture(queue, test::make_mixed_scene(), settings).hash == of_path);
     }
 }
 
-TEST_CASE("a session goes to walks from the lights and back, ends early and goes on, and each picture is whole") {
-    Queue queue = test::queue_asked_for();
+TEST_CASE("a session goes to light subpaths and back, ends early and goes on, and each picture is whole") {
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    RenderSettings settings = walk_settings(IntegratorKind::Path);
+    RenderSettings settings = subpath_settings(IntegratorKind::Path);
     settings.samples = 2;
     settings.pass_samples = 1;
     Session session(queue, prepared, test::camera_with_lens(), settings);
@@ -79,12 +79,12 @@ TEST_CASE("a session goes to walks from the lights and back, ends early and goes
     }
 }
 
-TEST_CASE("memory of walks is said beforehand, and is a GiB at most") {
+TEST_CASE("memory of subpaths is said beforehand, and is a GiB at most") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    for (const IntegratorKind integrator : kWalks) {
-        RenderSettings settings = walk_settings(integrator);
+    for (const IntegratorKind integrator : kSubpaths) {
+        RenderSettings settings = subpath_settings(integrator);
         settings.body = PathBody::Wavefront;
         test::check_predicted_bytes(prepared, settings);
         for (const uint32_t depth : {0u, 8u, 255u}) {
@@ -95,8 +95,8 @@ TEST_CASE("memory of walks is said beforehand, and is a GiB at most") {
     }
 }
 
-TEST_CASE("walks from the lights are no frames, and are not too deep") {
-    RenderSettings settings = walk_settings(IntegratorKind::Bidirectional);
+TEST_CASE("light subpaths are no frames, and are not too deep") {
+    RenderSettings settings = subpath_settings(IntegratorKind::Bidirectional);
     settings.denoise = Denoise::Svgf;
     Queue queue = Queue::make_cpu();
     Messages messages;

@@ -8,9 +8,9 @@
 
 #include "accel/builders/build_bvh.h"
 #include "accel/builders/builders.h"
-#include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/tlas.h"
 #include "math/random.h"
-#include "tests/support/check_walk.h"
+#include "tests/support/check_traversal.h"
 #include "tests/support/options.h"
 #include "trace/wide/trace_many.h"
 
@@ -27,8 +27,8 @@ void check_many(const HostTrees& scene, RayOrder order, const std::vector<Ray>& 
     const auto met = std::make_unique<bool[]>(rays.size());
     const auto ray_of = [&](uint32_t i) { return rays[i]; };
     const auto accept_of = [&](uint32_t) { return accept; };
-    trace_closest_many<WalkOptions{}>(scene, count, order, ray_of, accept_of, hits.data());
-    trace_any_many<WalkOptions{.near_first = false}>(scene, count, order, ray_of, accept_of, met.get());
+    trace_closest_many<TraversalOptions{}>(scene, count, order, ray_of, accept_of, hits.data());
+    trace_any_many<TraversalOptions{.near_first = false}>(scene, count, order, ray_of, accept_of, met.get());
     uint64_t wrong = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         Hit want = expected[i];
@@ -62,7 +62,8 @@ std::vector<Ray> groups_around(const std::vector<Ray>& rays, uint32_t seed) {
 uint64_t count_coherent(const std::vector<Ray>& groups, const HostTrees& scene) {
     uint64_t coherent = 0;
     for (std::size_t i = 0; i < groups.size(); i += kWidePacket) {
-        coherent += WidePacket<WalkOptions{}, ClosestVisitor<AcceptAll>>(scene.baked, &groups[i]).is_coherent() ? 1 : 0;
+        coherent +=
+            WidePacket<TraversalOptions{}, ClosestVisitor<AcceptAll>>(scene.baked, &groups[i]).is_coherent() ? 1 : 0;
     }
     return coherent;
 }
@@ -110,7 +111,7 @@ TEST_CASE("many rays at once meet baked triangles and instances, whichever comes
     const WideBvh<8> mesh_tree = make_wide_bvh<8>(build_bvh(mesh), kSimdCollapse);
     const Transform place = compose(make_translation({0.5f, 0, 0}), make_scale({0.5f, 2, 1}));
     const std::vector<PlacedBvh> placed = {{place, mesh_tree.bounds, 0, 77}};
-    const TopLevelBvh top = build_top_level_bvh(placed);
+    const Tlas top = build_tlas(placed);
     const WideBvhView<8> meshes[] = {view_of(mesh_tree)};
     const std::vector<Ray> rays = groups_around(nasty_rays(300, {"soup", baked, {}, 1}, 5), 9);
     for (const bool has_baked : {true, false}) {

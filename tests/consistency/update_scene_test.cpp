@@ -8,7 +8,7 @@
 #include "session/session.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
-#include "tracer/walk_kernels.h"
+#include "tracer/traversal_kernels.h"
 
 using namespace pertev;
 
@@ -61,9 +61,9 @@ std::vector<Step> steps() {
 
 } // namespace
 
-TEST_CASE("an updated scene gives the picture of one prepared afresh, by every structure and walk") {
+TEST_CASE("an updated scene gives the picture of one prepared afresh, by every structure and traversal") {
     Messages messages;
-    Queue queue = test::queue_asked_for(), cpu = Queue::make_cpu();
+    Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     RenderSettings settings = test::layered_settings();
     const Camera camera = test::mixed_scene_camera();
     std::vector<Hash128> fresh; // after each step
@@ -75,12 +75,13 @@ TEST_CASE("an updated scene gives the picture of one prepared afresh, by every s
     }
     int pictures = 0;
     for (const StructureKind structure : kValuesOf<StructureKind>) {
-        for (const WalkKind walk : kValuesOf<WalkKind>) {
-            const Combination c = {.structure = structure, .walk = walk};
+        for (const TraversalKind traversal : kValuesOf<TraversalKind>) {
+            const Combination c = {.structure = structure, .traversal = traversal};
             if (why_no_tracer(c, queue.is_cuda())) continue;
-            // Every walk once by the default's tree, and every structure once.
-            const bool first_walk = walk == WalkKind::WhileWhile || walk == WalkKind::Kd || walk == WalkKind::Octree;
-            if (structure != structure_of(kDefaultBuild) && structure != StructureKind::Reinsertion && !first_walk)
+            // Every traversal once by the default's tree, and every structure once.
+            const bool first_traversal = traversal == TraversalKind::WhileWhile || traversal == TraversalKind::Kd ||
+                                         traversal == TraversalKind::Octree;
+            if (structure != structure_of(kDefaultBuild) && structure != StructureKind::Reinsertion && !first_traversal)
                 continue;
             CAPTURE(name_of(c));
             settings.tracers = same_for_all(c);

@@ -1,7 +1,7 @@
-// Hits agree with Embree's robust single-ray walk: another primitive only where both lie at one t or the ray meets an
-// edge, and on one primitive one t; of the rest at most 10 in 10^7. One t: within 1e-5 of it, or within 4 units in the
-// last place of the coordinates that it is computed from (Sponza has walls that are there twice, and rays that start
-// just before them).
+// Hits agree with Embree's robust single-ray traversal: another primitive only where both lie at one t or the ray meets
+// an edge, and on one primitive one t; of the rest at most 10 in 10^7. One t: within 1e-5 of it, or within 4 units in
+// the last place of the coordinates that it is computed from (Sponza has walls that are there twice, and rays that
+// start just before them).
 
 #include <doctest/doctest.h>
 
@@ -16,7 +16,7 @@
 #include "tests/support/options.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
-#include "trace/wide/walk_wide.h"
+#include "trace/wide/traverse_wide.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -30,7 +30,7 @@ struct Tally {
 /// Least weight of the hit's three vertices: near 0 on an edge.
 float edge_distance(float u, float v) { return min(min(u, v), 1 - u - v); }
 
-template <class Walk, class Tree>
+template <class Traversal, class Tree>
 Tally compare(const TriangleMesh& mesh, const Bvh& bvh, const Tree& tree, uint64_t count) {
     const EmbreeScene embree(mesh);
     SceneTrees<Tree> scene;
@@ -47,7 +47,7 @@ Tally compare(const TriangleMesh& mesh, const Bvh& bvh, const Tree& tree, uint64
             ray.origin = bvh.bounds.lo + Vec3{size.x * random.unit(), size.y * random.unit(), size.z * random.unit()};
             ray.direction = random.direction();
             Hit hit;
-            trace_closest<Walk>(scene, ray, AcceptAll{}, hit);
+            trace_closest<Traversal>(scene, ray, AcceptAll{}, hit);
             const Hit want = embree.closest(ray);
             const bool found = hit.instance != kNoHit, expected = want.instance != kNoHit;
             tally.hits += found ? 1 : 0;
@@ -79,7 +79,7 @@ TEST_CASE("hits on a torus agree with Embree's") {
     const uint64_t count = effort(300'000, 10'000'000);
     const TriangleMesh mesh = make_torus(300, 200);
     const Bvh bvh = build_bvh(triangles_of(mesh));
-    const Tally tally = compare<PlainWalk>(mesh, bvh, view_of(bvh), count);
+    const Tally tally = compare<PlainTraversal>(mesh, bvh, view_of(bvh), count);
     CHECK(tally.hits > count / 10);
     CHECK(tally.unexplained <= std::max<uint64_t>(1, count / 1'000'000));
 }
@@ -91,7 +91,7 @@ TEST_CASE("hits in Sponza agree with Embree's") {
     const TriangleMesh mesh = read_obj_geometry(*path);
     const Bvh bvh = build_bvh(triangles_of(mesh));
     const auto wide = make_wide_bvh<kWideChildren>(bvh, kSimdCollapse);
-    const Tally tally = compare<Wide8SimdWalk<WalkOptions{}>>(mesh, bvh, view_of(wide), count);
+    const Tally tally = compare<Wide8SimdTraversal<TraversalOptions{}>>(mesh, bvh, view_of(wide), count);
     CHECK(tally.hits > count / 2);
     CHECK(tally.unexplained <= std::max<uint64_t>(1, count / 1'000'000));
 }

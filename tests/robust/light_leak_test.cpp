@@ -117,7 +117,7 @@ uint64_t lit_pixels(const PreparedScene& scene, const Placement& place, const Vi
     settings.width = settings.height = side;
     settings.samples = samples;
     settings.path.max_depth = max_depth;
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     const Image picture = render_picture(queue, scene, camera, settings).picture;
     uint64_t lit = 0;
     for (std::size_t i = 0; i < picture.pixels.size(); i += 3) lit += picture.pixels[i] > 0 ? 1 : 0;

@@ -1,7 +1,7 @@
 // A ray that starts inside a closed mesh must hit it. Rays are aimed where leaks live: at vertices and along edges,
 // with the mesh at the origin, 1 km and 150 km away, baked and as an instance. They are traced as the laboratory traces
-// its own, on the GPU with --device cuda, by the walk of pictures (on the CPU that of wide nodes) and by binary nodes.
-// One miss fails the test and prints the ray as hex floats.
+// its own, on the GPU with --device cuda, by the traversal of pictures (on the CPU that of wide nodes) and by binary
+// nodes. One miss fails the test and prints the ray as hex floats.
 
 #include <doctest/doctest.h>
 
@@ -61,7 +61,7 @@ std::string text_of(const Ray& r) {
 
 /// Instance 0 of a scene, closed, about `centre`; `world` is its mesh there.
 struct ClosedInstance {
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     Messages messages;
     PreparedScene prepared;
     TriangleMesh world;
@@ -136,7 +136,7 @@ TEST_CASE("no ray leaves a closed sphere") {
         // At 150 km a float is 1/64 m: smaller faces would fold over each other.
         const TriangleMesh sphere = make_sphere(away_m > 1e4f ? 2 : 5, centre, 1);
         ClosedInstance instance(scene_of(sphere, {{}}), sphere, centre);
-        REQUIRE(instance.prepared.top_level.root == kNoLink); // baked
+        REQUIRE(instance.prepared.tlas.root == kNoLink); // baked
         const uint64_t count = effort(700'000, 7'000'000);
         instance.check_tracer(default_tracers(instance.queue.is_cuda()).bounce, count, ++set_number);
         instance.check_tracer(kBinaryTracer, count, ++set_number);
@@ -156,7 +156,7 @@ TEST_CASE("no ray leaves a closed sphere that is an instance") {
         for (Vec3& v : world.positions) v = transform_point(place, v);
         // The second one is there because a mesh that is used once is baked.
         ClosedInstance instance(scene_of(local, {place, compose(make_translation({0, 20, 0}), place)}), world, centre);
-        REQUIRE(instance.prepared.top_level.root != kNoLink);
+        REQUIRE(instance.prepared.tlas.root != kNoLink);
         const uint64_t count = effort(150'000, 1'500'000);
         instance.check_tracer(default_tracers(instance.queue.is_cuda()).bounce, count, ++set_number);
         instance.check_tracer(kBinaryTracer, count, ++set_number);

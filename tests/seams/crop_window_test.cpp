@@ -78,7 +78,7 @@ TEST_CASE("a film of a window has the bytes that the whole picture has there") {
             settings.integrator = is_other ? IntegratorKind::Hybrid : IntegratorKind::Path;
             settings.path.sampler = is_other ? SamplerKind::Independent : SamplerKind::Sobol;
             if (is_other) settings.light_paths = layers;
-            Queue queue = test::queue_asked_for();
+            Queue queue = test::requested_queue();
             const CropResult whole = render_crop(queue, prepared, settings, false);
             const CropResult window = render_crop(queue, prepared, settings, true);
             REQUIRE(whole.images.size() == (is_other ? 7 : 5));
@@ -103,7 +103,7 @@ TEST_CASE("a film of a window has the bytes that a light meter's whole picture h
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Camera meter = test::mixed_scene_camera();
     meter.projection = Projection::Cosine;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const CropResult whole = render_crop(queue, prepared, {}, false, meter);
     const CropResult window = render_crop(queue, prepared, {}, true, meter);
     CHECK(differing_in_window(window.images[0], whole.images[0]) == 0);
@@ -114,7 +114,7 @@ TEST_CASE("integrators that fill whole pictures alone refuse a film of a window"
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     uint32_t refused = 0;
     for (const IntegratorDescriptor& integrator : integrators()) {
         if (integrator.value == IntegratorKind::Radiosity) continue; // it needs a solution

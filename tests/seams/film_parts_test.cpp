@@ -65,8 +65,8 @@ Film film_of_bytes(Queue& queue, const RenderSettings& settings, const std::vect
 
 TEST_CASE("two parts of a film that are kept as bytes add up to the film that was rendered whole, to the byte") {
     const BlindingWorld world;
-    Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
-    FilmParts on_cpu(cpu, world), on_asked(asked, world);
+    Queue cpu = Queue::make_cpu(), shadow_data = test::requested_queue();
+    FilmParts on_cpu(cpu, world), on_asked(shadow_data, world);
     FilmRender whole = on_cpu.film({0, 5});
     const auto bytes = bytes_of_targets(whole.film());
     REQUIRE(bytes.size() == 3); // sums, ids, invalid samples
@@ -81,7 +81,7 @@ TEST_CASE("two parts of a film that are kept as bytes add up to the film that wa
         for (std::size_t i = 0; i < bytes.size(); ++i) CHECK(bytes_of_second[i] != bytes[i]);
         CHECK(bytes_of_first[0] != bytes[0]);
         Film sum = film_of_bytes(cpu, world.settings, bytes_of_first, {0, a});
-        sum.add(film_of_bytes(asked, world.settings, bytes_of_second, {a, 5}));
+        sum.add(film_of_bytes(shadow_data, world.settings, bytes_of_second, {a, 5}));
         CHECK(bytes_of_targets(sum) == bytes);
         CHECK(sum.part() == whole.film().part());
         second.film().add(first.film());

@@ -22,7 +22,7 @@ namespace {
 constexpr uint32_t kTreeWidth = 16, kTreeHeight = 12;
 
 /// A floor, and a sheet that is seen from behind, under two lamps of which each is near to a part of them, and a sky.
-Scene two_lamp_scene() {
+Scene two_emitter_scene() {
     Scene scene;
     const auto add = [&](Rgb color, Rgb emission, Vec3 at, Vec3 scale) {
         test::add_emitter(scene, test::make_square(1), emission, compose(make_translation(at), make_scale(scale)));
@@ -36,15 +36,16 @@ Scene two_lamp_scene() {
     scene.environment->scale = grey(0.05f);
     return scene;
 }
-Camera two_lamp_camera() {
+Camera two_emitter_camera() {
     Camera camera;
     camera.world_from_camera = look_at({0, 2.5f, 7}, {0, 0.4f, 0}, {0, 1, 0});
     camera.fov_y = 0.6f;
     return camera;
 }
 
-struct TwoLamps {
-    explicit TwoLamps(Queue& on) : queue(on), picture(on, prepared(), two_lamp_camera(), kTreeWidth, kTreeHeight) {}
+struct TwoEmitters {
+    explicit TwoEmitters(Queue& on)
+        : queue(on), picture(on, prepared(), two_emitter_camera(), kTreeWidth, kTreeHeight) {}
 
     template <class Rounds>
     Image render(PathSettings settings, uint32_t samples) {
@@ -66,7 +67,7 @@ struct TwoLamps {
     }
 
     static const PreparedScene& prepared() {
-        static const Scene scene = two_lamp_scene();
+        static const Scene scene = two_emitter_scene();
         static const PreparedScene prepared_scene = [] {
             Messages messages;
             return prepare_scene(scene, {}, messages);
@@ -80,32 +81,32 @@ struct TwoLamps {
 } // namespace
 
 TEST_CASE("a schedule of a test's own over the path tracer's functions gives the bytes of the path tracer") {
-    Queue queue = test::queue_asked_for();
-    TwoLamps lamps(queue);
+    Queue queue = test::requested_queue();
+    TwoEmitters emitters(queue);
     const auto integrator = make_integrator(queue, {});
-    integrator->begin(lamps.picture.view, lamps.picture.tracer, 3);
+    integrator->begin(emitters.picture.view, emitters.picture.tracer, 3);
     Film film(queue, kTreeWidth, kTreeHeight, 0);
     integrator->render(0, 3, film.view());
     film.set_samples({0, 3});
-    CHECK(picture_hash(lamps.render<test::TableRounds>({}, 3)) == picture_hash(film.picture(false)));
+    CHECK(picture_hash(emitters.render<test::TableRounds>({}, 3)) == picture_hash(film.picture(false)));
 }
 
 TEST_CASE("a light tree gives the same bytes on both devices, and others than the table of lights") {
-    Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
-    TwoLamps on_cpu(cpu), lamps(asked);
+    Queue cpu = Queue::make_cpu(), shadow_data = test::requested_queue();
+    TwoEmitters on_cpu(cpu), emitters(shadow_data);
     const Hash128 hash = picture_hash(on_cpu.render<test::TreeRounds>({}, 4));
-    CHECK(picture_hash(lamps.render<test::TreeRounds>({}, 4)) == hash);
-    CHECK(picture_hash(lamps.render<test::TableRounds>({}, 4)) != hash);
+    CHECK(picture_hash(emitters.render<test::TreeRounds>({}, 4)) == hash);
+    CHECK(picture_hash(emitters.render<test::TableRounds>({}, 4)) != hash);
 }
 
 TEST_CASE("a light tree finds the light that the table of lights finds, however lights are found, with less noise") {
-    Queue queue = test::queue_asked_for();
-    TwoLamps lamps(queue);
+    Queue queue = test::requested_queue();
+    TwoEmitters emitters(queue);
     constexpr uint32_t kRenders = 24, kOfOne = 64;
     for (const LightStrategy strategy : {LightStrategy::Mis, LightStrategy::NeeOnly}) {
         CAPTURE(static_cast<int>(strategy));
-        const test::PictureEstimate table = lamps.estimate<test::TableRounds>(strategy, kRenders, kOfOne);
-        const test::PictureEstimate tree = lamps.estimate<test::TreeRounds>(strategy, kRenders, kOfOne);
+        const test::PictureEstimate table = emitters.estimate<test::TableRounds>(strategy, kRenders, kOfOne);
+        const test::PictureEstimate tree = emitters.estimate<test::TreeRounds>(strategy, kRenders, kOfOne);
         CHECK(test::p_value(tree, table) > 0.01);
         CHECK(test::p_value(test::brightened(tree, 1.02, 0), table) < 1e-6); // so 2 % would be noticed
         double of_table = 0, of_tree = 0;
@@ -116,23 +117,23 @@ TEST_CASE("a light tree finds the light that the table of lights finds, however 
 }
 
 TEST_CASE("light that a path runs into has the density by which a light tree draws it for the vertex before") {
-    Queue queue = test::queue_asked_for();
-    TwoLamps lamps(queue);
+    Queue queue = test::requested_queue();
+    TwoEmitters emitters(queue);
     const Film film(queue, kTreeWidth, kTreeHeight, 0);
     Buffer<uint32_t> counts(queue, 2, "counts");
     counts.zero();
     const test::DensityJob job = {
-        {.picture = lamps.picture.view, .settings = {.max_depth = 3}, .film = film.view(), .layers = {}},
+        {.picture = emitters.picture.view, .settings = {.max_depth = 3}, .film = film.view(), .layers = {}},
         counts.data(),
         counts.data() + 1};
-    test::DensityRounds(queue, kTreeWidth * kTreeHeight).render(job, lamps.picture.tracer, 0, 32);
+    test::DensityRounds(queue, kTreeWidth * kTreeHeight).render(job, emitters.picture.tracer, 0, 32);
     const std::vector<uint32_t> of_lights = counts.download();
     CHECK(of_lights[0] > 1000);
     CHECK(of_lights[1] == 0);
 }
 
 TEST_CASE("a light tree draws lights with the probabilities that it gives, by which a hit of a light is weighted") {
-    const test::Lights lights(two_lamp_scene());
+    const test::Lights lights(two_emitter_scene());
     const LightSetView& view = lights.view;
     REQUIRE(view.emitter_count == 2);
     REQUIRE(view.triangle_count == 4);

@@ -31,8 +31,8 @@ template <class Listener>
 struct RoundPath {
     PathState state;
     typename Listener::Kept kept;
-    typename Listener::Asked asked;
-    Rgb asked_light; // light of the shadow ray
+    typename Listener::ShadowData shadow_data;
+    Rgb connection_light; // light of the shadow ray
     bool goes_on, wants_shadow;
 };
 
@@ -82,12 +82,12 @@ struct ShadeRound {
         ShadowRay shadow;
         const Hit hit = view.hits.load(i);
         path.goes_on =
-            shade_vertex<kFeatures>(job, path.state, hit, DrawWhenAsked(), shadow, path.wants_shadow, listener);
+            shade_vertex<kFeatures>(job, path.state, hit, DrawOnDemand(), shadow, path.wants_shadow, listener);
         listener.put_down(path.kept);
         view.store_ray(i);
         if (!path.wants_shadow) return;
-        listener.hand_over(path.asked);
-        path.asked_light = shadow.contribution;
+        listener.hand_over(path.shadow_data);
+        path.connection_light = shadow.contribution;
         view.shadows.store(i, {shadow.origin, 0, shadow.direction, shadow.t_max}, shadow.start, shadow.target);
     }
 };
@@ -100,8 +100,8 @@ struct AddRoundLight {
     HD void operator()(uint32_t i) const {
         RoundPath<Listener>& path = view.paths[i];
         if (!path.wants_shadow || view.occlusions.instances[i] != kNoHit) return;
-        path.state.radiance += path.asked_light;
-        Listener(job).arrived(path.kept, path.asked, path.asked_light);
+        path.state.radiance += path.connection_light;
+        Listener(job).arrived(path.kept, path.shadow_data, path.connection_light);
     }
 };
 

@@ -68,8 +68,8 @@ struct Matte {
 /// the bytes of the film of all.
 template <uint32_t kIds>
 void check_parts(const PreparedScene& prepared) {
-    Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
-    Matte<kIds> whole(cpu, prepared), first(asked, prepared), second(cpu, prepared), again(asked, prepared);
+    Queue cpu = Queue::make_cpu(), shadow_data = test::requested_queue();
+    Matte<kIds> whole(cpu, prepared), first(shadow_data, prepared), second(cpu, prepared), again(shadow_data, prepared);
     whole.render(0, kMatteSamples);
     first.render(0, 3);
     second.render(3, 5);
@@ -91,7 +91,7 @@ TEST_CASE("a film's target of a test's own ranks what pixels show, and its parts
     Messages messages;
     const Scene scene = striped_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Matte<6> matte(queue, prepared);
     matte.render(0, kMatteSamples);
     const Image picture = matte.film.picture(true);

@@ -28,7 +28,7 @@ struct TwoNodeTree {
         const uint32_t node = x < first ? 0 : 1;
         const float rest = node == 0 ? x / first : (x - first) / (1.0f - first);
         const Emitter& emitter = view.emitters[node];
-        const OrderedDraw triangle = draw_ordered(view.triangles_of(node), u.y, bits_behind(u));
+        const CdfDraw triangle = draw_ordered(view.triangles_of(node), u.y, bits_behind(u));
         const uint32_t light = emitter.first_triangle + view.triangle_order[emitter.first_triangle + triangle.index];
         return to.triangle(light, sample_uniform_triangle({min(rest, 0x1.fffffep-1f), rest_of(triangle)}),
                            pmf_of_triangle(view, context, light));
@@ -38,7 +38,7 @@ struct TwoNodeTree {
         const uint32_t node = light >= first && light < first + view.emitters[0].triangle_count ? 0 : 1;
         const float share = share_of_first(view, context), sky = pmf_of_environment(view, context);
         const float of_node = (1.0f - sky) * (node == 0 ? share : 1.0f - share);
-        return of_node * (view.triangles[light].pmf / ordered_pmf(view.choice, node)); // the table's, within the node
+        return of_node * (view.triangles[light].pmf / cdf_pmf(view.choice, node)); // the table's, within the node
     }
     HD static float pmf_of_environment(const LightSetView& view, const LightContext&) {
         return view.has_environment() ? 0.3f : 0.0f;
@@ -52,7 +52,7 @@ private:
         const float squared = max(length_squared(to_node), size);
         const float cosine =
             context.normal == Vec3{0, 0, 0} ? 1.0f : max(dot(to_node, context.normal) / sqrt(squared), 0.0f);
-        return ordered_pmf(view.choice, node) * (cosine + 0.05f) / squared; // lights are larger than a point
+        return cdf_pmf(view.choice, node) * (cosine + 0.05f) / squared; // lights are larger than a point
     }
     HD static float share_of_first(const LightSetView& view, const LightContext& context) {
         const float first = importance(view, context, 0);
@@ -77,7 +77,7 @@ public:
 
     HD explicit DensityListener(const DensityJob& job) : job_(job) {}
     HD void take_up(const Kept& kept) { kept_ = kept; }
-    HD bool takes(const PathState& path, const LightPlace& place, float pdf) {
+    HD bool takes(const PathState& path, const EmitterPoint& place, float pdf) {
         if (path.bsdf_pdf > 0) {
             const float off = abs(pdf - density_of(place)) / pdf;
             atomic_add(off < 1e-3f ? job_.right : job_.wrong, 1u);
@@ -92,7 +92,7 @@ public:
     HD void put_down(Kept& kept) const { kept = kept_; }
 
 private:
-    HD float density_of(const LightPlace& place) const {
+    HD float density_of(const EmitterPoint& place) const {
         const LightSetView& lights = job_.picture.scene.lights;
         const LightContext context = {kept_.point, kept_.normal, kept_.lets_through, kAtRest};
         if (place.kind() == SourceKind::Environment) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tests/support/compare_pictures.h"
-#include "tests/support/flat_lamps.h"
+#include "tests/support/flat_emitters.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
@@ -30,14 +30,14 @@ void add_box(Scene& scene, Vec3 centre, Vec3 half, const Material& material) {
 }
 
 /// A room that is open to the camera: a lamp under its ceiling, and a box.
-Scene make_room(const Material& box, const Material& floor = test::white(0.6f), bool has_lamp = true) {
+Scene make_room(const Material& box, const Material& floor = test::white(0.6f), bool has_emitter = true) {
     Scene scene;
     const Material red = {{.base_color = {0.7f, 0.2f, 0.2f}}, "red"};
     test::add(scene, test::sheet({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), floor);
     test::add(scene, test::sheet({0, 1, -1}, {1, 0, 0}, {0, 1, 0}), test::white(0.6f));
     test::add(scene, test::sheet({-1, 1, 0}, {0, 1, 0}, {0, 0, 1}), red);
     add_box(scene, {0.2f, 0.4f, 0.1f}, {0.35f, 0.35f, 0.35f}, box);
-    if (!has_lamp) return scene;
+    if (!has_emitter) return scene;
     test::add(scene, test::sheet({0, 2, 0}, {1, 0, 0}, {0, 0, 1}), test::white(0.6f));
     test::add(scene, test::sheet({-0.2f, 1.9f, 0}, {0.6f, 0, 0}, {0, 0, 0.6f}),
               {{.base_color = {0.2f, 0.2f, 0.2f}, .emission = {4, 3.5f, 3}}, "lamp"});
@@ -141,7 +141,7 @@ RenderSettings settings_of(const Case& c) {
 } // namespace
 
 TEST_CASE("bidirectional and light tracing give path tracing's picture where they find the same light") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     for (const Case& c : cases()) {
         CAPTURE(c.name);
         Messages messages;
@@ -177,7 +177,7 @@ TEST_CASE("bidirectional and light tracing give path tracing's picture where the
 }
 
 TEST_CASE("distributed gives the light paths that it follows as bright as path tracing does") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     for (const Case& c : cases()) {
         if (c.name == "within glass") continue; // but for the sky none of its light is followed
         CAPTURE(c.name);
@@ -200,11 +200,11 @@ TEST_CASE("distributed gives the light paths that it follows as bright as path t
 
 TEST_CASE("light and bidirectional show a floor under a flat lamp as bright as the closed form, to 1 %") {
     constexpr double kHalf = 0.3; // half size of the visible patch of floor, metres
-    Queue queue = test::queue_asked_for();
-    const auto mean_of = [&](const Mesh& lamp, IntegratorKind integrator, uint32_t samples) {
+    Queue queue = test::requested_queue();
+    const auto mean_of = [&](const Mesh& emitter, IntegratorKind integrator, uint32_t samples) {
         Scene scene;
         test::add(scene, test::floor_at(0, 50), test::white(1));
-        test::add(scene, lamp, {{.base_color = {0, 0, 0}, .emission = {4, 4, 4}}, "lamp"});
+        test::add(scene, emitter, {{.base_color = {0, 0, 0}, .emission = {4, 4, 4}}, "lamp"});
         RenderSettings settings;
         settings.width = settings.height = 32;
         settings.samples = samples;

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "tests/support/compare_pictures.h"
-#include "tests/support/flat_lamps.h"
+#include "tests/support/flat_emitters.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
@@ -28,11 +28,11 @@ RenderSettings distributed_settings(uint32_t side, uint32_t samples) {
 }
 
 /// A flat lamp of `mesh`, facing down, over a white floor; its radiosity where it is looked at from just above.
-double floor_radiance(const Mesh& lamp, Vec3 at) {
+double floor_radiance(const Mesh& emitter, Vec3 at) {
     Scene scene;
     test::add(scene, test::floor_at(0, 50), test::white(1));
-    test::add(scene, lamp, {{.base_color = {0, 0, 0}, .emission = {4, 4, 4}}, "lamp"});
-    Queue queue = test::queue_asked_for();
+    test::add(scene, emitter, {{.base_color = {0, 0, 0}, .emission = {4, 4, 4}}, "lamp"});
+    Queue queue = test::requested_queue();
     const RenderResult result =
         test::render(queue, scene, test::camera_down(at + Vec3{0, 0.1f, 0}, 1e-3f), distributed_settings(1, 1024));
     CHECK(result.rays.bounce == 0);
@@ -42,9 +42,9 @@ double floor_radiance(const Mesh& lamp, Vec3 at) {
 } // namespace
 
 TEST_CASE("irradiance under a rectangular lamp is that of the closed form") {
-    const Mesh lamp = test::sheet({0, 2, 0}, {1.5f, 0, 0}, {0, 0, 1});
-    CHECK(floor_radiance(lamp, {0, 0, 0}) == doctest::Approx(4 * 4 * test::corner_factor(0.75, 0.5)).epsilon(2e-3));
-    CHECK(floor_radiance(lamp, {1.5f, 0, 1}) == doctest::Approx(4 * test::corner_factor(1.5, 1)).epsilon(2e-3));
+    const Mesh emitter = test::sheet({0, 2, 0}, {1.5f, 0, 0}, {0, 0, 1});
+    CHECK(floor_radiance(emitter, {0, 0, 0}) == doctest::Approx(4 * 4 * test::corner_factor(0.75, 0.5)).epsilon(2e-3));
+    CHECK(floor_radiance(emitter, {1.5f, 0, 1}) == doctest::Approx(4 * test::corner_factor(1.5, 1)).epsilon(2e-3));
 }
 
 TEST_CASE("irradiance under a disc is that of the closed form") {
@@ -85,7 +85,7 @@ Scene make_convex_scene(bool is_glossy) {
 std::pair<double, double> compare_with_path(const Scene& scene, float aperture, uint32_t samples) {
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Camera camera = test::mixed_scene_camera();
     camera.aperture_radius = aperture;
     camera.focus_distance = 5;
@@ -114,7 +114,7 @@ TEST_CASE("distributed is path tracing where no diffuse surface lights another")
 
 TEST_CASE("what distributed leaves out is what diffuse surfaces send to each other") {
     const Scene scene = test::make_mixed_scene();
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = distributed_settings(24, 32);
     const auto mean_of = [&](const Scene& lit, IntegratorKind integrator) {
         settings.integrator = integrator;
@@ -153,7 +153,7 @@ TEST_CASE("a lens is sharp at its distance, and blurs a point elsewhere over its
         const float half = 0.007f * distance; // almost a pixel, as seen
         test::add(scene, test::sheet({0, 0, -distance}, {half, 0, 0}, {0, half, 0}),
                   {{.base_color = {0, 0, 0}, .emission = {1000, 1000, 1000}}, "lamp"});
-        Queue queue = test::queue_asked_for();
+        Queue queue = test::requested_queue();
         RenderSettings settings = distributed_settings(kSide, 256);
         settings.integrator = integrator;
         const RenderResult result = test::render(queue, scene, camera, settings);

@@ -63,19 +63,19 @@ Image mean_of_frames(Session& session, const ReconstructionSettings& settings, c
 /// How far a mean is from another, as shares of the other's light. Lamps that are seen are left out: a few pixels of
 /// them would be all that is measured.
 struct Bias {
-    double whole = 0;      // deviation of the picture's mean; below 0: darker
-    double of_block = 0;   // greatest size, of a sixteenth of the picture that has at least a tenth of the mean
-    double of_pixels = 0;  // mean of the sizes of the pixels' differences
-    double with_lamps = 0; // like `whole`, with lamps
+    double whole = 0;         // deviation of the picture's mean; below 0: darker
+    double of_block = 0;      // greatest size, of a sixteenth of the picture that has at least a tenth of the mean
+    double of_pixels = 0;     // mean of the sizes of the pixels' differences
+    double with_emitters = 0; // like `whole`, with lamps
 };
 
 Bias bias_of(const Image& mean, const Image& expected) {
     std::vector<double> ours(kBiasBlocks * kBiasBlocks), theirs(ours.size());
-    const auto lamp = static_cast<float>(4 * mean_of(expected)); // radiance
+    const auto emitter = static_cast<float>(4 * mean_of(expected)); // radiance
     double sum = 0, expected_sum = 0, sizes = 0;
     for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
         const auto pixel = static_cast<uint32_t>(i / 3);
-        if (expected.pixels[3 * pixel + 1] > lamp) continue;
+        if (expected.pixels[3 * pixel + 1] > emitter) continue;
         const uint32_t x = pixel % mean.width, y = pixel / mean.width;
         const uint32_t block = y * kBiasBlocks / mean.height * kBiasBlocks + x * kBiasBlocks / mean.width;
         const double a = static_cast<double>(mean.pixels[i]), b = static_cast<double>(expected.pixels[i]);
@@ -100,7 +100,7 @@ ReconstructionSettings history_alone() {
 
 void say_bias(const std::string& scene, const std::string& part, const Bias& bias) {
     MESSAGE(scene, ", ", part, ": whole ", bias.whole, ", block ", bias.of_block, ", pixels ", bias.of_pixels,
-            ", with lamps ", bias.with_lamps);
+            ", with lamps ", bias.with_emitters);
 }
 
 struct Part {
@@ -114,7 +114,7 @@ void bound_bias(const ReconstructionSettings& without, const std::vector<Part>& 
     for (const BiasScene& s : bias_scenes()) {
         Messages messages;
         const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
-        Queue queue = queue_asked_for();
+        Queue queue = requested_queue();
         Session session(queue, prepared, s.camera, bias_settings());
         const Image expected = mean_of_frames(session, without);
         for (const Part& part : parts) {
@@ -125,7 +125,7 @@ void bound_bias(const ReconstructionSettings& without, const std::vector<Part>& 
             CHECK(std::abs(bias.whole) <= part.most.whole);
             CHECK(bias.of_block <= part.most.of_block);
             CHECK(bias.of_pixels <= part.most.of_pixels);
-            CHECK(bias.with_lamps <= part.most.whole); // their edges may lose light, but bring none
+            CHECK(bias.with_emitters <= part.most.whole); // their edges may lose light, but bring none
         }
     }
 }
@@ -146,8 +146,8 @@ TEST_CASE("the wavelet filter blurs, and leaves the light that there is") {
 
 TEST_CASE("limits of bright samples and of histories take little of the light, each alone") {
     ReconstructionSettings fireflies = history_alone(), held = history_alone();
-    fireflies.limit_fireflies = true;
-    held.limit_history = true;
+    fireflies.clamp_fireflies = true;
+    held.clamp_history = true;
     bound_bias(history_alone(),
                {{"limit_fireflies", fireflies, {0.002, 0.014, 0.002}}, {"limit_history", held, {0.002, 0.014, 0.002}}});
 }
@@ -186,7 +186,7 @@ BiasScene bent_normals() {
     BiasScene bent = {"bent normals", make_mixed_scene(), {}};
     bent.scene.images.push_back(wavy_normals());
     for (Material& material : bent.scene.materials) {
-        if (material.is_lamp()) continue;
+        if (material.is_emitter()) continue;
         material.kind = MaterialKind::MetallicRoughness;
         material.metallic = 0;
         material.roughness = 0.3f;
@@ -204,7 +204,7 @@ TEST_CASE("shared bounces at bent normals seen at grazing angles send nearly the
     const BiasScene bent = bent_normals();
     Messages messages;
     const PreparedScene prepared = prepare_scene(bent.scene, {}, messages);
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     RenderSettings settings = bias_settings();
     settings.width = 32, settings.height = 24;
     Session session(queue, prepared, bent.camera, settings);
@@ -235,7 +235,7 @@ TEST_CASE("light beneath a layer that reflects more of it from the side does not
     };
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     Session session(queue, prepared, camera_at(kTurn - 1), bias_settings());
     const Image expected = mean_of_frames(session, of_samples_alone({}), {}, 0, 192);
     Image mean = {expected.width, expected.height, 3, std::vector<float>(expected.pixels.size())};
@@ -258,7 +258,7 @@ TEST_CASE("with a clamp shared bounces send as much as clamped paths do") {
     for (const BiasScene& s : bias_scenes()) {
         Messages messages;
         const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
-        Queue queue = queue_asked_for();
+        Queue queue = requested_queue();
         RenderSettings settings = bias_settings();
         settings.width = 32, settings.height = 24;
         const auto frames = static_cast<uint32_t>(effort(96, 4096));

@@ -40,7 +40,7 @@ Seen look_around(float albedo, const PathSettings& path) {
     Camera camera;
     camera.world_from_camera = look_at({0.3f, 0.2f, -0.5f}, {1, 0.4f, 0.1f}, {0, 1, 0});
     camera.fov_y = 2.0f;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const RenderResult result = test::render(queue, make_room(albedo), camera, settings);
     CHECK(result.invalid_samples == 0);
     double sum = 0, square_sum = 0;

@@ -24,7 +24,7 @@ namespace {
 Scene room_with_boxes() {
     Scene scene = test::closed_box(test::white(0.6f));
     test::add(scene, test::sheet({0, 0.98f, 0}, {0.4f, 0, 0}, {0, 0, 0.4f}),
-              test::lamp_material(0, 5)); // its front down
+              test::emitter_material(0, 5)); // its front down
     test::add(scene, test::sheet({-0.3f, -0.2f, 0}, {0.4f, 0, 0}, {0, 0, 0.4f}), test::white(0.4f));
     return scene;
 }
@@ -100,7 +100,7 @@ TEST_CASE("links come to the light that rows of form factors find, the nearer th
 
 TEST_CASE("links lose no light on what lies inside solid things") {
     Scene scene = test::closed_box(test::white(0.7f));
-    test::add(scene, test::sheet({0, 0.98f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), test::lamp_material(0, 20));
+    test::add(scene, test::sheet({0, 0.98f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), test::emitter_material(0, 20));
     for (int x = 0; x < 6; ++x) {
         for (int z = 0; z < 6; ++z) { // pillars, whose sides face inwards as well as outwards
             const float r = 0.08f, h = 0.6f;
@@ -128,7 +128,7 @@ TEST_CASE("links lose no light on what lies inside solid things") {
 TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) by links too") {
     const float reflectance = 0.5f;
     const SolvedRadiosity solved =
-        solved_by(test::closed_box(test::lamp_material(reflectance, 1)), RadiositySolver::Hierarchical, 0.4f, 0.02f);
+        solved_by(test::closed_box(test::emitter_material(reflectance, 1)), RadiositySolver::Hierarchical, 0.4f, 0.02f);
     const double known = 3.14159265 / (1 - static_cast<double>(reflectance));
     double sum = 0;
     for (uint32_t triangle = 0; triangle < 12; ++triangle) {
@@ -141,13 +141,13 @@ TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) by
 
 TEST_CASE("too many links are made anew by a larger error, to the bytes of that error asked for at once") {
     const test::PatchedScene patched(room_with_boxes(), kInfinity);
-    const auto solve = [&](float link_error, uint64_t most_links) {
+    const auto solve = [&](float link_error, uint64_t max_links) {
         RadiositySettings settings;
         settings.link_error = link_error;
         WorkWatch watch({});
-        return solve_hierarchically(patched.solved, patched.tree, 0.2f, settings, watch, most_links);
+        return solve_hierarchically(patched.solved, patched.tree, 0.2f, settings, watch, max_links);
     };
-    const HierarchicalSolution fine = solve(0.05f, kMostLinks), coarse = solve(0.4f, kMostLinks);
+    const HierarchicalSolution fine = solve(0.05f, kMaxLinks), coarse = solve(0.4f, kMaxLinks);
     REQUIRE(fine.link_error == 0.05f);
     REQUIRE(fine.links > 4 * coarse.links);
     for (const int threads : {1, 3}) {
@@ -156,7 +156,7 @@ TEST_CASE("too many links are made anew by a larger error, to the bytes of that 
         CHECK(limited.links <= fine.links / 2);
         const float factor = limited.link_error / 0.05f;
         CHECK((factor == 2 || factor == 4 || factor == 8));
-        const HierarchicalSolution at_once = solve(limited.link_error, kMostLinks);
+        const HierarchicalSolution at_once = solve(limited.link_error, kMaxLinks);
         CHECK(at_once.links == limited.links);
         CHECK(at_once.irradiance == limited.irradiance);
         CHECK(at_once.irradiance != fine.irradiance);
@@ -262,7 +262,7 @@ TEST_CASE("clusters of triangles are linked to each other, so that links grow as
     double links_a_triangle[2];
     for (int fine = 0; fine < 2; ++fine) {
         Scene scene = test::closed_box(test::white(0.6f));
-        test::add(scene, test::sheet({0, 0.98f, 0}, {0.4f, 0, 0}, {0, 0, 0.4f}), test::lamp_material(0, 5));
+        test::add(scene, test::sheet({0, 0.98f, 0}, {0.4f, 0, 0}, {0, 0, 0.4f}), test::emitter_material(0, 5));
         for (std::size_t i = 0; i < 6; ++i) divide_triangles(scene.meshes[i], fine == 0 ? 3 : 4);
         const SolvedRadiosity solved = solved_by(scene, RadiositySolver::Hierarchical, 1, 0.1f);
         const double triangles = fine == 0 ? 12 * 64 : 12 * 256;

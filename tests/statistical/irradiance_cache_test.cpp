@@ -66,13 +66,13 @@ TEST_CASE("a sphere in a furnace shows its albedo by irradiance caching") {
     settings.width = settings.height = 8;
     settings.samples = 64;
     settings.integrator = IntegratorKind::IrradianceCache;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Image image = render_picture(queue, prepared, camera, settings).picture;
     for (const float value : image.pixels) CHECK(static_cast<double>(value) == doctest::Approx(0.7).epsilon(0.01));
 }
 
 TEST_CASE("irradiance caching comes to path tracing's picture as records become more and better") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     for (const CacheCase& c : cache_cases()) {
         Messages messages;
         const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
@@ -144,7 +144,7 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
 } // namespace
 
 TEST_CASE("the error of irradiance caching falls with the accuracy and the rays at the rates of the literature") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = room_under_a_point();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -223,7 +223,7 @@ std::vector<double> block_medians(const Image& picture, uint32_t side) {
 } // namespace
 
 TEST_CASE("records have no blotches of the lamps that later bounces see by way of glass") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = room_with_caustic();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

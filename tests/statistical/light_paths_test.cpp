@@ -51,7 +51,7 @@ Scene varnished_floor(float albedo) {
 } // namespace
 
 TEST_CASE("paths of so many scatterings are those that a smaller depth leaves") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Scene scene = test::make_mixed_scene();
     RenderSettings settings = small_lpe_settings(4);
     ask_for_layers(settings, {"d0=L.{0}E", "d1=L.{0,1}E", "d3=L.{0,3}E"}, scene);
@@ -66,7 +66,7 @@ TEST_CASE("paths of so many scatterings are those that a smaller depth leaves") 
 }
 
 TEST_CASE("direct and indirect light are expressions") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Scene scene = test::make_mixed_scene();
     RenderSettings settings = small_lpe_settings(4);
     ask_for_layers(settings, {"direct=LS*[DG]?S*E", "indirect=L.*[DG].*[DG].*E"}, scene);
@@ -82,7 +82,7 @@ TEST_CASE("direct and indirect light are expressions") {
 }
 
 TEST_CASE("each lamp's layer is the picture under that lamp alone") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Light lights[] = {test::point_light({0.7f, 1.5f, -0.4f}, {3, 2, 1}),
                             test::point_light({-0.8f, 2.0f, 0.2f}, {1, 4, 6})};
     Scene both = varnished_floor(0.6f);
@@ -110,7 +110,7 @@ TEST_CASE("each lamp's layer is the picture under that lamp alone") {
 }
 
 TEST_CASE("a point light's diffuse and glossy parts are those of the lobes") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Scene scene = varnished_floor(0.6f), black = varnished_floor(0.0f);
     scene.lights.push_back(test::point_light({0.7f, 1.5f, -0.4f}, {3, 2, 1}));
     black.lights = scene.lights;
@@ -132,7 +132,7 @@ TEST_CASE("a point light's diffuse and glossy parts are those of the lobes") {
 }
 
 TEST_CASE("classes that are drawn for a path have the mean of those that are split for a shadow ray") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Scene scene = varnished_floor(0.6f);
     Material glow = test::white(0);
     glow.emission = {4, 3, 2};
@@ -157,7 +157,7 @@ TEST_CASE("classes that are drawn for a path have the mean of those that are spl
 }
 
 TEST_CASE("a lamp within glass lights a floor by caustics alone") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Scene scene;
     test::add(scene, test::sheet({0.05f, 0, 0}, {0, 0, 10}, {10, 0, 0}), test::white(0.5f));
     Material glow = test::white(0);

@@ -41,7 +41,7 @@ void add_checkers(Scene& scene, uint32_t n, TextureFilter filter) {
 float light_pmf(const LightSetView& view, uint32_t light) {
     if (view.choice.starts == nullptr) return 0;
     if (light < view.triangle_count) return view.triangles[light].pmf;
-    return ordered_pmf(view.choice, view.emitter_count + light - view.triangle_count);
+    return cdf_pmf(view.choice, view.emitter_count + light - view.triangle_count);
 }
 
 /// Irradiance (red) at the origin of a surface that faces `normal`, drawn by sample_light.

@@ -45,7 +45,7 @@ double gain(const LightSetView& view) {
 }
 
 /// A square lamp of side `side` about `centre` that faces down, cut into 2 n^2 triangles.
-void add_lamp(Scene& scene, Vec3 centre, float side, uint32_t n, float radiance) {
+void add_square_emitter(Scene& scene, Vec3 centre, float side, uint32_t n, float radiance) {
     add_emitter(scene, make_square(n), grey(radiance),
                 compose(make_translation(centre), make_scale({0.5f * side, 1, 0.5f * side})));
 }
@@ -69,7 +69,7 @@ Environment make_sky(uint32_t height) {
 TEST_CASE("strata: a square lamp of few or many triangles") {
     for (const uint32_t n : {1u, 8u}) {
         Scene scene;
-        add_lamp(scene, {0.3f, 1, 0}, 1.5f, n, 1);
+        add_square_emitter(scene, {0.3f, 1, 0}, 1.5f, n, 1);
         const double times = gain(Lights(scene).view);
         MESSAGE((2 * n * n), " triangles: ", times, " times less variance");
         CHECK(times > (n == 1 ? 60 : 20));
@@ -80,7 +80,7 @@ TEST_CASE("strata: a row of lamps of different power") {
     Scene scene;
     for (int i = 0; i < 16; ++i) {
         const float x = static_cast<float>(i) - 7.5f;
-        add_lamp(scene, {0.5f * x, 2, 0.2f * x}, 0.2f, 1, 1 + 0.1f * x);
+        add_square_emitter(scene, {0.5f * x, 2, 0.2f * x}, 0.2f, 1, 1 + 0.1f * x);
     }
     const double times = gain(Lights(scene).view);
     MESSAGE(times, " times less variance");
@@ -89,7 +89,7 @@ TEST_CASE("strata: a row of lamps of different power") {
 
 TEST_CASE("strata: a ball of light, and lamps in a square, whose places no single row could keep together") {
     Scene ball, square;
-    add_lamp(ball, {0, 0, 0}, 2, 24, 1);
+    add_square_emitter(ball, {0, 0, 0}, 2, 24, 1);
     ball.materials[0].two_sided_emission = true; // whichever way the wrapping turns it
     for (Vec3& p : ball.meshes[0].positions) {   // the square of side 2 wrapped around a ball by height and angle
         const double angle = 3.141592653589793 * (static_cast<double>(p.x) + 1),
@@ -100,7 +100,7 @@ TEST_CASE("strata: a ball of light, and lamps in a square, whose places no singl
     }
     for (int i = 0; i < 64; ++i) {
         const int k = 29 * i % 64; // a file's order may be any
-        add_lamp(square, {static_cast<float>(k % 8) - 3.5f, 2, static_cast<float>(k / 8) - 3.5f}, 0.2f, 1, 1);
+        add_square_emitter(square, {static_cast<float>(k % 8) - 3.5f, 2, static_cast<float>(k / 8) - 3.5f}, 0.2f, 1, 1);
     }
     const double on_ball = gain(Lights(ball).view), in_square = gain(Lights(square).view);
     MESSAGE("ball: ", on_ball, " times less variance, square: ", in_square);
@@ -112,7 +112,7 @@ TEST_CASE("strata: a sky, alone and beside a lamp") {
     Scene scene;
     scene.environment = make_sky(64);
     const double alone = gain(Lights(scene).view);
-    add_lamp(scene, {0, 3, 0}, 1, 1, 30);
+    add_square_emitter(scene, {0, 3, 0}, 1, 1, 30);
     const double beside = gain(Lights(scene).view);
     MESSAGE(alone, " times less variance, ", beside, " beside a lamp");
     CHECK(alone > 10);

@@ -63,7 +63,7 @@ Image picture_of(const MovingScene& moving, const Camera& camera) {
     settings.samples = 1024;
     settings.filter = PixelFilter::Box;
     settings.filter_radius = 0x1p-20f;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     return render_picture(queue, moving.prepared(), camera, settings).picture;
 }
 
@@ -184,7 +184,7 @@ TEST_CASE("half a disc that turns is blurred evenly over the angle") {
 }
 
 TEST_CASE("a blurred picture is the mean of the pictures of all moments") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const auto moments = static_cast<uint32_t>(test::effort(600, 4000));
     for (const IntegratorKind integrator : {IntegratorKind::Path, IntegratorKind::Distributed}) {
@@ -202,7 +202,7 @@ TEST_CASE("a blurred picture is the mean of the pictures of all moments") {
 }
 
 TEST_CASE("moving lamps are found alike by drawing them and by running into them") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     Scene scene = make_lit_scene();
     // It turns far, because the density of a point of a lamp depends on where the lamp faces, not on where it is.

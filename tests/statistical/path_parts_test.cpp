@@ -35,14 +35,14 @@ PictureEstimate estimate(LightStrategy strategy, uint32_t first_seed) {
     const Scene scene = make_area_lit_scene();
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     return test::estimate_picture(queue, prepared, test::mixed_scene_camera(), settings, 64, first_seed);
 }
 
 } // namespace
 
 TEST_CASE("direct and indirect light add up to the whole picture") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings;
     settings.width = 48;
     settings.height = 27;
@@ -80,7 +80,7 @@ TEST_CASE("next-event estimation, BSDF sampling and both weighted converge to on
 }
 
 TEST_CASE("a white sphere in a white furnace cannot be seen") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings;
     settings.width = settings.height = 24;
     settings.samples = 64;

@@ -57,7 +57,7 @@ Image picture_by(Queue& queue, const PreparedScene& prepared, IntegratorKind int
 } // namespace
 
 TEST_CASE("photon mapping comes to path tracing's picture, at least as fast as Knaus and Zwicker say") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     for (const PhotonCase& c : photon_cases()) {
         Messages messages;
         const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
@@ -145,7 +145,7 @@ TEST_CASE("a lamp that stands on the floor is no noisier than by path tracing, f
                   {{.base_color = grey(0), .emission = {20, 20, 20}}, "lamp"});
         Messages messages;
         const PreparedScene prepared = prepare_scene(scene, {}, messages);
-        Queue queue = test::queue_asked_for();
+        Queue queue = test::requested_queue();
         RenderSettings settings;
         settings.width = settings.height = 8;
         settings.filter = PixelFilter::Box;
@@ -185,7 +185,7 @@ TEST_CASE("no radius is too small to divide light by its square, nor k photons i
     settings.samples = 2;
     settings.photon_map.photons = 256;
     settings.photon_map.gather = PhotonGather::Direct;
-    for (const float radius : {1e-30f, 3e-20f, kLeastPhotonRadius, 1e30f}) {
+    for (const float radius : {1e-30f, 3e-20f, kMinPhotonRadius, 1e30f}) {
         for (const uint32_t nearest : {0u, 2u}) {
             settings.photon_map.radius = settings.photon_map.caustic_radius = radius;
             settings.photon_map.nearest = nearest;

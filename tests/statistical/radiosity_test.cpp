@@ -45,7 +45,7 @@ double mean_difference(const Image& a, const Image& b) {
 TEST_CASE("all of a closed box that emits E and reflects r has radiosity E / (1 - r)") {
     Messages messages;
     const float reflectance = 0.6f, radiance = 2;
-    const Scene scene = test::closed_box(test::lamp_material(reflectance, radiance));
+    const Scene scene = test::closed_box(test::emitter_material(reflectance, radiance));
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     const double known = std::numbers::pi * static_cast<double>(radiance) / (1 - static_cast<double>(reflectance));
     for (const FormFactors method : {FormFactors::Rays, FormFactors::Hemicube}) {
@@ -72,7 +72,7 @@ TEST_CASE("all of a closed box that emits E and reflects r has radiosity E / (1 
 TEST_CASE("an unfinished solution of a closed box shows E / (1 - r) on the mean, with divided patches as without") {
     Messages messages;
     const float reflectance = 0.6f, radiance = 2;
-    const Scene scene = test::closed_box(test::lamp_material(reflectance, radiance));
+    const Scene scene = test::closed_box(test::emitter_material(reflectance, radiance));
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     const double known = std::numbers::pi * static_cast<double>(radiance) / (1 - static_cast<double>(reflectance));
     for (const uint32_t steps : {1u, 12u, 48u, 400u}) {
@@ -115,7 +115,7 @@ TEST_CASE("a closed box that reflects all light is refused, by every solver of r
             const PreparedScene prepared = prepare_scene(scene, {}, messages);
             return solve_radiosity(prepared, settings);
         };
-        const Scene box = test::closed_box(test::lamp_material(1, 1));
+        const Scene box = test::closed_box(test::emitter_material(1, 1));
         CHECK(test::bad_input_message([&] { solve(box); }).find("radiosity: light has no end") == 0);
         Scene open = box;
         open.instances.pop_back(); // a wall
@@ -141,7 +141,7 @@ TEST_CASE("a sphere in a furnace receives pi of the furnace's radiance, and show
         RenderSettings picture;
         picture.width = picture.height = 8;
         picture.samples = 4;
-        Queue queue = test::queue_asked_for();
+        Queue queue = test::requested_queue();
         const Image image = shown_picture(queue, prepared, camera, picture, look);
         for (const float value : image.pixels) CHECK(static_cast<double>(value) == doctest::Approx(0.7).epsilon(0.01));
     }
@@ -151,7 +151,7 @@ TEST_CASE("radiosity comes to path tracing's picture of the Cornell box as patch
     Messages messages;
     const Scene scene = open_scene({.scene = "cornell-box"}, messages);
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings picture;
     picture.width = picture.height = 20;
     picture.filter = PixelFilter::Box;

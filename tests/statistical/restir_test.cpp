@@ -19,7 +19,7 @@ namespace {
 
 constexpr uint32_t kRestirWidth = 40, kRestirHeight = 28, kRestirBlocks = 4; // along each side
 constexpr ReconstructionSettings kAsTheyAre = {
-    .history = 1, .passes = 0, .limit_fireflies = false, .limit_history = false, .anti_alias = false};
+    .history = 1, .passes = 0, .clamp_fireflies = false, .clamp_history = false, .anti_alias = false};
 
 struct RestirCase {
     std::string name;
@@ -107,7 +107,7 @@ struct BlockMeans {
         }
     }
     /// Removes the light that the camera's first `samples` rays hit directly, which is noisy for small lamps.
-    void take_out_lamps(Session& session, uint32_t samples) {
+    void take_out_emitters(Session& session, uint32_t samples) {
         RenderSettings settings = session.settings();
         settings.path.max_depth = 0;
         settings.samples = samples;
@@ -121,7 +121,7 @@ BlockMeans scattered_light(Session& session, uint32_t samples) {
     session.cut();
     session.render(samples);
     means.add(session.picture(), 1);
-    means.take_out_lamps(session, samples);
+    means.take_out_emitters(session, samples);
     return means;
 }
 
@@ -134,7 +134,7 @@ BlockMeans scattered_light_in_frames(Session& session, const RestirSettings& res
         session.render_frame(k < settled ? frames + k : k - settled, kAsTheyAre, restir);
         if (k >= settled) means.add(session.frame().picture(), 1.0 / frames);
     }
-    means.take_out_lamps(session, frames);
+    means.take_out_emitters(session, frames);
     return means;
 }
 
@@ -156,7 +156,7 @@ TEST_CASE("without history the mean over frames with ReSTIR is the path tracer's
         CAPTURE(c.name);
         Messages messages;
         const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
-        Queue queue = queue_asked_for();
+        Queue queue = requested_queue();
         Session session(queue, prepared, c.camera, restir_settings());
         // By the same samples: the noise of what ReSTIR leaves to the paths is then the same.
         const auto frames = static_cast<uint32_t>(effort(384, 8192));
@@ -174,7 +174,7 @@ TEST_CASE("with history the mean over frames with ReSTIR stays near the path tra
         CAPTURE(c.name);
         Messages messages;
         const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
-        Queue queue = queue_asked_for();
+        Queue queue = requested_queue();
         Session session(queue, prepared, c.camera, restir_settings());
         const auto frames = static_cast<uint32_t>(effort(192, 8192));
         const BlockMeans expected = scattered_light(session, frames);
@@ -189,16 +189,16 @@ TEST_CASE("while a lamp moves the mean over frames with ReSTIR stays near the pa
     const auto mean_of_motion = [&](const RestirSettings& restir) {
         Messages messages;
         RestirCase box = builtin_case("cornell-box");
-        const uint32_t lamp = static_cast<uint32_t>(box.scene.instances.size() - 1);
+        const uint32_t emitter = static_cast<uint32_t>(box.scene.instances.size() - 1);
         PreparedScene prepared = prepare_scene(box.scene, {}, messages);
-        Queue queue = queue_asked_for();
+        Queue queue = requested_queue();
         Session session(queue, prepared, box.camera, restir_settings());
         BlockMeans means;
         for (uint32_t k = 0; k < kMoving; ++k) {
             if (k > 0) {
-                box.scene.instances[lamp].world_from_local.translation += Vec3{0.002f, -0.003f, -0.002f};
+                box.scene.instances[emitter].world_from_local.translation += Vec3{0.002f, -0.003f, -0.002f};
                 SceneUpdate update;
-                update.moved_instances = {lamp};
+                update.moved_instances = {emitter};
                 prepared = update_scene(prepared, box.scene, update, messages);
                 session.update_scene(prepared, parts_of(update));
             }

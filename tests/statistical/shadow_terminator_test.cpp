@@ -69,7 +69,7 @@ Brightness furnace(const Scene& scene, LightStrategy strategy, uint32_t samples)
     settings.filter = PixelFilter::Box;
     settings.path.max_depth = 400;
     settings.path.strategy = strategy;
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     const RenderResult result = test::render(queue, scene, front_camera(), settings);
     CHECK(result.invalid_samples == 0);
     double all = 0, rim = 0, all_count = 0, rim_count = 0;
@@ -98,7 +98,7 @@ double largest_step(int subdivisions) {
     settings.samples = 16;
     settings.filter = PixelFilter::Box;
     settings.path.max_depth = 1;
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     const RenderResult result = test::render(queue, scene, front_camera(), settings);
     double step = 0, brightest = 0;
     const auto inside = [](uint32_t x, uint32_t y) {
@@ -118,7 +118,7 @@ double largest_step(int subdivisions) {
 } // namespace
 
 TEST_CASE("raised directions clear the horizon, and lowering takes them back") {
-    for (const float tilt : {kLeastTilt, 0.02f, 0.1f, 1.0f / 6, 0.2f, kLargestTilt}) {
+    for (const float tilt : {kMinTilt, 0.02f, 0.1f, 1.0f / 6, 0.2f, kLargestTilt}) {
         CAPTURE(tilt);
         float before = 0;
         for (int i = 0; i <= 1000; ++i) {
@@ -145,7 +145,7 @@ TEST_CASE("raised directions clear the horizon, and lowering takes them back") {
     CHECK(terminator_tilt(0.65f, 0) == doctest::Approx(0.1));
     CHECK(terminator_tilt(0.8f, 0) == 0); // a cube's corner
     CHECK(terminator_tilt(0.1f, 0.2f) == 0.2f);
-    CHECK(terminator_tilt(0.5f * kLeastTilt, 0) == 0);
+    CHECK(terminator_tilt(0.5f * kMinTilt, 0) == 0);
 }
 
 TEST_CASE("a tilted surface samples its density, for every BSDF") {
@@ -283,7 +283,7 @@ TEST_CASE("no light leaks into a coarse smooth room") {
             RenderSettings settings;
             settings.width = settings.height = 48;
             settings.samples = 16;
-            Queue queue = queue_asked_for();
+            Queue queue = requested_queue();
             const RenderResult result = test::render(queue, scene, camera, settings);
             const auto& pixels = result.picture.pixels;
             CHECK(*std::max_element(pixels.begin(), pixels.end()) == 0);
@@ -306,7 +306,7 @@ TEST_CASE("on coarse smooth meshes lights are found alike by every strategy") {
         scene.instances.push_back({"lamp", 1, 1, {}});
         Messages messages;
         const PreparedScene prepared = prepare_scene(scene, {}, messages);
-        Queue queue = queue_asked_for();
+        Queue queue = requested_queue();
         RenderSettings settings;
         settings.width = settings.height = 16;
         settings.samples = static_cast<uint32_t>(effort(128, 1024));

@@ -99,7 +99,7 @@ inline void check_goes_on(Session& session, Queue& queue, const Scene& scene, co
 /// device alone. `on_host`: bytes that are said on the CPU and that no queue gives.
 inline void check_predicted_bytes(const PreparedScene& prepared, const RenderSettings& settings, bool sorts = false,
                                   std::size_t on_host = 0) {
-    Queue queue = queue_asked_for();
+    Queue queue = requested_queue();
     Session session(queue, prepared, camera_with_lens(), settings);
     session.render(settings.samples);
     const std::size_t beside = queue.is_cuda() ? 0 : on_host;

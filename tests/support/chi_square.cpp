@@ -36,7 +36,7 @@ double gauss(const Density& f, const Cell& c) {
 
 // The least so that a narrow peak is not stepped over. The most: what is then off along a jump of the density is a
 // small part of a cell's standard deviation, and each one more takes twice the time.
-constexpr int kMostQuarterings = 6, kLeastQuarterings = 2;
+constexpr int kMaxQuarterings = 6, kMinQuarterings = 2;
 
 /// Quarters the cell until the quarters' sum agrees with the whole.
 double integrate(const Density& f, const Cell& c, double whole, double tolerance, int depth) {
@@ -44,7 +44,7 @@ double integrate(const Density& f, const Cell& c, double whole, double tolerance
     const Cell quarters[4] = {{c.x0, xm, c.y0, ym}, {xm, c.x1, c.y0, ym}, {c.x0, xm, ym, c.y1}, {xm, c.x1, ym, c.y1}};
     double parts[4], sum = 0;
     for (int k = 0; k < 4; k++) sum += parts[k] = gauss(f, quarters[k]);
-    const bool may_stop = depth <= kMostQuarterings - kLeastQuarterings;
+    const bool may_stop = depth <= kMaxQuarterings - kMinQuarterings;
     if (depth == 0 || (may_stop && std::fabs(sum - whole) <= tolerance)) return sum;
     sum = 0;
     for (int k = 0; k < 4; k++) sum += integrate(f, quarters[k], parts[k], 0.5 * tolerance, depth - 1);
@@ -80,7 +80,7 @@ ChiSquareResult test_grid(const Grid& grid, const std::function<int(uint32_t)>& 
     const double tolerance = std::max(1e-9, 1e-3 / samples); // a thousandth of a sample
     for (int k = 0; k < grid.count(); k++) {
         const Cell cell = grid.cell(k);
-        const double part = integrate(pdf, cell, gauss(pdf, cell), tolerance, kMostQuarterings);
+        const double part = integrate(pdf, cell, gauss(pdf, cell), tolerance, kMaxQuarterings);
         integral += part;
         expected[static_cast<size_t>(k)] = samples * part;
     }
@@ -125,7 +125,7 @@ std::string ChiSquareResult::describe() const {
 }
 
 ChiSquareResult chi_square(std::span<const double> observed, std::span<const double> expected) {
-    constexpr double kLeastExpected = 5;
+    constexpr double kMinExpected = 5;
     std::vector<size_t> order(expected.size());
     std::iota(order.begin(), order.end(), size_t{0});
     std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return expected[a] < expected[b]; });
@@ -148,7 +148,7 @@ ChiSquareResult chi_square(std::span<const double> observed, std::span<const dou
             result.worst_cell = "cell " + std::to_string(k) + ", where the density is 0";
             break;
         }
-        if (expected[k] >= kLeastExpected && (pooled_expected == 0 || pooled_expected >= kLeastExpected)) {
+        if (expected[k] >= kMinExpected && (pooled_expected == 0 || pooled_expected >= kMinExpected)) {
             add(observed[k], expected[k], "cell " + std::to_string(k));
         } else {
             pooled_observed += observed[k];

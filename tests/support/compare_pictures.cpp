@@ -75,10 +75,10 @@ double p_value(const PictureEstimate& a, const PictureEstimate& b) {
     return -std::expm1(static_cast<double>(a.mean.size()) * std::log1p(-smallest));
 }
 
-PictureEstimate brightened(PictureEstimate e, double factor, double least_error) {
+PictureEstimate brightened(PictureEstimate e, double factor, double min_error) {
     const std::size_t values = e.pixel_values();
     for (std::size_t i = 0; i < values; ++i) {
-        if (!(std::sqrt(e.variance_of_mean[i]) > least_error * e.mean[i])) continue;
+        if (!(std::sqrt(e.variance_of_mean[i]) > min_error * e.mean[i])) continue;
         e.mean[values + i % 3] += (factor - 1) * e.mean[i] / (static_cast<double>(values) / 3);
         e.mean[i] *= factor;
     }

@@ -31,6 +31,6 @@ PictureEstimate estimate_picture(Queue& queue, const PreparedScene& prepared, co
 double p_value(const PictureEstimate& a, const PictureEstimate& b);
 
 /// Brighter in those pixels whose means are off by more than `least_error`, as those of the background are not.
-PictureEstimate brightened(PictureEstimate estimate, double factor, double least_error);
+PictureEstimate brightened(PictureEstimate estimate, double factor, double min_error);
 
 } // namespace pertev::test

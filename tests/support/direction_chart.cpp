@@ -151,7 +151,7 @@ DirectionChart::Place DirectionChart::place_of(Point p) const {
 
 ChartIntegral integrate_over(const DirectionChart& chart, const ChartRectangle& rectangle, double tolerance,
                              const std::function<ChartIntegral(Vec3)>& f, std::span<const double> jumps) {
-    constexpr int kMostQuarterings = 8;
+    constexpr int kMaxQuarterings = 8;
     // Strips of y in which the same circles cross the same sides of the rectangle.
     std::vector<double> turns;
     std::vector<HeightCircle> circles;
@@ -174,7 +174,7 @@ ChartIntegral integrate_over(const DirectionChart& chart, const ChartRectangle& 
             const Piece piece = {chart, rectangle, circles, k};
             const auto [x0, x1] = piece.sides_at(0.5 * (whole.y0 + whole.y1));
             if (x1 <= x0) continue;
-            const ChartIntegral part = refine(piece, whole, tolerance, f, gauss(piece, whole, f), kMostQuarterings);
+            const ChartIntegral part = refine(piece, whole, tolerance, f, gauss(piece, whole, f), kMaxQuarterings);
             for (int c = 0; c < 4; c++) sum.value[c] += part.value[c];
         }
     }

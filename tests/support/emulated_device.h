@@ -5,7 +5,7 @@
 //
 // One definition rule: such code must never be linked with the host's of the same name. So from here on `pertev` is
 // spelled pertev_emulated, and everything that such a file compiles is in that namespace, which nothing else uses;
-// views of the host are passed by address (emulated_walks.cpp). In the object no symbol of the host's namespace is
+// views of the host are passed by address (emulated_traversals.cpp). In the object no symbol of the host's namespace is
 // weak:
 //   nm -C OBJECT | grep ' [VWu] ' | grep pertev::    lists only templates of std
 // It is compiled with frame pointers (tests/CMakeLists.txt), because __activemask() distinguishes places by their

@@ -32,7 +32,7 @@ namespace {
 using lane::CodePlace;
 
 constexpr std::size_t kStackBytes = 128 << 10, kGuardBytes = 4 << 10;
-constexpr uint32_t kMostWarps = 8; // at once
+constexpr uint32_t kMaxWarps = 8; // at once
 
 #if defined(__SANITIZE_ADDRESS__)
 /// From the fiber that runs, whose fake stack is kept, or not (null) where it never goes on.
@@ -102,11 +102,11 @@ Machine& machine() {
 }
 
 Machine::Machine() {
-    const std::size_t bytes = kMostWarps * 32 * kStackBytes;
+    const std::size_t bytes = kMaxWarps * 32 * kStackBytes;
     void* memory = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (memory == MAP_FAILED) std::abort();
     char* stack = static_cast<char*>(memory);
-    for (uint32_t i = 0; i < kMostWarps; ++i) {
+    for (uint32_t i = 0; i < kMaxWarps; ++i) {
         slots_.push_back(std::make_unique<EmulatedWarp>());
         for (EmulatedLane& lane : slots_.back()->lanes) {
             ::mprotect(stack, kGuardBytes, PROT_NONE);
@@ -175,7 +175,7 @@ void Machine::go_on() {
 
 /// Nothing when there is a fault.
 EmulatedLane* Machine::choose_lane() {
-    if (++steps_ > launch_.most_steps) fail("no end after " + std::to_string(launch_.most_steps) + " steps");
+    if (++steps_ > launch_.max_steps) fail("no end after " + std::to_string(launch_.max_steps) + " steps");
     if (!fault_.empty()) return nullptr;
     // Only a warp's own lanes can let it go on, so one that cannot never will.
     if (warp_ != nullptr && warp_->live != 0 && (warp_->ready | warp_->pending) == 0) {
@@ -205,7 +205,7 @@ std::string Machine::run(const EmulatedLaunch& launch, const std::function<void(
         to_come_.push_back(w);
         std::swap(to_come_.back(), to_come_[random_.below(w + 1)]); // in any order
     }
-    const std::size_t at_once = one_of({1, 2, 3, 5, kMostWarps});
+    const std::size_t at_once = one_of({1, 2, 3, 5, kMaxWarps});
     for (std::size_t i = 0; i < at_once && !to_come_.empty(); ++i) start_warp(*slots_[i]);
     while (!warps_.empty()) {
         if (EmulatedLane* next = choose_lane()) switch_to(*next);
@@ -217,7 +217,7 @@ std::string Machine::run(const EmulatedLaunch& launch, const std::function<void(
     }
     if (!fault_.empty()) {
         for (const EmulatedWarp* warp : warps_)
-            fault_ += warp == warp_ || steps_ > launch_.most_steps ? describe(*warp) : "";
+            fault_ += warp == warp_ || steps_ > launch_.max_steps ? describe(*warp) : "";
     }
     warps_.clear();
     to_come_.clear();

@@ -18,9 +18,9 @@
 namespace pertev::test {
 
 struct EmulatedLaunch {
-    uint32_t blocks = 1, threads = 32;       // threads a block, a multiple of 32
-    uint32_t seed = 0;                       // equal seeds, equal runs
-    uint64_t most_steps = uint64_t(1) << 27; // meetings and atomics; more is a fault, as of lanes that wait in a loop
+    uint32_t blocks = 1, threads = 32;      // threads a block, a multiple of 32
+    uint32_t seed = 0;                      // equal seeds, equal runs
+    uint64_t max_steps = uint64_t(1) << 27; // meetings and atomics; more is a fault, as of lanes that wait in a loop
 };
 
 /// Runs kernel() once a thread. Returns what went wrong, or nothing. Lanes do not return from a fault, so a kernel's

@@ -10,7 +10,7 @@ std::vector<Hit> InstancedScene::hits_by_brute_force(bool with_baked) const {
         if (with_baked) trace_by_brute_force(baked, rays[i], kNoHit, AcceptSome{}, hits[i]);
         for (const PlacedBvh& p : placed) {
             const Ray local = transform_ray(inverse(p.world_from_local), rays[i]);
-            trace_by_brute_force(meshes[p.mesh_bvh], local, p.instance, AcceptSome{}, hits[i]);
+            trace_by_brute_force(meshes[p.blas], local, p.instance, AcceptSome{}, hits[i]);
         }
     }
     return hits;
@@ -37,7 +37,7 @@ InstancedScene make_instanced_scene(uint32_t ray_count) {
         if (mesh == 2) place = compose(place, make_translation({-1000, 0, 1000})); // far from its own origin
         s.placed.push_back({place, s.trees[mesh].bounds, mesh, i * 3 + 1});
     }
-    s.top = build_top_level_bvh(s.placed);
+    s.top = build_tlas(s.placed);
     s.rays = nasty_rays(ray_count, {"torus", s.baked, {}, 1}, 23);
     return s;
 }

@@ -1,23 +1,23 @@
 #pragma once
 
-// A scene of instances that is hard on walks: turned, mirrored, squeezed, far from their own origins, some of them at
-// the very same place, with or without a baked mesh among them; and what rays meet in it, by testing every triangle.
+// A scene of instances that is hard on traversals: turned, mirrored, squeezed, far from their own origins, some of them
+// at the very same place, with or without a baked mesh among them; and what rays meet in it, by testing every triangle.
 
 #include <vector>
 
-#include "accel/bvh/top_level_bvh.h"
-#include "tests/support/check_walk.h"
+#include "accel/bvh/tlas.h"
+#include "tests/support/check_traversal.h"
 #include "trace/scene_trees.h"
 
 namespace pertev::test {
 
 struct InstancedScene {
-    std::vector<std::vector<BvhTriangle>> meshes; // [InstanceRecord::mesh_bvh]
+    std::vector<std::vector<BvhTriangle>> meshes; // [InstanceRecord::blas]
     std::vector<Bvh> trees;                       // trees of the meshes
     std::vector<BvhTriangle> baked;
     Bvh baked_tree;
     std::vector<PlacedBvh> placed;
-    TopLevelBvh top;
+    Tlas top;
     std::vector<Ray> rays;
 
     /// Over views of the meshes' trees, of whatever kind; they must outlive it. `baked` may be empty.

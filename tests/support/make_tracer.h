@@ -13,7 +13,7 @@ namespace pertev::test {
 
 using pertev::kBinaryTracer;
 /// On a CPU eight boxes at a time, which pictures are made with there.
-inline constexpr Combination kSimdTracer = {.structure = StructureKind::Binned, .walk = WalkKind::Wide8Simd};
+inline constexpr Combination kSimdTracer = {.structure = StructureKind::Binned, .traversal = TraversalKind::Wide8Simd};
 
 inline Tracer make_tracer(Queue& queue, const PreparedScene& prepared, const Combination& combination = kBinaryTracer) {
     return pertev::make_tracer(queue, combination, prepared);
@@ -23,7 +23,7 @@ inline Tracer make_tracer(Queue& queue, const Bvh& bvh, const Combination& combi
     BinaryTrees trees;
     trees.add(BvhBuilder::Binned, bvh, bvh.triangles.size());
     const auto built =
-        std::make_shared<const BuiltStructure>(TopLevelBvh{}, combination.structure, layout_of(combination), trees);
+        std::make_shared<const BuiltStructure>(Tlas{}, combination.structure, layout_of(combination), trees);
     return {queue, combination, built};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Meshes made by the tests themselves, and the plainest possible ray caster to hold the walks against.
+// Meshes made by the tests themselves, and the plainest possible ray caster to hold the traversals against.
 
 #include <cstdint>
 #include <filesystem>

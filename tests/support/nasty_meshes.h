@@ -1,6 +1,6 @@
 #pragma once
 
-// Meshes and rays that break structures and walks: ties, slivers, flat boxes, huge coordinates, rays along planes.
+// Meshes and rays that break structures and traversals: ties, slivers, flat boxes, huge coordinates, rays along planes.
 
 #include <cstdint>
 #include <string>

@@ -24,7 +24,7 @@ inline Scene closed_box(const Material& material, float half = 1) {
     return scene;
 }
 
-inline Material lamp_material(float reflectance, float radiance) {
+inline Material emitter_material(float reflectance, float radiance) {
     return {{.base_color = grey(reflectance), .emission = grey(radiance)}, "lamp"};
 }
 

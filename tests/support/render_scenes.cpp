@@ -91,7 +91,7 @@ Scene make_mixed_scene() {
     const uint32_t plastic =
         add(scene, {{.kind = MaterialKind::MetallicRoughness, .base_color = {0.2f, 0.4f, 0.8f}, .roughness = 0.4f},
                     "plastic"});
-    const uint32_t lamp = add(scene, {{.base_color = {0, 0, 0}, .emission = {6, 5, 4}}, "lamp"});
+    const uint32_t emitter = add(scene, {{.base_color = {0, 0, 0}, .emission = {6, 5, 4}}, "lamp"});
     checker.m00 = checker.m11 = 1;
     const uint32_t mask = add(scene, {{.alpha_mode = AlphaMode::Mask, .base_color_texture = checker}, "mask"});
     const uint32_t blend =
@@ -104,7 +104,7 @@ Scene make_mixed_scene() {
     place(scene, 0, gold, {0, 0.9f, -1.5f}, {0.9f, 0.9f, 0.9f});
     place(scene, 0, glass, {1, 0.6f, 0.6f}, {0.6f, 0.6f, 0.6f});
     place(scene, 3, plastic, {2.2f, 0.8f, -0.8f}, {0.8f, 0.8f, 0.8f});
-    place(scene, 1, lamp, {-0.5f, 4, -0.5f}, {0.6f, -1, 0.6f});
+    place(scene, 1, emitter, {-0.5f, 4, -0.5f}, {0.6f, -1, 0.6f});
     stand(scene, 2, mask, {-1, 0.9f, 1}, 0.8f);
     stand(scene, 4, blend, {2.4f, 0.7f, 1.2f}, 0.5f);
     stand(scene, 1, turned, {0.2f, 0.5f, 2}, -0.4f); // through the middle: its front then faces away from the camera
@@ -147,7 +147,7 @@ Scene make_furnace_scene(float albedo) {
 }
 
 Queue make_cuda_queue() { return Queue::make_cuda(0); }
-Queue queue_asked_for() { return cuda_requested() ? make_cuda_queue() : Queue::make_cpu(); }
+Queue requested_queue() { return cuda_requested() ? make_cuda_queue() : Queue::make_cpu(); }
 
 RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, const RenderSettings& settings,
                     const PrepareOptions& prepare) {

@@ -25,7 +25,7 @@ Scene make_furnace_scene(float albedo);
 
 Queue make_cuda_queue(); // for tests under cuda_requested()
 /// The GPU's with --device cuda, else the CPU's.
-Queue queue_asked_for();
+Queue requested_queue();
 
 /// Renders with the scene's trees built afresh.
 RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, const RenderSettings& settings,

@@ -9,7 +9,7 @@ CombinationFigures figures(const Combination& c, std::vector<RunFigures> runs) {
 }
 
 RunFigures timed(uint32_t set, double seconds) {
-    return {.set = set, .median_s = seconds, .least_s = seconds, .largest_s = seconds};
+    return {.set = set, .median_s = seconds, .min_s = seconds, .largest_s = seconds};
 }
 
 LabReport small_report() {
@@ -28,8 +28,8 @@ LabReport small_report() {
                           .sah_cost = 12,
                           .depth = 9}};
     CombinationFigures all = figures({}, {timed(0, 2), timed(1, 1), timed(2, 0.5)});
-    all.runs[0].least_s = 1, all.runs[0].largest_s = 4, all.runs[0].nodes = 10, all.runs[0].triangles = 0;
-    const Combination kd = {.walk = WalkKind::Kd};
+    all.runs[0].min_s = 1, all.runs[0].largest_s = 4, all.runs[0].nodes = 10, all.runs[0].triangles = 0;
+    const Combination kd = {.traversal = TraversalKind::Kd};
     report.combinations = {all, {.combination = kd, .name = name_of(kd), .refused = "no <planes>, none"}};
     HeatMap map = {all.name, 4e6, 4, 2, {0, 1, 2, 3, 4, 5, 6, 7}, {7, 6, 5, 4, 3, 2, 1, 0}};
     report.heat_maps.push_back(map), report.heat_map_names.push_back(map.name);

@@ -9,8 +9,8 @@
 
 namespace pertev::test {
 
-inline constexpr WalkOptions kNoRta = {.rta = false};
-inline constexpr WalkOptions kFastTests = {.tests = TestKind::Fast};
+inline constexpr TraversalOptions kNoRta = {.rta = false};
+inline constexpr TraversalOptions kFastTests = {.tests = TestKind::Fast};
 
 /// Figures of structure 0, with its own name.
 CombinationFigures figures(const Combination& c, std::vector<RunFigures> runs);

@@ -115,9 +115,9 @@ TEST_CASE("a thing that fills a tenth of the picture burns no more of itself tha
 TEST_CASE("what has no weight does not count, and part of a pixel counts as a part") {
     Image image{160, 80, 4, {}};
     for (uint32_t i = 0; i < 160 * 80; ++i) {
-        const bool is_lamp = i % 160 >= 40, is_edge = i % 160 == 39; // half covered, its light is half as much
-        const float light = is_lamp ? 1000.0f : (is_edge ? 0.5f : 1.0f) * 0.72f;
-        image.pixels.insert(image.pixels.end(), {light, light, light, is_lamp ? 0.0f : (is_edge ? 0.5f : 1.0f)});
+        const bool is_emitter = i % 160 >= 40, is_edge = i % 160 == 39; // half covered, its light is half as much
+        const float light = is_emitter ? 1000.0f : (is_edge ? 0.5f : 1.0f) * 0.72f;
+        image.pixels.insert(image.pixels.end(), {light, light, light, is_emitter ? 0.0f : (is_edge ? 0.5f : 1.0f)});
     }
     CHECK(stops_of(image) == -2.0f);
 }

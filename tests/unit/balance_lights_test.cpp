@@ -21,22 +21,22 @@ Mesh make_box(bool is_open) {
 }
 
 /// A box with a lamp of this radiance in it, under a sky of radiance 1; the camera may be anywhere.
-double far_share_of(bool is_open, float lamp_radiance, float scale = 1) {
+double far_share_of(bool is_open, float emitter_radiance, float scale = 1) {
     Scene scene;
-    Mesh lamp = make_box(false);
-    for (Vec3& p : lamp.positions) p = 0.1f * scale * p;
+    Mesh emitter = make_box(false);
+    for (Vec3& p : emitter.positions) p = 0.1f * scale * p;
     Mesh box = make_box(is_open);
     for (Vec3& p : box.positions) p = scale * p;
-    scene.meshes = {box, lamp};
+    scene.meshes = {box, emitter};
     scene.materials.resize(2);
-    scene.materials[1].emission = {lamp_radiance, lamp_radiance, lamp_radiance};
+    scene.materials[1].emission = {emitter_radiance, emitter_radiance, emitter_radiance};
     scene.instances.resize(2);
     scene.instances[1].mesh = scene.instances[1].material = 1;
     scene.environment = Environment{};
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     const LightSetView view = view_of(prepared.lights, nullptr, srgb_decode_table().data());
-    return static_cast<double>(ordered_pmf(view.choice, view.environment_source));
+    return static_cast<double>(cdf_pmf(view.choice, view.environment_source));
 }
 
 } // namespace
@@ -58,11 +58,11 @@ TEST_CASE("the share follows the lamp's strength, and neither kind is forgotten"
         const double share = far_share_of(true, radiance);
         CAPTURE(radiance);
         CHECK(share <= last);
-        CHECK(share > kLeastShare * 0.999);
-        CHECK(share < 1 - kLeastShare * 0.999);
+        CHECK(share > kMinShare * 0.999);
+        CHECK(share < 1 - kMinShare * 0.999);
         last = share;
     }
-    CHECK(far_share_of(true, 1e-6f) == doctest::Approx(1 - kLeastShare));
+    CHECK(far_share_of(true, 1e-6f) == doctest::Approx(1 - kMinShare));
     CHECK(far_share_of(true, 1e9f) < 0.3);
 }
 

@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "accel/bvh/check_bvh.h"
-#include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/tlas.h"
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/parallel_for.h"
@@ -194,9 +194,9 @@ TEST_CASE("the top level's boxes hold every instance's triangles, and the reach 
         placed.push_back({compose(make_translation(random.point(-100, 100)), turn), bvh.bounds, 0, i});
     }
     placed.push_back({{}, {}, 0, 1000}); // an empty mesh
-    const TopLevelBvh top = build_top_level_bvh(placed);
+    const Tlas top = build_tlas(placed);
     REQUIRE(top.instances.size() == 1000);
-    CHECK(top.depth <= kMaxTopLevelDepth);
+    CHECK(top.depth <= kMaxTlasDepth);
     std::vector<Bounds3> boxes(top.instances.size());
     std::vector<int> seen(top.instances.size());
     for (const BvhNode& node : top.nodes) {

@@ -1,5 +1,5 @@
 // Every builder of the laboratory gives, on meshes made to break them, a sound tree that does not depend on threads and
-// in which walks find what testing every triangle finds; and each is as good as its kind should be.
+// in which traversals find what testing every triangle finds; and each is as good as its kind should be.
 
 #include "accel/builders/builders.h"
 
@@ -16,7 +16,7 @@
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
 #include "tests/support/bvh_bytes.h"
-#include "tests/support/check_walk.h"
+#include "tests/support/check_traversal.h"
 #include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
 
@@ -69,7 +69,7 @@ TEST_CASE("no builder's tree depends on the number of threads") {
     set_thread_count(0);
 }
 
-TEST_CASE("walks find in the tree of any builder what testing every triangle finds, bit for bit") {
+TEST_CASE("traversals find in the tree of any builder what testing every triangle finds, bit for bit") {
     for (const NastyMesh& mesh : nasty_meshes()) {
         CAPTURE(mesh.name);
         const std::vector<Ray> rays = nasty_rays(1000, mesh, 29);
@@ -78,13 +78,13 @@ TEST_CASE("walks find in the tree of any builder what testing every triangle fin
         for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
             CAPTURE(name_of(builder));
             const Bvh bvh = build_bvh(builder, mesh.triangles);
-            check_walk(scene_of(view_of(bvh)), rays, all, AcceptAll{});
-            check_walk(scene_of(view_of(bvh)), rays, some, AcceptSome{});
+            check_traversal(scene_of(view_of(bvh)), rays, all, AcceptAll{});
+            check_traversal(scene_of(view_of(bvh)), rays, some, AcceptSome{});
         }
     }
 }
 
-TEST_CASE("no builder's tree is deeper than walks go, however long the line") {
+TEST_CASE("no builder's tree is deeper than traversals go, however long the line") {
     std::vector<BvhTriangle> line;
     for (NastyMesh& mesh : nasty_meshes(static_cast<uint32_t>(effort(20'000, 1'000'000)))) {
         if (std::string_view(mesh.name) == "a line") line = std::move(mesh.triangles);
@@ -109,7 +109,7 @@ TEST_CASE("no builder's tree is deeper than walks go, however long the line") {
     }
 }
 
-TEST_CASE("a chain of clusters far too deep is brought to what walks can go, and stays the same tree above") {
+TEST_CASE("a chain of clusters far too deep is brought to what traversals can go, and stays the same tree above") {
     const std::vector<BvhTriangle> triangles = make_soup(5000, 0);
     const std::vector<BuildReference> references = references_of(triangles);
     BinaryTree chain;
@@ -282,7 +282,7 @@ TEST_CASE("reinsertion makes any builder's tree better, and leaves it sound") {
             const auto fault = fault_of(builder, after, mesh.triangles);
             CHECK_MESSAGE(!fault, fault.value_or(""));
             CHECK(after.sah_cost <= 1.00001f * before.sah_cost);
-            check_walk(scene_of(view_of(after)), rays, all, AcceptAll{});
+            check_traversal(scene_of(view_of(after)), rays, all, AcceptAll{});
         }
     }
 }

@@ -35,7 +35,7 @@ Vec3 floor_point(uint32_t x, uint32_t y) {
 Mesh wide_floor() { return test::sheet({0.05f, 0, 0}, {0, 0, 10}, {10, 0, 0}); }
 
 RenderResult look_down(const Scene& scene, float from_height, const RenderSettings& settings) {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     return test::render(queue, scene, test::camera_down({0, from_height, 0}, kView), settings);
 }
 

@@ -11,11 +11,11 @@
 
 #include "accel/builders/build_bvh.h"
 #include "base/limits.h"
-#include "tests/support/check_walk.h"
+#include "tests/support/check_traversal.h"
 #include "tests/support/meshes.h"
 #include "tests/support/nasty_meshes.h"
 #include "trace/intersect/compressed_boxes.h"
-#include "trace/wide/compressed_walk.h"
+#include "trace/wide/compressed_traversal.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -132,7 +132,7 @@ TEST_CASE("meshes whose grids are at the ends of their range give the hits of te
         for (const Hit& hit : expected) hits += hit.instance != kNoHit ? 1 : 0;
         CHECK(hits > rays.size() / 20);
         const CompressedBvh tree = make_compressed_bvh(build_bvh(mesh.triangles));
-        check_walk<CompressedWalk<WalkOptions{}>>(scene_of(view_of(tree)), rays, expected, AcceptAll{});
+        check_traversal<CompressedTraversal<TraversalOptions{}>>(scene_of(view_of(tree)), rays, expected, AcceptAll{});
     }
 }
 
@@ -192,8 +192,8 @@ TEST_CASE("a ray along an axis meets few boxes of a compressed tree") {
         ray.origin = random.point(-1, 1) - 4 * ray.direction;
         Hit hit;
         uint64_t nodes = 0, triangles = 0;
-        trace_closest<CompressedWalk<WalkOptions{}>>(scene_of(view_of(tree)), ray, AcceptAll{}, hit,
-                                                     WalkCounter{&nodes, &triangles});
+        trace_closest<CompressedTraversal<TraversalOptions{}>>(scene_of(view_of(tree)), ray, AcceptAll{}, hit,
+                                                               TraversalCounter{&nodes, &triangles});
         most = std::max(most, nodes);
     }
     CHECK(most < 150);

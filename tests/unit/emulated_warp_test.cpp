@@ -27,7 +27,7 @@ template <class Kernel>
 std::set<std::string> headlines(const Kernel& kernel) {
     std::set<std::string> said;
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
-        const std::string fault = run_warps({.seed = seed, .most_steps = 10'000}, kernel);
+        const std::string fault = run_warps({.seed = seed, .max_steps = 10'000}, kernel);
         said.insert(fault.substr(0, fault.find('\n')));
     }
     return said;
@@ -37,7 +37,7 @@ std::set<std::string> headlines(const Kernel& kernel) {
 template <class Kernel>
 bool says(const Kernel& kernel, const std::vector<std::string>& words) {
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
-        const std::string fault = run_warps({.seed = seed, .most_steps = 10'000}, kernel);
+        const std::string fault = run_warps({.seed = seed, .max_steps = 10'000}, kernel);
         const auto is_there = [&](const std::string& word) { return fault.find(word) != fault.npos; };
         if (std::all_of(words.begin(), words.end(), is_there)) continue;
         MESSAGE("seed ", seed, ": ", fault);

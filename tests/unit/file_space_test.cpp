@@ -86,12 +86,12 @@ TEST_CASE("files that tell their unit and their axis keep both, with a warning")
     Messages messages;
     ReadOptions options;
     options.space = {UpAxis::Z, 0.001};
-    const Bounds3 box = bounds_of(read_scene_and_lamps("cornell-box", options, messages));
+    const Bounds3 box = bounds_of(read_scene_and_emitters("cornell-box", options, messages));
     REQUIRE(messages.all().size() == 1);
     CHECK(messages.all()[0].is_warning);
     CHECK(messages.all()[0].remark.place == Place{"cornell-box"});
     Messages none;
-    CHECK(box == bounds_of(read_scene_and_lamps("cornell-box", {}, none)));
+    CHECK(box == bounds_of(read_scene_and_emitters("cornell-box", {}, none)));
     CHECK(none.all().empty());
 }
 

@@ -58,7 +58,7 @@ void check_equal(const Film& a, const Film& b) {
 } // namespace
 
 TEST_CASE("films that hold parts of the samples add up to the film that holds them all, whichever device they are on") {
-    Queue cpu = Queue::make_cpu(), other_cpu = Queue::make_cpu(), asked = test::queue_asked_for();
+    Queue cpu = Queue::make_cpu(), other_cpu = Queue::make_cpu(), requested = test::requested_queue();
     Film whole(cpu, kWidth, kHeight, kAovs);
     take_samples(whole, {0, kSamples});
     CHECK(whole.invalid_samples() == kSamples);
@@ -67,7 +67,7 @@ TEST_CASE("films that hold parts of the samples add up to the film that holds th
         Film parts[2] = {Film(cpu, kWidth, kHeight, kAovs), Film(other_cpu, kWidth, kHeight, kAovs)};
         take_samples(parts[with_first], {0, 2});
         take_samples(parts[1 - with_first], {2, kSamples});
-        Film sum(asked, kWidth, kHeight, kAovs);
+        Film sum(requested, kWidth, kHeight, kAovs);
         sum.add(parts[0]);
         sum.add(parts[1]);
         check_equal(sum, whole);
@@ -83,12 +83,12 @@ TEST_CASE("films that hold parts of the samples add up to the film that holds th
 }
 
 TEST_CASE("a film is made again from the bytes of its targets, on whichever device it was and is to be") {
-    Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
+    Queue cpu = Queue::make_cpu(), requested = test::requested_queue();
     Film whole(cpu, kWidth, kHeight, kAovs), part(cpu, kWidth, kHeight, kAovs), other(cpu, kWidth, kHeight, kAovs);
     take_samples(whole, {0, kSamples});
     take_samples(part, {0, 2});
     take_samples(other, {2, kSamples});
-    Film again(asked, kWidth, kHeight, kAovs);
+    Film again(requested, kWidth, kHeight, kAovs);
     REQUIRE(again.targets().size() == 3);
     for (std::size_t i = 0; i < again.targets().size(); ++i) {
         again.targets()[i]->set_bytes(part.targets()[i]->bytes());
@@ -113,13 +113,13 @@ public:
 };
 
 TEST_CASE("targets that a film is given are added and cleared with its own, and those of another kind are refused") {
-    Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
+    Queue cpu = Queue::make_cpu(), requested = test::requested_queue();
     const auto with_counts = [](Queue& queue, std::size_t count, const char* name) {
         Film film(queue, kWidth, kHeight, 0);
         film.hold(std::make_unique<CountTarget>(queue, count, name));
         return film;
     };
-    Film a = with_counts(asked, 5, "counts");
+    Film a = with_counts(requested, 5, "counts");
     const Film b = with_counts(cpu, 5, "counts");
     const auto counts_of = [](const Film& film) -> CountTarget& {
         return dynamic_cast<CountTarget&>(*film.targets().back());
@@ -148,10 +148,10 @@ TEST_CASE("a film of another size or of other layers is refused") {
 }
 
 TEST_CASE("what a film shows has the bytes of its picture tone-mapped on the host") {
-    Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
+    Queue cpu = Queue::make_cpu(), requested = test::requested_queue();
     Film film(cpu, kWidth, kHeight, kAovs);
     take_samples(film, {0, kSamples});
-    Film on_device(asked, kWidth, kHeight, kAovs);
+    Film on_device(requested, kWidth, kHeight, kAovs);
     on_device.add(film);
     for (const ToneMap kind : {ToneMap::Srgb, ToneMap::Agx, ToneMap::Aces, ToneMap::Neutral}) {
         for (const float stops : {0.0f, -2.5f, 1.3f}) {
@@ -201,10 +201,10 @@ TEST_CASE("a film says which samples of which rows it holds, and refuses those t
 }
 
 TEST_CASE("frames whose pixels were taken apart, on either device, are put together") {
-    Queue cpu = Queue::make_cpu(), asked = test::queue_asked_for();
+    Queue cpu = Queue::make_cpu(), requested = test::requested_queue();
     for (const bool splits_light : {false, true}) {
         NoisyFrame whole(cpu, kWidth, kHeight, splits_light), upper(cpu, kWidth, kHeight, splits_light);
-        NoisyFrame lower(cpu, kWidth, kHeight, splits_light), both(asked, kWidth, kHeight, splits_light);
+        NoisyFrame lower(cpu, kWidth, kHeight, splits_light), both(requested, kWidth, kHeight, splits_light);
         for (NoisyFrame* frame : {&whole, &upper, &lower}) frame->clear();
         both.clear();
         const auto take = [&](const NoisyFrame& frame, uint32_t pixel) {

@@ -10,7 +10,7 @@
 #include "accel/builders/build_bvh.h"
 #include "accel/bvh/wide_bvh.h"
 #include "tests/support/random.h"
-#include "trace/wide/walk_in_flight.h"
+#include "trace/wide/traversals_in_flight.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -24,7 +24,7 @@ WideBvhNode<kWideChildren> numbered_node() {
 }
 
 /// The links of the children of `mask` in the order in which they are popped.
-template <WalkOptions kOptions>
+template <TraversalOptions kOptions>
 std::vector<uint32_t> order_of(unsigned mask, const float (&entries)[kWideChildren], bool far_first) {
     static const WideBvhNode<kWideChildren> node = numbered_node();
     EnteredChildren children;
@@ -57,7 +57,7 @@ TEST_CASE("the nearest child comes first, or the builder's, or the farthest, the
             for (unsigned k = 0; k < kWideChildren; ++k) {
                 if (mask >> k & 1) builders.push_back(100 + k);
             }
-            CHECK(order_of<WalkOptions{.near_first = false}>(mask, entries, false) == builders);
+            CHECK(order_of<TraversalOptions{.near_first = false}>(mask, entries, false) == builders);
             const auto check_first = [&](std::vector<uint32_t> order, bool is_far) {
                 REQUIRE(order.size() == builders.size());
                 if (order.empty()) return;
@@ -69,10 +69,10 @@ TEST_CASE("the nearest child comes first, or the builder's, or the farthest, the
                 std::ranges::sort(order);
                 CHECK(order == builders);
             };
-            const auto far = order_of<WalkOptions{.near_first = false}>(mask, entries, true);
+            const auto far = order_of<TraversalOptions{.near_first = false}>(mask, entries, true);
             check_first(far, true);
-            check_first(order_of<WalkOptions{}>(mask, entries, true), true);
-            check_first(order_of<WalkOptions{}>(mask, entries, false), false);
+            check_first(order_of<TraversalOptions{}>(mask, entries, true), true);
+            check_first(order_of<TraversalOptions{}>(mask, entries, false), false);
             if (far.empty()) continue;
             std::erase(builders, far[0]);
             CHECK(std::vector(far.begin() + 1, far.end()) == builders);
@@ -110,7 +110,7 @@ std::vector<float> first_seen(bool is_far) {
     scene.baked = view_of(tree);
     const Ray ray = {{0, 0, 0}, 0, {1, 0, 0}, kInfinity};
     std::vector<float> seen(20);
-    walk_scene_in_flight<WalkOptions{}>(
+    traverse_scene_in_flight<TraversalOptions{}>(
         scene, static_cast<uint32_t>(seen.size()), [&](uint32_t) { return ray; }, [](uint32_t) { return AcceptAll{}; },
         [&](const AcceptAll&, const Ray& r) { return FirstSeen{.accept = {}, .t_max = r.t_max, .is_far = is_far}; },
         [&](uint32_t i, const FirstSeen& visitor) { seen[i] = visitor.seen; });

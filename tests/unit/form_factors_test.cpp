@@ -101,7 +101,7 @@ TEST_CASE("a hemicube's pixels are the hemisphere, by the cosine") {
 TEST_CASE("what leaves a patch of a closed room arrives, whatever the room holds") {
     Scene scene = test::closed_box(test::white(0.5f));
     test::add(scene, test::sheet({0, 0.9f, 0}, {0.3f, 0, 0}, {0, 0, 0.3f}),
-              test::lamp_material(0.2f, 5)); // its front down
+              test::emitter_material(0.2f, 5)); // its front down
     const test::PatchedScene patched(std::move(scene), 0.8f);
     for (const FormFactors method : {FormFactors::Rays, FormFactors::Hemicube}) {
         const auto rows = patched.rows({.rays = 256, .hemicube = 32, .form_factors = method});
@@ -125,7 +125,8 @@ TEST_CASE("what a lamp covers is known from few rays") {
     Scene scene;
     test::add(scene, test::floor_at(0, 0.05f), test::white(0.5f));
     const float half = 0.1f;
-    test::add(scene, test::sheet({0, 2, 0}, {half, 0, 0}, {0, 0, half}), test::lamp_material(0, 1)); // its front down
+    test::add(scene, test::sheet({0, 2, 0}, {half, 0, 0}, {0, 0, half}),
+              test::emitter_material(0, 1)); // its front down
     const test::PatchedScene patched(std::move(scene), 10);
     const auto rows = patched.rows({.rays = 64});
     // A small lamp far above: its area over pi times the distance squared. One ray in 314 would meet it.

@@ -22,11 +22,11 @@ TEST_CASE("points found in a tree are those that are nearest, and few nodes are 
     }
     std::ranges::sort(by_distance);
     std::vector<uint32_t> nearest;
-    for (uint32_t i = 0; i < kPointsAsked; ++i) nearest.push_back(by_distance[i].second);
+    for (uint32_t i = 0; i < kPointsRequested; ++i) nearest.push_back(by_distance[i].second);
     std::ranges::sort(nearest);
     CHECK(kd.found == nearest);
     CHECK(octree.found == nearest);
-    CHECK(kd.radius_squared == by_distance[kPointsAsked - 1].first);
+    CHECK(kd.radius_squared == by_distance[kPointsRequested - 1].first);
     for (const FoundPoints* found : {&kd, &octree}) {
         CAPTURE(found->tree);
         CHECK(std::ranges::includes(found->looked_at, found->found));

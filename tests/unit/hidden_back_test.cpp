@@ -58,7 +58,7 @@ RenderResult render(const Scene& scene, const Camera& camera, PathBody body = Pa
     settings.filter = PixelFilter::Box;
     settings.aovs = kAovDepth;
     settings.body = body;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     return test::render(queue, scene, camera, settings);
 }
 

@@ -77,7 +77,8 @@ double part_of(DoubleVec3 off, Vec3 error) {
 
 } // namespace
 
-TEST_CASE("a position is within its error of where the walk has the surface, baked or moved into an instance's space") {
+TEST_CASE(
+    "a position is within its error of where the traversal has the surface, baked or moved into an instance's space") {
     test::Random random(3);
     for (const bool is_baked : {true, false}) {
         CAPTURE(is_baked);
@@ -91,11 +92,11 @@ TEST_CASE("a position is within its error of where the walk has the surface, bak
             ++tried;
             const Transform& m = one.instance.world_from_local;
             DoubleVec3 off;
-            if (is_baked) { // the walk has the moved corners
+            if (is_baked) { // the traversal has the moved corners
                 const Vec3 corners[3] = {transform_point(m, one.positions[0]), transform_point(m, one.positions[1]),
                                          transform_point(m, one.positions[2])};
                 off = to_double(placed.position) - point_at(corners, double(u), double(v));
-            } else { // the walk moves the origin
+            } else { // the traversal moves the origin
                 const Vec3 local = transform_point(one.instance.local_from_world, placed.position);
                 off = turned(m, to_double(local) - point_at(one.positions, double(u), double(v)));
             }

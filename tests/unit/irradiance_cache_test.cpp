@@ -146,11 +146,11 @@ TEST_CASE("radii are clamped by those of their neighbours, whatever the order") 
 
 TEST_CASE("work in parts is done once, in order, and no further than it is let") {
     for (const PartSizes sizes : {PartSizes{7, 1000}, PartSizes{100, 100}, PartSizes{5000, 5000}}) {
-        for (const int most_asked : {1, 2, 3, 1 << 20}) {
+        for (const int max_requested : {1, 2, 3, 1 << 20}) {
             uint64_t done = 0, longest = 0;
-            int asked = 0, parts = 0;
+            int connections = 0, parts = 0;
             const bool went_on = do_in_parts(
-                1003, sizes, [&] { return ++asked <= most_asked; },
+                1003, sizes, [&] { return ++connections <= max_requested; },
                 [&](uint64_t begin, uint64_t end) {
                     CHECK(begin == done);
                     CHECK(end > begin);
@@ -159,8 +159,8 @@ TEST_CASE("work in parts is done once, in order, and no further than it is let")
                     ++parts;
                 });
             CHECK(longest <= sizes.most);
-            CHECK(went_on == (done == 1003 && asked <= most_asked));
-            CHECK(asked == parts + 1); // before each, and after the last
+            CHECK(went_on == (done == 1003 && connections <= max_requested));
+            CHECK(connections == parts + 1); // before each, and after the last
         }
     }
     CHECK_FALSE(do_in_parts(
@@ -291,8 +291,8 @@ TEST_CASE("records take the memory of the host that is said beforehand") {
     const Scene scene = test::room_with_ball(test::white(0.8f), test::white(0.5f), false);
     constexpr uint32_t kSize = 64;
     const CacheRun run(scene, test::room_camera(), kSize, {.accuracy = 0.01f, .hemisphere_rays = 16}, 1);
-    REQUIRE(run.integrator.record_count() == most_records(kSize * kSize)); // the maximum number of records
-    const std::size_t most = run.integrator.most_host_bytes({.width = kSize, .height = kSize});
+    REQUIRE(run.integrator.record_count() == max_records(kSize * kSize)); // the maximum number of records
+    const std::size_t most = run.integrator.max_host_bytes({.width = kSize, .height = kSize});
     CHECK(run.integrator.host_bytes() <= most);
     CHECK(run.integrator.host_bytes() > most / 2);
 }
@@ -328,7 +328,7 @@ TEST_CASE("irradiance at records is that of brute force") {
     CHECK(compared >= 3);
 }
 
-TEST_CASE("few samples of a picture find no record, and none has a record of other walks") {
+TEST_CASE("few samples of a picture find no record, and none has a record of other subpaths") {
     const Scene scene = test::room_with_ball(test::of_roughness(MaterialKind::MetallicRoughness, 0),
                                              test::of_roughness(MaterialKind::MetallicRoughness, 0.4f), false);
     const CacheRun run(scene, test::room_camera(), 48, {.accuracy = 0.4f, .hemisphere_rays = 64}, 4);
@@ -382,7 +382,7 @@ TEST_CASE("marks are drawn where records are seen, and nowhere else") {
     std::vector<double> nearest(std::size_t(kSize) * kSize, 1e9); // record, pixels
     std::vector<bool> has_record(nearest.size());
     for (const IrradianceRecord& record : plain.integrator.records()) {
-        const SeenPoint seen = see_point(plain.picture.camera.view, record.place.position);
+        const ProjectedPoint seen = project_point(plain.picture.camera.view, record.place.position);
         has_record[static_cast<std::size_t>(seen.pixel.y) * kSize + static_cast<std::size_t>(seen.pixel.x)] = true;
         for (std::size_t i = 0; i < nearest.size(); ++i) {
             const double x = static_cast<double>(i % kSize) + 0.5 - static_cast<double>(seen.pixel.x);
@@ -410,7 +410,7 @@ TEST_CASE("marks are drawn where records are seen, and nowhere else") {
 
 TEST_CASE(
     "the overture's share is of all its rays where records are wanted ever more rarely, or until there is no room") {
-    constexpr uint32_t kWidth = 640, kHeight = 360, kWalk = 2, kRecord = 500;
+    constexpr uint32_t kWidth = 640, kHeight = 360, kTraversal = 2, kRecord = 500;
     struct Case {
         double falls_by;
         uint32_t room;
@@ -426,7 +426,7 @@ TEST_CASE(
             if (round > 1) share *= std::exchange(fall, std::pow(fall, 1.75));
             wanted[round] = std::min(static_cast<uint32_t>(share * counts[round]), set.room - records);
             records += wanted[round];
-            all += uint64_t(kWalk) * counts[round] + uint64_t(kRecord) * wanted[round];
+            all += uint64_t(kTraversal) * counts[round] + uint64_t(kRecord) * wanted[round];
         }
         OvertureProgress progress(kWidth, kHeight, 100, set.room);
         uint64_t rays = 0;
@@ -439,10 +439,10 @@ TEST_CASE(
         };
         for (uint32_t round = 0; round < kOvertureRounds; ++round) {
             const bool is_known = round > 2; // how it falls is
-            progress.begin_walks(rays);
+            progress.begin_subpaths(rays);
             for (uint32_t i = 0; i < counts[round]; ++i) {
                 if (i % 100 == 0) check(is_known);
-                rays += kWalk;
+                rays += kTraversal;
             }
             progress.begin_records(wanted[round], rays);
             for (uint32_t i = 0; i < wanted[round]; ++i) {

@@ -39,9 +39,9 @@ TEST_CASE("under a point light a floor has I cos(t) / r^2, whatever it is made o
         test::add(scene, test::sheet({0.05f, 0, 0}, {0, 0, 10}, {10, 0, 0}), material);
         scene.lights.push_back(test::point_light(light, {7, 6, 5}));
         RenderSettings settings = irradiance_settings(kPixels, 1);
-        const bool is_lamp = material.emission.r > 0; // then the sample may be drawn of the floor
-        if (is_lamp) settings.samples = 1024;
-        Queue queue = test::queue_asked_for();
+        const bool is_emitter = material.emission.r > 0; // then the sample may be drawn of the floor
+        if (is_emitter) settings.samples = 1024;
+        Queue queue = test::requested_queue();
         const RenderResult result = test::render(queue, scene, test::camera_down({0, 3, 0}, 4), settings);
         for (uint32_t y = 0; y < kPixels; ++y) {
             for (uint32_t x = 0; x < kPixels; ++x) {
@@ -50,7 +50,7 @@ TEST_CASE("under a point light a floor has I cos(t) / r^2, whatever it is made o
                 const float r2 = length_squared(light - p);
                 const auto wanted = static_cast<double>(7 / (r2 * pertev::sqrt(r2)));
                 CHECK(static_cast<double>(result.picture.at(x, y)[0]) ==
-                      doctest::Approx(wanted).epsilon(is_lamp ? 0.02 : 2e-5));
+                      doctest::Approx(wanted).epsilon(is_emitter ? 0.02 : 2e-5));
             }
         }
     }
@@ -60,7 +60,7 @@ TEST_CASE("a place in a picture of irradiance is what the light meter says of it
     const Scene scene = test::make_mixed_scene();
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Vec3 place = {-3.5f, 0, 2.5f}; // a point of the floor
     RenderSettings settings = irradiance_settings(1, static_cast<uint32_t>(test::effort(16384, 262144)));
     const RenderResult result =

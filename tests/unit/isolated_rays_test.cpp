@@ -17,17 +17,17 @@ TEST_CASE("a mix of rays has the rate of its kinds one after the other") {
 }
 
 TEST_CASE("rays of each kind by themselves have a rate, and whoever waits is asked on the way") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const TracerChoice choice = default_tracers(queue.is_cuda());
     const PreparedScene prepared =
         prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, messages);
-    int asked = 0;
+    int requested = 0;
     const IsolatedRates rates =
-        measure_isolated_rays(queue, scene, test::mixed_scene_camera(), prepared, choice, 1000, [&] { ++asked; });
+        measure_isolated_rays(queue, scene, test::mixed_scene_camera(), prepared, choice, 1000, [&] { ++requested; });
     CHECK(rates.camera > 0);
     CHECK(rates.bounce > 0);
     CHECK(rates.shadow > 0);
-    CHECK(asked > 5);
+    CHECK(requested > 5);
 }

@@ -29,20 +29,20 @@ TEST_CASE("a camera is told in settings that place it again") {
 TEST_CASE("combinations that cannot be measured are listed with the reason; where none can, that is an error") {
     LabSettings settings;
     settings.structures = {StructureKind::Binned};
-    settings.walks = {WalkKind::Kd, WalkKind::SkipLinks};
+    settings.traversals = {TraversalKind::Kd, TraversalKind::SkipLinks};
     settings.options = {{true, true}, {true, false}};
     settings.by_name = true;
     const auto list = list_combinations(settings, {});
     REQUIRE(list.size() == 4);
-    CHECK(list[0].refused.find("the kd walk") == 0);
+    CHECK(list[0].refused.find("the kd traversal") == 0);
     CHECK(list[2].refused.empty());
     CHECK(list[3].name == "binned skip-links rta unordered");
     CHECK_FALSE(list[3].refused.empty());
     CHECK_NOTHROW(check_any_can_run(list));
-    settings.walks = {WalkKind::Kd};
+    settings.traversals = {TraversalKind::Kd};
     CHECK_THROWS_WITH(check_any_can_run(list_combinations(settings, {})),
                       "none of the combinations asked for can be measured:\n  binned kd rta near and 1 more: the kd "
-                      "walk goes over a kd-tree's planes; the structures for it are kd-median and kd-sah");
+                      "traversal goes over a kd-tree's planes; the structures for it are kd-median and kd-sah");
 }
 
 TEST_CASE("text of any bytes becomes UTF-8") {

@@ -145,7 +145,7 @@ TEST_CASE("the terminal's table places figures by set, gaps included, and spread
     LabReport report = small_report();
     // Interrupted: its diffuse rays are there and its shadow rays are not.
     const Combination gap = {
-        .structure = StructureKind::EqualCounts, .walk = WalkKind::RestartTrail, .options = kNoRta};
+        .structure = StructureKind::EqualCounts, .traversal = TraversalKind::RestartTrail, .options = kNoRta};
     report.combinations.push_back(figures(gap, {timed(0, 4), timed(2, 2)}));
     report.interrupted = true;
     const std::string text = text_of(report);

@@ -37,7 +37,7 @@ struct Room {
     Room& operator=(const Room&) = delete;
 
     Irradiance measure(const MeterPlace& place, const RenderSettings& settings) const {
-        Queue queue = test::queue_asked_for();
+        Queue queue = test::requested_queue();
         return measure_irradiance(queue, prepared, place, settings);
     }
 };
@@ -51,7 +51,7 @@ void check_measured(const Measured& measured, double wanted, double error_share)
     CHECK(measured.standard_error <= error_share * wanted);
 }
 
-Material black_lamp(float radiance) { return {{.base_color = {0, 0, 0}, .emission = grey(radiance)}, "lamp"}; }
+Material black_emitter(float radiance) { return {{.base_color = {0, 0, 0}, .emission = grey(radiance)}, "lamp"}; }
 
 /// Faces down, about (0, height, 0); its corners lie a little farther out than on the circle, so that its area is the
 /// circle's.
@@ -71,7 +71,7 @@ Mesh disc(float radius, float height) {
 /// Over a floor on which the meter lies.
 Scene disc_over_floor() {
     Scene scene;
-    test::add(scene, disc(0.5f, 2), black_lamp(10));
+    test::add(scene, disc(0.5f, 2), black_emitter(10));
     test::add(scene, test::floor_at(0, 5), test::white(0.8f));
     return scene;
 }
@@ -90,9 +90,9 @@ TEST_CASE("under a disc a meter reads pi L R^2 / (R^2 + h^2), and the floor that
 
 TEST_CASE("under a rectangle a meter reads what the closed form says, by each colour") {
     Scene scene;
-    Material lamp = black_lamp(1);
-    lamp.emission = {1, 2, 3};
-    test::add(scene, test::sheet({0, 2, 0}, {0.5f, 0, 0}, {0, 0, 1}), lamp);
+    Material emitter = black_emitter(1);
+    emitter.emission = {1, 2, 3};
+    test::add(scene, test::sheet({0, 2, 0}, {0.5f, 0, 0}, {0, 0, 1}), emitter);
     const Room room(std::move(scene));
     const auto part = [](double a, double b) {
         const double c = std::sqrt(a * a + 4);

@@ -1,4 +1,5 @@
-// Walks as stages over rays: the hits are those of the walk called by itself, the counts are its own, times are taken.
+// Traversals as stages over rays: the hits are those of the traversal called by itself, the counts are its own, times
+// are taken.
 
 #include "lab/measure_rays.h"
 
@@ -8,7 +9,7 @@
 #include <chrono>
 
 #include "accel/builders/build_bvh.h"
-#include "tests/support/check_walk.h"
+#include "tests/support/check_traversal.h"
 #include "tests/support/make_tracer.h"
 
 using namespace pertev;
@@ -28,7 +29,7 @@ RaySet random_rays(uint32_t count, bool any_hit) {
 
 } // namespace
 
-TEST_CASE("a walk over a set of rays gives the hits and the work of each ray's own walk") {
+TEST_CASE("a traversal over a set of rays gives the hits and the work of each ray's own traversal") {
     const Bvh bvh = build_bvh(triangles_of(make_torus(32, 24)));
     const SceneBvhView binary = scene_of(view_of(bvh));
     Queue queue = Queue::make_cpu();
@@ -46,7 +47,7 @@ TEST_CASE("a walk over a set of rays gives the hits and the work of each ray's o
         for (std::size_t i = 0; i < set.rays.size(); ++i) {
             Hit hit;
             uint64_t n = 0, t = 0;
-            const WalkCounter counter{&n, &t};
+            const TraversalCounter counter{&n, &t};
             RayHit want;
             if (any) {
                 want = {0, trace_any(binary, set.rays[i], pertev::AcceptAll{}, counter) ? 0 : kNoHit, 0};
@@ -64,7 +65,7 @@ TEST_CASE("a walk over a set of rays gives the hits and the work of each ray's o
         const WorkSummary summary = summarize_work(work);
         CHECK(summary.nodes == doctest::Approx(static_cast<double>(nodes) / 5000));
         CHECK(summary.triangles == doctest::Approx(static_cast<double>(triangles) / 5000));
-        CHECK(summary.most_nodes == most);
+        CHECK(summary.max_nodes == most);
         CHECK(hit_share(hits) == doctest::Approx(static_cast<double>(found) / 5000));
     }
 }

@@ -89,7 +89,7 @@ Shown show_surfaces(Queue& queue, const Scene& scene, const Camera& camera, floa
 } // namespace
 
 TEST_CASE("samples, seed, sampler, filter, size, time and alpha do not move the exposure") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Scene scene = test::make_mixed_scene();
     const Camera camera = test::mixed_scene_camera();
     const RenderSettings settings = metered_settings();
@@ -121,7 +121,7 @@ TEST_CASE("a GPU's meter shows what the CPU's does") {
 }
 
 TEST_CASE("a room stays legible beside its bright window") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Scene scene = make_room_with_window();
     const Camera camera = camera_at({0, 1.5f, -0.3f}, {0, 1.5f, -5});
     const Shown room = show_surfaces(queue, scene, camera, stops_of(queue, scene, camera, metered_settings()));
@@ -131,7 +131,7 @@ TEST_CASE("a room stays legible beside its bright window") {
 }
 
 TEST_CASE("a lamp in view takes nothing from what it lights") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Scene scene; // a white floor that fills the lower half of the picture, and a lamp that fills much of the upper half
     scene.materials.push_back({{.base_color = grey(0.5f)}, "white"});
     scene.materials.push_back({{.base_color = grey(0), .emission = grey(300)}, "lamp"});
@@ -145,14 +145,14 @@ TEST_CASE("a lamp in view takes nothing from what it lights") {
 }
 
 TEST_CASE("where there is only sky, the sky becomes middle grey") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Scene scene = make_room_with_window();
     scene.environment->scale = grey(0.72f);
     CHECK(stops_of(queue, scene, camera_at({0, 1, -9}, {0, 1, -20}), metered_settings()) == -2.0f);
 }
 
 TEST_CASE("a patch of sun on the floor is not burnt") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Scene scene = make_room_with_window();
     scene.lights.push_back({.name = "sun",
                             .kind = LightKind::Directional,

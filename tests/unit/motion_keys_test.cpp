@@ -40,7 +40,7 @@ TEST_CASE("a motion leads a body to where it is at any time, and back") {
     const PlacedBox box = skewed_box();
     struct Case {
         float turn, way;
-        uint32_t most_segments;
+        uint32_t max_segments;
     };
     for (const Case c : {Case{0.05f, 0.1f, 8}, Case{1.2f, 2.0f, 16}, Case{6.2831853f, 0.0f, 64}}) {
         CAPTURE(c.turn);
@@ -53,7 +53,7 @@ TEST_CASE("a motion leads a body to where it is at any time, and back") {
         };
         const FittedMotions fitted =
             fit_motions({&box, 1}, [&](double time) { return std::vector{std::optional(place_at(time))}; });
-        CHECK(fitted.segments <= c.most_segments);
+        CHECK(fitted.segments <= c.max_segments);
         const MotionKeys keys = keys_of(fitted);
         for (int i = 0; i <= 100; ++i) {
             const float time = 0.01f * static_cast<float>(i);
@@ -118,7 +118,7 @@ TEST_CASE("what is back in its place at even times is seen to move between them"
         return compose(make_translation({0, static_cast<float>(height), 0}), box.world_from_local);
     };
     const double key = 0.29;
-    CHECK(segments_of(hop, {&key, 1}) == kMostMotionSegments);
+    CHECK(segments_of(hop, {&key, 1}) == kMaxMotionSegments);
 }
 
 TEST_CASE("the swept box holds every place that a body takes") {

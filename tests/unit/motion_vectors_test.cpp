@@ -43,7 +43,7 @@ float pixels_a_metre(const CameraView& view) { return 0.5f * 64 / (4 * view.half
 
 TEST_CASE("what moves to the right and up has a motion of so many pixels to the right and up") {
     Messages messages;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Camera camera = camera_of_ball();
     const RenderSettings settings = motion_settings();
     Scene scene = test::make_furnace_scene(0.5f);
@@ -72,7 +72,7 @@ TEST_CASE("what moves to the right and up has a motion of so many pixels to the 
 
 TEST_CASE("a camera that goes to the right moves what is near to the left, and one that turns the sky too") {
     Messages messages;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Scene scene = test::make_furnace_scene(0.5f);
     const Camera camera = camera_of_ball();
     const RenderSettings settings = motion_settings();
@@ -99,7 +99,7 @@ TEST_CASE("a camera that goes to the right moves what is near to the left, and o
 
 TEST_CASE("a picture without a frame before it has no motion, nor has what was behind the camera or was hidden") {
     Messages messages;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Scene scene = test::make_furnace_scene(0.5f);
     const Camera camera = camera_of_ball();
     const auto largest = [](const Image& motion) {

@@ -144,7 +144,7 @@ Vec2 some_place(test::Random& random) {
 
 TEST_CASE("each micro-triangle has an index of its own, and the places on it have that index") {
     test::Random random(3);
-    for (uint32_t level = kLeastMicroLevel; level <= kMostMicroLevel; ++level) {
+    for (uint32_t level = kMinMicroLevel; level <= kMaxMicroLevel; ++level) {
         CAPTURE(level);
         std::set<uint32_t> seen;
         for (uint32_t i = 0; i < micro_triangles(level); ++i) {

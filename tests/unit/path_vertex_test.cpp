@@ -21,7 +21,7 @@ public:
     struct Kept {
         uint32_t vertices = 0;
     };
-    struct Asked {
+    struct ShadowData {
         Rgb contribution;
     };
 
@@ -39,11 +39,11 @@ public:
     }
     void direct(const PathState& path, const SurfaceVertex&, Vec3, const ShadowRay& shadow) {
         tell("direct", path);
-        asked_ = {shadow.contribution};
+        shadow_data_ = {shadow.contribution};
     }
     void scattered(const PathState& path, const SurfaceVertex&, const BsdfSample&) { tell("scattered", path); }
     void put_down(Kept& kept) const { kept = kept_; }
-    void hand_over(Asked& asked) const { asked = asked_; }
+    void hand_over(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
 
     std::vector<std::string> told;
     Rgb found;
@@ -53,19 +53,19 @@ private:
         told.push_back(std::string(what) + " " + std::to_string(path.depth));
     }
     Kept kept_;
-    Asked asked_;
+    ShadowData shadow_data_;
 };
 
 /// Takes all light that rays run into and lets no shadow ray be asked for.
 class Thief : public PathListener<Thief> {
 public:
     explicit Thief(const PathJob&) {}
-    bool takes(const PathState&, const LightPlace& place, float) {
+    bool takes(const PathState&, const EmitterPoint& place, float) {
         place_ = place;
         return true;
     }
     bool wants_direct(const PathState&, const Hit&, const Surface&) { return false; }
-    LightPlace place_;
+    EmitterPoint place_;
 };
 
 /// A white floor that glows, in a bright sky.
@@ -122,10 +122,10 @@ TEST_CASE("unit/path_vertex: a listener is told of a vertex in its order, and ch
         ++heard.sample;
         alone = heard;
         REQUIRE(
-            shade_vertex<kAllMaterials>(place.job, alone, kFloor, DrawWhenAsked(), shadow_alone, asks_alone, nobody));
+            shade_vertex<kAllMaterials>(place.job, alone, kFloor, DrawOnDemand(), shadow_alone, asks_alone, nobody));
     }
     witness.begins(heard);
-    CHECK(shade_vertex<kPlainDiffuse>(place.job, heard, kFloor, DrawWhenAsked(), shadow_heard, asks_heard, witness));
+    CHECK(shade_vertex<kPlainDiffuse>(place.job, heard, kFloor, DrawOnDemand(), shadow_heard, asks_heard, witness));
     REQUIRE(asks_alone);
     CHECK(asks_heard);
     CHECK(heard.radiance == alone.radiance);
@@ -137,16 +137,16 @@ TEST_CASE("unit/path_vertex: a listener is told of a vertex in its order, and ch
     CHECK(witness.found == Rgb{1, 2, 3});
 
     Listeners<Witness>::Kept kept;
-    Listeners<Witness>::Asked asked;
+    Listeners<Witness>::ShadowData shadow_data;
     witness.put_down(kept);
-    witness.hand_over(asked);
+    witness.hand_over(shadow_data);
     CHECK(kept.vertices == 1);
-    CHECK(asked.contribution == shadow_alone.contribution);
+    CHECK(shadow_data.contribution == shadow_alone.contribution);
 
     Listeners<Witness> next(place.job);
     next.take_up(kept);
     CHECK_FALSE(
-        shade_vertex<kPlainDiffuse>(place.job, heard, kNothing, DrawWhenAsked(), shadow_heard, asks_heard, next));
+        shade_vertex<kPlainDiffuse>(place.job, heard, kNothing, DrawOnDemand(), shadow_heard, asks_heard, next));
     CHECK_FALSE(asks_heard);
     CHECK(next.told == std::vector<std::string>{"missed 1", "emitted 1"});
     next.put_down(kept);
@@ -159,14 +159,14 @@ TEST_CASE("unit/path_vertex: light that a listener takes is not the path's, and 
     ShadowRay shadow;
     bool asks = true;
     Listeners<Witness, Thief> both(place.job);
-    CHECK(shade_vertex<kAllMaterials>(place.job, path, kFloor, DrawWhenAsked(), shadow, asks, both));
+    CHECK(shade_vertex<kAllMaterials>(place.job, path, kFloor, DrawOnDemand(), shadow, asks, both));
     CHECK(path.radiance == Rgb{0, 0, 0});
     CHECK_FALSE(asks);
     CHECK(both.place_.instance == 0);
     CHECK(both.place_.u == 0.3f);
     CHECK(both.found == Rgb{0, 0, 0});
     CHECK(both.told == std::vector<std::string>{"vertex 0", "emitted 0", "scattered 1"});
-    CHECK_FALSE(shade_vertex<kAllMaterials>(place.job, path, kNothing, DrawWhenAsked(), shadow, asks, both));
+    CHECK_FALSE(shade_vertex<kAllMaterials>(place.job, path, kNothing, DrawOnDemand(), shadow, asks, both));
     CHECK(path.radiance == Rgb{0, 0, 0});
     CHECK(both.place_.kind() == SourceKind::Environment);
 }
@@ -181,8 +181,8 @@ TEST_CASE("unit/path_vertex: the code for a mask of features is the least that h
     CHECK(chosen(films, kTextured | kMoving) == (kDiffuse | kMoving));
     CHECK(chosen(FrameFeatures(), kMoving) == ~0u);
     CHECK(chosen(LayerFeatures(), 0) == kAllMaterials);
-    for (const MaterialsKnown known :
-         {MaterialsKnown::Nothing, MaterialsKnown::Diffuse, MaterialsKnown::PlainDiffuse}) {
-        CHECK(known_of(features_of(known)) == known);
+    for (const ShadingVariant variant :
+         {ShadingVariant::General, ShadingVariant::Diffuse, ShadingVariant::PlainDiffuse}) {
+        CHECK(variant_of(features_of(variant)) == variant);
     }
 }

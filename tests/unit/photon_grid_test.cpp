@@ -22,7 +22,7 @@ struct GridOfPoints {
 
     std::vector<Float4> powers; // kept photons have the power of all
 
-    GridOfPoints(const std::vector<Vec3>& from, float radius, float largest, uint32_t most_kept = 0xffffffffu,
+    GridOfPoints(const std::vector<Vec3>& from, float radius, float largest, uint32_t max_kept = 0xffffffffu,
                  uint32_t pass = 0) {
         Queue queue = Queue::make_cpu();
         const auto count = static_cast<uint32_t>(from.size());
@@ -44,12 +44,12 @@ struct GridOfPoints {
                         sorted_keys.data(),
                         sorted_order.data(),
                         starts.data(),
-                        most_kept,
+                        max_kept,
                         pass,
                         9,
                         points.data()}(i);
         }
-        view = {cells, points.data(), starts.data(), most_kept};
+        view = {cells, points.data(), starts.data(), max_kept};
     }
 };
 

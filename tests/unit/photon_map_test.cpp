@@ -160,14 +160,14 @@ Scene sphere_that_glows(float albedo) {
 }
 
 /// Mean radiance of what lies about the origin, looked at straight down from just above the floor.
-double mean_seen(const Scene& scene, const RenderSettings& from, Vec3 eye = {0, 0.1f, 0},
+double mean_seen(const Scene& scene, const RenderSettings& from, Vec3 camera = {0, 0.1f, 0},
                  IntegratorKind integrator = IntegratorKind::PhotonMap) {
     RenderSettings settings = from;
     settings.width = settings.height = 8;
     settings.integrator = integrator;
     settings.filter = PixelFilter::Box;
-    Queue queue = test::queue_asked_for();
-    const RenderResult result = test::render(queue, scene, test::camera_down(eye, 0.2f), settings);
+    Queue queue = test::requested_queue();
+    const RenderResult result = test::render(queue, scene, test::camera_down(camera, 0.2f), settings);
     CHECK(result.invalid_samples == 0);
     return test::mean_of(result.picture);
 }
@@ -261,7 +261,7 @@ TEST_CASE("what is seen in a mirror is there too: a caustic that neither end fin
     Camera camera;
     camera.world_from_camera = look_at({0.3f, 0.25f, 0}, {0.5f, 0.15f, 0}, {0, 1, 0});
     camera.fov_y = 0.05f;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const double seen = test::mean_of(test::render(queue, scene, camera, settings).picture);
     settings.integrator = IntegratorKind::Bidirectional;
     settings.samples = 64;
@@ -309,7 +309,7 @@ TEST_CASE("a glowing room shows each scattering once, by direct estimate and by 
 
 TEST_CASE("rays of photon mapping are those that a hand counts, the gathering's among them") {
     const test::TriangleMesh sphere = test::make_sphere(3, {0, 0, 0}, 2.0f);
-    Scene room; // closed and white, with a light that every place sees: no walk ends before its last scattering
+    Scene room; // closed and white, with a light that every place sees: no subpath ends before its last scattering
     Mesh mesh;
     mesh.positions = sphere.positions;
     mesh.indices = sphere.indices;
@@ -327,7 +327,7 @@ TEST_CASE("rays of photon mapping are those that a hand counts, the gathering's 
                 settings.path.max_depth = depth;
                 settings.path.roulette_depth = 100;
                 settings.photon_map = {.photons = kPhotons, .radius = 1e-4f, .gather = gather};
-                Queue queue = test::queue_asked_for();
+                Queue queue = test::requested_queue();
                 const RayCounts rays = test::render(queue, room, test::camera_down({0, 0.1f, 0}, 0.2f), settings).rays;
                 CAPTURE(static_cast<int>(gather));
                 CAPTURE(depth);
@@ -343,7 +343,7 @@ TEST_CASE("rays of photon mapping are those that a hand counts, the gathering's 
     }
 }
 
-TEST_CASE("where walks end a ray looks for lamps that are near, and none where there are points alone") {
+TEST_CASE("where subpaths end a ray looks for lamps that are near, and none where there are points alone") {
     for (const PhotonGather gather : {PhotonGather::Direct, PhotonGather::Final}) {
         RenderSettings settings;
         settings.width = settings.height = 16;
@@ -351,7 +351,7 @@ TEST_CASE("where walks end a ray looks for lamps that are near, and none where t
         settings.integrator = IntegratorKind::PhotonMap;
         settings.path.max_depth = 1; // no photons
         settings.photon_map.gather = gather;
-        Queue queue = test::queue_asked_for();
+        Queue queue = test::requested_queue();
         const auto rays_of = [&](const Scene& scene) {
             return test::render(queue, scene, test::camera_down({0, 0.1f, 0}, 0.2f), settings).rays;
         };
@@ -431,7 +431,7 @@ TEST_CASE("a scene without a light for photons, and more photons than there is r
     CHECK(said() == "no error");
 
     settings.path.max_depth = 64;
-    settings.photon_map.photons = kMostPhotons;
+    settings.photon_map.photons = kMaxPhotons;
     const auto error = test::thrown_error([&] { check_integrator(settings); });
     CHECK(test::is_about(error, ErrorCode::OverLimit, "photons", "16777216"));
     CHECK(test::says(error, "at most 8521760"));

@@ -29,7 +29,7 @@ Mesh make_triangle() {
 std::size_t bytes_of(const Scene& scene) {
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const std::size_t predicted = predicted_bytes(prepared, queue.is_cuda());
     const SceneOnDevice on_device(queue, prepared);
     CHECK(queue.allocated_bytes() == predicted);
@@ -57,10 +57,10 @@ TEST_CASE("each light of a scene counts in the bytes that it will take") {
     for (std::size_t i = 0; i < kCount; ++i) scene.instances.push_back({"", 0, 0, {}});
     const std::size_t dark = bytes_of(scene);
 
-    Scene with_lamps = scene;
-    with_lamps.lights.resize(kCount);
+    Scene with_emitters = scene;
+    with_emitters.lights.resize(kCount);
     // At least: the table that draws the lights grows too, by a start and a slot (4 bytes each) for each.
-    CHECK(bytes_of(with_lamps) >= dark + kCount * (sizeof(PunctualLight) + 8));
+    CHECK(bytes_of(with_emitters) >= dark + kCount * (sizeof(PunctualLight) + 8));
 
     Scene glowing = scene;
     for (Instance& instance : glowing.instances) instance.material = 1;
@@ -68,7 +68,7 @@ TEST_CASE("each light of a scene counts in the bytes that it will take") {
 }
 
 TEST_CASE("queues of paths have at most their bytes, and nearly those, whatever a path has beside") {
-    constexpr std::size_t kMost = PathIntegrator::kMostQueueBytes;
+    constexpr std::size_t kMost = PathIntegrator::kMaxQueueBytes;
     for (uint32_t bits = 0; bits < 16; ++bits) {
         CAPTURE(bits);
         const PathParts parts = {.has_times = (bits & 1) != 0,

@@ -47,7 +47,7 @@ TEST_CASE("a dry run counts the bytes that a device gives, and gives none") {
 }
 
 TEST_CASE("streams go on after what was given before the fork, and work behind the join comes after all of them") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     constexpr int kStreams = Queue::kMaxStreams;
     constexpr std::size_t kMany = 1 << 22; // a fill that takes longer than it takes to give the next
     Buffer<unsigned char> sum(queue, kMany * kStreams, "bytes");
@@ -71,7 +71,7 @@ TEST_CASE("streams go on after what was given before the fork, and work behind t
 }
 
 TEST_CASE("an exception on a stream leaves the queue with one stream again") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Buffer<unsigned char> bytes(queue, 100, "bytes");
     const auto fail_on_a_stream = [&] {
         const Queue::Fork fork(queue, Queue::kMaxStreams);
@@ -86,7 +86,7 @@ TEST_CASE("an exception on a stream leaves the queue with one stream again") {
 }
 
 TEST_CASE("a number is read back as it was when that was asked for, whatever comes later") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Buffer<uint32_t> number(queue, 1, "number");
     Readback<uint32_t> readback(queue);
     for (const unsigned char value : {1, 2, 3}) {

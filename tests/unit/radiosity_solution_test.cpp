@@ -32,7 +32,7 @@ RadiositySettings quick_settings() {
 
 Scene lit_box(float reflectance = 0.5f) {
     Scene scene = test::closed_box(test::white(reflectance));
-    test::add(scene, test::sheet({0.2f, 0.9f, 0}, {0.3f, 0, 0}, {0, 0, 0.3f}), test::lamp_material(0, 5));
+    test::add(scene, test::sheet({0.2f, 0.9f, 0}, {0.3f, 0, 0}, {0, 0, 0.3f}), test::emitter_material(0, 5));
     return scene;
 }
 
@@ -366,7 +366,7 @@ TEST_CASE("a scene that cannot be solved is refused in a line") {
     };
     Scene mirrors;
     test::add(mirrors, test::floor_at(0, 1), test::mirror());
-    test::add(mirrors, test::floor_at(1, 1), test::lamp_material(0, 1));
+    test::add(mirrors, test::floor_at(1, 1), test::emitter_material(0, 1));
     CHECK(why(mirrors, quick_settings()).find("no surface of this scene reflects diffusely") != std::string::npos);
     RadiositySettings tiny = quick_settings();
     tiny.patch_size = 1e-4f;
@@ -385,11 +385,11 @@ TEST_CASE("solving hears within moments that it is to end, however long a row ta
     const Scene scene = lit_box();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     const auto seconds_to_end = [&](const RadiositySettings& settings, const char* during) {
-        double asked = -1;
+        double requested = -1;
         int heard = 0;
         const auto end_in = [&](const char* what, double) {
             if (std::string(what) != during || ++heard == 1) return true; // it begins
-            if (asked < 0) asked = test::cpu_seconds();
+            if (requested < 0) requested = test::cpu_seconds();
             return false;
         };
         try {
@@ -397,15 +397,15 @@ TEST_CASE("solving hears within moments that it is to end, however long a row ta
         } catch (const Error& error) {
             CHECK(error.code() == ErrorCode::Interrupted);
         }
-        CHECK(asked >= 0);
-        return test::cpu_seconds() - asked;
+        CHECK(requested >= 0);
+        return test::cpu_seconds() - requested;
     };
     RadiositySettings few_long_rows;
     few_long_rows.patch_size = 10;
-    few_long_rows.rays = kMostPatchRays; // seconds of each
+    few_long_rows.rays = kMaxPatchRays; // seconds of each
     CHECK(seconds_to_end(few_long_rows, "form factors") < test::allowed_seconds(0.5));
     few_long_rows.rays = 64;
-    few_long_rows.hemicube = kMostHemicube;
+    few_long_rows.hemicube = kMaxHemicube;
     few_long_rows.form_factors = FormFactors::Hemicube;
     few_long_rows.subdivisions = 0;
     CHECK(seconds_to_end(few_long_rows, "form factors") < test::allowed_seconds(1.5)); // 16 million pixels

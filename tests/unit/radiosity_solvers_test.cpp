@@ -75,9 +75,9 @@ TEST_CASE("an elimination that is ended leaves direct light: of lamps and of wha
         sent += static_cast<double>(patch.area * patch.exitance.g), area += static_cast<double>(patch.area);
     }
     for (const int most : {1, 40, 100}) { // in the first channel, at its end, in the last
-        int asked = 0;
-        const SolvedSystem ended = solve_by_matrix(system, [&](double) { return ++asked < most; });
-        CHECK(asked == most);
+        int requested = 0;
+        const SolvedSystem ended = solve_by_matrix(system, [&](double) { return ++requested < most; });
+        CHECK(requested == most);
         CHECK(ended.steps == 0);
         CHECK(ended.left == 1);
         REQUIRE(ended.irradiance.size() == 40);
@@ -139,15 +139,15 @@ TEST_CASE("no light is lost or made: what patches absorb is what is emitted") {
 
 TEST_CASE("a solution ends when it is asked to, or is close enough") {
     const RadiositySystem system = room_of(300, 0.95f, 1);
-    int asked = 0;
-    const auto end_after_three = [&](double) { return ++asked < 3; };
+    int requested = 0;
+    const auto end_after_three = [&](double) { return ++requested < 3; };
     CHECK(solve_by_gauss_seidel(system, 0, end_after_three).steps == 3);
     const SolvedSystem rough = solve_by_southwell(system, 0.1, 0), fine = solve_by_southwell(system, 1e-3, 0);
     CHECK(rough.left <= 0.1);
     CHECK(fine.left <= 1e-3);
     CHECK(rough.steps < fine.steps);
     RadiositySystem large;
-    large.patches.resize(kMostMatrixPatches + 1);
+    large.patches.resize(kMaxMatrixPatches + 1);
     const auto error = test::thrown_error([&] { solve_by_matrix(large); });
     CHECK(test::is_about(error, ErrorCode::OverLimit, "solver", "matrix"));
 }
@@ -155,12 +155,12 @@ TEST_CASE("a solution ends when it is asked to, or is close enough") {
 TEST_CASE("what next to nothing absorbs ends after a stated number of steps, and what is left is said") {
     const RadiositySystem system = room_of(12, 0.999995f, 2);
     const SolvedSystem southwell = solve_by_southwell(system, 1e-6, 0), few = solve_by_southwell(system, 1e-6, 10);
-    CHECK(southwell.steps == kMostSweeps * 12);
+    CHECK(southwell.steps == kMaxSweeps * 12);
     CHECK(southwell.reached_limit);
     CHECK(southwell.left > 1e-6);
     CHECK_FALSE(few.reached_limit); // stopped by its number of steps
     const SolvedSystem gauss_seidel = solve_by_gauss_seidel(system, 1e-6);
-    CHECK(gauss_seidel.steps == kMostSweeps);
+    CHECK(gauss_seidel.steps == kMaxSweeps);
     CHECK(gauss_seidel.reached_limit);
     CHECK_FALSE(solve_by_gauss_seidel(room_of(12, 0.9f, 2), 1e-6).reached_limit);
     CHECK_FALSE(solve_by_southwell(room_of(12, 0.9f, 2), 1e-6, 0).reached_limit);

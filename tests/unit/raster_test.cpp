@@ -130,7 +130,7 @@ TEST_CASE("a sample on an edge belongs to the triangle to its right or below it"
 
 TEST_CASE("coverage and depth are those of rays through a million pixels") {
     const Scene scene = test::make_mixed_scene();
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = raster_settings(1000, 1000);
     settings.aovs = kAovDepth | kAovIds;
     settings.filter = PixelFilter::Box;
@@ -164,7 +164,7 @@ TEST_CASE("light is evaluated in pixels, at corners or once a triangle, and is t
     Scene scene;
     test::add(scene, test::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), test::white(0.5f)); // faces +z
     scene.lights.push_back(test::point_light({0, 0, 1}, {3, 2, 1}));
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = raster_settings(65, 65);
     settings.ambient = Rgb{0.25f, 0, 0};
     Camera camera = camera_at({0, 0, 2}, {0, 0, 0});
@@ -197,7 +197,7 @@ TEST_CASE("without shadows raster shades as cast does, by all lobes, textures an
     scene.materials.front().kind = MaterialKind::MetallicRoughness;
     scene.materials.front().roughness = 0.4f;
     scene.lights.push_back(test::point_light({3, 4, 5}, {90, 80, 70}));
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = raster_settings(60, 60);
     settings.filter = PixelFilter::Box;
     settings.filter_radius = 0x1p-20f;
@@ -223,7 +223,7 @@ TEST_CASE("edges are Bresenham's lines, the nearer one first") {
     test::add(scene, triangle, {{.base_color = {1, 0, 0}}, "red"});
     for (Vec3& p : triangle.positions) p.z = -1;
     test::add(scene, triangle, {{.base_color = {0, 1, 0}}, "green"});
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = raster_settings(16, 16);
     settings.look.is_wireframe = true;
     settings.ambient = Rgb{0, 0, 0};
@@ -248,7 +248,7 @@ TEST_CASE("edges are Bresenham's lines, the nearer one first") {
 TEST_CASE("samples of a pixel lie in its filter, evenly, the first in the middle; a picture is their mean") {
     Scene scene;
     test::add(scene, test::sheet({-1, 0, 0}, {1, 0, 0}, {0, 9, 0}), {{.emission = {1, 1, 1}}, "lamp"});
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = raster_settings(1, 1);
     settings.ambient = Rgb{0, 0, 0};
     settings.filter = PixelFilter::Box;
@@ -266,7 +266,7 @@ TEST_CASE("raster refuses a lens and a scene that it would show as black, and sa
     Scene scene = test::make_furnace_scene(0.5f);
     Camera camera;
     camera.aperture_radius = 0.1f;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const RenderSettings settings = raster_settings(40, 30);
     const auto error = test::thrown_error([&] { test::render(queue, scene, camera, settings); });
     CHECK(test::is_about(error, ErrorCode::BadInput, "integrator", "raster"));

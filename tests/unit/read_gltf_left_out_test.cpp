@@ -31,7 +31,7 @@ constexpr const char* kMesh = R"("meshes":[{"primitives":[{"attributes":{"POSITI
 
 std::string triangle_with(const std::string& members) { return triangle().json(kMesh + members); }
 
-Light lamp(const std::string& members) {
+Light emitter(const std::string& members) {
     const Scene scene = test::read_gltf_text(
         triangle_with(R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point",)" + members +
                       R"(}]}},"nodes":[{"extensions":{"KHR_lights_punctual":{"light":0}}}])"));
@@ -98,10 +98,10 @@ TEST_CASE("an element that is null counts as an object without members, and noth
 
 TEST_CASE("a number beyond the largest float is the largest, and a range of that is none") {
     for (const std::string range : {"3.40282347E+38", "3.4028234663852886e+38", "1.7976931348623157e+308"}) {
-        const Light light = lamp("\"range\":" + range);
+        const Light light = emitter("\"range\":" + range);
         CHECK(light.range == std::numeric_limits<float>::max());
     }
-    const Light bright = lamp(R"("intensity":1e300,"color":[1,2,0])");
+    const Light bright = emitter(R"("intensity":1e300,"color":[1,2,0])");
     CHECK(is_finite(bright.intensity));
     CHECK(bright.intensity.b == 0);
 }
@@ -111,17 +111,17 @@ TEST_CASE("numbers beyond 64 bits and beyond doubles, and what others write for 
     for (const std::string& range : {whole, std::string("1e400"), std::string("Infinity")}) {
         CAPTURE(range);
         const Light light =
-            lamp("\"range\":" + range + ",\"intensity\":7,\"extras\":[123456789012345678901234567890,-1e999]");
+            emitter("\"range\":" + range + ",\"intensity\":7,\"extras\":[123456789012345678901234567890,-1e999]");
         CHECK(light.range == std::numeric_limits<float>::max());
         CHECK(light.intensity == grey(7));
     }
-    CHECK(lamp("\"range\":NaN,\"intensity\":7").range == 0);
-    CHECK(lamp("\"range\":-1e400").range == 0);
-    CHECK(lamp("\"range\":-1").intensity == grey(1));
-    CHECK(lamp("\"range\":\"far\",\"intensity\":3").intensity == grey(3));
-    CHECK(lamp("\"intensity\":-2,\"range\":5").range == 5);
-    CHECK(lamp("\"color\":[1,-1,2],\"intensity\":2").intensity == Rgb{2, 0, 4});
-    CHECK(lamp("\"color\":[1,1],\"intensity\":2").intensity == grey(2));
+    CHECK(emitter("\"range\":NaN,\"intensity\":7").range == 0);
+    CHECK(emitter("\"range\":-1e400").range == 0);
+    CHECK(emitter("\"range\":-1").intensity == grey(1));
+    CHECK(emitter("\"range\":\"far\",\"intensity\":3").intensity == grey(3));
+    CHECK(emitter("\"intensity\":-2,\"range\":5").range == 5);
+    CHECK(emitter("\"color\":[1,-1,2],\"intensity\":2").intensity == Rgb{2, 0, 4});
+    CHECK(emitter("\"color\":[1,1],\"intensity\":2").intensity == grey(2));
     GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0},
                 ",\"min\":[NaN,0,0],\"max\":[-Infinity,1.#QNAN,0]");

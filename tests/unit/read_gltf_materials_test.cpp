@@ -64,10 +64,10 @@ TEST_CASE("a material that says nothing is a white, rough metal that lets nothin
     CHECK(read_material(R"({"alphaMode":"BLEND"})").alpha_mode == AlphaMode::Blend);
     CHECK(read_material(R"({"extensions":{"KHR_materials_unlit":{}}})").kind == MaterialKind::Unlit);
     Material glowing = read_material(R"({"emissiveFactor":[1,0,0]})");
-    CHECK(glowing.is_lamp());
+    CHECK(glowing.is_emitter());
     glowing.kind = MaterialKind::Unlit;
     CHECK(glowing.is_emissive());
-    CHECK(!glowing.is_lamp());
+    CHECK(!glowing.is_emitter());
 }
 
 TEST_CASE("doubleSided says whether a back is seen and whether it gives light; without it neither") {

@@ -80,12 +80,12 @@ TEST_CASE("obj: thousands of groups are thousands of instances, and a group for 
     CHECK(scene.materials.size() == 1);
     CHECK(scene.instances[4999].name == "n4999");
     CHECK(messages.all().empty());
-    const Scene at_limit = load(text(kMostObjGroups), "", messages);
-    CHECK(at_limit.instances.size() == kMostObjGroups);
+    const Scene at_limit = load(text(kMaxObjGroups), "", messages);
+    CHECK(at_limit.instances.size() == kMaxObjGroups);
     CHECK(messages.all().empty());
-    const Scene many = load(text(kMostObjGroups + 1), "", messages);
+    const Scene many = load(text(kMaxObjGroups + 1), "", messages);
     REQUIRE(many.instances.size() == 1);
-    CHECK(many.meshes[0].triangle_count() == kMostObjGroups + 1);
+    CHECK(many.meshes[0].triangle_count() == kMaxObjGroups + 1);
     REQUIRE(messages.all().size() == 1);
     CHECK(messages.all()[0].text.find("65536 objects and groups") != std::string::npos);
 }

@@ -108,9 +108,9 @@ TEST_CASE(
     CHECK(front_z(read(down, with_normals, "Ke 1 1 1\n").meshes[0]) < 0);
     CHECK(front_z(read(down, "1 2//1 3", "Ke 1 1 1\n").meshes[0]) < 0); // some corners have one
     CHECK(front_z(read(down, with_normals, "Kd 1 1 1\n").meshes[0]) > 0);
-    const Material lamp = read("", "1 2 3", "Ke 1 1 1\n").materials[0];
-    CHECK(lamp.double_sided);
-    CHECK_FALSE(lamp.two_sided_emission);
+    const Material emitter = read("", "1 2 3", "Ke 1 1 1\n").materials[0];
+    CHECK(emitter.double_sided);
+    CHECK_FALSE(emitter.two_sided_emission);
 }
 
 TEST_CASE("relative indices, comments, joined lines, CRLF and lone CR line ends are read") {

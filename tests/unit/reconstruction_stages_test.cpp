@@ -7,9 +7,9 @@
 
 #include "denoise/accumulate_signals.h"
 #include "denoise/anti_alias.h"
+#include "denoise/clamp_history.h"
 #include "denoise/compare_light.h"
-#include "denoise/enlarge_picture.h"
-#include "denoise/limit_history.h"
+#include "denoise/upsample_picture.h"
 #include "denoise/wavelet_pass.h"
 
 using namespace pertev;
@@ -153,7 +153,7 @@ Filtered first_means(uint32_t pixel, float brightest, bool limits) {
     stage.cameras = {camera, camera, kStageSide, kStageSide};
     stage.now = {wall.guide.data(), means.diffuse.data(), means.gloss.data(), squares.data(), recent.data(), nullptr};
     stage.longest = 32;
-    stage.limit_fireflies = limits;
+    stage.clamp_fireflies = limits;
     stage.has_gloss = true;
     for (uint32_t i = 0; i < kStagePixels; ++i) stage(i);
     return means;
@@ -189,7 +189,7 @@ Held hold(Wall& wall, float left, float right, float deviation, float frames, bo
     diffuse[kLeftOfBorder] = gloss[kLeftOfBorder] = {3, 3, 3, frames};
     squares[kLeftOfBorder] = {9 + deviation * deviation, 9 + deviation * deviation};
     std::vector<Float4> diffuse_out(kStagePixels), gloss_out(kStagePixels);
-    const LimitHistory stage = {
+    const ClampHistory stage = {
         {wall.guide.data(), diffuse.data(), gloss.data(), squares.data(), recent.data(), nullptr},
         {diffuse_out.data(), gloss_out.data()},
         kStageSide,
@@ -286,7 +286,7 @@ float enlarged(const Guide& right, uint32_t fine_object = 7) {
     NoisyFrameView features;
     features.light = light.data(), features.emission = met.data(), features.place = place.data();
     features.normal = normal.data(), features.albedo = white.data(), features.gloss = black.data();
-    const EnlargePicture stage = {
+    const UpsamplePicture stage = {
         features,
         {{diffuse.data(), nullptr}, guide.data(), stage_camera(kCoarse), kCoarse, kCoarse, false},
         stage_camera(kStageSide),

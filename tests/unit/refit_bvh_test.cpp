@@ -1,4 +1,4 @@
-// A tree that is refitted to moved triangles is sound, and walks find in it what they find in one built afresh.
+// A tree that is refitted to moved triangles is sound, and traversals find in it what they find in one built afresh.
 
 #include "accel/builders/refit_bvh.h"
 
@@ -12,7 +12,7 @@
 #include "accel/bvh/wide_bvh.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
-#include "tests/support/check_walk.h"
+#include "tests/support/check_traversal.h"
 #include "tracer/binary_trees.h"
 
 using namespace pertev;
@@ -53,7 +53,7 @@ TEST_CASE("a refitted tree is sound and finds what testing every triangle finds,
             const auto fault = cuts_triangles(builder) ? find_split_fault(refitted, after) : find_fault(refitted);
             CHECK_MESSAGE(!fault, fault.value_or(""));
             CHECK(is_finite(refitted.sah_cost));
-            check_walk(scene_of(view_of(refitted)), rays, hits, AcceptAll{});
+            check_traversal(scene_of(view_of(refitted)), rays, hits, AcceptAll{});
         }
     }
 }

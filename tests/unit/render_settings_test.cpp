@@ -29,7 +29,7 @@ TEST_CASE("a scene is prepared with the tracers that a session of the settings t
         CHECK(tracers_of(settings, on_cuda) == default_tracers(on_cuda));
         CHECK(prepare_options(settings, on_cuda).tracers == default_tracers(on_cuda));
     }
-    settings.tracers = same_for_all({.structure = StructureKind::Ploc, .walk = WalkKind::Wide4});
+    settings.tracers = same_for_all({.structure = StructureKind::Ploc, .traversal = TraversalKind::Wide4});
     CHECK(prepare_options(settings, false).tracers == settings.tracers);
     CHECK(aspect_of(3, 2) == 1.5f);
 }

@@ -21,10 +21,10 @@ TEST_CASE("a point is seen at the pixel whose ray goes through it, and found the
         const CameraView view = make_camera_view(camera_at({1, 2, 3}, projection), 640, 360);
         for (const Vec2 pixel : {Vec2{320, 180}, Vec2{0.5f, 0.5f}, Vec2{600.25f, 100.75f}}) {
             const Ray ray = make_camera_ray(view, pixel, {0, 0});
-            const SeenPoint seen = see_point(view, ray.origin + 4.0f * ray.direction);
+            const ProjectedPoint seen = project_point(view, ray.origin + 4.0f * ray.direction);
             CHECK(seen.pixel.x == doctest::Approx(pixel.x).epsilon(1e-4));
             CHECK(seen.pixel.y == doctest::Approx(pixel.y).epsilon(1e-4));
-            const Vec3 there = transform_point(view.world_from_camera, point_seen(view, pixel, seen.depth));
+            const Vec3 there = transform_point(view.world_from_camera, unproject_point(view, pixel, seen.depth));
             CHECK(length(there - (ray.origin + 4.0f * ray.direction)) < 1e-4f);
         }
     }
@@ -34,8 +34,8 @@ TEST_CASE("a virtual point at no distance behind the surface moves as the surfac
     const FrameCameras cameras = {make_camera_view(camera_at({1, 2, 3}), 640, 360),
                                   make_camera_view(camera_at({1.1f, 2, 3}), 640, 360), 640, 360};
     const Vec2 pixel = {200.5f, 90.5f};
-    const Vec3 point = transform_point(cameras.now.world_from_camera, point_seen(cameras.now, pixel, 5));
-    const SeenPoint then = see_point(cameras.before, point);
+    const Vec3 point = transform_point(cameras.now.world_from_camera, unproject_point(cameras.now, pixel, 5));
+    const ProjectedPoint then = project_point(cameras.before, point);
     const Reprojection same = reproject_virtual(cameras, pixel, 5, 0);
     CHECK(same.pixel.x == doctest::Approx(then.pixel.x).epsilon(1e-4));
     CHECK(same.pixel.y == doctest::Approx(then.pixel.y).epsilon(1e-4));
@@ -64,7 +64,7 @@ TEST_CASE("what has moved is looked for where it was") {
     const CameraView view = make_camera_view(camera, 640, 360);
     const FrameCameras cameras = {view, view, 640, 360};
     const Float4 place = {float_of(0), float_of(0), 0.25f, 0.5f}; // the middle of the triangle's middle
-    const Vec2 centre = see_point(view, point_at(&now, &mesh, place)).pixel;
+    const Vec2 centre = project_point(view, point_at(&now, &mesh, place)).pixel;
     const Reprojection moved = reproject_surface(cameras, scene, {&before, &mesh}, centre, place);
     const float pixels = 0.5f / (5 * view.half_width) * 0.5f * 640; // half a metre at 5 m
     CHECK(moved.pixel.x == doctest::Approx(centre.x - pixels).epsilon(1e-4));

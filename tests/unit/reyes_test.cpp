@@ -183,7 +183,7 @@ TEST_CASE("nothing shines through a closed displaced sphere, seen from within") 
     Scene scene = scene_of(seamless_sphere());
     scene.environment = Environment{};
     scene.environment->scale = {1, 1, 1};
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = reyes_settings(150, 110);
     settings.samples = 4;
     settings.ambient = Rgb{0, 0, 0};
@@ -199,7 +199,7 @@ TEST_CASE("nothing shines through a closed displaced sphere, seen from within") 
 
 TEST_CASE("micropolygons cover what rays through the same places hit, at the same depth") {
     const Scene scene = test::make_mixed_scene();
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = reyes_settings(500, 500);
     settings.aovs = kAovDepth | kAovIds;
     settings.path.max_depth = 0;
@@ -233,7 +233,7 @@ TEST_CASE("a plane displaced by a ramp is the tilted plane, in depth and normal"
     // Between the middles of two texels: height 0 at x = -1, 1 at x = 1.
     const float scale = 0.8f;
     const HeightMap ramp = {0, {.width = 2, .height = 1, .channels = 1, .pixels = {0, 1}}, scale, 0.25f};
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = reyes_settings(64, 64);
     settings.ambient = Rgb{1, 1, 1};
     settings.heights = std::make_shared<const HeightMaps>(HeightMaps{ramp});
@@ -260,7 +260,7 @@ TEST_CASE("a plane displaced by a ramp is the tilted plane, in depth and normal"
 TEST_CASE("samples of a pixel lie in its filter at places of its own; a picture is their mean") {
     Scene scene;
     test::add(scene, test::sheet({-1, 0, 0}, {1, 0, 0}, {0, 9, 0}), {{.emission = {1, 1, 1}}, "lamp"});
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = reyes_settings(9, 9);
     settings.ambient = Rgb{0, 0, 0};
     settings.filter = PixelFilter::Box;
@@ -289,7 +289,7 @@ TEST_CASE("micropolygons are lit as raster lights pixels, each in one colour") {
     scene.materials.front().kind = MaterialKind::MetallicRoughness;
     scene.materials.front().roughness = 0.4f;
     scene.lights.push_back(test::point_light({3, 4, 5}, {90, 80, 70}));
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = reyes_settings(60, 60);
     settings.filter = PixelFilter::Box;
     settings.filter_radius = 0x1p-20f;
@@ -342,7 +342,7 @@ TEST_CASE("pictures of micropolygons do not depend on threads or passes, and lay
 }
 
 TEST_CASE("of many samples that go at once the first few come first, and then as many as there are") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -362,7 +362,7 @@ TEST_CASE("of many samples that go at once the first few come first, and then as
 }
 
 TEST_CASE("heights that fold surfaces over each other without end are refused, and no sample is left half done") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -379,7 +379,7 @@ TEST_CASE("heights that fold surfaces over each other without end are refused, a
 TEST_CASE("reyes takes the memory that it says beforehand, for millions of micropolygons too") {
     const Scene scene = scene_of(test::sheet({0, 0, 0}, {5, 0, 0}, {0, 5, 0}));
     const Camera camera = looking({0, 0, 1}, {0, 0, 0});
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     RenderSettings settings = reyes_settings(240, 180);
     settings.ambient = Rgb{1, 1, 1};
     settings.shading_rate = 0.25f;
@@ -399,7 +399,7 @@ TEST_CASE("reyes refuses a lens and a scene that it would show as black") {
     Scene scene = test::make_furnace_scene(0.5f);
     Camera camera;
     camera.aperture_radius = 0.1f;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const RenderSettings settings = reyes_settings(40, 30);
     const auto error = test::thrown_error([&] { test::render(queue, scene, camera, settings); });
     CHECK(test::is_about(error, ErrorCode::BadInput, "integrator", "reyes"));

@@ -45,15 +45,15 @@ struct SmallRun {
 
 /// Progress that a call for one sample reported of the precomputation.
 struct Making {
-    int times_asked = 0;
-    double last_asked_s = 0, made_s = 0, end_s = 0;
+    int times_requested = 0;
+    double last_request_s = 0, made_s = 0, end_s = 0;
 };
 
 Making render_one(Session& session) {
     Making making;
     session.render(1, [&](const RenderProgress& now) {
         const bool is_made = now.seconds > now.made_seconds; // samples have taken time
-        if (!is_made) ++making.times_asked, making.last_asked_s = now.seconds;
+        if (!is_made) ++making.times_requested, making.last_request_s = now.seconds;
         making.made_s = now.made_seconds, making.end_s = now.seconds;
         return true;
     });
@@ -147,7 +147,7 @@ TEST_CASE("what irradiance caching may take of the host's memory stands beside t
     const TransportScene scene = small.run();
     const TransportRow cache = row_named(scene, "irradiance_cache");
     CHECK(cache.refused == "");
-    CHECK(cache.host_bytes == RecordStore::most_host_bytes(16 * 16));
+    CHECK(cache.host_bytes == RecordStore::max_host_bytes(16 * 16));
     CHECK(cache.host_bytes > 1000); // records have places
     CHECK(row_named(scene, "path").host_bytes == 0);
 }
@@ -182,11 +182,11 @@ TEST_CASE("irradiance caching makes its records once, in the time that is told, 
     CHECK(told == 2); // at its start, and a moment later
     // No record has been made yet. The number of calls depends on the clock, but is at least two per round.
     const Making first = render_one(session);
-    CHECK(first.times_asked >= 2 * static_cast<int>(kOvertureRounds));
-    CHECK(first.made_s >= first.last_asked_s);
+    CHECK(first.times_requested >= 2 * static_cast<int>(kOvertureRounds));
+    CHECK(first.made_s >= first.last_request_s);
     CHECK(first.made_s < first.end_s);
     const Making second = render_one(session);
-    CHECK(second.times_asked == 0);
+    CHECK(second.times_requested == 0);
     CHECK(second.made_s == 0);
 
     picture.integrator = IntegratorKind::Path;
@@ -232,9 +232,9 @@ TEST_CASE("a scene without diffuse surfaces is refused to radiosity in its row")
         material.base_color = {};
         if (!material.is_emissive()) material.kind = MaterialKind::Conductor;
     }
-    const TransportScene lamps = small.run(); // the lamp's own surface is diffuse, and black
-    CHECK(row_named(lamps, "radiosity").refused == "patches are of diffuse surfaces, and this scene has none");
-    CHECK_FALSE(row_named(lamps, "path").repetitions.empty());
+    const TransportScene emitters = small.run(); // the lamp's own surface is diffuse, and black
+    CHECK(row_named(emitters, "radiosity").refused == "patches are of diffuse surfaces, and this scene has none");
+    CHECK_FALSE(row_named(emitters, "path").repetitions.empty());
 }
 
 TEST_CASE("an interrupt in the middle of a solution keeps those before it") {

@@ -117,7 +117,7 @@ TEST_CASE("a scene that was updated part by part gives the picture of the scene 
     }
     const PreparedScene old_scene = prepare(before), new_scene = prepare(after);
 
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     SceneOnDevice scene(queue, old_scene);
     Hash128 last = hash_of(queue, scene, old_scene);
     CHECK(last == hash_afresh(old_scene));

@@ -281,10 +281,10 @@ TEST_CASE("the metadata of a camera far from the origin says it again to the bit
     Messages messages;
     const DoubleVec3 eye = {448262.757, 5411933.5625, 5};
     CameraChoice flags = {.eye = eye, .target = DoubleVec3{448262.757, 5411933.5625, 0.001}};
-    const Camera asked = choose_camera(flags, scene, 1, messages);
-    CHECK(off(scene, asked.world_from_camera.translation, eye) < 1e-6);
-    const CameraSource source = source_of(flags, asked, scene.origin_in_file);
-    CHECK(told_again(source, scene).world_from_camera == asked.world_from_camera);
+    const Camera requested = choose_camera(flags, scene, 1, messages);
+    CHECK(off(scene, requested.world_from_camera.translation, eye) < 1e-6);
+    const CameraSource source = source_of(flags, requested, scene.origin_in_file);
+    CHECK(told_again(source, scene).world_from_camera == requested.world_from_camera);
 
     const Camera made_up = choose_camera({}, scene, 1, messages);
     const Camera again = told_again(source_of(CameraChoice{}, made_up, scene.origin_in_file), scene);
@@ -329,7 +329,7 @@ TEST_CASE("positions of a picture are in the file's coordinates, and of a far sc
         settings.filter = PixelFilter::Box;
         settings.filter_radius = 0;
         settings.aovs = kAovPosition;
-        Queue queue = test::queue_asked_for();
+        Queue queue = test::requested_queue();
         const RenderResult result = test::render(queue, scene, choose_camera(choice, scene, 1, messages), settings);
         const float* at = result.layers.at(0).image.pixels.data();
         const SceneSource source = source_of(OpenOptions{}, scene);

@@ -58,7 +58,7 @@ std::size_t resident_bytes() {
 } // namespace
 
 TEST_CASE("a new camera takes no memory and copies nothing to the device; so do most settings") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
     Session session(queue, mixed.prepared, camera_at(0), settings);
@@ -88,7 +88,7 @@ TEST_CASE("a new camera takes no memory and copies nothing to the device; so do 
 }
 
 TEST_CASE("a smaller picture takes a new film and no more; a larger one takes larger queues as well") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared furnace(test::make_furnace_scene(0.5f));
     RenderSettings settings = queued_settings();
     Session session(queue, furnace.prepared, camera_at(0), settings);
@@ -111,7 +111,7 @@ TEST_CASE("a smaller picture takes a new film and no more; a larger one takes la
 }
 
 TEST_CASE("memory does not grow over 1000 changes of camera, size, settings and scene") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared a(test::make_furnace_scene(0.5f)), b(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
     Session session(queue, a.prepared, camera_at(0), settings);
@@ -148,7 +148,7 @@ TEST_CASE("memory does not grow over 1000 changes of camera, size, settings and 
 }
 
 TEST_CASE("1000 frames in which instances of a large mesh and a lamp move copy little each and take no memory") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     std::vector<Scene> scenes(1, test::make_mixed_scene());
     const test::TriangleMesh sphere = test::make_sphere(5, {0, 0, 0}, 1.0f); // 20480 triangles; instances 1 to 3
@@ -194,7 +194,7 @@ TEST_CASE("1000 frames in which instances of a large mesh and a lamp move copy l
 }
 
 TEST_CASE("a session without a tracer says so and does not look at it") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Scene scene = test::make_mixed_scene();
     const test::TriangleMesh sphere = test::make_sphere(7, {0, 0, 0}, 1.0f); // too many for brute force
     scene.meshes[0].positions = scene.meshes[0].normals = sphere.positions;
@@ -203,7 +203,7 @@ TEST_CASE("a session without a tracer says so and does not look at it") {
     REQUIRE(many.prepared.triangles > kMaxBruteForceTriangles);
     RenderSettings settings = queued_settings();
     Session session(queue, many.prepared, camera_at(0), settings);
-    settings.tracers = same_for_all({.structure = StructureKind::Binned, .walk = WalkKind::BruteForce});
+    settings.tracers = same_for_all({.structure = StructureKind::Binned, .traversal = TraversalKind::BruteForce});
     CHECK_THROWS_AS(session.set_settings(settings), Error);
     CHECK_THROWS_AS(session.render(1), std::logic_error);
     CHECK_THROWS_AS(session.stats(), std::logic_error);
@@ -213,7 +213,7 @@ TEST_CASE("a session without a tracer says so and does not look at it") {
 }
 
 TEST_CASE("nothing of a session is left on the device when it ends") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared furnace(test::make_furnace_scene(0.5f));
     {
         Session session(queue, furnace.prepared, camera_at(0), queued_settings());
@@ -224,7 +224,7 @@ TEST_CASE("nothing of a session is left on the device when it ends") {
 }
 
 TEST_CASE("the bytes that are predicted are those that a session takes") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared furnace(test::make_furnace_scene(0.5f));
     RenderSettings settings = queued_settings();
     settings.samples = 3;
@@ -237,7 +237,7 @@ TEST_CASE("the bytes that are predicted are those that a session takes") {
 }
 
 TEST_CASE("a call's time is over at a whole sample, and the next call has its own") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
     settings.time_limit_s = 1e-9;
@@ -248,7 +248,7 @@ TEST_CASE("a call's time is over at a whole sample, and the next call has its ow
 }
 
 TEST_CASE("what does not change the picture lets the film be; what does begins it anew") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared furnace(test::make_furnace_scene(0.5f));
     RenderSettings settings = queued_settings();
     Session session(queue, furnace.prepared, camera_at(0), settings);
@@ -285,7 +285,7 @@ TEST_CASE("what does not change the picture lets the film be; what does begins i
 }
 
 TEST_CASE("the history knows the camera of the last samples, until a cut") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared furnace(test::make_furnace_scene(0.5f));
     Session session(queue, furnace.prepared, camera_at(0), queued_settings());
     CHECK(!session.history().previous_camera);
@@ -313,7 +313,7 @@ TEST_CASE("the history knows the camera of the last samples, until a cut") {
 }
 
 TEST_CASE("a display shows the picture's tones") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
     for (const bool transparent : {false, true}) {
@@ -329,7 +329,7 @@ TEST_CASE("a display shows the picture's tones") {
 }
 
 TEST_CASE("the meter looks at the scene on the device, uploads nothing, and leaves the film as it is") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
     Session session(queue, mixed.prepared, camera_at(0), settings);
@@ -354,7 +354,7 @@ TEST_CASE("the meter looks at the scene on the device, uploads nothing, and leav
 }
 
 TEST_CASE("the meter shows what it showed when each look of it was a render of its own") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     const Prepared box(read_scene("cornell-box", {}, messages));
     RenderSettings settings;
@@ -372,7 +372,7 @@ TEST_CASE("the meter shows what it showed when each look of it was a render of i
 
 TEST_CASE(
     "seconds of each kind of ray are of the last call that renders, and of nothing that looks at the scene since") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
     settings.time_kinds = true;
@@ -390,7 +390,7 @@ TEST_CASE(
 }
 
 TEST_CASE("the share of hidden backs follows scene, camera and size") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene()), furnace(test::make_furnace_scene(0.5f));
     RenderSettings settings = queued_settings();
     const auto fresh = [&](const Prepared& scene, const Camera& camera) {
@@ -418,7 +418,7 @@ TEST_CASE("the share of hidden backs follows scene, camera and size") {
 }
 
 TEST_CASE("a look aside gives what a session of its own gives, and leaves the samples as they are") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings aside = queued_settings();
     aside.width = 5, aside.height = 4, aside.samples = 2, aside.aovs = kAovDepth | kAovIds, aside.path.max_depth = 0;
@@ -440,7 +440,7 @@ TEST_CASE("a look aside gives what a session of its own gives, and leaves the sa
 }
 
 TEST_CASE("camera rays' nodes and triangles are counted for each pixel") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     Session session(queue, mixed.prepared, camera_at(0), queued_settings());
     const std::vector<RayWork> work = session.count_camera_work();

@@ -59,7 +59,7 @@ struct Change {
 
 TEST_CASE("a structure on a device takes a change by what has changed, and rays meet what they meet in a fresh one") {
     Messages messages;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const std::vector<Ray> rays = rays_through_the_room();
     const Change changes[] = {
         {"nothing moves", [](Scene&) {}, {}, 0.02, false},
@@ -84,10 +84,10 @@ TEST_CASE("a structure on a device takes a change by what has changed, and rays 
          1,
          false},
     };
-    for (const WalkKind walk : {WalkKind::WhileWhile, WalkKind::SkipLinks, WalkKind::Wide8, WalkKind::Wide8Simd,
-                                WalkKind::Compressed, WalkKind::Kd}) {
-        Combination c = {.structure = StructureKind::Binned, .walk = walk};
-        if (walk == WalkKind::Kd) c.structure = StructureKind::KdMedian;
+    for (const TraversalKind traversal : {TraversalKind::WhileWhile, TraversalKind::SkipLinks, TraversalKind::Wide8,
+                                          TraversalKind::Wide8Simd, TraversalKind::Compressed, TraversalKind::Kd}) {
+        Combination c = {.structure = StructureKind::Binned, .traversal = traversal};
+        if (traversal == TraversalKind::Kd) c.structure = StructureKind::KdMedian;
         if (why_no_tracer(c, queue.is_cuda())) continue;
         CAPTURE(name_of(c));
         std::vector<Scene> scenes(1, scene_with_large_mesh());

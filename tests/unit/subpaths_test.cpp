@@ -5,8 +5,8 @@
 #include <string>
 
 #include "integrators/subpaths/particle_stages.h"
+#include "render/connect_to_camera.h"
 #include "render/filter_table.h"
-#include "render/see_vertex.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"
@@ -54,13 +54,13 @@ TEST_CASE("a vertex is seen where the camera's ray to it comes from") {
                 const float u = random.unit();
                 const Vec2 lens = {u, random.unit()};
                 const Ray ray = make_camera_ray(rays.view, {x, y}, lens);
-                SeenVertex seen;
-                REQUIRE(see_vertex(rays, ray.origin + distance * ray.direction, lens, seen));
+                CameraConnection seen;
+                REQUIRE(connect_to_camera(rays, ray.origin + distance * ray.direction, lens, seen));
                 CHECK(seen.raster.x == doctest::Approx(x).epsilon(1e-4));
                 CHECK(seen.raster.y == doctest::Approx(y).epsilon(1e-4));
                 CHECK(length(seen.from - ray.origin) < 1e-4f);
                 CHECK(length(seen.direction - ray.direction) < 1e-4f);
-                CHECK_FALSE(see_vertex(rays, ray.origin - distance * ray.direction, lens, seen)); // behind it
+                CHECK_FALSE(connect_to_camera(rays, ray.origin - distance * ray.direction, lens, seen)); // behind it
             }
         }
     }
@@ -69,15 +69,15 @@ TEST_CASE("a vertex is seen where the camera's ray to it comes from") {
 namespace {
 
 /// Mean radiance of what lies about the origin, looked at straight down from just above the floor.
-double seen_below(const Scene& scene, IntegratorKind integrator, uint32_t samples, float eye = 0.1f) {
+double seen_below(const Scene& scene, IntegratorKind integrator, uint32_t samples, float camera = 0.1f) {
     RenderSettings settings;
     settings.width = settings.height = 8;
     settings.samples = samples;
     settings.integrator = integrator;
     settings.filter = PixelFilter::Box;
     settings.path.max_depth = 6;
-    Queue queue = test::queue_asked_for();
-    const RenderResult result = test::render(queue, scene, test::camera_down({0, eye, 0}, 0.2f), settings);
+    Queue queue = test::requested_queue();
+    const RenderResult result = test::render(queue, scene, test::camera_down({0, camera, 0}, 0.2f), settings);
     return test::mean_of(result.picture);
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("a light without size behind glass lights the floor, but for path trac
     CHECK(seen_below(scene, IntegratorKind::Bidirectional, 4096) == doctest::Approx(expected).epsilon(0.03));
 }
 
-TEST_CASE("particles do not show what is seen in a mirror; walks from both ends do") {
+TEST_CASE("particles do not show what is seen in a mirror; subpaths from both ends do") {
     Scene scene;
     test::add(scene, test::floor_at(0, 4), test::mirror());
     test::add(scene, test::sheet({0, 2, 0}, {4, 0, 0}, {0, 0, 4}),

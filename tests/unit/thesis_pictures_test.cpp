@@ -19,19 +19,19 @@ using namespace pertev;
 
 TEST_CASE("the point light of figure 3.3 has the intensity that the lamp of figure 3.4 has straight down") {
     const Scene hard = make_thesis_scene(ThesisScene::PointLight), soft = make_thesis_scene(ThesisScene::Box);
-    const auto lamp = std::ranges::find(soft.instances, "light", &Instance::name);
-    REQUIRE(lamp != soft.instances.end());
-    CHECK(hard.instances[static_cast<std::size_t>(lamp - soft.instances.begin())].is_hidden);
-    CHECK_FALSE(lamp->is_hidden);
+    const auto emitter = std::ranges::find(soft.instances, "light", &Instance::name);
+    REQUIRE(emitter != soft.instances.end());
+    CHECK(hard.instances[static_cast<std::size_t>(emitter - soft.instances.begin())].is_hidden);
+    CHECK_FALSE(emitter->is_hidden);
     CHECK(soft.lights.empty());
     REQUIRE(hard.lights.size() == 1);
-    const Mesh& mesh = soft.meshes[lamp->mesh];
+    const Mesh& mesh = soft.meshes[emitter->mesh];
     float area = 0;
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
         const Vec3 a = mesh.positions[mesh.indices[i]];
         area += 0.5f * length(cross(mesh.positions[mesh.indices[i + 1]] - a, mesh.positions[mesh.indices[i + 2]] - a));
     }
-    const Rgb emission = soft.materials[lamp->material].emission;
+    const Rgb emission = soft.materials[emitter->material].emission;
     CHECK(hard.lights[0].intensity.r == doctest::Approx(static_cast<double>(area * emission.r)).epsilon(1e-4));
     CHECK(hard.lights[0].intensity.b == doctest::Approx(static_cast<double>(area * emission.b)).epsilon(1e-4));
     CHECK(hard.lights[0].position.y == doctest::Approx(static_cast<double>(mesh.positions[0].y - 0.01f)));
@@ -132,7 +132,7 @@ TEST_CASE("no two pictures of the thesis are alike, none is black, and each says
 }
 
 TEST_CASE("pictures of the thesis have the same bytes by all stages at once, and on a GPU") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const std::vector<ThesisPicture>& in_loop = pictures_in_loop();
     const std::vector<ThesisPicture> at_once = all_pictures(queue, PathBody::Wavefront);
     for (std::size_t i = 0; i < in_loop.size(); ++i) {
@@ -166,7 +166,7 @@ TEST_CASE("patches are as many pixels high in small pictures as in full ones, wh
 }
 
 TEST_CASE("figure 3.7's panels come ever nearer to the solution that is smooth") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     ThesisPictures pictures(queue, small_picture(192, 144, 8));
     const auto panel = [&](const char* name) { return pictures.make(name, {}).image; };
     const Rgba8Image dark = panel("figure-3.7a"), ambient = panel("figure-3.7b"), flat = panel("figure-3.7c"),
@@ -185,7 +185,7 @@ TEST_CASE("figure 3.7's panels come ever nearer to the solution that is smooth")
 }
 
 TEST_CASE("figure 3.9's photons lie on surfaces, and the map blurs what final gathering shows") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     ThesisPictures pictures(queue, small_picture(256, 192, 8));
     const ThesisPicture dots = pictures.make("figure-3.9a", {}), map = pictures.make("figure-3.9b", {}),
                         gathered = pictures.make("figure-3.9c", {});
@@ -201,7 +201,7 @@ TEST_CASE("figure 3.9's photons lie on surfaces, and the map blurs what final ga
 }
 
 TEST_CASE("figure 3.10's caustic is brighter than thrice its surroundings") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     ThesisPictures pictures(queue, small_picture(256, 192, 16));
     const ThesisPicture dots = pictures.make("figure-3.10a", {}), shown = pictures.make("figure-3.10b", {});
     CHECK(shown.stats.samples == 16);
@@ -225,7 +225,7 @@ TEST_CASE("figure 3.10's caustic is brighter than thrice its surroundings") {
 
 TEST_CASE(
     "shadows are hard under a point light and soft under a lamp, and indirect light has neither lamp nor shadow") {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     const RenderSettings settings = small_picture(96, 72, 64);
     ThesisPictures pictures(queue, settings);
     // Shares of neighbours in a row of which one is at least 1.5 times as bright as the other, and of white.

@@ -23,7 +23,7 @@ ThesisReport full_thesis(const std::string& device) {
         for (const ThesisVariant& v : thesis_variants(device != "CPU")) {
             CombinationFigures c = {.combination = v.combination, .name = name_of(v.combination)};
             for (uint32_t set = 0; set < 3; ++set) {
-                c.runs.push_back({.set = set, .median_s = 0.01, .least_s = 0.01, .largest_s = 0.01});
+                c.runs.push_back({.set = set, .median_s = 0.01, .min_s = 0.01, .largest_s = 0.01});
                 if (!v.combination.options.is_exact()) c.runs.back().different = 40 + set;
             }
             report.combinations.push_back(c);

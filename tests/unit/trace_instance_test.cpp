@@ -1,12 +1,12 @@
 // Instances against the same triangles moved into world space by the test, in double: what transform_ray does to the
-// ray must not be seen in t. (tests/consistency compares walks bit for bit, but all of them move the ray alike.)
+// ray must not be seen in t. (tests/consistency compares traversals bit for bit, but all of them move the ray alike.)
 
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include "accel/builders/build_bvh.h"
-#include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/tlas.h"
 #include "math/transform.h"
 #include "tests/support/meshes.h"
 #include "trace/trace_any.h"
@@ -42,7 +42,7 @@ TEST_CASE("a hit on an instance has the t, u and v that it has on the moved tria
     test::Random random(9);
     for (const Transform& place : places) {
         const PlacedBvh placed[] = {{place, tree.bounds, 0, 5}};
-        const TopLevelBvh top = build_top_level_bvh(placed);
+        const Tlas top = build_tlas(placed);
         const SceneBvhView scene = {{}, top.nodes.data(), top.instances.data(), &view, top.root, top.reach, top.growth};
         std::vector<BvhTriangle> baked = test::triangles_of(torus, 5);
         for (BvhTriangle& triangle : baked) {

@@ -10,7 +10,7 @@
 
 using namespace pertev;
 
-TEST_CASE("each --build names a structure, which all default tracers of both devices walk") {
+TEST_CASE("each --build names a structure, which all default tracers of both devices traverse") {
     CHECK(structure_of(TreeBuild::Fast) == StructureKind::Binned);
     CHECK(structure_of(TreeBuild::Balanced) == StructureKind::SpatialSplits);
     CHECK(structure_of(TreeBuild::Best) == StructureKind::SpatialReinsertion);
@@ -35,9 +35,9 @@ TEST_CASE("a scene is prepared with the trees that most of its rays go through, 
     CHECK(prepare_scene(scene, options, messages).structures->builder() == *builder_of(structure_of(kDefaultBuild)));
     options.tracers = default_tracers(false, TreeBuild::Fast);
     CHECK(prepare_scene(scene, options, messages).structures->builder() == BvhBuilder::Binned);
-    options.tracers->bounce = {.structure = StructureKind::Ploc, .walk = WalkKind::WhileWhile};
+    options.tracers->bounce = {.structure = StructureKind::Ploc, .traversal = TraversalKind::WhileWhile};
     CHECK(prepare_scene(scene, options, messages).structures->builder() == BvhBuilder::Ploc);
-    options.tracers->bounce = {.structure = StructureKind::Octree, .walk = WalkKind::Octree};
+    options.tracers->bounce = {.structure = StructureKind::Octree, .traversal = TraversalKind::Octree};
     CHECK(prepare_scene(scene, options, messages).structures->builder() == BvhBuilder::Binned);
     options.builder = BvhBuilder::Sweep;
     CHECK(prepare_scene(scene, options, messages).structures->builder() == BvhBuilder::Sweep);

@@ -209,9 +209,9 @@ TEST_CASE("seeds of repetitions differ, and the reference has none of them") {
         TransportSettings settings;
         settings.picture.path.seed = seed;
         std::set<uint32_t> seeds;
-        for (uint32_t i = 0; i < kMostRepetitions; ++i) seeds.insert(repetition_seed(settings, i));
+        for (uint32_t i = 0; i < kMaxRepetitions; ++i) seeds.insert(repetition_seed(settings, i));
         seeds.insert({reference_seed(settings, 0), reference_seed(settings, 1)});
-        CHECK(seeds.size() == kMostRepetitions + 2);
+        CHECK(seeds.size() == kMaxRepetitions + 2);
     }
 }
 
@@ -222,12 +222,12 @@ TEST_CASE("each preset is a scene of the program, and all light is what three in
         CHECK(test::has("cornell-box caustic blind door cove many-lights", preset.scene));
     }
     CHECK(find_named(the_record().presets, "kitchen") == nullptr);
-    Scene lamps, glass;
+    Scene emitters, glass;
     for (const std::string& name : transport_integrators()) {
         CAPTURE(name);
         const bool finds_all = name == "path" || name == "hybrid" || name == "bidirectional";
-        CHECK((light_of(name, lamps) == "all") == finds_all);
-        CHECK_FALSE(light_of(name, lamps).empty());
+        CHECK((light_of(name, emitters) == "all") == finds_all);
+        CHECK_FALSE(light_of(name, emitters).empty());
     }
     glass.lights.emplace_back();
     glass.materials.push_back({{.kind = MaterialKind::Dielectric, .roughness = 0}});
@@ -235,7 +235,7 @@ TEST_CASE("each preset is a scene of the program, and all light is what three in
     glass.instances.back().material = 0;
     CHECK(light_of("path", glass) == "all but LS+D of point lights");
     CHECK(default_reference_integrator(glass) == "bidirectional");
-    CHECK(default_reference_integrator(lamps) == "path");
+    CHECK(default_reference_integrator(emitters) == "path");
 }
 
 TEST_CASE("the report on light transport has what was measured, and what was not with its reason") {

@@ -58,13 +58,13 @@ TEST_CASE("the tree of a sum depends on the count alone") {
 
 TEST_CASE("terms of a sum are asked for once each and in order") {
     for (uint64_t count = 0; count < 70; ++count) {
-        std::vector<uint64_t> asked;
+        std::vector<uint64_t> requested;
         const uint64_t sum = tree_sum(count, [&](uint64_t i) {
-            asked.push_back(i);
+            requested.push_back(i);
             return i + 1;
         });
-        REQUIRE(asked.size() == count);
-        for (uint64_t i = 0; i < count; ++i) CHECK(asked[i] == i);
+        REQUIRE(requested.size() == count);
+        for (uint64_t i = 0; i < count; ++i) CHECK(requested[i] == i);
         CHECK(sum == count * (count + 1) / 2);
     }
 }

@@ -41,7 +41,7 @@ TEST_CASE("unit/vertex_numbers: bits of eight words are reversed as those of one
 }
 
 TEST_CASE("unit/vertex_numbers: a vertex's numbers, drawn for eight paths, are those drawn when they are asked for") {
-    const DrawWhenAsked one;
+    const DrawOnDemand one;
     for (const SamplerKind kind : kKinds) {
         for (const uint32_t seed : {0u, 7u}) {
             const PathSettings settings = settings_of(kind, seed);

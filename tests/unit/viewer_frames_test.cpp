@@ -15,7 +15,7 @@ using namespace pertev;
 namespace {
 
 struct Watched {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     MovingScene scene{test::make_mixed_scene(), std::nullopt, {}, messages};
     FrameRequest request;

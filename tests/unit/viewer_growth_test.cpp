@@ -28,7 +28,7 @@ std::vector<float> scales(double full_s, float shown, bool has_whole) {
 }
 
 struct WatchedGrowth {
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     Messages messages;
     MovingScene scene{test::make_mixed_scene(), std::nullopt, {}, messages};
     FrameRequest request;

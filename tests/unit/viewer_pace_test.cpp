@@ -402,11 +402,11 @@ TEST_CASE("where the renderer takes nothing, whoever steers is dropped before th
 TEST_CASE("there is room for so many clients, and those without a hello are dropped") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
-    for (uint32_t i = 1; i <= Audience::kMostClients; ++i) CHECK(audience.open(i, 0));
+    for (uint32_t i = 1; i <= Audience::kMaxClients; ++i) CHECK(audience.open(i, 0));
     CHECK_FALSE(audience.open(99, 0));
     audience.said(3, kHello, 0);
     CHECK(audience.look(5).empty());
-    CHECK(audience.look(11).size() == Audience::kMostClients - 1);
+    CHECK(audience.look(11).size() == Audience::kMaxClients - 1);
     audience.close(1, 11);
     CHECK(audience.open(99, 11));
 }

@@ -99,15 +99,15 @@ TEST_CASE("pictures of the movement scatter less, until somebody chooses a depth
     CHECK(state.picture.path.max_depth == 9);
 }
 
-TEST_CASE("structures and walks that go together are chosen together, for all kinds of ray") {
+TEST_CASE("structures and traversals that go together are chosen together, for all kinds of ray") {
     ViewState state;
     CHECK(set_view_setting(state, "structure", "octree") == "");
-    CHECK(state.picture.tracers->camera.walk == WalkKind::Octree);
+    CHECK(state.picture.tracers->camera.traversal == TraversalKind::Octree);
     CHECK(state.picture.tracers->shadow == state.picture.tracers->camera);
     CHECK(set_view_setting(state, "walk", "while-while") == "");
     CHECK(builder_of(state.picture.tracers->camera.structure).has_value());
     CHECK(set_view_setting(state, "structure", "sbvh") == "");
-    CHECK(state.picture.tracers->bounce.walk == WalkKind::WhileWhile);
+    CHECK(state.picture.tracers->bounce.traversal == TraversalKind::WhileWhile);
     CHECK(set_view_setting(state, "rta", "off") == "");
     CHECK_FALSE(state.picture.tracers->camera.options.rta);
 }

@@ -135,7 +135,7 @@ TEST_CASE("keys that are taken lie in the order of their times, and the camera g
     CHECK(view.camera(lens).world_from_camera == second.world_from_camera); // it stays where it is
     view.go_home(2.0, lens);
     CHECK(view.camera(lens).world_from_camera == start.camera.world_from_camera);
-    for (std::size_t i = 0; i < ViewCamera::kMostKeys; ++i) CHECK(view.add_key(static_cast<float>(i), lens));
+    for (std::size_t i = 0; i < ViewCamera::kMaxKeys; ++i) CHECK(view.add_key(static_cast<float>(i), lens));
     CHECK_FALSE(view.add_key(1e6f, lens));
     CHECK(view.add_key(3, lens));
 }

@@ -29,7 +29,7 @@ void add_quad(Scene& scene, Vec3 middle, Vec3 front, float half, uint32_t materi
 }
 
 /// A cube of 1 m, and a lamp of 2 cm on its top that shines upwards.
-Scene make_body_with_lamp() {
+Scene make_body_with_emitter() {
     Scene scene;
     scene.materials.push_back({{}, "body"});
     scene.materials.push_back({{.emission = grey(50)}, "lamp"});
@@ -68,7 +68,7 @@ void add_emission_texture(Scene& scene, uint8_t value) {
 }
 
 TEST_CASE("a small lamp that lights next to nothing gets a sky in pictures, and in nothing else") {
-    const Scene scene = make_body_with_lamp();
+    const Scene scene = make_body_with_emitter();
     CHECK(shares_seen(scene).lit < 0.01);
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
     CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::None);

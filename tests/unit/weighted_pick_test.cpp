@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "math/sampler.h"
-#include "restir/weighted_pick.h"
+#include "restir/ris_selection.h"
 
 using namespace pertev;
 
@@ -16,7 +16,7 @@ namespace {
 std::vector<double> shares_picked(const std::vector<float>& weights, uint32_t draws) {
     std::vector<double> shares(weights.size());
     for (uint32_t k = 0; k < draws; ++k) {
-        WeightedPick pick = {(static_cast<float>(k) + 0.5f) / static_cast<float>(draws)};
+        RisSelection pick = {(static_cast<float>(k) + 0.5f) / static_cast<float>(draws)};
         std::size_t picked = weights.size();
         for (std::size_t i = 0; i < weights.size(); ++i) {
             if (pick.takes(weights[i])) picked = i;
@@ -40,7 +40,7 @@ TEST_CASE("each item is picked as often as its share of all weights says") {
 }
 
 TEST_CASE("items of no weight, or of one that is no number, are never picked and count for nothing") {
-    WeightedPick pick = {0.5f};
+    RisSelection pick = {0.5f};
     CHECK_FALSE(pick.takes(0));
     CHECK_FALSE(pick.takes(-1));
     CHECK_FALSE(pick.takes(float_of(0x7fc00000u)));
@@ -55,7 +55,7 @@ TEST_CASE("resampled draws estimate an integral without bias") {
     constexpr uint32_t kDraws = 1u << 16, kCandidates = 4;
     double mean = 0;
     for (uint32_t draw = 0; draw < kDraws; ++draw) {
-        WeightedPick pick = {sample_1d(SamplerKind::Independent, {draw, 0, 1}, 100)};
+        RisSelection pick = {sample_1d(SamplerKind::Independent, {draw, 0, 1}, 100)};
         float x = 0;
         for (uint32_t k = 0; k < kCandidates; ++k) {
             const float candidate = sample_1d(SamplerKind::Independent, {draw, k, 1}, 200);

@@ -24,7 +24,7 @@ RenderResult one_ray(const Scene& scene, Vec3 eye, uint32_t depth, IntegratorKin
     settings.ambient = Rgb{0, 0, 0};
     settings.path.max_depth = depth;
     settings.body = body;
-    Queue queue = test::queue_asked_for();
+    Queue queue = test::requested_queue();
     return test::render(queue, scene, test::camera_down(eye, 0.01f), settings);
 }
 

@@ -23,7 +23,7 @@ public:
     EveryCollapse(const Bvh& bvh, const CollapseSettings& settings, int width)
         : bvh_(bvh), settings_(settings), width_(width), fate_(bvh.nodes.size()) {}
 
-    float least_cost() {
+    float min_cost() {
         float least = kInfinity;
         uint64_t ways = 1;
         for (std::size_t i = 0; i < bvh_.nodes.size(); ++i) ways *= 3;
@@ -85,7 +85,7 @@ private:
 template <int kWidth>
 void check_least_cost(const Bvh& bvh, const CollapseSettings& settings) {
     const WideBvh<kWidth> wide = make_wide_bvh<kWidth>(bvh, settings);
-    CHECK(wide.sah_cost == doctest::Approx(EveryCollapse(bvh, settings, kWidth).least_cost()).epsilon(1e-5));
+    CHECK(wide.sah_cost == doctest::Approx(EveryCollapse(bvh, settings, kWidth).min_cost()).epsilon(1e-5));
 }
 
 const CollapseSettings kSettings[] = {{},
@@ -136,7 +136,7 @@ TEST_CASE("wide trees of all nasty meshes are sound and lose no triangle") {
     }
 }
 
-TEST_CASE("a wide tree walks its binary tree's own triangles by the counts in its nodes") {
+TEST_CASE("a wide tree traverses its binary tree's own triangles by the counts in its nodes") {
     const Bvh bvh = build_bvh(triangles_of(make_torus(30, 20)));
     const std::vector<WideBvhNode<8>> nodes = make_wide_bvh<8>(bvh, kSimdCollapse).nodes;
     std::vector<int> seen(bvh.triangles.size());

@@ -8,10 +8,10 @@
 
 #include "accel/builders/build_bvh.h"
 #include "accel/bvh/woop_bvh.h"
-#include "tests/support/check_walk.h"
+#include "tests/support/check_traversal.h"
 #include "tests/support/meshes.h"
 #include "tests/support/nasty_meshes.h"
-#include "trace/binary/while_while_walk.h"
+#include "trace/binary/while_while_traversal.h"
 #include "trace/intersect/woop_tests.h"
 
 using namespace pertev;
@@ -98,7 +98,7 @@ TEST_CASE("triangles without area, too small and too large are never hit") {
     }
 }
 
-TEST_CASE("by unit triangles a walk finds the surfaces that brute force finds, but for a few rays at edges") {
+TEST_CASE("by unit triangles a traversal finds the surfaces that brute force finds, but for a few rays at edges") {
     for (const NastyMesh& c : nasty_meshes()) {
         if (std::string(c.name).find("soup") != 0 || c.extent != 1) continue; // no ties
         CAPTURE(std::string(c.name));
@@ -109,9 +109,9 @@ TEST_CASE("by unit triangles a walk finds the surfaces that brute force finds, b
         const std::vector<Hit> expected = hits_by_brute_force(c.triangles, rays, AcceptAll{});
         uint64_t differ = 0, hits = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            using Walk = WhileWhileWalk<WalkOptions{.tests = TestKind::Woop}>;
+            using Traversal = WhileWhileTraversal<TraversalOptions{.tests = TestKind::Woop}>;
             Hit hit;
-            trace_closest<Walk>(SingleTree<WoopBvhView>{view}, rays[i], AcceptAll{}, hit);
+            trace_closest<Traversal>(SingleTree<WoopBvhView>{view}, rays[i], AcceptAll{}, hit);
             differ += hit.instance != expected[i].instance || hit.primitive != expected[i].primitive ? 1 : 0;
             hits += hit.instance != kNoHit ? 1 : 0;
         }

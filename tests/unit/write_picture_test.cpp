@@ -124,10 +124,10 @@ TEST_CASE("what a camera's metadata says places that camera again") {
     source.up = Vec3{0, 2, 0};
     source.target = DoubleVec3{1, 2, 3};
     source.camera.projection = Projection::Orthographic;
-    const ExrMetadata asked_for = camera_metadata(source);
-    CHECK(text_of(asked_for, "pertev.up") == "0,2,0");
-    CHECK(text_of(asked_for, "pertev.target") == "1,2,3");
-    CHECK(text_of(asked_for, "pertev.projection") == "orthographic");
+    const ExrMetadata requested = camera_metadata(source);
+    CHECK(text_of(requested, "pertev.up") == "0,2,0");
+    CHECK(text_of(requested, "pertev.target") == "1,2,3");
+    CHECK(text_of(requested, "pertev.projection") == "orthographic");
 }
 
 TEST_CASE("a record says of scene and camera what they were opened and chosen by") {

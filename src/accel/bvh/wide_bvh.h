@@ -58,7 +58,7 @@ WideBvhView<kWidth> view_of(const WideBvh<kWidth>& bvh) {
 template <int kWidth>
 WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings = {});
 
-/// Parameters for the CPU's SIMD unit (trace/wide/walk_wide.h): eight boxes at a time, and four triangles for about
+/// Parameters for the CPU's SIMD unit (trace/wide/traverse_wide.h): eight boxes at a time, and four triangles for about
 /// twice the cost of a node's boxes.
 inline constexpr int kWideChildren = 8;
 inline constexpr CollapseSettings kSimdCollapse = {.max_leaf = 4, .triangles_at_once = 4, .triangle_cost = 2};

@@ -39,7 +39,7 @@ private:
         while (!pending.empty()) { // in the order in which nodes and references are stored
             const Pending at = pending.back();
             pending.pop_back();
-            if (at.node != nodes++) return fmt::format("node {} is not where the walk expects it", at.node);
+            if (at.node != nodes++) return fmt::format("node {} is not where the traversal expects it", at.node);
             if (at.node >= tree_.nodes.size()) return fmt::format("a link to node {}", at.node);
             const KdTreeNode& node = tree_.nodes[at.node];
             depth = std::max(depth, at.depth);

@@ -102,7 +102,7 @@ HD inline void search_points(const PointOctreeView& tree, Vec3 at, Found& found)
 
 /// Maximum host memory, in bytes, that build_point_octree needs for `spheres` spheres: the tree, and two index lists
 /// during the build.
-inline std::size_t most_octree_bytes(uint64_t spheres) {
+inline std::size_t max_octree_bytes(uint64_t spheres) {
     return spheres * (2 * sizeof(PointOctreeNode) + sizeof(Sphere) + 3 * sizeof(uint32_t));
 }
 

@@ -9,9 +9,9 @@ namespace fs = std::filesystem;
 namespace pertev {
 namespace {
 
-constexpr std::size_t kMostEntries = 20000; // total for all folders
+constexpr std::size_t kMaxEntries = 20000; // total for all folders
 constexpr std::size_t kMostLevels = 16;
-constexpr std::size_t kMostNamed = 20;
+constexpr std::size_t kMaxNamed = 20;
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
@@ -73,7 +73,7 @@ void FolderListing::list_level(std::vector<fs::path>& level, std::size_t folder_
     for (const fs::path& folder : level) {
         std::error_code fault;
         for (fs::directory_iterator at(folder, fault), end; !fault && at != end; at.increment(fault)) {
-            if (entries_++ == kMostEntries) return level.clear();
+            if (entries_++ == kMaxEntries) return level.clear();
             if (at->path().filename().native().starts_with('.')) continue;
             std::error_code unknown; // a file whose kind is unknown is skipped
             if (at->is_directory(unknown) && !at->is_symlink(unknown)) next.push_back(at->path());
@@ -119,7 +119,7 @@ std::vector<fs::path> FolderListing::best_fits(const fs::path& name, const fs::p
 
 bool FolderListing::may_name_another() {
     const std::lock_guard lock(mutex_);
-    return named_++ < kMostNamed;
+    return named_++ < kMaxNamed;
 }
 
 } // namespace pertev

@@ -20,18 +20,18 @@ void set_cone(float inner, float outer, Light& light) {
 /// Angles out of range are brought into it: the lamp is there with the cone that comes nearest.
 void read_cone(const JsonValue& spot, Light& light, Messages& messages) {
     constexpr float widest = kPi / 2;
-    const float asked_inner = spot.float_or("innerConeAngle", 0),
-                asked_outer = spot.float_or("outerConeAngle", kPi / 4);
-    const float outer = asked_outer > 0 ? min(asked_outer, widest) : kNarrowestCone;
-    const float inner = clamp(asked_inner, 0.0f, outer);
-    if (asked_inner == asked_outer && inner == asked_inner && outer == asked_outer) {
+    const float requested_inner = spot.float_or("innerConeAngle", 0),
+                requested_outer = spot.float_or("outerConeAngle", kPi / 4);
+    const float outer = requested_outer > 0 ? min(requested_outer, widest) : kNarrowestCone;
+    const float inner = clamp(requested_inner, 0.0f, outer);
+    if (requested_inner == requested_outer && inner == requested_inner && outer == requested_outer) {
         messages.warn(
             {spot.place(),
              fmt::format("inner and outer cone angle are both {}; expected inner < outer, the edge is sharp", inner)});
-    } else if (inner != asked_inner || outer != asked_outer) {
+    } else if (inner != requested_inner || outer != requested_outer) {
         messages.warn({spot.place(),
                        fmt::format("cone angles {} and {}; expected 0 <= inner < outer <= pi / 2, {} and {} are taken",
-                                   asked_inner, asked_outer, inner, outer)});
+                                   requested_inner, requested_outer, inner, outer)});
     }
     set_cone(inner, outer, light);
 }

@@ -119,7 +119,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             messages.leave_out({node.place(), "the camera is squashed to nothing and left out"});
         }
     };
-    const auto place_lamp = [&](const JsonValue& node, uint32_t index, const Transform& world_from_node) {
+    const auto place_emitter = [&](const JsonValue& node, uint32_t index, const Transform& world_from_node) {
         const std::optional<JsonValue> extension = node.extension("KHR_lights_punctual");
         if (!extension) return;
         Light light = read_light(document.item("lights", extension->at("light")), messages);
@@ -147,7 +147,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         attempt("camera", [&] {
             if (const auto reference = node.find("camera")) place_camera(node, *reference, index, world_from_node);
         });
-        attempt("light", [&] { place_lamp(node, index, world_from_node); });
+        attempt("light", [&] { place_emitter(node, index, world_from_node); });
     }
     if (!scene.instances.empty()) return;
     scene.no_instances = describe_nothing(document, nodes);

@@ -13,13 +13,13 @@
 namespace pertev::gltf {
 namespace {
 
-constexpr float kDielectric = 0.04f;     // reflectance of what is no metal, for the conversion
-constexpr float kMostDielectric = 0.16f; // reflectance of an index of refraction of 2.33
-constexpr float kGrey = 0.02f;           // channels that differ by no more count as equal
+constexpr float kDielectric = 0.04f;    // reflectance of what is no metal, for the conversion
+constexpr float kMaxDielectric = 0.16f; // reflectance of an index of refraction of 2.33
+constexpr float kGrey = 0.02f;          // channels that differ by no more count as equal
 
 float brightness(Rgb c) { return sqrt(0.299f * c.r * c.r + 0.587f * c.g * c.g + 0.114f * c.b * c.b); }
 
-float least_component(Rgb c) { return min(c.r, min(c.g, c.b)); }
+float min_component(Rgb c) { return min(c.r, min(c.g, c.b)); }
 
 /// The metallic value that preserves both brightnesses.
 float solve_metallic(float diffuse, float specular, float one_minus_specular) {
@@ -127,7 +127,7 @@ MetallicRoughness metallic_roughness_of(const SpecularGlossiness& from, bool& is
     const Rgb diffuse = within_0_and_1(from.diffuse), specular = within_0_and_1(from.specular);
     to.roughness = 1 - clamp(from.glossiness, 0.0f, 1.0f);
     const float reflectance = max_component(specular);
-    is_exact = reflectance <= kMostDielectric && reflectance - least_component(specular) <= kGrey;
+    is_exact = reflectance <= kMaxDielectric && reflectance - min_component(specular) <= kGrey;
     if (is_exact) {
         to.base_color = diffuse;
         to.ior = (1 + sqrt(reflectance)) / (1 - sqrt(reflectance));

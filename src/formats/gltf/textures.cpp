@@ -33,7 +33,7 @@ Wrap read_wrap(const JsonValue& sampler, std::string_view key) {
 constexpr std::string_view kOtherImages[] = {"KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif",
                                              "MSFT_texture_dds"};
 
-constexpr float kMostTransform = 0x1p39f;
+constexpr float kMaxTransform = 0x1p39f;
 
 // The order is translation * rotation * scale. The rotation's sign is that of the extension's words, pictures and test
 // model (counter-clockwise in u right, v down); the GLSL in its text turns the other way (KhronosGroup/glTF #1563).
@@ -42,7 +42,7 @@ void read_transform(const JsonValue& transform, TextureRef& texture) {
     const std::array<float, 2> scale = transform.floats_or<2>("scale", {1, 1});
     const float rotation = transform.float_or("rotation", 0);
     for (const float number : {offset[0], offset[1], scale[0], scale[1]}) {
-        if (abs(number) > kMostTransform) throw transform.error(fmt::format("{}; expected at most 2^39", number));
+        if (abs(number) > kMaxTransform) throw transform.error(fmt::format("{}; expected at most 2^39", number));
     }
     const float s = sin(rotation), c = cos(rotation);
     texture.m00 = c * scale[0];

@@ -8,14 +8,14 @@
 namespace pertev {
 
 void decode_vertex_colors(std::vector<Vec4>& colors, const std::string& file, Messages& messages) {
-    constexpr float kLeastByte = 2;
+    constexpr float kMinByte = 2;
     float greatest = 0, greatest_alpha = 0;
     for (const Vec4& c : colors) {
         if (c.w == kNoVertexColor.w) continue;
         greatest = max(max(greatest, c.x), max(c.y, c.z)); // NaN, which is less than nothing, is passed over
         greatest_alpha = max(greatest_alpha, c.w);
     }
-    const bool are_bytes = greatest >= kLeastByte, is_alpha_byte = greatest_alpha >= kLeastByte;
+    const bool are_bytes = greatest >= kMinByte, is_alpha_byte = greatest_alpha >= kMinByte;
     if (are_bytes) {
         messages.note({Place{file}, fmt::format("vertex colours up to {} are taken as colours of 0 to 255", greatest)});
     }

@@ -259,7 +259,7 @@ public:
         if (!join_groups(false)) {
             messages_.note(
                 {Place{file_}, fmt::format("more than {} objects and groups: faces are put together by material alone",
-                                           kMostObjGroups)});
+                                           kMaxObjGroups)});
             join_groups(true);
         }
         join_colors();
@@ -367,7 +367,7 @@ private:
             for (RawGroup& group : parser.groups) {
                 if (by_material_alone) group.key.object = group.key.group = {};
                 const auto [found, is_new] = numbers.try_emplace(group.key, groups_.size());
-                if (is_new && groups_.size() == kMostObjGroups && !by_material_alone) return false;
+                if (is_new && groups_.size() == kMaxObjGroups && !by_material_alone) return false;
                 if (is_new) groups_.emplace_back();
                 groups_[found->second].push_back(&group);
             }

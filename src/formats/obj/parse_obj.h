@@ -30,7 +30,7 @@ using ObjCorner = VertexKey;
 
 /// Maximum number of separate objects and groups (with their materials); in a file with more, faces are grouped only
 /// by material.
-inline constexpr std::size_t kMostObjGroups = std::size_t(1) << 16;
+inline constexpr std::size_t kMaxObjGroups = std::size_t(1) << 16;
 
 struct ObjGroup {
     std::string name;               // o and g, separated by a slash if both are given and differ; or empty

@@ -50,7 +50,7 @@ public:
     void set_number(uint64_t number) { number_ = number; }
 
     /// Minimum number of bytes of a value: in text a digit and a space.
-    std::size_t least_size(PlyType type) const { return format_ == PlyFormat::Ascii ? 2 : size_of(type); }
+    std::size_t min_size(PlyType type) const { return format_ == PlyFormat::Ascii ? 2 : size_of(type); }
 
     /// Throws unless `count` items of at least `least` bytes each may still follow.
     void expect(uint64_t count, std::size_t least, const char* what) const {
@@ -85,7 +85,7 @@ public:
             return 0;
         }
         if (!is_count) throw fault("a list's count is not within 0 and 2^32 - 1");
-        expect(whole, least_size(property.type), "entries of a list");
+        expect(whole, min_size(property.type), "entries of a list");
         return whole;
     }
     /// Whether the rest of this line is invalid, up to end_element().

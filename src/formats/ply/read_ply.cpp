@@ -64,8 +64,7 @@ public:
             body_.set_place(element.name, 0);
             if (element.properties.empty() && element.name != "vertex") continue; // takes no bytes, whatever its count
             std::size_t least = 0;
-            for (const PlyProperty& p : element.properties)
-                least += body_.least_size(p.is_list ? p.count_type : p.type);
+            for (const PlyProperty& p : element.properties) least += body_.min_size(p.is_list ? p.count_type : p.type);
             try {
                 const bool may_be_cut_off = element.name == "face" || element.name == "tristrips";
                 if (!may_be_cut_off) body_.expect(element.count, std::max<std::size_t>(least, 1), "elements");

@@ -5,60 +5,63 @@
 // camera. A light path with k scatterings is found by k + 2 techniques, each weighted by MIS.
 //
 // Sources: Lafortune, Willems, "Bi-Directional Path Tracing", Compugraphics 1993; Veach, "Robust Monte Carlo Methods
-// for Light Transport Simulation", 1997, chapter 10. Weights: integrators/subpaths/walk_memory.h.
+// for Light Transport Simulation", 1997, chapter 10. Weights: integrators/subpaths/subpath_memory.h.
 //
 // It finds all light that path tracing finds, L(D|G|S)*E, with less noise if light reaches the visible surfaces
 // through narrow paths. Neither finds a point light that is seen only through clear glass or mirrors, because L S* D
 // S* E then has no vertex to sample.
 
-#include "integrators/bidirectional/eye_stages.h"
-#include "integrators/subpaths/run_walks.h"
+#include "integrators/bidirectional/camera_subpath_stages.h"
+#include "integrators/subpaths/run_subpaths.h"
 
 namespace pertev {
 
 struct BothDirections {
-    static constexpr bool kIsJoined = true;
-    static WalkRoom room(const SubpathSettings& settings, uint32_t walks) {
+    static constexpr bool kIsConnected = true;
+    static SubpathRoom room(const SubpathSettings& settings, uint32_t subpaths) {
         const uint32_t kept = settings.max_depth > 1 ? settings.max_depth - 1 : 1;
-        return {walks, kept, kept < kJoinedAtOnce ? kept : kJoinedAtOnce};
+        return {subpaths, kept, kept < kConnectedAtOnce ? kept : kConnectedAtOnce};
     }
 
-    template <class Way>
-    static void render(Way& way, const WalkJob& job) {
-        run_particles(way, job);
-        const WalksView& walks = job.walks;
+    template <class Schedule>
+    static void render(Schedule& schedule, const SubpathJob& job) {
+        run_particles(schedule, job);
+        const SubpathsView& subpaths = job.subpaths;
         const uint32_t depth = job.scene.settings.max_depth;
-        way.run("begin_walks", 1, BeginWalks{walks.counts, job.count});
-        way.run("begin_eyes", job.count, BeginEyes{job.scene, walks, job.samples, job.first});
-        way.begin_rounds(job.count);
-        for (uint32_t round = 0; round <= depth && way.has_rays_left(walks.counts); ++round) {
-            with_known(job.scene.picture.scene.known,
-                       [&]<MaterialsKnown kKnown>() { run_round<kKnown>(way, job, round); });
+        schedule.run("begin_subpaths", 1, BeginSubpaths{subpaths.counts, job.count});
+        schedule.run("begin_camera_subpaths", job.count,
+                     BeginCameraSubpaths{job.scene, subpaths, job.samples, job.first});
+        schedule.begin_rounds(job.count);
+        for (uint32_t round = 0; round <= depth && schedule.has_rays_left(subpaths.counts); ++round) {
+            with_variant(job.scene.picture.scene.variant,
+                         [&]<ShadingVariant kVariant>() { run_round<kVariant>(schedule, job, round); });
         }
     }
 
 private:
-    template <MaterialsKnown kKnown, class Way>
-    static void run_round(Way& way, const WalkJob& job, uint32_t round) {
-        const WalksView& walks = job.walks;
-        const uint32_t most = way.most_rays(), depth = job.scene.settings.max_depth;
-        const WorkCount rays = {most, &walks.counts->rays};
-        way.find_hits(round == 0 ? RayKind::Camera : RayKind::Bounce, job, rays, round);
-        way.run("shade_eyes", rays, ShadeEyes<kKnown>{job.scene, walks, job.film, round});
-        add_connections(way, job, most, kJoinedAtOnce);
-        for (uint32_t first = 0; round + first + 2 <= depth; first += kJoinedAtOnce) {
-            const uint32_t pairs = most * kJoinedAtOnce;
-            way.run("join_walks", {pairs, &walks.counts->pairs}, JoinWalks<kKnown>{job.scene, walks, first, round});
-            add_connections(way, job, pairs, kJoinedAtOnce);
+    template <ShadingVariant kVariant, class Schedule>
+    static void run_round(Schedule& schedule, const SubpathJob& job, uint32_t round) {
+        const SubpathsView& subpaths = job.subpaths;
+        const uint32_t most = schedule.max_rays(), depth = job.scene.settings.max_depth;
+        const WorkCount rays = {most, &subpaths.counts->rays};
+        schedule.find_hits(round == 0 ? RayKind::Camera : RayKind::Bounce, job, rays, round);
+        schedule.run("shade_camera_subpaths", rays,
+                     ShadeCameraSubpaths<kVariant>{job.scene, subpaths, job.film, round});
+        add_connections(schedule, job, most, kConnectedAtOnce);
+        for (uint32_t first = 0; round + first + 2 <= depth; first += kConnectedAtOnce) {
+            const uint32_t pairs = most * kConnectedAtOnce;
+            schedule.run("connect_subpaths", {pairs, &subpaths.counts->pairs},
+                         ConnectSubpaths<kVariant>{job.scene, subpaths, first, round});
+            add_connections(schedule, job, pairs, kConnectedAtOnce);
         }
-        way.run("count_walks", 1, CountWalks{walks.counts, true, 0});
+        schedule.run("count_subpaths", 1, CountSubpaths{subpaths.counts, true, 0});
     }
-    template <class Way>
-    static void add_connections(Way& way, const WalkJob& job, uint32_t most, uint32_t joined) {
-        const WorkCount asked = {most, &job.walks.counts->asked};
-        way.find_connections(job, asked);
-        way.run("add_connections", asked, AddConnections{job.walks, job.film});
-        way.run("count_walks", 1, CountWalks{job.walks.counts, false, joined});
+    template <class Schedule>
+    static void add_connections(Schedule& schedule, const SubpathJob& job, uint32_t most, uint32_t connected) {
+        const WorkCount connections = {most, &job.subpaths.counts->connections};
+        schedule.find_connections(job, connections);
+        schedule.run("add_connections", connections, AddConnections{job.subpaths, job.film});
+        schedule.run("count_subpaths", 1, CountSubpaths{job.subpaths.counts, false, connected});
     }
 };
 

@@ -1,6 +1,6 @@
 #include "integrators/bidirectional/bidirectional.h"
-#include "integrators/subpaths/walks_integrator.h"
+#include "integrators/subpaths/subpath_integrator.h"
 
 namespace pertev {
-template class WalksIntegrator<BothDirections>;
+template class SubpathIntegrator<BothDirections>;
 } // namespace pertev

@@ -9,13 +9,13 @@
 namespace pertev {
 
 struct Cast {
-    static constexpr uint32_t kMostBranches = 0; // continuation rays per vertex
+    static constexpr uint32_t kMaxBranches = 0; // continuation rays per vertex
     static constexpr bool kHasShutter = true;
 
     /// One for each point, spot and directional light: hard shadows.
     HD static uint32_t shadow_rays(const LightSetView& lights) { return lights.punctual_count; }
-    HD static bool ask_for_light(const TreeVertex& vertex, uint32_t number, TreeShadowRay& shadow) {
-        return vertex.ask_for_punctual_light(number, shadow);
+    HD static bool sample_direct_light(const TreeVertex& vertex, uint32_t number, TreeShadowRay& shadow) {
+        return vertex.make_punctual_shadow_ray(number, shadow);
     }
     HD static void follow(const TreeVertex& vertex) { vertex.add_ambient(); }
 

@@ -15,13 +15,13 @@
 namespace pertev {
 
 struct Distributed {
-    static constexpr uint32_t kMostBranches = 3;
+    static constexpr uint32_t kMaxBranches = 3;
     static constexpr bool kHasShutter = true;
     static constexpr LeastWeight kLeast = {0x1p-4f, WeakRays::ByChance};
 
     HD static uint32_t shadow_rays(const LightSetView&) { return 1; }
-    HD static bool ask_for_light(const TreeVertex& vertex, uint32_t, TreeShadowRay& shadow) {
-        return vertex.ask_for_drawn_light(shadow);
+    HD static bool sample_direct_light(const TreeVertex& vertex, uint32_t, TreeShadowRay& shadow) {
+        return vertex.make_drawn_shadow_ray(shadow);
     }
     HD static void follow(const TreeVertex& vertex) {
         vertex.follow_glossy(kLeast);

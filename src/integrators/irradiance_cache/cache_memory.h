@@ -1,33 +1,33 @@
 #pragma once
 
-// Data that paths of irradiance caching need besides subpaths/walk_memory.h, and the cells of hemispheres in flight.
+// Data that paths of irradiance caching need besides subpaths/subpath_memory.h, and the cells of hemispheres in flight.
 
 #include <cstddef>
 #include <cstdint>
 
-#include "integrators/subpaths/walk_memory.h"
+#include "integrators/subpaths/subpath_memory.h"
 #include "render/fixed_sum.h"
 
 namespace pertev {
 
 /// Purpose of a path.
-enum class WalkAim : uint32_t {
+enum class SubpathAim : uint32_t {
     Seek, // find a diffuse surface through mirrors and smooth glass only, to look its light up
     GoOn, // find all light, as in path tracing
     End,  // nothing more
 };
 
 /// Data of a path besides its throughput, which counts for light that its next surface scatters.
-struct CacheSight {
+struct CacheState {
     Rgb seen;  // factor for light that the ray itself hits
     float pdf; // density with which its direction was sampled, 1/sr; 0 after the camera or a delta lobe
 };
 
 /// Whether emitters may be visible in mirrors or smooth glass of the scene, which needs both.
-struct MirroredLamps {
-    uint64_t mirrors, lamps; // instances; with an environment, all count as emitters
+struct MirroredEmitters {
+    uint64_t mirrors, emitters; // instances; with an environment, all count as emitters
 
-    HD bool are_possible() const { return mirrors > 0 && lamps > 0; }
+    HD bool are_possible() const { return mirrors > 0 && emitters > 0; }
 };
 
 /// A diffuse surface whose light is looked up.
@@ -36,39 +36,39 @@ struct CacheLookup {
     Vec3 direction; // direction of the path, unit
     float way;      // distance from the camera along the path, metres
     Rgb throughput;
-    uint32_t walk, scatterings;
+    uint32_t subpath, scatterings;
 };
 
-struct CacheWalksView {
-    Float4* sights; // [paths]
-    Float4* paths;  // [paths] throughput of all light, as in path tracing; 0 for rays of a record
-    float* ways;    // [paths] distance from the camera, metres
-    WalkAim* aims;  // [paths]
-    // Lookups of a round, contiguous; WalkCounts::vertices is their number.
+struct CacheSubpathsView {
+    Float4* cache_states; // [paths]
+    Float4* paths;        // [paths] throughput of all light, as in path tracing; 0 for rays of a record
+    float* ways;          // [paths] distance from the camera, metres
+    SubpathAim* aims;     // [paths]
+    // Lookups of a round, contiguous; SubpathCounts::vertices is their number.
     Float4 *places, *directions, *throughputs;
     uint32_t* scatterings;
     // Cells of hemispheres.
     FixedSum* light; // [3 * cells]
     Float4* cells;   // [cells] light as floats, W/(sr m2); metres to the first hit
 
-    HD void store_sight(uint32_t walk, const CacheSight& sight) const {
-        sights[walk] = {sight.seen.r, sight.seen.g, sight.seen.b, sight.pdf};
+    HD void store_cache_state(uint32_t subpath, const CacheState& cache_state) const {
+        cache_states[subpath] = {cache_state.seen.r, cache_state.seen.g, cache_state.seen.b, cache_state.pdf};
     }
-    HD CacheSight sight_of(uint32_t walk) const {
-        const Float4 s = sights[walk];
+    HD CacheState cache_state_of(uint32_t subpath) const {
+        const Float4 s = cache_states[subpath];
         return {{s.x, s.y, s.z}, s.w};
     }
-    HD void store_path(uint32_t walk, Rgb throughput) const {
-        paths[walk] = {throughput.r, throughput.g, throughput.b, 0};
+    HD void store_path(uint32_t subpath, Rgb throughput) const {
+        paths[subpath] = {throughput.r, throughput.g, throughput.b, 0};
     }
-    HD Rgb path_of(uint32_t walk) const { return {paths[walk].x, paths[walk].y, paths[walk].z}; }
+    HD Rgb path_of(uint32_t subpath) const { return {paths[subpath].x, paths[subpath].y, paths[subpath].z}; }
     HD void store(uint32_t at, const CacheLookup& lookup) const {
         const Hit& hit = lookup.hit;
         const Vec3 d = lookup.direction;
         const Rgb t = lookup.throughput;
         places[at] = {hit.u, hit.v, float_of(hit.instance), float_of(hit.primitive)};
         directions[at] = {d.x, d.y, d.z, lookup.way};
-        throughputs[at] = {t.r, t.g, t.b, float_of(lookup.walk)};
+        throughputs[at] = {t.r, t.g, t.b, float_of(lookup.subpath)};
         scatterings[at] = lookup.scatterings;
     }
     HD CacheLookup load(uint32_t at) const {
@@ -89,17 +89,17 @@ struct CacheRoom {
 };
 
 /// Places the arrays in one piece of memory (lay_out_arrays).
-inline std::size_t lay_out(CacheWalksView& view, std::byte* memory, const CacheRoom& room) {
+inline std::size_t lay_out(CacheSubpathsView& view, std::byte* memory, const CacheRoom& room) {
     return lay_out_arrays(memory, [&](const auto& place) {
-        const std::size_t walks = room.count, cells = room.cells;
-        place(view.sights, walks);
-        place(view.paths, walks);
-        place(view.ways, walks);
-        place(view.aims, walks);
-        place(view.places, walks);
-        place(view.directions, walks);
-        place(view.throughputs, walks);
-        place(view.scatterings, walks);
+        const std::size_t subpaths = room.count, cells = room.cells;
+        place(view.cache_states, subpaths);
+        place(view.paths, subpaths);
+        place(view.ways, subpaths);
+        place(view.aims, subpaths);
+        place(view.places, subpaths);
+        place(view.directions, subpaths);
+        place(view.throughputs, subpaths);
+        place(view.scatterings, subpaths);
         place(view.light, 3 * cells);
         place(view.cells, cells);
     });

@@ -4,11 +4,11 @@
 #include "integrators/irradiance_cache/overture_grid.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const BeginCacheWalks&);
-template void launch(Queue&, const char*, WorkCount, const CountMirroredLamps&);
+template void launch(Queue&, const char*, WorkCount, const BeginCacheSubpaths&);
+template void launch(Queue&, const char*, WorkCount, const CountMirroredEmitters&);
 template void launch(Queue&, const char*, WorkCount, const BeginSeekers&);
 template void launch(Queue&, const char*, WorkCount, const StoreDistances&);
 template void launch(Queue&, const char*, WorkCount, const ReadCells&);
-template void launch(Queue&, const char*, WorkCount, const ShadeCacheWalks<MaterialsKnown::Nothing>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeCacheWalks<MaterialsKnown::PlainDiffuse>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeCacheSubpaths<ShadingVariant::General>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeCacheSubpaths<ShadingVariant::PlainDiffuse>&);
 } // namespace pertev

@@ -21,9 +21,9 @@ inline constexpr uint32_t kNumberOfOthers = 2; // index among a vertex's choices
                                                // lobes
 
 /// Counts instance i.
-struct CountMirroredLamps {
+struct CountMirroredEmitters {
     SceneView scene;
-    MirroredLamps* count;
+    MirroredEmitters* count;
 
     HD void operator()(uint32_t i) const {
         const InstanceView& instance = scene.instances[i];
@@ -31,69 +31,69 @@ struct CountMirroredLamps {
         const MaterialParameters& material = scene.materials[instance.material];
         const bool glows = material.kind == MaterialKind::Unlit || !is_black(material.emission);
         if (may_be_specular(material)) atomic_add(&count->mirrors, 1);
-        if (glows || scene.lights.has_environment()) atomic_add(&count->lamps, 1);
+        if (glows || scene.lights.has_environment()) atomic_add(&count->emitters, 1);
     }
 };
 
 /// Starts camera paths 0, 1, ... of the samples.
-struct BeginCacheWalks {
-    BeginEyes begin;
-    CacheWalksView cache;
+struct BeginCacheSubpaths {
+    BeginCameraSubpaths begin;
+    CacheSubpathsView cache;
 
     HD void operator()(uint32_t i) const {
         begin(i);
-        cache.store_sight(i, {{1, 1, 1}, 0});
+        cache.store_cache_state(i, {{1, 1, 1}, 0});
         cache.store_path(i, {1, 1, 1});
         cache.ways[i] = 0;
-        cache.aims[i] = WalkAim::Seek;
+        cache.aims[i] = SubpathAim::Seek;
     }
 };
 
 /// Shades the hits of paths.
-template <MaterialsKnown kKnown>
-struct ShadeCacheWalks {
-    WalkScene scene;
-    WalksView walks;
-    CacheWalksView cache;
+template <ShadingVariant kVariant>
+struct ShadeCacheSubpaths {
+    SubpathScene scene;
+    SubpathsView subpaths;
+    CacheSubpathsView cache;
     FilmView film; // for pixels or for cells of hemispheres; without sums nothing is added
-    const MirroredLamps* mirrored;
+    const MirroredEmitters* mirrored;
     bool is_hemisphere; // path i adds light to cell first_cell + i
     uint32_t first_cell;
     uint32_t round;
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
-        const uint32_t walk = walks.owners[round % 2][i];
-        if (cache.aims[walk] == WalkAim::End) return;
+        const uint32_t subpath = subpaths.owners[round % 2][i];
+        if (cache.aims[subpath] == SubpathAim::End) return;
         const PictureView& picture = scene.picture;
-        const Ray ray = load_ray(walks.rays[round % 2] + i);
-        const Hit hit = walks.hits().load(i);
-        WalkState state = walks.states[walk];
-        const CacheSight sight = cache.sight_of(walk);
-        if (hit.instance == kNoHit) return add_background(walk, state, sight, ray);
-        const Surface surface = make_surface<kKnown>(picture.scene, hit, ray.direction);
+        const Ray ray = load_ray(subpaths.rays[round % 2] + i);
+        const Hit hit = subpaths.hits().load(i);
+        SubpathState state = subpaths.states[subpath];
+        const CacheState cache_state = cache.cache_state_of(subpath);
+        if (hit.instance == kNoHit) return add_background(subpath, state, cache_state, ray);
+        const Surface surface = make_surface<kVariant>(picture.scene, hit, ray.direction);
         if (adds_light() && state.depth() == 0) {
             add_seen(picture, film, state, ray, hit, surface);
         } else if (adds_light() && !is_black(surface.emission)) {
             const uint32_t light =
-                sight.pdf > 0 ? light_of(picture.scene.lights, hit.instance, hit.primitive) : kNoLight;
-            add_light(walk, state, sight, surface.emission,
+                cache_state.pdf > 0 ? light_of(picture.scene.lights, hit.instance, hit.primitive) : kNoLight;
+            add_light(subpath, state, cache_state, surface.emission,
                       light != kNoLight ? pdf_light_hit(picture.scene.lights, light, ray.origin, surface.position)
                                         : 0.0f);
         }
         const uint32_t depth = state.depth();
         if (surface.is_unlit || depth >= scene.settings.max_depth) return;
-        const float way = cache.ways[walk] + hit.t;
+        const float way = cache.ways[subpath] + hit.t;
         const Vec3 wo = -ray.direction;
-        const bool is_cached = cache.aims[walk] == WalkAim::Seek && depth + 2 <= scene.settings.max_depth &&
+        const bool is_cached = cache.aims[subpath] == SubpathAim::Seek && depth + 2 <= scene.settings.max_depth &&
                                CachedSurface(surface, wo).is_cached;
         const Vertex vertex = {surface, wo, is_cached, {state.pixel, state.sample, scene.settings.seed}};
         if (is_cached) {
-            cache.store(atomic_add(&walks.counts->vertices, 1u),
-                        {hit, ray.direction, way, state.throughput, walk, depth});
+            cache.store(atomic_add(&subpaths.counts->vertices, 1u),
+                        {hit, ray.direction, way, state.throughput, subpath, depth});
         }
-        if (adds_light()) ask_for_light(vertex, walk, state);
-        cache.ways[walk] = way;
-        go_on(vertex, walk, state, sight);
+        if (adds_light()) sample_direct_light(vertex, subpath, state);
+        cache.ways[subpath] = way;
+        go_on(vertex, subpath, state, cache_state);
     }
 
 private:
@@ -105,35 +105,37 @@ private:
     };
 
     HD bool adds_light() const { return film.sums != nullptr; }
-    HD uint32_t place_in_film(uint32_t walk, const WalkState& state) const {
-        return is_hemisphere ? first_cell + walk : state.pixel;
+    HD uint32_t place_in_film(uint32_t subpath, const SubpathState& state) const {
+        return is_hemisphere ? first_cell + subpath : state.pixel;
     }
 
     /// Adds light that the path hit. `light_pdf` is the density with which a shadow ray would have been sampled
     /// there.
-    HD void add_light(uint32_t walk, const WalkState& state, const CacheSight& sight, Rgb emission,
+    HD void add_light(uint32_t subpath, const SubpathState& state, const CacheState& cache_state, Rgb emission,
                       float light_pdf) const {
-        if (is_black(sight.seen)) return;
-        const float weight = light_pdf > 0 ? power_heuristic(sight.pdf, light_pdf) : 1.0f;
-        add_radiance(film, place_in_film(walk, state), (weight * sight.seen) * emission);
+        if (is_black(cache_state.seen)) return;
+        const float weight = light_pdf > 0 ? power_heuristic(cache_state.pdf, light_pdf) : 1.0f;
+        add_radiance(film, place_in_film(subpath, state), (weight * cache_state.seen) * emission);
     }
-    HD void add_background(uint32_t walk, const WalkState& state, const CacheSight& sight, const Ray& ray) const {
+    HD void add_background(uint32_t subpath, const SubpathState& state, const CacheState& cache_state,
+                           const Ray& ray) const {
         if (!adds_light()) return;
         if (state.depth() == 0) return add_seen_background(scene.picture, film, state, ray);
         const LightSetView& lights = scene.picture.scene.lights;
         if (!lights.has_environment()) return;
-        add_light(walk, state, sight, environment_radiance(lights.environment, ray.direction),
-                  sight.pdf > 0 ? pdf_environment(lights, ray.origin, ray.direction) : 0.0f);
+        add_light(subpath, state, cache_state, environment_radiance(lights.environment, ray.direction),
+                  cache_state.pdf > 0 ? pdf_environment(lights, ray.origin, ray.direction) : 0.0f);
     }
 
     /// Samples one point of one light, as path tracing does.
-    HD INLINE_ON_DEVICE void ask_for_light(const Vertex& vertex, uint32_t walk, const WalkState& state) const {
+    HD INLINE_ON_DEVICE void sample_direct_light(const Vertex& vertex, uint32_t subpath,
+                                                 const SubpathState& state) const {
         const SceneView& view = scene.picture.scene;
         const Surface& surface = vertex.surface;
         if (surface.bsdf.has_delta_only() || is_black(state.throughput)) return;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<has_textures(kKnown)>(view.lights, surface.light_context(vertex.wo), bits, light)) return;
+        if (!sample_light<has_textures(kVariant)>(view.lights, surface.light_context(vertex.wo), bits, light)) return;
         const BsdfValue scattered = surface.evaluate(vertex.wo, light.wi);
         if (is_black(scattered.f)) return;
         const uint32_t coin = coin_key(vertex.key, state.depth(), true);
@@ -148,15 +150,17 @@ private:
         connection.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
         connection.key = coin;
         connection.light = (weight / light.pdf) * (state.throughput * scattered.f * light.radiance);
-        walks.ask(atomic_add(&walks.counts->asked, 1u), connection, place_in_film(walk, state));
+        subpaths.queue_connection(atomic_add(&subpaths.counts->connections, 1u), connection,
+                                  place_in_film(subpath, state));
     }
 
-    HD INLINE_ON_DEVICE void go_on(const Vertex& vertex, uint32_t walk, WalkState& state, CacheSight sight) const {
+    HD INLINE_ON_DEVICE void go_on(const Vertex& vertex, uint32_t subpath, SubpathState& state,
+                                   CacheState cache_state) const {
         const Surface& surface = vertex.surface;
         const SubpathSettings& settings = scene.settings;
-        const uint32_t choices = eye_group(state.depth(), kWalkChoices);
-        const WalkDraw draw =
-            draw_scatter(settings, vertex.key, surface.bsdf, eye_group(state.depth(), kWalkScatter), choices);
+        const uint32_t choices = camera_group(state.depth(), kSubpathChoices);
+        const ScatterDraw draw =
+            draw_scatter(settings, vertex.key, surface.bsdf, camera_group(state.depth(), kSubpathScatter), choices);
         BsdfSample sample = surface.sample(vertex.wo, draw.lobe, draw.u);
         if (!(sample.pdf > 0)) return;
         Rgb onwards = sample.weight;
@@ -166,33 +170,34 @@ private:
         const float made_up = max_component(before) > 0 ? max_component(sample.weight) / max_component(before) : 0.0f;
         // Records do not contain reflections of emitters in mirrors and smooth glass, so those count fully for the
         // path.
-        const Rgb path = cache.path_of(walk) * sample.weight;
-        sight = sample.is_delta() ? CacheSight{path, 0} : CacheSight{state.throughput * sample.weight, sample.pdf};
+        const Rgb path = cache.path_of(subpath) * sample.weight;
+        cache_state =
+            sample.is_delta() ? CacheState{path, 0} : CacheState{state.throughput * sample.weight, sample.pdf};
         state.throughput = made_up * (state.throughput * onwards);
-        const bool counts = !is_black(sight.seen) || !is_black(state.throughput);
+        const bool counts = !is_black(cache_state.seen) || !is_black(state.throughput);
         if (!counts && (is_black(path) || !mirrored->are_possible())) return;
-        cache.store_path(walk, path);
+        cache.store_path(subpath, path);
         ++state.scatterings;
-        walks.states[walk] = state;
-        cache.store_sight(walk, sight);
-        if (!sample.is_delta()) cache.aims[walk] = WalkAim::GoOn;
+        subpaths.states[subpath] = state;
+        cache.store_cache_state(subpath, cache_state);
+        if (!sample.is_delta()) cache.aims[subpath] = SubpathAim::GoOn;
         if (!sample.is_delta() && !adds_light()) return; // nothing more can contribute
         const Vec3 wi = sample.wi;
         const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi), 0, wi,
                          kInfinity};
-        walks.queue_ray(atomic_add(&walks.counts->next, 1u), walk, ray, surface.triangle,
-                        coin_key(vertex.key, state.depth(), false), round + 1);
+        subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), subpath, ray, surface.triangle,
+                           coin_key(vertex.key, state.depth(), false), round + 1);
     }
 
     /// Part of the weight that lobes other than the diffuse base scatter. If it is small, few paths continue for it.
     HD Rgb others_share(const Vertex& vertex, const BsdfSample& sample, uint32_t choices) const {
         if (vertex.surface.bsdf.layer_count == 0) return {0, 0, 0};
         const Rgb f = vertex.surface.evaluate(vertex.wo, sample.wi, only(LobeClass::Glossy)).f;
-        const Rgb others = (1.0f / sample.pdf) * f;
-        const float chance = max_component(others) / max_component(sample.weight);
-        if (!(chance < 1)) return others;
+        const Rgb weight_sum = (1.0f / sample.pdf) * f;
+        const float chance = max_component(weight_sum) / max_component(sample.weight);
+        if (!(chance < 1)) return weight_sum;
         const float u = sample_1d(scene.settings.sampler, vertex.key, choices, kNumberOfOthers);
-        return u < chance ? (1.0f / chance) * others : Rgb{0, 0, 0};
+        return u < chance ? (1.0f / chance) * weight_sum : Rgb{0, 0, 0};
     }
 };
 

@@ -2,8 +2,8 @@
 #include "integrators/irradiance_cache/hemisphere_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const BeginHemispheres<MaterialsKnown::Nothing>&);
-template void launch(Queue&, const char*, WorkCount, const BeginHemispheres<MaterialsKnown::PlainDiffuse>&);
-template void launch(Queue&, const char*, WorkCount, const FinishRecords<MaterialsKnown::Nothing>&);
-template void launch(Queue&, const char*, WorkCount, const FinishRecords<MaterialsKnown::PlainDiffuse>&);
+template void launch(Queue&, const char*, WorkCount, const BeginHemispheres<ShadingVariant::General>&);
+template void launch(Queue&, const char*, WorkCount, const BeginHemispheres<ShadingVariant::PlainDiffuse>&);
+template void launch(Queue&, const char*, WorkCount, const FinishRecords<ShadingVariant::General>&);
+template void launch(Queue&, const char*, WorkCount, const FinishRecords<ShadingVariant::PlainDiffuse>&);
 } // namespace pertev

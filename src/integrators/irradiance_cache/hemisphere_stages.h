@@ -6,7 +6,7 @@
 #include "integrators/irradiance_cache/irradiance_cache_settings.h"
 #include "integrators/irradiance_cache/irradiance_record.h"
 #include "integrators/irradiance_cache/lookup_stages.h"
-#include "integrators/subpaths/walk_vertex.h"
+#include "integrators/subpaths/subpath_vertex.h"
 #include "math/frame.h"
 #include "math/portable_inverse_trig.h"
 #include "math/portable_trig.h"
@@ -121,11 +121,11 @@ struct HemisphereJob {
 HD inline Hit hit_of(const RecordSite& site) { return {0, site.u, site.v, site.instance, site.primitive}; }
 
 /// Starts paths 0, 1, ... for the cells `first`, first + 1, ... in memory.
-template <MaterialsKnown kKnown>
+template <ShadingVariant kVariant>
 struct BeginHemispheres {
-    WalkScene scene;
-    WalksView walks;
-    CacheWalksView cache;
+    SubpathScene scene;
+    SubpathsView subpaths;
+    CacheSubpathsView cache;
     HemisphereJob job;
     uint32_t first;
 
@@ -134,9 +134,9 @@ struct BeginHemispheres {
         const uint32_t number = job.begin + at / cells, cell = at % cells;
         cache.cells[at] = {0, 0, 0, kInfinity};
         const RecordSite site = job.sites[number];
-        const Surface surface = make_surface<kKnown>(scene.picture.scene, hit_of(site), site.direction);
+        const Surface surface = make_surface<kVariant>(scene.picture.scene, hit_of(site), site.direction);
         const float side = CachedSurface(surface, -site.direction).side;
-        WalkState state = {};
+        SubpathState state = {};
         state.pixel = job.first_record + number;
         state.sample = cell;
         state.scatterings = static_cast<uint16_t>(site.scatterings + 1);
@@ -148,35 +148,35 @@ struct BeginHemispheres {
         const Vec3 wi = normalize(surface.frame.to_world(local));
         const bool is_before = (dot(surface.geometric_normal, wi) > 0) == (side > 0);
         if (!is_before || is_black(state.throughput)) return;
-        walks.states[i] = state;
+        subpaths.states[i] = state;
         // A record contains neither directly visible or mirrored emitters, nor emitters that later bounces see in
         // mirrors.
-        cache.store_sight(i, {{0, 0, 0}, 0});
+        cache.store_cache_state(i, {{0, 0, 0}, 0});
         cache.store_path(i, {0, 0, 0});
         cache.ways[i] = 0;
-        cache.aims[i] = WalkAim::GoOn;
+        cache.aims[i] = SubpathAim::GoOn;
         const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi), 0, wi,
                          kInfinity};
-        walks.queue_ray(atomic_add(&walks.counts->next, 1u), i, ray, surface.triangle,
-                        coin_key(key, site.scatterings, false), 0);
+        subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), i, ray, surface.triangle,
+                           coin_key(key, site.scatterings, false), 0);
     }
 };
 
 /// Stores the hit distance of ray i of a first round.
 struct StoreDistances {
-    WalksView walks;
-    CacheWalksView cache;
+    SubpathsView subpaths;
+    CacheSubpathsView cache;
     uint32_t first;
 
     HD void operator()(uint32_t i) const {
-        const Hit hit = walks.hits().load(i);
-        if (hit.instance != kNoHit) cache.cells[first + walks.owners[0][i]].w = hit.t;
+        const Hit hit = subpaths.hits().load(i);
+        if (hit.instance != kNoHit) cache.cells[first + subpaths.owners[0][i]].w = hit.t;
     }
 };
 
 /// Converts the sums of cell i in memory to floats.
 struct ReadCells {
-    CacheWalksView cache;
+    CacheSubpathsView cache;
 
     HD void operator()(uint32_t i) const {
         const FixedSum* light = cache.light + 3 * std::size_t(i);
@@ -186,19 +186,19 @@ struct ReadCells {
 };
 
 /// Limits of a record's radius in pixels (Tabellion and Lamorlette 2004, section 4.2).
-inline constexpr float kLeastPixels = 16, kMostPixels = 400;
+inline constexpr float kMinPixels = 16, kMaxPixels = 400;
 
 /// Finishes record i of those whose cells are in memory.
-template <MaterialsKnown kKnown>
+template <ShadingVariant kVariant>
 struct FinishRecords {
-    WalkScene scene;
-    CacheWalksView cache;
+    SubpathScene scene;
+    CacheSubpathsView cache;
     HemisphereJob job;
     IrradianceRecord* records; // records of the picture
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const RecordSite site = job.sites[job.begin + i];
-        const Surface surface = make_surface<kKnown>(scene.picture.scene, hit_of(site), site.direction);
+        const Surface surface = make_surface<kVariant>(scene.picture.scene, hit_of(site), site.direction);
         const float side = CachedSurface(surface, -site.direction).side;
         const float pixel = pixel_size(scene.picture.camera.view, site.way);
         const std::size_t first = std::size_t(i) * job.grid.cells();
@@ -207,7 +207,7 @@ struct FinishRecords {
             const Float4 c = cache.cells[first + cell];
             return HemisphereCell{{c.x, c.y, c.z}, max(c.w, nearest)};
         });
-        limit_radius(sum, kLeastPixels * pixel, kMostPixels * pixel);
+        limit_radius(sum, kMinPixels * pixel, kMaxPixels * pixel);
         IrradianceRecord record;
         record.place = place_of(surface, side, site.scatterings);
         record.radius = sum.radius;

@@ -11,7 +11,7 @@ enum : std::size_t { kMissed, kInvalid, kCounts }; // indices into counts_
 
 uint32_t cells_of(const IrradianceCacheSettings& cache) { return make_hemisphere_grid(cache.hemisphere_rays).cells(); }
 
-FilmView film_of_cells(const CacheWalksView& cache, uint64_t* invalid, uint32_t cells) {
+FilmView film_of_cells(const CacheSubpathsView& cache, uint64_t* invalid, uint32_t cells) {
     return {cache.light, nullptr, invalid, 3, 0, cells, 1, {}};
 }
 
@@ -26,18 +26,18 @@ void IrradianceCacheIntegrator::reserve(const WorkSize& size) {
     const uint32_t cells = cells_of(settings_.cache);
     const uint64_t wanted = std::max<uint64_t>(size.pixels(), uint64_t(cells) * 64);
     const uint64_t most =
-        std::min<uint64_t>({wanted, batch_, kMostBytes / (bytes_of({kLeastCount, kLeastCount}) / kLeastCount)});
-    const auto walks = static_cast<uint32_t>(std::max<uint64_t>(most, cells));
-    take_room({walks, walks}, "walks of irradiance caching");
+        std::min<uint64_t>({wanted, batch_, kMaxBytes / (bytes_of({kMinCount, kMinCount}) / kMinCount)});
+    const auto subpaths = static_cast<uint32_t>(std::max<uint64_t>(most, cells));
+    take_room({subpaths, subpaths}, "subpaths of irradiance caching");
 }
 
 void IrradianceCacheIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
     TwoSchedules::begin(picture, tracer, samples);
     if (!std::exchange(is_same_picture_, false)) has_records_ = false;
     queue_.zero(counts_.data() + kMissed, sizeof(uint64_t));
-    queue_.zero(mirrored_.data(), sizeof(MirroredLamps));
+    queue_.zero(mirrored_.data(), sizeof(MirroredEmitters));
     launch(queue_, "count mirrored lamps", picture.scene.instance_count,
-           CountMirroredLamps{picture.scene, mirrored_.data()});
+           CountMirroredEmitters{picture.scene, mirrored_.data()});
 }
 
 std::vector<IrradianceRecord> IrradianceCacheIntegrator::records() const {
@@ -54,7 +54,7 @@ uint64_t IrradianceCacheIntegrator::missed_lookups() const {
 
 CacheJob IrradianceCacheIntegrator::make_job(uint32_t seed) const {
     CacheJob job = {};
-    job.scene = {picture_, picture_settings_.walks, {}, false};
+    job.scene = {picture_, picture_settings_.subpaths, {}, false};
     job.scene.settings.seed ^= seed;
     job.records = store_.view();
     job.missed = counts_.data() + kMissed;
@@ -65,7 +65,7 @@ CacheJob IrradianceCacheIntegrator::make_job(uint32_t seed) const {
 void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
     PERTEV_CHECK(film.is_whole_picture());
     if (count == 0) return;
-    if (!make_ready([this](double) { return !is_abandoned(); })) return;
+    if (!prepare([this](double) { return !is_abandoned(); })) return;
     if (first == 0) tell_invalid(film.invalid);
     CacheJob job = make_job(0);
     job.film = film;
@@ -73,7 +73,7 @@ void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const Fil
     const float bright = 4.0f * store_.mean_luminance();
     job.mark = {bright, 0.35f * bright, 0};
     job.samples = {0, pixels(), first, count};
-    run_walks(job, 0, job.samples.count(), [this](auto& way, const CacheJob& part) {
+    run_subpaths(job, 0, job.samples.count(), [this](auto& way, const CacheJob& part) {
         if (!is_abandoned()) run_picture(way, part);
     });
     rays_.camera += job.samples.count();
@@ -89,14 +89,14 @@ void IrradianceCacheIntegrator::tell_invalid(uint64_t* invalid) {
     queue_.copy_to_device(invalid, &so_far, sizeof so_far);
 }
 
-bool IrradianceCacheIntegrator::make_ready(const std::function<bool(double share)>& goes_on) {
+bool IrradianceCacheIntegrator::prepare(const std::function<bool(double share)>& goes_on) {
     if (has_records_) return true;
     store_.clear();
     queue_.zero(counts_.data() + kInvalid, sizeof(uint64_t));
     // Shadow rays alone find light that is scattered once.
-    const uint32_t rounds = picture_settings_.walks.max_depth < 2 ? 0 : kOvertureRounds;
+    const uint32_t rounds = picture_settings_.subpaths.max_depth < 2 ? 0 : kOvertureRounds;
     const uint32_t width = picture_.camera.width, height = picture_.camera.height;
-    OvertureProgress progress(width, height, cells_of(picture_settings_.cache), most_records(uint64_t(width) * height));
+    OvertureProgress progress(width, height, cells_of(picture_settings_.cache), max_records(uint64_t(width) * height));
     const auto goes_on_here = [&] { return goes_on(progress.share(rays_.total())); };
     for (uint32_t round = 0; round < rounds; ++round) {
         if (!make_round(round, progress, goes_on_here)) return false;
@@ -107,7 +107,7 @@ bool IrradianceCacheIntegrator::make_ready(const std::function<bool(double share
 
 bool IrradianceCacheIntegrator::make_round(uint32_t round, OvertureProgress& progress,
                                            const std::function<bool()>& goes_on) {
-    progress.begin_walks(rays_.total());
+    progress.begin_subpaths(rays_.total());
     CacheJob job = make_job(kOvertureSeed);
     job.grid = make_overture_grid(round, picture_.camera.width, picture_.camera.height);
     job.round = round;
@@ -117,7 +117,7 @@ bool IrradianceCacheIntegrator::make_round(uint32_t round, OvertureProgress& pro
             ? PartSizes{uint64_t(kLoopCount) * static_cast<uint64_t>(thread_count()), job.grid.count()}
             : PartSizes{room_.count, room_.count};
     const bool went_on = do_in_parts(job.grid.count(), parts, goes_on, [&](uint64_t begin, uint64_t end) {
-        run_walks(job, begin, end, [](auto& way, const CacheJob& part) { run_overture(way, part); });
+        run_subpaths(job, begin, end, [](auto& way, const CacheJob& part) { run_overture(way, part); });
         rays_.camera += end - begin;
     });
     if (!went_on) return false;
@@ -147,9 +147,9 @@ bool IrradianceCacheIntegrator::make_hemispheres(CacheJob job, uint32_t records,
         const auto here = static_cast<uint32_t>(end - begin);
         part.film = film_of_cells(part.cache, counts_.data() + kInvalid, here * cells);
         queue_.zero(part.cache.light, 3 * std::size_t(here) * cells * sizeof(FixedSum));
-        run_walks(part, 0, uint64_t(here) * cells,
-                  [](auto& schedule, const CacheJob& walks) { run_hemispheres(schedule, walks); });
-        WalksWavefront schedule(queue_, *tracer_, seen_);
+        run_subpaths(part, 0, uint64_t(here) * cells,
+                     [](auto& schedule, const CacheJob& subpaths) { run_hemispheres(schedule, subpaths); });
+        SubpathsWavefront schedule(queue_, *tracer_, seen_);
         finish_records(schedule, part, here);
     });
 }
@@ -165,7 +165,7 @@ void IrradianceCacheIntegrator::make_hemispheres_in_loop(const HostTrees& trees,
             part.hemispheres.begin = static_cast<uint32_t>(i);
             std::fill_n(part.cache.light, 3 * std::size_t(cells), FixedSum{});
             run_in_parts(thread.schedule, part, 0, cells, kLoopCount,
-                         [](auto& schedule, const CacheJob& walks) { run_hemispheres(schedule, walks); });
+                         [](auto& schedule, const CacheJob& subpaths) { run_hemispheres(schedule, subpaths); });
             finish_records(thread.schedule, part, 1);
         }
         return rays_of(*part.counts());

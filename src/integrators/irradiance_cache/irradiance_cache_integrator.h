@@ -20,7 +20,7 @@ class OvertureProgress;
 
 /// The settings of an irradiance cache render.
 struct IrradianceCacheRequest {
-    SubpathSettings walks;
+    SubpathSettings subpaths;
     IrradianceCacheSettings cache;
 };
 
@@ -32,14 +32,14 @@ public:
 
     void reserve(const WorkSize& size) override;
     /// Returns the bytes of the records and their octree.
-    std::size_t most_host_bytes(const WorkSize& size) const override {
-        return RecordStore::most_host_bytes(size.pixels());
+    std::size_t max_host_bytes(const WorkSize& size) const override {
+        return RecordStore::max_host_bytes(size.pixels());
     }
     void expect_same_picture() override { is_same_picture_ = true; }
     bool has_made() const override { return has_records_ && store_.count() > 0; }
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
     /// Makes the records. On the CPU the record that each thread is working on is always finished.
-    bool make_ready(const std::function<bool(double share)>& goes_on) override;
+    bool prepare(const std::function<bool(double share)>& goes_on) override;
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
     /// Maximum additional host memory that records have taken, in bytes.
     std::size_t host_bytes() const { return store_.host_bytes(); }
@@ -56,7 +56,7 @@ private:
     bool make_hemispheres(CacheJob job, uint32_t records, const std::function<bool()>& goes_on);
     void make_hemispheres_in_loop(const HostTrees& trees, const CacheJob& job, uint64_t begin, uint64_t end);
     template <class Run>
-    void run_walks(const CacheJob& job, uint64_t begin, uint64_t end, const Run& run) {
+    void run_subpaths(const CacheJob& job, uint64_t begin, uint64_t end, const Run& run) {
         run_stages(job, begin, end, {kLoopCount, 0}, 1, run);
     }
     void tell_invalid(uint64_t* invalid);
@@ -65,7 +65,7 @@ private:
     bool has_records_ = false;
     RecordStore store_;
     Buffer<uint64_t> counts_; // lookups without a record; invalid samples of the records
-    Buffer<MirroredLamps> mirrored_;
+    Buffer<MirroredEmitters> mirrored_;
 };
 
 } // namespace pertev

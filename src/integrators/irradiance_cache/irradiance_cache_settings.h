@@ -18,9 +18,9 @@ struct IrradianceCacheSettings {
     bool operator==(const IrradianceCacheSettings&) const = default;
 };
 
-inline constexpr float kLeastAccuracy = 0.01f, kMostAccuracy = 1.0f;
-inline constexpr uint32_t kFewestHemisphereRays = 16, kMostHemisphereRays = 1u << 16;
-inline constexpr uint32_t kMostRecords = 1u << 18;
+inline constexpr float kMinAccuracy = 0.01f, kMaxAccuracy = 1.0f;
+inline constexpr uint32_t kFewestHemisphereRays = 16, kMaxHemisphereRays = 1u << 16;
+inline constexpr uint32_t kMaxRecords = 1u << 18;
 
 /// Stratification of a record's rays: rows from the normal to the horizon, columns around it; all cells have the same
 /// cosine-weighted size.
@@ -35,8 +35,8 @@ inline HemisphereGrid make_hemisphere_grid(uint32_t rays) {
 }
 
 /// Maximum number of records of a picture. Beyond it, paths find the light.
-inline uint32_t most_records(uint64_t pixels) {
-    return static_cast<uint32_t>(std::min<uint64_t>(pixels / 4 + 256, kMostRecords));
+inline uint32_t max_records(uint64_t pixels) {
+    return static_cast<uint32_t>(std::min<uint64_t>(pixels / 4 + 256, kMaxRecords));
 }
 
 } // namespace pertev

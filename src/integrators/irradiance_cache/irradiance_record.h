@@ -92,8 +92,8 @@ HD inline CachedLight look_up(const IrradianceCacheView& cache, const CachePlace
 
 // A surface as the cache sees it. Records hold the light that arrives at a diffuse base, so a coating must let light
 // in independently of the viewing direction: either there is none, or one reflection, whose part in f(wo, wi) is a
-// product of a function of wo and one of wi (lobes/passage.h). The latter is in the record, with the surface's
-// material.
+// product of a function of wo and one of wi (lobes/layer_transmittance.h). The latter is in the record, with the
+// surface's material.
 
 /// Share of uniform light that the diffuse base scatters from local wi to wo: [0, 1] per channel.
 HD inline Rgb diffuse_reflectance(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {

@@ -2,10 +2,10 @@
 #include "integrators/irradiance_cache/lookup_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const LookUpLight<MaterialsKnown::Nothing>&);
-template void launch(Queue&, const char*, WorkCount, const LookUpLight<MaterialsKnown::PlainDiffuse>&);
-template void launch(Queue&, const char*, WorkCount, const SeekPlaces<MaterialsKnown::Nothing>&);
-template void launch(Queue&, const char*, WorkCount, const SeekPlaces<MaterialsKnown::PlainDiffuse>&);
-template void launch(Queue&, const char*, WorkCount, const DrawRecords<MaterialsKnown::Nothing>&);
-template void launch(Queue&, const char*, WorkCount, const DrawRecords<MaterialsKnown::PlainDiffuse>&);
+template void launch(Queue&, const char*, WorkCount, const LookUpLight<ShadingVariant::General>&);
+template void launch(Queue&, const char*, WorkCount, const LookUpLight<ShadingVariant::PlainDiffuse>&);
+template void launch(Queue&, const char*, WorkCount, const SeekPlaces<ShadingVariant::General>&);
+template void launch(Queue&, const char*, WorkCount, const SeekPlaces<ShadingVariant::PlainDiffuse>&);
+template void launch(Queue&, const char*, WorkCount, const DrawRecords<ShadingVariant::General>&);
+template void launch(Queue&, const char*, WorkCount, const DrawRecords<ShadingVariant::PlainDiffuse>&);
 } // namespace pertev

@@ -5,18 +5,18 @@
 
 #include "integrators/irradiance_cache/cache_memory.h"
 #include "integrators/irradiance_cache/irradiance_record.h"
-#include "integrators/subpaths/walk_vertex.h"
+#include "integrators/subpaths/subpath_vertex.h"
 #include "render/film_view.h"
 #include "render/first_hit.h"
 
 namespace pertev {
 
 /// Lookup i of a picture.
-template <MaterialsKnown kKnown>
+template <ShadingVariant kVariant>
 struct LookUpLight {
-    WalkScene scene;
-    WalksView walks;
-    CacheWalksView cache;
+    SubpathScene scene;
+    SubpathsView subpaths;
+    CacheSubpathsView cache;
     IrradianceCacheView records;
     FilmView film;
     uint64_t* missed; // lookups without a record
@@ -24,17 +24,17 @@ struct LookUpLight {
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const CacheLookup lookup = cache.load(i);
         const Vec3 wo = -lookup.direction;
-        const Surface surface = make_surface<kKnown>(scene.picture.scene, lookup.hit, lookup.direction);
+        const Surface surface = make_surface<kVariant>(scene.picture.scene, lookup.hit, lookup.direction);
         const CachedSurface cached(surface, wo);
         const CachedLight found = look_up(records, place_of(surface, cached.side, lookup.scatterings));
-        WalkState& state = walks.states[lookup.walk];
+        SubpathState& state = subpaths.states[lookup.subpath];
         if (found.weight > 0) {
             add_radiance(film, state.pixel, lookup.throughput * sent_on(surface, wo, cached.side, found.light));
             return;
         }
         atomic_add(missed, 1);
-        const CacheSight sight = cache.sight_of(lookup.walk);
-        if (sight.pdf > 0) state.throughput = sight.seen;
+        const CacheState cache_state = cache.cache_state_of(lookup.subpath);
+        if (cache_state.pdf > 0) state.throughput = cache_state.seen;
     }
 };
 
@@ -55,10 +55,10 @@ struct alignas(16) RecordSite {
 inline constexpr float kServedWeight = 0.25f;
 
 /// Lookup i of a round of the overture; each of its paths has a site, from `first` on.
-template <MaterialsKnown kKnown>
+template <ShadingVariant kVariant>
 struct SeekPlaces {
-    WalkScene scene;
-    CacheWalksView cache;
+    SubpathScene scene;
+    CacheSubpathsView cache;
     IrradianceCacheView records;
     RecordSite* sites;
     uint32_t first;
@@ -66,42 +66,42 @@ struct SeekPlaces {
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const CacheLookup lookup = cache.load(i);
         const Vec3 wo = -lookup.direction;
-        const Surface surface = make_surface<kKnown>(scene.picture.scene, lookup.hit, lookup.direction);
+        const Surface surface = make_surface<kVariant>(scene.picture.scene, lookup.hit, lookup.direction);
         const CachedSurface cached(surface, wo);
         if (is_black(surface.bsdf.diffuse_albedo())) return;
         const CachedLight found = look_up(records, place_of(surface, cached.side, lookup.scatterings));
         if (found.weight >= kServedWeight) return;
-        cache.aims[lookup.walk] = WalkAim::End;
+        cache.aims[lookup.subpath] = SubpathAim::End;
         const Hit& hit = lookup.hit;
-        sites[first + lookup.walk] = {lookup.direction, lookup.way,         hit.u, hit.v, hit.instance,
-                                      hit.primitive,    lookup.scatterings, {}};
+        sites[first + lookup.subpath] = {lookup.direction, lookup.way,         hit.u, hit.v, hit.instance,
+                                         hit.primitive,    lookup.scatterings, {}};
     }
 };
 
 /// Ends the path if ray i of a picture hits the mark of a record, and shows the mark.
-template <MaterialsKnown kKnown>
+template <ShadingVariant kVariant>
 struct DrawRecords {
     static constexpr float kPixels = 1.25f; // radius of a mark
 
-    WalkScene scene;
-    WalksView walks;
-    CacheWalksView cache;
+    SubpathScene scene;
+    SubpathsView subpaths;
+    CacheSubpathsView cache;
     IrradianceCacheView records;
     FilmView film;
     Rgb light; // light of marks, W/(sr m2)
     uint32_t round;
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
-        const uint32_t walk = walks.owners[round % 2][i];
-        const Hit hit = walks.hits().load(i);
-        if (cache.aims[walk] != WalkAim::Seek || hit.instance == kNoHit) return;
-        const Ray ray = load_ray(walks.rays[round % 2] + i);
-        const Surface surface = make_surface<kKnown>(scene.picture.scene, hit, ray.direction);
-        const WalkState& state = walks.states[walk];
+        const uint32_t subpath = subpaths.owners[round % 2][i];
+        const Hit hit = subpaths.hits().load(i);
+        if (cache.aims[subpath] != SubpathAim::Seek || hit.instance == kNoHit) return;
+        const Ray ray = load_ray(subpaths.rays[round % 2] + i);
+        const Surface surface = make_surface<kVariant>(scene.picture.scene, hit, ray.direction);
+        const SubpathState& state = subpaths.states[subpath];
         const CachedSurface cached(surface, -ray.direction);
         if (!cached.is_cached) return;
         const CachePlace place = place_of(surface, cached.side, state.depth());
-        const float radius = kPixels * pixel_size(scene.picture.camera.view, cache.ways[walk] + hit.t);
+        const float radius = kPixels * pixel_size(scene.picture.camera.view, cache.ways[subpath] + hit.t);
         bool is_marked = false;
         visit_within(records.tree, place.position, radius, [&](const NearPoint& near) {
             const CachePlace& own = records.records[near.index].place;
@@ -112,7 +112,7 @@ struct DrawRecords {
             add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, scene.picture);
         }
         add_radiance(film, state.pixel, state.throughput * light);
-        cache.aims[walk] = WalkAim::End;
+        cache.aims[subpath] = SubpathAim::End;
     }
 };
 

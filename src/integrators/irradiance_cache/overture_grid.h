@@ -37,26 +37,26 @@ inline OvertureGrid make_overture_grid(uint32_t round, uint32_t width, uint32_t 
 
 /// Starts paths 0, 1, ... at the grid's indices `first`, first + 1, ...; no record is requested yet.
 struct BeginSeekers {
-    WalkScene scene;
-    WalksView walks;
-    CacheWalksView cache;
+    SubpathScene scene;
+    SubpathsView subpaths;
+    CacheSubpathsView cache;
     OvertureGrid grid;
     RecordSite* sites;
     uint32_t round, first;
 
     HD void operator()(uint32_t i) const {
-        WalkState state = {};
+        SubpathState state = {};
         state.pixel = grid.pixel(first + i);
         state.sample = round;
         state.throughput = {1, 1, 1};
         const SampleKey key = {state.pixel, state.sample, scene.settings.seed};
         const Ray ray = scene.picture.camera.ray(state.pixel, scene.settings.sampler, key);
-        walks.states[i] = state;
-        walks.queue_ray(i, i, ray, {}, coin_key(key, 0, false), 0);
-        cache.store_sight(i, {{1, 1, 1}, 0});
+        subpaths.states[i] = state;
+        subpaths.queue_ray(i, i, ray, {}, coin_key(key, 0, false), 0);
+        cache.store_cache_state(i, {{1, 1, 1}, 0});
         cache.store_path(i, {1, 1, 1});
         cache.ways[i] = 0;
-        cache.aims[i] = WalkAim::Seek;
+        cache.aims[i] = SubpathAim::Seek;
         sites[first + i] = {}; // written completely, because the host reads all of it
     }
 };

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kNearlyAll = 0.999;
 
-constexpr uint32_t kFewWalks = 256; // too few paths for a reliable share
+constexpr uint32_t kFewSubpaths = 256; // too few paths for a reliable share
 
 double next_fall(double fall) { return fall * std::sqrt(fall) * std::sqrt(std::sqrt(fall)); }
 
@@ -24,32 +24,32 @@ uint32_t OvertureProgress::grid_count(uint32_t round) const {
 double OvertureProgress::rays_from(uint32_t round, double wanting) const {
     double rays = 0, room = static_cast<double>(room_) - records_ - wanted_, falls_by = falls_by_;
     for (; round < kOvertureRounds; ++round) {
-        const double walks = grid_count(round);
+        const double subpaths = grid_count(round);
         falls_by = next_fall(falls_by);
         wanting *= falls_by;
-        const double records = std::min(wanting * walks, std::max(room, 0.0));
+        const double records = std::min(wanting * subpaths, std::max(room, 0.0));
         room -= records;
-        rays += walks * rays_a_walk_ + records * rays_a_record_;
+        rays += subpaths * rays_a_subpath_ + records * rays_a_record_;
     }
     return rays;
 }
 
-void OvertureProgress::begin_walks(uint64_t rays) {
+void OvertureProgress::begin_subpaths(uint64_t rays) {
     if (wanted_ > 0) rays_a_record_ = static_cast<double>(rays - began_at_) / wanted_;
     records_ += wanted_;
     wanted_ = 0;
     if (has_begun_) ++round_;
     has_begun_ = true;
     began_at_ = rays;
-    expected_ = grid_count(round_) * rays_a_walk_;
+    expected_ = grid_count(round_) * rays_a_subpath_;
     later_ = rays_from(round_, wanting_) - expected_;
 }
 
 void OvertureProgress::begin_records(uint32_t wanted, uint64_t rays) {
-    if (const uint32_t walks = grid_count(round_); walks > 0) {
-        rays_a_walk_ = static_cast<double>(rays - began_at_) / walks;
-        const double wanting = static_cast<double>(wanted) / walks;
-        falls_by_ = walks < kFewWalks ? 1 : wanting_ > 0 ? std::min(wanting / wanting_, 1.0) : 0;
+    if (const uint32_t subpaths = grid_count(round_); subpaths > 0) {
+        rays_a_subpath_ = static_cast<double>(rays - began_at_) / subpaths;
+        const double wanting = static_cast<double>(wanted) / subpaths;
+        falls_by_ = subpaths < kFewSubpaths ? 1 : wanting_ > 0 ? std::min(wanting / wanting_, 1.0) : 0;
         wanting_ = wanting;
     }
     wanted_ = wanted;

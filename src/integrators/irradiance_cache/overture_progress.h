@@ -22,7 +22,7 @@ public:
         : width_(width), height_(height), room_(room), rays_a_record_(3.0 * record_rays) {}
 
     /// Starts the paths of the next round's grid. `rays` counts the overture's rays so far, here and in the next two.
-    void begin_walks(uint64_t rays);
+    void begin_subpaths(uint64_t rays);
     /// Ends the paths, which requested `wanted` records.
     void begin_records(uint32_t wanted, uint64_t rays);
     /// Progress in [0, 1), never falling: more rays than expected do not complete it.
@@ -33,14 +33,14 @@ private:
     double rays_from(uint32_t round, double wanting) const;
 
     uint32_t width_, height_, room_;
-    uint32_t round_ = 0;                     // current round
-    bool has_begun_ = false;                 // whether the first round has begun
-    uint64_t began_at_ = 0;                  // rays before the current paths or records
-    double expected_ = 0, later_ = 0;        // expected rays of these, and of all that follows
-    uint32_t wanted_ = 0, records_ = 0;      // records of the current round, and of the rounds before
-    double wanting_ = 1, falls_by_ = 1;      // share of the last grid that requested records, and its ratio to the
-                                             // one before
-    double rays_a_walk_ = 2, rays_a_record_; // rays of the last completed ones, or an estimate
+    uint32_t round_ = 0;                        // current round
+    bool has_begun_ = false;                    // whether the first round has begun
+    uint64_t began_at_ = 0;                     // rays before the current paths or records
+    double expected_ = 0, later_ = 0;           // expected rays of these, and of all that follows
+    uint32_t wanted_ = 0, records_ = 0;         // records of the current round, and of the rounds before
+    double wanting_ = 1, falls_by_ = 1;         // share of the last grid that requested records, and its ratio to the
+                                                // one before
+    double rays_a_subpath_ = 2, rays_a_record_; // rays of the last completed ones, or an estimate
     double share_ = 0;
 };
 

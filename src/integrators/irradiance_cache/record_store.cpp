@@ -21,7 +21,7 @@ PointOctree tree_over_centres(std::span<const Sphere> records) {
 }
 
 /// Least radius in the subtree of each node.
-std::vector<float> least_radii(const PointOctree& tree) {
+std::vector<float> min_radii(const PointOctree& tree) {
     std::vector<float> least(tree.nodes.size());
     for (std::size_t i = tree.nodes.size(); i-- > 0;) { // reverse depth-first order: children come before their
                                                         // parents
@@ -44,33 +44,33 @@ struct Clamped {
 
 class Clamp {
 public:
-    explicit Clamp(const PointOctree& tree) : tree_(tree), least_(least_radii(tree)) {}
+    explicit Clamp(const PointOctree& tree) : tree_(tree), least_(min_radii(tree)) {}
 
     /// Clamps the record with this index in the tree. Neighbours farther away than its radius do not reduce it, nor
     /// does a subtree whose least radius plus distance is not below the minimum so far. `guess` is a likely minimum,
     /// which prunes the search.
     Clamped clamp(uint32_t number, uint32_t guess) const {
         const Sphere& record = tree_.spheres[number];
-        const float most_squared = square_of_radius(record.radius);
+        const float max_squared = square_of_radius(record.radius);
         Clamped found = {record.radius, number};
-        look_at(guess, record, most_squared, found);
+        look_at(guess, record, max_squared, found);
         for (uint32_t i = 0; i < tree_.nodes.size();) {
             const PointOctreeNode& node = tree_.nodes[i];
             const float near_squared = squared_distance_to_box(node.lo, node.hi, record.centre);
-            if (near_squared > most_squared || least_[i] + sqrt(near_squared) >= found.radius) {
+            if (near_squared > max_squared || least_[i] + sqrt(near_squared) >= found.radius) {
                 i = node.skip;
                 continue;
             }
-            for (uint32_t k = node.first; k < node.first + node.count; ++k) look_at(k, record, most_squared, found);
+            for (uint32_t k = node.first; k < node.first + node.count; ++k) look_at(k, record, max_squared, found);
             ++i;
         }
         return found;
     }
 
 private:
-    void look_at(uint32_t k, const Sphere& record, float most_squared, Clamped& found) const {
+    void look_at(uint32_t k, const Sphere& record, float max_squared, Clamped& found) const {
         const float distance_squared = squared_distance(tree_.spheres[k].centre, record.centre);
-        if (distance_squared > most_squared) return;
+        if (distance_squared > max_squared) return;
         const float radius = tree_.spheres[k].radius + sqrt(distance_squared);
         if (radius < found.radius) found = {radius, k};
     }
@@ -110,13 +110,13 @@ std::span<T> on_host(Queue& queue, T* data, std::size_t count, std::vector<T>& c
 
 } // namespace
 
-std::size_t RecordStore::most_host_bytes(uint64_t pixels) {
-    const uint64_t most = most_records(pixels);
-    return most * (2 * sizeof(Sphere) + 2 * sizeof(float)) + most_octree_bytes(most);
+std::size_t RecordStore::max_host_bytes(uint64_t pixels) {
+    const uint64_t most = max_records(pixels);
+    return most * (2 * sizeof(Sphere) + 2 * sizeof(float)) + max_octree_bytes(most);
 }
 
 void RecordStore::make_room(uint64_t pixels) {
-    const std::size_t most = most_records(pixels);
+    const std::size_t most = max_records(pixels);
     sites_.grow(queue_, pixels, "places of the overture");
     records_.grow(queue_, most, "irradiance records");
     reaches_.grow(queue_, most, "irradiance records");
@@ -129,8 +129,8 @@ void RecordStore::make_room(uint64_t pixels) {
 void RecordStore::clear() {
     spheres_.clear();
     luminances_.clear();
-    spheres_.reserve(most_records(pixels_));
-    luminances_.reserve(most_records(pixels_));
+    spheres_.reserve(max_records(pixels_));
+    luminances_.reserve(max_records(pixels_));
     node_count_ = 0;
 }
 
@@ -138,7 +138,7 @@ uint32_t RecordStore::gather_sites(uint32_t count) {
     std::vector<RecordSite> copy;
     const std::span<RecordSite> sites = on_host(queue_, sites_.data(), count, copy);
     const auto none = std::ranges::remove_if(sites, [](const RecordSite& s) { return s.scatterings == kNoSite; });
-    const std::size_t wanted = std::min(sites.size() - none.size(), most_records(pixels_) - spheres_.size());
+    const std::size_t wanted = std::min(sites.size() - none.size(), max_records(pixels_) - spheres_.size());
     if (queue_.is_cuda()) sites_.upload(sites.first(wanted));
     return static_cast<uint32_t>(wanted);
 }
@@ -160,7 +160,7 @@ void RecordStore::take(uint32_t made, float accuracy) {
     PERTEV_CHECK(tree.nodes.size() <= nodes_.size());
     const std::size_t of_each = (spheres_.capacity() + reached.capacity()) * sizeof(Sphere) +
                                 (luminances_.capacity() + reaches.capacity()) * sizeof(float);
-    host_bytes_ = std::max(host_bytes_, of_each + most_octree_bytes(reached.size()));
+    host_bytes_ = std::max(host_bytes_, of_each + max_octree_bytes(reached.size()));
     reaches_.upload(reaches);
     nodes_.upload(tree.nodes);
     tree_spheres_.upload(tree.spheres);

@@ -20,7 +20,7 @@ public:
     explicit RecordStore(Queue& queue) : queue_(queue) {}
 
     /// Maximum additional host memory, in bytes, for the octree and the spacing of records.
-    static std::size_t most_host_bytes(uint64_t pixels);
+    static std::size_t max_host_bytes(uint64_t pixels);
     /// Allocates for a picture of `pixels` pixels. Throws Error(OutOfMemory).
     void make_room(uint64_t pixels);
     /// Maximum host memory that it has taken, in bytes.

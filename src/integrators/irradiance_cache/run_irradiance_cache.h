@@ -1,23 +1,23 @@
 #pragma once
 
-// Orders the stages once for both schedules (integrators/subpaths/run_walks.h).
+// Orders the stages once for both schedules (integrators/subpaths/run_subpaths.h).
 
 #include "integrators/irradiance_cache/cache_stages.h"
 #include "integrators/irradiance_cache/hemisphere_stages.h"
 #include "integrators/irradiance_cache/overture_grid.h"
-#include "integrators/subpaths/run_walks.h"
+#include "integrators/subpaths/run_subpaths.h"
 
 namespace pertev {
 
-struct CacheJob : WalkJob {
+struct CacheJob : SubpathJob {
     using Room = CacheRoom;
 
-    CacheWalksView cache;
+    CacheSubpathsView cache;
     IrradianceCacheView records;
     bool shows_records;
     Rgb mark; // light of a record's mark
     uint64_t* missed;
-    const MirroredLamps* mirrored;
+    const MirroredEmitters* mirrored;
 
     // Used by the overture.
     OvertureGrid grid;
@@ -29,87 +29,91 @@ struct CacheJob : WalkJob {
 };
 
 inline std::size_t lay_out(CacheJob& job, std::byte* memory, const CacheRoom& room) {
-    const std::size_t of_walks = lay_out(job.walks, memory, {room.count, 0, 1});
-    return of_walks + lay_out(job.cache, memory != nullptr ? memory + of_walks : nullptr, room);
+    const std::size_t of_subpaths = lay_out(job.subpaths, memory, {room.count, 0, 1});
+    return of_subpaths + lay_out(job.cache, memory != nullptr ? memory + of_subpaths : nullptr, room);
 }
 
 /// Purpose of a job's paths.
-enum class CacheWalks : uint8_t { Picture, Overture, Hemispheres };
+enum class CacheSubpaths : uint8_t { Picture, Overture, Hemispheres };
 
 /// Runs the paths that have begun to their ends.
-template <CacheWalks kWalks, class Way>
-void run_cache_rounds(Way& way, const CacheJob& job) {
-    const WalksView& walks = job.walks;
-    constexpr bool kIsHemisphere = kWalks == CacheWalks::Hemispheres;
+template <CacheSubpaths kSubpaths, class Schedule>
+void run_cache_rounds(Schedule& schedule, const CacheJob& job) {
+    const SubpathsView& subpaths = job.subpaths;
+    constexpr bool kIsHemisphere = kSubpaths == CacheSubpaths::Hemispheres;
     const auto first = static_cast<uint32_t>(job.first);
-    way.begin_rounds(job.count);
-    for (uint32_t round = 0; round <= job.scene.settings.max_depth && way.has_rays_left(walks.counts); ++round) {
-        const WorkCount rays = {way.most_rays(), &walks.counts->rays};
-        const WorkCount asked = {way.most_rays(), &walks.counts->asked};
-        const WorkCount lookups = {way.most_rays(), &walks.counts->vertices};
-        way.find_hits(round == 0 && !kIsHemisphere ? RayKind::Camera : RayKind::Bounce, job, rays, round);
-        if (kIsHemisphere && round == 0) way.run("store_distances", rays, StoreDistances{walks, job.cache, first});
-        with_known(job.scene.picture.scene.known, [&]<MaterialsKnown kKnown>() {
-            if (kWalks == CacheWalks::Picture && job.shows_records) {
-                way.run("draw_records", rays,
-                        DrawRecords<kKnown>{job.scene, walks, job.cache, job.records, job.film, job.mark, round});
+    schedule.begin_rounds(job.count);
+    for (uint32_t round = 0; round <= job.scene.settings.max_depth && schedule.has_rays_left(subpaths.counts);
+         ++round) {
+        const WorkCount rays = {schedule.max_rays(), &subpaths.counts->rays};
+        const WorkCount connections = {schedule.max_rays(), &subpaths.counts->connections};
+        const WorkCount lookups = {schedule.max_rays(), &subpaths.counts->vertices};
+        schedule.find_hits(round == 0 && !kIsHemisphere ? RayKind::Camera : RayKind::Bounce, job, rays, round);
+        if (kIsHemisphere && round == 0)
+            schedule.run("store_distances", rays, StoreDistances{subpaths, job.cache, first});
+        with_variant(job.scene.picture.scene.variant, [&]<ShadingVariant kVariant>() {
+            if (kSubpaths == CacheSubpaths::Picture && job.shows_records) {
+                schedule.run(
+                    "draw_records", rays,
+                    DrawRecords<kVariant>{job.scene, subpaths, job.cache, job.records, job.film, job.mark, round});
             }
-            way.run("shade_cache_walks", rays,
-                    ShadeCacheWalks<kKnown>{job.scene, walks, job.cache, job.film, job.mirrored, kIsHemisphere, first,
-                                            round});
-            if (kWalks == CacheWalks::Picture) {
-                way.run("look_up_light", lookups,
-                        LookUpLight<kKnown>{job.scene, walks, job.cache, job.records, job.film, job.missed});
-            } else if (kWalks == CacheWalks::Overture) {
-                way.run("seek_places", lookups,
-                        SeekPlaces<kKnown>{job.scene, job.cache, job.records, job.sites, first});
+            schedule.run("shade_cache_subpaths", rays,
+                         ShadeCacheSubpaths<kVariant>{job.scene, subpaths, job.cache, job.film, job.mirrored,
+                                                      kIsHemisphere, first, round});
+            if (kSubpaths == CacheSubpaths::Picture) {
+                schedule.run("look_up_light", lookups,
+                             LookUpLight<kVariant>{job.scene, subpaths, job.cache, job.records, job.film, job.missed});
+            } else if (kSubpaths == CacheSubpaths::Overture) {
+                schedule.run("seek_places", lookups,
+                             SeekPlaces<kVariant>{job.scene, job.cache, job.records, job.sites, first});
             }
         });
-        if (kWalks != CacheWalks::Overture) {
-            way.find_connections(job, asked);
-            way.run("add_connections", asked, AddConnections{walks, job.film});
+        if (kSubpaths != CacheSubpaths::Overture) {
+            schedule.find_connections(job, connections);
+            schedule.run("add_connections", connections, AddConnections{subpaths, job.film});
         }
-        way.run("count_walks", 1, CountWalks{walks.counts, true, 0});
+        schedule.run("count_subpaths", 1, CountSubpaths{subpaths.counts, true, 0});
     }
 }
 
 /// Renders samples [job.first, + job.count) of job.samples.
-template <class Way>
-void run_picture(Way& way, const CacheJob& job) {
-    way.run("begin_walks", 1, BeginWalks{job.walks.counts, job.count});
-    way.run("begin_cache_walks", job.count, BeginCacheWalks{{job.scene, job.walks, job.samples, job.first}, job.cache});
-    run_cache_rounds<CacheWalks::Picture>(way, job);
+template <class Schedule>
+void run_picture(Schedule& schedule, const CacheJob& job) {
+    schedule.run("begin_subpaths", 1, BeginSubpaths{job.subpaths.counts, job.count});
+    schedule.run("begin_cache_subpaths", job.count,
+                 BeginCacheSubpaths{{job.scene, job.subpaths, job.samples, job.first}, job.cache});
+    run_cache_rounds<CacheSubpaths::Picture>(schedule, job);
 }
 
 /// Traces indices [job.first, + job.count) of the grid.
-template <class Way>
-void run_overture(Way& way, const CacheJob& job) {
-    way.run("begin_walks", 1, BeginWalks{job.walks.counts, job.count});
-    way.run("begin_seekers", job.count,
-            BeginSeekers{job.scene, job.walks, job.cache, job.grid, job.sites, job.round,
-                         static_cast<uint32_t>(job.first)});
-    run_cache_rounds<CacheWalks::Overture>(way, job);
+template <class Schedule>
+void run_overture(Schedule& schedule, const CacheJob& job) {
+    schedule.run("begin_subpaths", 1, BeginSubpaths{job.subpaths.counts, job.count});
+    schedule.run("begin_seekers", job.count,
+                 BeginSeekers{job.scene, job.subpaths, job.cache, job.grid, job.sites, job.round,
+                              static_cast<uint32_t>(job.first)});
+    run_cache_rounds<CacheSubpaths::Overture>(schedule, job);
 }
 
 /// Traces cells [job.first, + job.count) in memory.
-template <class Way>
-void run_hemispheres(Way& way, const CacheJob& job) {
-    way.run("begin_walks", 1, BeginWalks{job.walks.counts, 0});
-    with_known(job.scene.picture.scene.known, [&]<MaterialsKnown kKnown>() {
-        way.run("begin_hemispheres", job.count,
-                BeginHemispheres<kKnown>{job.scene, job.walks, job.cache, job.hemispheres,
-                                         static_cast<uint32_t>(job.first)});
+template <class Schedule>
+void run_hemispheres(Schedule& schedule, const CacheJob& job) {
+    schedule.run("begin_subpaths", 1, BeginSubpaths{job.subpaths.counts, 0});
+    with_variant(job.scene.picture.scene.variant, [&]<ShadingVariant kVariant>() {
+        schedule.run("begin_hemispheres", job.count,
+                     BeginHemispheres<kVariant>{job.scene, job.subpaths, job.cache, job.hemispheres,
+                                                static_cast<uint32_t>(job.first)});
     });
-    way.run("count_walks", 1, CountWalks{job.walks.counts, true, 0});
-    run_cache_rounds<CacheWalks::Hemispheres>(way, job);
+    schedule.run("count_subpaths", 1, CountSubpaths{job.subpaths.counts, true, 0});
+    run_cache_rounds<CacheSubpaths::Hemispheres>(schedule, job);
 }
 
 /// Finishes the first `count` records whose cells are in memory.
-template <class Way>
-void finish_records(Way& way, const CacheJob& job, uint32_t count) {
-    way.run("read_cells", count * job.hemispheres.grid.cells(), ReadCells{job.cache});
-    with_known(job.scene.picture.scene.known, [&]<MaterialsKnown kKnown>() {
-        way.run("finish_records", count, FinishRecords<kKnown>{job.scene, job.cache, job.hemispheres, job.made});
+template <class Schedule>
+void finish_records(Schedule& schedule, const CacheJob& job, uint32_t count) {
+    schedule.run("read_cells", count * job.hemispheres.grid.cells(), ReadCells{job.cache});
+    with_variant(job.scene.picture.scene.variant, [&]<ShadingVariant kVariant>() {
+        schedule.run("finish_records", count, FinishRecords<kVariant>{job.scene, job.cache, job.hemispheres, job.made});
     });
 }
 

@@ -10,7 +10,7 @@
 #include "integrators/raster/raster_integrator.h"
 #include "integrators/ray_tree/ray_tree_integrator.h"
 #include "integrators/reyes/reyes_integrator.h"
-#include "integrators/subpaths/walks_integrator.h"
+#include "integrators/subpaths/subpath_integrator.h"
 
 namespace pertev {
 namespace {
@@ -34,7 +34,7 @@ RadiosityIntegrator::Settings radiosity_settings(const IntegratorSettings& setti
     return {tree_settings(settings), settings.radiosity};
 }
 
-SubpathSettings walk_settings(const IntegratorSettings& settings) {
+SubpathSettings traversal_settings(const IntegratorSettings& settings) {
     return {.max_depth = settings.path.max_depth,
             .roulette_depth = settings.path.roulette_depth,
             .sampler = settings.path.sampler,
@@ -42,11 +42,11 @@ SubpathSettings walk_settings(const IntegratorSettings& settings) {
 }
 
 PhotonMapRequest photon_map_request(const IntegratorSettings& settings) {
-    return {walk_settings(settings), settings.photon_map};
+    return {traversal_settings(settings), settings.photon_map};
 }
 
 IrradianceCacheRequest irradiance_cache_request(const IntegratorSettings& settings) {
-    return {walk_settings(settings), settings.irradiance_cache};
+    return {traversal_settings(settings), settings.irradiance_cache};
 }
 
 RasterSettings raster_settings(const IntegratorSettings& settings) {
@@ -117,13 +117,13 @@ constexpr std::array kIntegrators = {
                                           .rasterises_camera = true,
                                           .needs_punctual_lights = true,
                                           .samples_at_once = ReyesIntegrator::samples_at_once}),
-    row<WalksIntegrator<ParticlesAlone>, walk_settings>({.value = Kind::Light, .name = "light"}),
-    row<WalksIntegrator<BothDirections>, walk_settings>({.value = Kind::Bidirectional,
-                                                         .name = "bidirectional",
-                                                         .finds_all_light = true,
-                                                         .most_depth = kMostJoinedDepth}),
+    row<SubpathIntegrator<ParticlesAlone>, traversal_settings>({.value = Kind::Light, .name = "light"}),
+    row<SubpathIntegrator<BothDirections>, traversal_settings>({.value = Kind::Bidirectional,
+                                                                .name = "bidirectional",
+                                                                .finds_all_light = true,
+                                                                .most_depth = kMaxConnectedDepth}),
     row<PhotonMapIntegrator, photon_map_request>(
-        {.value = Kind::PhotonMap, .name = "photon_map", .finds_all_light = true, .most_depth = kMostPhotonDepth}),
+        {.value = Kind::PhotonMap, .name = "photon_map", .finds_all_light = true, .most_depth = kMaxPhotonDepth}),
     row<IrradianceCacheIntegrator, irradiance_cache_request>(
         {.value = Kind::IrradianceCache, .name = "irradiance_cache", .finds_all_light = true}),
     row<RadiosityIntegrator, radiosity_settings>(
@@ -169,7 +169,7 @@ std::size_t predicted_bytes(const IntegratorSettings& settings, const WorkSize& 
     Queue queue = Queue::make_dry_run(on_cuda);
     const std::unique_ptr<Integrator> integrator = make_integrator(queue, settings);
     integrator->reserve(size);
-    return queue.allocated_bytes() + (on_cuda ? 0 : integrator->most_host_bytes(size));
+    return queue.allocated_bytes() + (on_cuda ? 0 : integrator->max_host_bytes(size));
 }
 
 } // namespace pertev

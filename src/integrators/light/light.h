@@ -10,20 +10,20 @@
 // in which such a surface scatters.
 
 #include "integrators/subpaths/particle_stages.h"
-#include "integrators/subpaths/run_walks.h"
+#include "integrators/subpaths/run_subpaths.h"
 
 namespace pertev {
 
 /// Shades the hits of camera rays.
 struct ShadeSeen {
-    WalkScene scene;
-    WalksView walks;
+    SubpathScene scene;
+    SubpathsView subpaths;
     FilmView film;
 
     HD void operator()(uint32_t i) const {
-        const Hit hit = walks.hits().load(i);
-        const Ray ray = load_ray(walks.rays[0] + i);
-        const WalkState state = walks.states[i];
+        const Hit hit = subpaths.hits().load(i);
+        const Ray ray = load_ray(subpaths.rays[0] + i);
+        const SubpathState state = subpaths.states[i];
         if (hit.instance == kNoHit) return add_seen_background(scene.picture, film, state, ray);
         add_seen(scene.picture, film, state, ray, hit, make_surface(scene.picture.scene, hit, ray.direction));
     }
@@ -31,15 +31,16 @@ struct ShadeSeen {
 
 /// Runs the stages in order.
 struct ParticlesAlone {
-    static constexpr bool kIsJoined = false;
-    static WalkRoom room(const SubpathSettings&, uint32_t walks) { return {walks, 0, 1}; }
+    static constexpr bool kIsConnected = false;
+    static SubpathRoom room(const SubpathSettings&, uint32_t subpaths) { return {subpaths, 0, 1}; }
 
-    template <class Way>
-    static void render(Way& way, const WalkJob& job) {
-        run_particles(way, job);
-        way.run("begin_eyes", job.count, BeginEyes{job.scene, job.walks, job.samples, job.first});
-        way.find_hits(RayKind::Camera, job, job.count, 0);
-        way.run("shade_seen", job.count, ShadeSeen{job.scene, job.walks, job.film});
+    template <class Schedule>
+    static void render(Schedule& schedule, const SubpathJob& job) {
+        run_particles(schedule, job);
+        schedule.run("begin_camera_subpaths", job.count,
+                     BeginCameraSubpaths{job.scene, job.subpaths, job.samples, job.first});
+        schedule.find_hits(RayKind::Camera, job, job.count, 0);
+        schedule.run("shade_seen", job.count, ShadeSeen{job.scene, job.subpaths, job.film});
     }
 };
 

@@ -1,6 +1,6 @@
 #include "integrators/light/light.h"
-#include "integrators/subpaths/walks_integrator.h"
+#include "integrators/subpaths/subpath_integrator.h"
 
 namespace pertev {
-template class WalksIntegrator<ParticlesAlone>;
+template class SubpathIntegrator<ParticlesAlone>;
 } // namespace pertev

@@ -40,7 +40,7 @@ private:
         frame.normal[path.pixel] = {seen.x, seen.y, seen.z, dot(surface.position - path.origin, axis_)};
         frame.albedo[path.pixel] = {surface.albedo.r, surface.albedo.g, surface.albedo.b, gloss.alpha};
         frame.gloss[path.pixel] = {gloss.reflectance.r, gloss.reflectance.g, gloss.reflectance.b, kFarAway};
-        passage_ = gloss.passage;
+        passage_ = gloss.transmittance;
     }
 
     const FilmView& film_;
@@ -55,7 +55,7 @@ public:
         Float4 diffuse; // rgb; w: bits of the share of diffuse lobes in what the first vertex scattered, ten per
                         // colour
     };
-    struct Asked {
+    struct ShadowData {
         Rgb diffuse; // part of the contribution
     };
 
@@ -74,7 +74,7 @@ public:
     }
     HD void direct(const PathState& path, const SurfaceVertex& at, Vec3 wi, const ShadowRay& shadow) {
         if (!frame_.splits_light()) return;
-        asked_.diffuse = (path.depth == 0 ? at.surface.diffuse_share(at.wo, wi) : first_) * shadow.contribution;
+        shadow_data_.diffuse = (path.depth == 0 ? at.surface.diffuse_share(at.wo, wi) : first_) * shadow.contribution;
     }
     /// The drawn lobe does not matter: other lobes scatter light that way too, and light of glossy ones depends on
     /// the view.
@@ -85,11 +85,11 @@ public:
     HD void put_down(Kept& kept) const {
         kept = {{kept_.diffuse.x, kept_.diffuse.y, kept_.diffuse.z, float_of(packed(first_))}};
     }
-    HD void hand_over(Asked& asked) const { asked = asked_; }
+    HD void hand_over(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
 
-    HD void arrived(Kept& kept, const Asked& asked, Rgb) const {
+    HD void arrived(Kept& kept, const ShadowData& shadow_data, Rgb) const {
         Float4& d = kept.diffuse;
-        d = {d.x + asked.diffuse.r, d.y + asked.diffuse.g, d.z + asked.diffuse.b, d.w};
+        d = {d.x + shadow_data.diffuse.r, d.y + shadow_data.diffuse.g, d.z + shadow_data.diffuse.b, d.w};
     }
     HD void ended(uint32_t pixel, Rgb, const Kept& kept) const {
         if (frame_.splits_light()) frame_.diffuse[pixel] = {kept.diffuse.x, kept.diffuse.y, kept.diffuse.z, 0};
@@ -104,14 +104,14 @@ public:
     HD static void store_next(const ListenerQueues& queues, uint32_t i, const Kept& kept) {
         if (queues.next_diffuse != nullptr) queues.next_diffuse[i] = kept.diffuse;
     }
-    HD static void load_asked(const ListenerQueues& queues, uint32_t i, Asked& asked) {
+    HD static void load_shadow_data(const ListenerQueues& queues, uint32_t i, ShadowData& shadow_data) {
         if (queues.shadow_diffuse == nullptr) return;
         const Float4 d = queues.shadow_diffuse[i];
-        asked.diffuse = {d.x, d.y, d.z};
+        shadow_data.diffuse = {d.x, d.y, d.z};
     }
-    HD static void store_asked(const ListenerQueues& queues, uint32_t i, const Asked& asked) {
+    HD static void store_shadow_data(const ListenerQueues& queues, uint32_t i, const ShadowData& shadow_data) {
         if (queues.shadow_diffuse == nullptr) return;
-        queues.shadow_diffuse[i] = {asked.diffuse.r, asked.diffuse.g, asked.diffuse.b, 0};
+        queues.shadow_diffuse[i] = {shadow_data.diffuse.r, shadow_data.diffuse.g, shadow_data.diffuse.b, 0};
     }
 
 private:
@@ -128,14 +128,14 @@ private:
 
     const NoisyFrameView& frame_;
     Kept kept_ = {};
-    Asked asked_ = {};
+    ShadowData shadow_data_ = {};
     Rgb first_ = {0, 0, 0}; // share of diffuse lobes in what the first vertex scattered
 };
 
 /// Stores the data of the first bounce for ReSTIR (FirstBounceView), if the frame has room for it.
 class FirstBounce : public PathListener<FirstBounce> {
 public:
-    struct Asked {
+    struct ShadowData {
         Rgb sent; // part of the contribution that passes through diffuse lobes of the second vertex
         uint32_t pixel;
     };
@@ -146,7 +146,7 @@ public:
         if (leaves()) left().light[path.pixel] = {};
         if (tells()) begin_bounce(path, {}, false);
     }
-    HD bool takes(const PathState& path, const LightPlace& place, float light_pdf) {
+    HD bool takes(const PathState& path, const EmitterPoint& place, float light_pdf) {
         if (!leaves() || path.depth != 1 || !(light_pdf > 0)) return false;
         left().light[path.pixel] = place;
         return true;
@@ -166,27 +166,28 @@ public:
     HD void direct(const PathState& path, const SurfaceVertex& at, Vec3 wi, const ShadowRay& shadow) {
         if (!tells()) return;
         const Rgb share = is_bounce_ ? at.surface.diffuse_share(at.wo, wi) : share_onwards(path.pixel);
-        asked_ = {share * shadow.contribution, path.pixel};
+        shadow_data_ = {share * shadow.contribution, path.pixel};
     }
     HD void scattered(const PathState& path, const SurfaceVertex& at, const BsdfSample&) {
         if (!is_bounce_ || !(path.bsdf_pdf > 0)) return; // light of a delta lobe cannot be shared
         const Rgb share = at.surface.diffuse_share(at.wo, path.direction);
         left().onwards[path.pixel] = {share.r, share.g, share.b, 0};
     }
-    HD void hand_over(Asked& asked) const { asked = asked_; }
+    HD void hand_over(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
 
-    HD void arrived(Kept&, const Asked& asked, Rgb) const {
-        if (tells()) left().add_sent(asked.pixel, asked.sent);
+    HD void arrived(Kept&, const ShadowData& shadow_data, Rgb) const {
+        if (tells()) left().add_sent(shadow_data.pixel, shadow_data.sent);
     }
 
-    HD static void load_asked(const ListenerQueues& queues, uint32_t i, Asked& asked) {
+    HD static void load_shadow_data(const ListenerQueues& queues, uint32_t i, ShadowData& shadow_data) {
         if (queues.shadow_sent == nullptr) return;
         const Float4 sent = queues.shadow_sent[i];
-        asked = {{sent.x, sent.y, sent.z}, bits_of(sent.w)};
+        shadow_data = {{sent.x, sent.y, sent.z}, bits_of(sent.w)};
     }
-    HD static void store_asked(const ListenerQueues& queues, uint32_t i, const Asked& asked) {
+    HD static void store_shadow_data(const ListenerQueues& queues, uint32_t i, const ShadowData& shadow_data) {
         if (queues.shadow_sent == nullptr) return;
-        queues.shadow_sent[i] = {asked.sent.r, asked.sent.g, asked.sent.b, float_of(asked.pixel)};
+        queues.shadow_sent[i] = {shadow_data.sent.r, shadow_data.sent.g, shadow_data.sent.b,
+                                 float_of(shadow_data.pixel)};
     }
 
 private:
@@ -206,7 +207,7 @@ private:
 
     const NoisyFrameView& frame_;
     bool is_bounce_ = false;
-    Asked asked_ = {};
+    ShadowData shadow_data_ = {};
 };
 
 /// Plain is for scenes with diffuse lobes only. Reuse leaves light to ReSTIR.

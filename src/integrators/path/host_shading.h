@@ -12,16 +12,16 @@ namespace pertev {
 
 /// Results of a vertex besides its path.
 template <class Listener>
-struct AskedByVertex {
+struct VertexShadowRay {
     ShadowRay ray; // if a shadow ray is traced
-    [[no_unique_address]] typename Listener::Asked asked;
+    [[no_unique_address]] typename Listener::ShadowData shadow_data;
 };
 
 /// Shades a vertex of a path and updates the listener's data of it. Sets whether the path continues and returns
 /// whether it needs a shadow ray.
 template <class Listener>
 using ShadeOnHost = bool (*)(const PathJob&, PathState&, typename Listener::Kept&, const Hit&, const DrawnNumbers&,
-                             AskedByVertex<Listener>&, bool& goes_on);
+                             VertexShadowRay<Listener>&, bool& goes_on);
 
 /// Returns the version with the least code that the job needs.
 template <class Listener>

@@ -16,7 +16,8 @@ namespace pertev {
 /// Bitterli's box. Inlining takes g++ twenty times as long, so builds that only test (src/CMakeLists.txt) do without.
 template <Features kFeatures, class Listener>
 PERTEV_INLINE_ALL bool shade_on_host(const PathJob& job, PathState& path, typename Listener::Kept& kept, const Hit& hit,
-                                     const DrawnNumbers& numbers, AskedByVertex<Listener>& asked, bool& goes_on) {
+                                     const DrawnNumbers& numbers, VertexShadowRay<Listener>& shadow_data,
+                                     bool& goes_on) {
     Listener listener(job);
     if (path.depth == 0) {
         listener.begins(path);
@@ -24,9 +25,9 @@ PERTEV_INLINE_ALL bool shade_on_host(const PathJob& job, PathState& path, typena
         listener.take_up(kept);
     }
     bool wants_shadow = false;
-    goes_on = shade_vertex<kFeatures>(job, path, hit, numbers, asked.ray, wants_shadow, listener);
+    goes_on = shade_vertex<kFeatures>(job, path, hit, numbers, shadow_data.ray, wants_shadow, listener);
     listener.put_down(kept);
-    if (wants_shadow) listener.hand_over(asked.asked);
+    if (wants_shadow) listener.hand_over(shadow_data.shadow_data);
     return wants_shadow;
 }
 

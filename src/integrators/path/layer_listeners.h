@@ -29,7 +29,7 @@ public:
         surface.emission = {};
         surface.is_unlit = false;
     }
-    HD bool takes(const PathState& path, const LightPlace&, float) { return is_there_ && path.depth == 0; }
+    HD bool takes(const PathState& path, const EmitterPoint&, float) { return is_there_ && path.depth == 0; }
 
 private:
     bool is_there_;
@@ -41,7 +41,7 @@ public:
     struct Kept {
         LightPathState state; // state before the next vertex
     };
-    struct Asked {
+    struct ShadowData {
         Rgb diffuse; // part of the contribution that passes through diffuse lobes of the vertex
         uint32_t pixel;
         LightPathState state; // state before the vertex
@@ -62,9 +62,9 @@ public:
     HD INLINE_ON_DEVICE void direct(const PathState& path, const SurfaceVertex& at, Vec3 wi, const ShadowRay& shadow) {
         if (!layers().is_there()) return;
         const bool is_transmission = !at.surface.same_side(at.wo, wi);
-        asked_ = {exact_diffuse_share(at.surface, at.wo, wi, 0) * shadow.contribution, path.pixel, state_,
-                  layers().first_column(met_.instance) + scattering_column(LobeClass::Diffuse, is_transmission),
-                  layers().light_of(lights(), shadow.target)};
+        shadow_data_ = {exact_diffuse_share(at.surface, at.wo, wi, 0) * shadow.contribution, path.pixel, state_,
+                        layers().first_column(met_.instance) + scattering_column(LobeClass::Diffuse, is_transmission),
+                        layers().light_of(lights(), shadow.target)};
     }
     HD INLINE_ON_DEVICE void scattered(const PathState& path, const SurfaceVertex& at, const BsdfSample& sample) {
         if (!layers().is_there()) return;
@@ -82,15 +82,16 @@ public:
                                   sample.is_transmission, diffuse, u);
     }
     HD void put_down(Kept& kept) const { kept = {state_}; }
-    HD void hand_over(Asked& asked) const { asked = asked_; }
+    HD void hand_over(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
 
-    HD void arrived(Kept&, const Asked& asked, Rgb contribution) const {
+    HD void arrived(Kept&, const ShadowData& shadow_data, Rgb contribution) const {
         if (!layers().is_there()) return;
         const auto after = [&](LobeClass lobe_class) {
-            return layers().after(asked.state, asked.column + scattering_column(lobe_class, false));
+            return layers().after(shadow_data.state, shadow_data.column + scattering_column(lobe_class, false));
         };
-        layers().add(job_.film, asked.pixel, after(LobeClass::Diffuse), asked.light, asked.diffuse);
-        layers().add(job_.film, asked.pixel, after(LobeClass::Glossy), asked.light, contribution - asked.diffuse);
+        layers().add(job_.film, shadow_data.pixel, after(LobeClass::Diffuse), shadow_data.light, shadow_data.diffuse);
+        layers().add(job_.film, shadow_data.pixel, after(LobeClass::Glossy), shadow_data.light,
+                     contribution - shadow_data.diffuse);
     }
 
     HD static void load(const ListenerQueues& queues, uint32_t i, Kept& kept) {
@@ -102,16 +103,18 @@ public:
     HD static void store_next(const ListenerQueues& queues, uint32_t i, const Kept& kept) {
         if (queues.next_states != nullptr) queues.next_states[i] = {kept.state.red_green, kept.state.blue};
     }
-    HD static void load_asked(const ListenerQueues& queues, uint32_t i, Asked& asked) {
+    HD static void load_shadow_data(const ListenerQueues& queues, uint32_t i, ShadowData& shadow_data) {
         if (queues.layer_parts == nullptr) return;
         const Float4 d = queues.layer_diffuse[i];
         const Uint4 p = queues.layer_parts[i];
-        asked = {{d.x, d.y, d.z}, bits_of(d.w), {p.x, p.y}, p.z, p.w};
+        shadow_data = {{d.x, d.y, d.z}, bits_of(d.w), {p.x, p.y}, p.z, p.w};
     }
-    HD static void store_asked(const ListenerQueues& queues, uint32_t i, const Asked& asked) {
+    HD static void store_shadow_data(const ListenerQueues& queues, uint32_t i, const ShadowData& shadow_data) {
         if (queues.layer_parts == nullptr) return;
-        queues.layer_diffuse[i] = {asked.diffuse.r, asked.diffuse.g, asked.diffuse.b, float_of(asked.pixel)};
-        queues.layer_parts[i] = {asked.state.red_green, asked.state.blue, asked.column, asked.light};
+        queues.layer_diffuse[i] = {shadow_data.diffuse.r, shadow_data.diffuse.g, shadow_data.diffuse.b,
+                                   float_of(shadow_data.pixel)};
+        queues.layer_parts[i] = {shadow_data.state.red_green, shadow_data.state.blue, shadow_data.column,
+                                 shadow_data.light};
     }
 
 private:
@@ -121,7 +124,7 @@ private:
     const PathJob& job_;
     LightPathState state_;
     TriangleId met_; // hit of the path's ray
-    Asked asked_ = {};
+    ShadowData shadow_data_ = {};
 };
 
 using LayerListeners = Listeners<IrradianceMeter, FirstHitLayers, LightPaths>;

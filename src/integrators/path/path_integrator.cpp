@@ -28,12 +28,12 @@ struct Size {
 constexpr uint64_t kRoundedUp = 128; // paths by which capacities may be rounded up, including the round's counts
 
 /// Maximum number of paths in all queues together.
-uint64_t most_paths(const PathParts& parts) {
-    return PathIntegrator::kMostQueueBytes / PathIntegrator::bytes_of_path(parts) - kRoundedUp;
+uint64_t max_paths(const PathParts& parts) {
+    return PathIntegrator::kMaxQueueBytes / PathIntegrator::bytes_of_path(parts) - kRoundedUp;
 }
 
 Size size_for(uint64_t samples, uint32_t batch, bool on_cuda, uint32_t max_depth, const PathParts& parts) {
-    const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>({samples, batch, most_paths(parts)}));
+    const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>({samples, batch, max_paths(parts)}));
     const bool does_one = !on_cuda || does_one_wavefront(paths, paths == samples ? max_depth : 0);
     const int wavefronts = does_one ? 1 : 2;
     const uint32_t each = (paths - 1) / static_cast<uint32_t>(wavefronts) + 1;
@@ -161,7 +161,7 @@ void PathIntegrator::take_wavefronts(uint64_t samples, const PathParts& parts) {
     const uint64_t held = wavefronts_.empty() ? 0 : wavefronts_.size() * uint64_t(wavefronts_.front().capacity);
     const bool are_enough = wavefronts_.size() >= static_cast<std::size_t>(size.wavefronts) &&
                             held >= static_cast<uint64_t>(size.wavefronts) * size.capacity;
-    const bool are_too_many = held > most_paths(parts_) + kRoundedUp; // new parts of each path may need it
+    const bool are_too_many = held > max_paths(parts_) + kRoundedUp; // new parts of each path may need it
     if (!are_enough || are_too_many) {
         wavefronts_.clear(); // freed before the new allocation
         render_counts_.grow(queue_, 1, "path counts");
@@ -232,7 +232,7 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
     }
     {
         const Queue::Fork fork(queue_, in_turns ? 1 : 2 * going);
-        give_rounds(going, work);
+        launch_rounds(going, work);
     }
     const RenderCounts counts = render_counts_.download().front();
     rays_.camera += all;
@@ -241,7 +241,7 @@ void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const Film
 }
 
 /// Launches rounds of the first `going` wavefronts alternately until all of them are done.
-void PathIntegrator::give_rounds(int going, const Work& work) {
+void PathIntegrator::launch_rounds(int going, const Work& work) {
     for (int done = 0; done < going;) {
         for (int i = 0; i < going; ++i) {
             Wavefront& w = wavefronts_[static_cast<std::size_t>(i)];
@@ -251,13 +251,13 @@ void PathIntegrator::give_rounds(int going, const Work& work) {
             if (w.is_done) {
                 ++done;
             } else {
-                give_round(w, work);
+                launch_round(w, work);
             }
         }
     }
 }
 
-void PathIntegrator::give_round(Wavefront& w, const Work& work) {
+void PathIntegrator::launch_round(Wavefront& w, const Work& work) {
     const uint32_t last = w.capacity - 1;
     const bool any_alpha = picture_.scene.any_alpha != 0;
     const PathQueueView paths = w.paths(w.round), next = w.paths(w.round + 1);
@@ -298,11 +298,11 @@ void PathIntegrator::give_round(Wavefront& w, const Work& work) {
     }
     queue_.let_wait(w.light_stream, w.path_stream);
     const Queue::OnStream on(queue_, w.light_stream);
-    const WorkCount asked = {most, &counts->shadows};
-    tracer_->find_occlusions(shadows.query(), asked, {nullptr, shadows.keys}, // a ray's key has been used by then
+    const WorkCount shadow_rays = {most, &counts->shadows};
+    tracer_->find_occlusions(shadows.query(), shadow_rays, {nullptr, shadows.keys}, // a ray's key has been used by then
                              pool(RayKind::Shadow));
     choose_shading(work.job, [&]<Features, class Listener>() {
-        launch(queue_, "add_light", asked, AddLight<Listener>{work.job, shadows, next, listened});
+        launch(queue_, "add_light", shadow_rays, AddLight<Listener>{work.job, shadows, next, listened});
         launch(queue_, "add_to_film", {most, &counts->ended}, EndPaths<Listener>{work.job, next, listened, last});
     });
     ++w.round;

@@ -45,7 +45,7 @@ public:
     /// queues would exceed kMostQueueBytes.
     PathIntegrator(Queue& queue, const PathRequest& settings, bool in_loop, uint32_t batch);
 
-    static constexpr std::size_t kMostQueueBytes = 600'000'000;
+    static constexpr std::size_t kMaxQueueBytes = 600'000'000;
     /// Bytes of a path in flight in all queues, including its shadow ray and its hit.
     static std::size_t bytes_of_path(const PathParts& parts);
 
@@ -66,8 +66,8 @@ private:
     struct Wavefront;
     void take_wavefronts(uint64_t samples, const PathParts& parts);
     LightPathView layers_for(const FilmView& film) const;
-    void give_rounds(int going, const Work& work);
-    void give_round(Wavefront& wavefront, const Work& work);
+    void launch_rounds(int going, const Work& work);
+    void launch_round(Wavefront& wavefront, const Work& work);
 
     std::optional<CameraRaster> raster_; // if it rasterizes
 
@@ -102,9 +102,9 @@ private:
         Buffer<Uint4> layer_parts;              // if there are layers
         Buffer<uint32_t> hit_instances;
         Buffer<RoundCounts> counts; // two rounds alternate
-        Readback<SeenCounts> seen;  // counts at the start of the last launched round
+        Readback<HostCounts> seen;  // counts at the start of the last launched round
         uint32_t round = 0;
-        SeenCounts known = {}; // counts of the round before the last launched one
+        HostCounts known = {}; // counts of the round before the last launched one
         bool is_done = false;
         // Shadow rays of a round run concurrently with the rays of the next.
         int path_stream = 0, light_stream = 0;

@@ -31,22 +31,22 @@ enum Feature : Features {
 };
 inline constexpr Features kPlainDiffuse = 0, kDiffuse = kTextured | kAlpha, kAllMaterials = kDiffuse | kLayered;
 
-HD constexpr MaterialsKnown known_of(Features features) {
-    return (features & kLayered) != 0   ? MaterialsKnown::Nothing
-           : (features & kDiffuse) != 0 ? MaterialsKnown::Diffuse
-                                        : MaterialsKnown::PlainDiffuse;
+HD constexpr ShadingVariant variant_of(Features features) {
+    return (features & kLayered) != 0   ? ShadingVariant::General
+           : (features & kDiffuse) != 0 ? ShadingVariant::Diffuse
+                                        : ShadingVariant::PlainDiffuse;
 }
 HD constexpr MotionKnown motion_of(Features features) {
     return (features & kMoving) != 0 ? MotionKnown::Some : MotionKnown::None;
 }
 
-inline Features features_of(MaterialsKnown known) {
-    switch (known) {
-    case MaterialsKnown::Nothing:
+inline Features features_of(ShadingVariant variant) {
+    switch (variant) {
+    case ShadingVariant::General:
         break;
-    case MaterialsKnown::Diffuse:
+    case ShadingVariant::Diffuse:
         return kDiffuse;
-    case MaterialsKnown::PlainDiffuse:
+    case ShadingVariant::PlainDiffuse:
         return kPlainDiffuse;
     }
     return kAllMaterials;
@@ -58,7 +58,7 @@ inline Features features_for(const PathJob& job) {
     const bool has_times =
         picture.scene.motions.is_there() ||
         (picture.camera.motion.moves() && !job.film.frame.is_there() && (job.film.aovs & kAovDepth) != 0);
-    return features_of(picture.scene.known) | (has_times ? Features{kMoving} : 0);
+    return features_of(picture.scene.variant) | (has_times ? Features{kMoving} : 0);
 }
 
 /// The light selection of code for a mask of features (shading/light_set.h). A light tree is a feature, for which it

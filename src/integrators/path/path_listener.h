@@ -11,7 +11,7 @@
 #include "integrators/path/path_job.h"
 #include "integrators/path/path_state.h"
 #include "math/float4.h"
-#include "shading/light_place.h"
+#include "shading/emitter_point.h"
 
 namespace pertev {
 
@@ -43,8 +43,8 @@ struct SurfaceVertex {
         return offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi);
     }
     /// Returns the shadow ray to the sample point on a light, as ray_to_light makes it.
-    HD Ray ray_to(const LightSample& light, float lamp_error) const {
-        return ray_to_light(light, surface.position, surface.error, surface.geometric_normal, lamp_error);
+    HD Ray ray_to(const LightSample& light, float emitter_error) const {
+        return ray_to_light(light, surface.position, surface.error, surface.geometric_normal, emitter_error);
     }
     /// Returns the triangle that its rays leave.
     HD TriangleId triangle() const { return surface.triangle; }
@@ -55,7 +55,7 @@ struct SurfaceVertex {
 template <class Self>
 struct PathListener {
     struct Kept {};
-    struct Asked {};
+    struct ShadowData {};
 
     /// Called before the vertex, for a path that starts at the camera (then nothing is kept yet) or continues.
     HD void begins(const PathState&) {}
@@ -67,7 +67,7 @@ struct PathListener {
     HD void missed(const PathState&) {}
     /// Called before light at `place`, which the ray hit, is added; next-event estimation would have sampled it with
     /// density `light_pdf` (0: it could not). Returns true to take that light away from the path.
-    HD bool takes(const PathState&, const LightPlace&, float) { return false; }
+    HD bool takes(const PathState&, const EmitterPoint&, float) { return false; }
     /// Light that the ray hit, possibly black, is added next.
     HD void emitted(const PathState&, Rgb) {}
     /// Whether a vertex samples a light with a shadow ray.
@@ -99,16 +99,16 @@ struct PathListener {
     template <class K>
     HD static void store_next(const ListenerQueues&, uint32_t, const K&) {}
     template <class A>
-    HD static void load_asked(const ListenerQueues&, uint32_t, A&) {}
+    HD static void load_shadow_data(const ListenerQueues&, uint32_t, A&) {}
     template <class A>
-    HD static void store_asked(const ListenerQueues&, uint32_t, const A&) {}
+    HD static void store_shadow_data(const ListenerQueues&, uint32_t, const A&) {}
 };
 
 /// Several listeners as one; each is called in turn.
 template <class... Ls>
 struct Listeners : Ls... {
     struct Kept : Ls::Kept... {};
-    struct Asked : Ls::Asked... {};
+    struct ShadowData : Ls::ShadowData... {};
 
     template <class L>
     static constexpr bool has = (std::is_same_v<L, Ls> || ...);
@@ -119,7 +119,7 @@ struct Listeners : Ls... {
     HD void take_up(const Kept& kept) { (Ls::take_up(static_cast<const typename Ls::Kept&>(kept)), ...); }
     HD void vertex(const PathState& path, const Hit& hit, Surface& surface) { (Ls::vertex(path, hit, surface), ...); }
     HD void missed(const PathState& path) { (Ls::missed(path), ...); }
-    HD bool takes(const PathState& path, const LightPlace& place, [[maybe_unused]] float pdf) {
+    HD bool takes(const PathState& path, const EmitterPoint& place, [[maybe_unused]] float pdf) {
         return (Ls::takes(path, place, pdf) || ...);
     }
     HD void emitted(const PathState& path, [[maybe_unused]] Rgb light) { (Ls::emitted(path, light), ...); }
@@ -136,9 +136,13 @@ struct Listeners : Ls... {
         (Ls::scattered(path, at, sample), ...);
     }
     HD void put_down(Kept& kept) const { (Ls::put_down(static_cast<typename Ls::Kept&>(kept)), ...); }
-    HD void hand_over(Asked& asked) const { (Ls::hand_over(static_cast<typename Ls::Asked&>(asked)), ...); }
-    HD void arrived(Kept& kept, const Asked& asked, Rgb light) const {
-        (Ls::arrived(static_cast<typename Ls::Kept&>(kept), static_cast<const typename Ls::Asked&>(asked), light), ...);
+    HD void hand_over(ShadowData& shadow_data) const {
+        (Ls::hand_over(static_cast<typename Ls::ShadowData&>(shadow_data)), ...);
+    }
+    HD void arrived(Kept& kept, const ShadowData& shadow_data, Rgb light) const {
+        (Ls::arrived(static_cast<typename Ls::Kept&>(kept), static_cast<const typename Ls::ShadowData&>(shadow_data),
+                     light),
+         ...);
     }
     HD void ended(uint32_t pixel, Rgb radiance, const Kept& kept) const {
         (Ls::ended(pixel, radiance, static_cast<const typename Ls::Kept&>(kept)), ...);
@@ -152,11 +156,11 @@ struct Listeners : Ls... {
     HD static void store_next(const ListenerQueues& queues, uint32_t i, const Kept& kept) {
         (Ls::store_next(queues, i, static_cast<const typename Ls::Kept&>(kept)), ...);
     }
-    HD static void load_asked(const ListenerQueues& queues, uint32_t i, Asked& asked) {
-        (Ls::load_asked(queues, i, static_cast<typename Ls::Asked&>(asked)), ...);
+    HD static void load_shadow_data(const ListenerQueues& queues, uint32_t i, ShadowData& shadow_data) {
+        (Ls::load_shadow_data(queues, i, static_cast<typename Ls::ShadowData&>(shadow_data)), ...);
     }
-    HD static void store_asked(const ListenerQueues& queues, uint32_t i, const Asked& asked) {
-        (Ls::store_asked(queues, i, static_cast<const typename Ls::Asked&>(asked)), ...);
+    HD static void store_shadow_data(const ListenerQueues& queues, uint32_t i, const ShadowData& shadow_data) {
+        (Ls::store_shadow_data(queues, i, static_cast<const typename Ls::ShadowData&>(shadow_data)), ...);
     }
 };
 

@@ -26,13 +26,13 @@ public:
         VertexWords<Words8> words;
         for (uint32_t i = 0; i < count_; ++i) {
             if (i % kWords == 0) words = draw_for(i);
-            ask_for_indices(i + 16);
-            ask_for_vertices(i + 8);
-            Asked& asked = asked_[shadows];
+            prefetch_indices(i + 16);
+            prefetch_vertices(i + 8);
+            ShadowData& shadow_data = shadow_data_[shadows];
             const uint32_t key = key_of(paths_[i], true);
-            const bool wants_shadow =
-                shade_(job_, paths_[i], kept_[i], hits_[i], DrawnNumbers(words, i % kWords), asked.at, goes_on_[i]);
-            asked.key = key, asked.path = i;
+            const bool wants_shadow = shade_(job_, paths_[i], kept_[i], hits_[i], DrawnNumbers(words, i % kWords),
+                                             shadow_data.at, goes_on_[i]);
+            shadow_data.key = key, shadow_data.path = i;
             shadows += wants_shadow ? 1 : 0;
         }
         add_light(shadows);
@@ -42,8 +42,8 @@ public:
     }
 
 private:
-    struct Asked {
-        AskedByVertex<Listener> at;
+    struct ShadowData {
+        VertexShadowRay<Listener> at;
         uint32_t key, path;
     };
 
@@ -51,7 +51,7 @@ private:
     VertexWords<Words8> draw_for(uint32_t begin) const {
         SampleKeyOf<Words8> keys;
         Words8 depths = {};
-        bool has_choices = job_.picture.scene.known == MaterialsKnown::Nothing; // lobes have choices
+        bool has_choices = job_.picture.scene.variant == ShadingVariant::General; // lobes have choices
         for (uint32_t i = begin; i < begin + kWords && i < count_; ++i) {
             const PathState& path = paths_[i];
             set_lane(keys, i - begin, sample_key(job_.settings, path.pixel, path.sample));
@@ -71,10 +71,10 @@ private:
         if (i >= count_ || hits_[i].instance == kNoHit) return nullptr;
         return job_.picture.scene.meshes + job_.picture.scene.instances[hits_[i].instance].mesh;
     }
-    void ask_for_indices(uint32_t i) const {
+    void prefetch_indices(uint32_t i) const {
         if (const MeshView* mesh = mesh_of(i)) __builtin_prefetch(mesh->indices + 3 * uint64_t(hits_[i].primitive));
     }
-    void ask_for_vertices(uint32_t i) const {
+    void prefetch_vertices(uint32_t i) const {
         const MeshView* const mesh = mesh_of(i);
         if (mesh == nullptr) return;
         const TriangleIndices at = triangle_indices(*mesh, hits_[i].primitive);
@@ -108,20 +108,20 @@ private:
 
     void add_light(uint32_t shadows) {
         const auto ray_of = [&](uint32_t i) {
-            const ShadowRay& ray = asked_[i].at.ray;
+            const ShadowRay& ray = shadow_data_[i].at.ray;
             return Ray{ray.origin, 0.0f, ray.direction, ray.t_max};
         };
         const auto accept_of = [&](uint32_t i) {
-            return AcceptHit{job_.picture.scene, asked_[i].at.ray.start, asked_[i].at.ray.target, asked_[i].key,
-                             paths_[asked_[i].path].time};
+            return AcceptHit{job_.picture.scene, shadow_data_[i].at.ray.start, shadow_data_[i].at.ray.target,
+                             shadow_data_[i].key, paths_[shadow_data_[i].path].time};
         };
         find_occlusions(trees_, shadows, RayOrder::Together, ray_of, accept_of, occluded_);
         const Listener listener(job_);
         for (uint32_t i = 0; i < shadows; ++i) {
             if (occluded_[i]) continue;
-            const uint32_t path = asked_[i].path;
-            paths_[path].radiance += asked_[i].at.ray.contribution;
-            listener.arrived(kept_[path], asked_[i].at.asked, asked_[i].at.ray.contribution);
+            const uint32_t path = shadow_data_[i].path;
+            paths_[path].radiance += shadow_data_[i].at.ray.contribution;
+            listener.arrived(kept_[path], shadow_data_[i].at.shadow_data, shadow_data_[i].at.ray.contribution);
         }
     }
 
@@ -147,7 +147,7 @@ private:
     typename Listener::Kept kept_[kPaths];
     Hit hits_[kPaths];
     bool goes_on_[kPaths];
-    Asked asked_[kPaths + 1]; // one more, because an element is written before it is known to be needed
+    ShadowData shadow_data_[kPaths + 1]; // one more, because an element is written before it is known to be needed
     bool occluded_[kPaths];
 };
 

@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-#include "device/list_places.h"
+#include "device/block_append.h"
 #include "device_scene/ray_queue.h"
 #include "integrators/path/path_state.h"
 #include "math/float4.h"
@@ -110,21 +110,21 @@ struct alignas(128) RoundCounts {
 };
 
 /// The host's knowledge of a round.
-struct SeenCounts {
+struct HostCounts {
     uint32_t active, all_begun; // copies from RoundCounts
 };
 
 /// Slots of a vertex's path, for the next round or the film, and of its shadow ray.
-struct RoundPlaces {
+struct RoundSlots {
     uint32_t path, shadow;
 };
-using RoundLists = BlockLists<3>;
+using RoundAppend = BlockAppend<3>;
 
 /// Takes slots. `last` is the slot of the first path that ends.
-HD inline RoundPlaces take_places(const RoundLists& lists, RoundCounts& round, uint32_t last, bool is_there,
-                                  bool goes_on, bool wants_shadow) {
+HD inline RoundSlots append_to_round(const RoundAppend& lists, RoundCounts& round, uint32_t last, bool is_there,
+                                     bool goes_on, bool wants_shadow) {
     const bool ends = is_there && !goes_on;
-    const ListPlaces<3> places = lists.take({&round.next, &round.ended, &round.shadows}, {goes_on, ends, wants_shadow});
+    const ListSlots<3> places = lists.take({&round.next, &round.ended, &round.shadows}, {goes_on, ends, wants_shadow});
     return {ends ? last - places.at[1] : places.at[0], places.at[2]};
 }
 

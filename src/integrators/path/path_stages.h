@@ -17,7 +17,7 @@ namespace pertev {
 struct PlanRound {
     const RoundCounts* before;
     RoundCounts* round;
-    SeenCounts* seen;
+    HostCounts* seen;
     RenderCounts* render; // shared by concurrent wavefronts
     uint32_t capacity;
     uint64_t samples;
@@ -78,7 +78,7 @@ struct Shade {
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i, bool is_there) const {
         constexpr bool kMoves = (kFeatures & kMoving) != 0;
-        const RoundLists lists;
+        const RoundAppend lists;
         Listener listener(job);
         PathState path;
         ShadowRay shadow;
@@ -97,9 +97,9 @@ struct Shade {
                 Listener::load(listened, place, kept);
                 listener.take_up(kept);
             }
-            goes_on = shade_vertex<kFeatures>(job, path, hit, DrawWhenAsked(), shadow, wants_shadow, listener);
+            goes_on = shade_vertex<kFeatures>(job, path, hit, DrawOnDemand(), shadow, wants_shadow, listener);
         }
-        const RoundPlaces places = take_places(lists, *round, last, is_there, goes_on, wants_shadow);
+        const RoundSlots places = append_to_round(lists, *round, last, is_there, goes_on, wants_shadow);
         if (!is_there) return;
         if (goes_on) {
             next.store(places.path, path, job.settings.seed, job.picture.scene.any_alpha != 0);
@@ -113,9 +113,9 @@ struct Shade {
         if (!wants_shadow) return;
         shadows.store(places.shadow, shadow, places.path, key);
         if (kMoves && shadows.times != nullptr) shadows.times[places.shadow] = path.time;
-        typename Listener::Asked asked{};
-        listener.hand_over(asked);
-        Listener::store_asked(listened, places.shadow, asked);
+        typename Listener::ShadowData shadow_data{};
+        listener.hand_over(shadow_data);
+        Listener::store_shadow_data(listened, places.shadow, shadow_data);
     }
 };
 
@@ -133,10 +133,10 @@ struct AddLight {
         const uint32_t path = bits_of(c.w);
         next.add_radiance(path, {c.x, c.y, c.z});
         typename Listener::Kept kept{};
-        typename Listener::Asked asked{};
+        typename Listener::ShadowData shadow_data{};
         Listener::load_next(listened, path, kept);
-        Listener::load_asked(listened, i, asked);
-        Listener(job).arrived(kept, asked, {c.x, c.y, c.z});
+        Listener::load_shadow_data(listened, i, shadow_data);
+        Listener(job).arrived(kept, shadow_data, {c.x, c.y, c.z});
         Listener::store_next(listened, path, kept);
     }
 };

@@ -68,7 +68,7 @@ HD INLINE_ON_DEVICE void add_background(const PathJob& job, PathState& path, Lis
     if (lights.has_environment() && !(job.picture.hide_background && path.depth == 0)) {
         const EnvironmentHit seen =
             find_environment<LightChoice<kFeatures>>(lights, context_before(path), path.direction, path.bsdf_pdf > 0);
-        if (!listener.takes(path, place_in_environment(path.direction), seen.pdf)) {
+        if (!listener.takes(path, environment_point(path.direction), seen.pdf)) {
             light = emitted_light(job.settings, path, seen.radiance, seen.pdf);
         }
     }
@@ -121,8 +121,8 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     }
     shadow.contribution = clamp_contribution(settings, path.depth + 1, weight,
                                              path.throughput * scattered.f * ((weight / light.pdf) * light.radiance));
-    const float lamp_error = kMoves ? lamp_error_at(scene, light, path.time) : 0.0f;
-    const Ray ray = vertex.ray_to(light, lamp_error);
+    const float emitter_error = kMoves ? emitter_error_at(scene, light, path.time) : 0.0f;
+    const Ray ray = vertex.ray_to(light, emitter_error);
     if constexpr (!Medium<kFeatures>::kIsVacuum) {
         const Rgb transmittance = Medium<kFeatures>(scene).transmittance(settings, path, ray);
         if (is_black(transmittance)) return false;
@@ -179,7 +179,7 @@ HD INLINE_ON_DEVICE Surface make_vertex(const SceneView& scene, const PathState&
     constexpr bool kMoves = (kFeatures & kMoving) != 0;
     const MovedHit moved(scene, hit, kMoves ? path.time : kAtRest);
     Surface surface =
-        make_surface<known_of(kFeatures)>(scene, hit, kMoves ? moved.back(path.direction) : path.direction);
+        make_surface<variant_of(kFeatures)>(scene, hit, kMoves ? moved.back(path.direction) : path.direction);
     if (kMoves) moved.move(surface);
     return surface;
 }
@@ -197,7 +197,7 @@ HD INLINE_ON_DEVICE bool shade_in_medium(const PathJob& job, PathState& path, co
 }
 
 /// Shades the result of the path's ray: `hit`, or a miss if hit.instance is kNoHit. Returns whether the path
-/// continues; `wants_shadow` says whether `shadow` was written. `numbers` is DrawWhenAsked or DrawnNumbers.
+/// continues; `wants_shadow` says whether `shadow` was written. `numbers` is DrawOnDemand or DrawnNumbers.
 template <Features kFeatures, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const Hit& hit, const Numbers& numbers,
                                       ShadowRay& shadow, bool& wants_shadow, Listener& listener) {

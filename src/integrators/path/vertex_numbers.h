@@ -26,7 +26,7 @@ HD inline VertexWords<Word> draw_vertex(SamplerKind kind, SampleKeyOf<Word> key,
 }
 
 /// Draws each number on demand.
-struct DrawWhenAsked {
+struct DrawOnDemand {
     HD SampleBits light(const PathSettings& settings, const PathState& path) const {
         return sample_bits(settings.sampler, key_of(settings, path), vertex_light_group(path.depth), Pair::Last);
     }

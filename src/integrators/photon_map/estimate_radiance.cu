@@ -2,16 +2,16 @@
 #include "integrators/photon_map/estimate_radiance.h"
 
 namespace pertev {
-using enum MaterialsKnown;
+using enum ShadingVariant;
 using Search = PhotonSearch;
-template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<Nothing, Search::Grid>&);
-template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<Nothing, Search::KdTree>&);
-template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<Nothing, Search::Octree>&);
+template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<General, Search::Grid>&);
+template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<General, Search::KdTree>&);
+template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<General, Search::Octree>&);
 template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<PlainDiffuse, Search::Grid>&);
 template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<PlainDiffuse, Search::KdTree>&);
 template void launch(Queue&, const char*, WorkCount, const EstimateRadiance<PlainDiffuse, Search::Octree>&);
-template void launch(Queue&, const char*, WorkCount, const ShareLookups<Nothing>&);
+template void launch(Queue&, const char*, WorkCount, const ShareLookups<General>&);
 template void launch(Queue&, const char*, WorkCount, const ShareLookups<PlainDiffuse>&);
-template void launch(Queue&, const char*, WorkCount, const AddSharedLookups<Nothing>&);
+template void launch(Queue&, const char*, WorkCount, const AddSharedLookups<General>&);
 template void launch(Queue&, const char*, WorkCount, const AddSharedLookups<PlainDiffuse>&);
 } // namespace pertev

@@ -17,7 +17,7 @@
 
 #include "integrators/photon_map/gather_memory.h"
 #include "integrators/photon_map/photon_map_view.h"
-#include "integrators/subpaths/walk_vertex.h"
+#include "integrators/subpaths/subpath_vertex.h"
 #include "render/film_view.h"
 
 namespace pertev {
@@ -30,36 +30,36 @@ struct PhotonMapsView {
 
 /// Number of photons in a lookup from which on threads share it.
 inline constexpr uint32_t kCrowd = 128;
-inline constexpr uint32_t kShares = 32;            // shares of such a lookup
-inline constexpr uint32_t kMostSharing = 1u << 18; // threads at once
+inline constexpr uint32_t kShares = 32;           // shares of such a lookup
+inline constexpr uint32_t kMaxSharing = 1u << 18; // threads at once
 
 /// Evaluates all lookups. Those with many photons are left to be shared if GatherView has room for that.
-template <MaterialsKnown kKnown, PhotonSearch kSearch>
+template <ShadingVariant kVariant, PhotonSearch kSearch>
 struct EstimateRadiance {
-    WalkScene scene;
-    WalksView walks;
+    SubpathScene scene;
+    SubpathsView subpaths;
     GatherView gather;
     PhotonMapsView maps;
     FilmView film;
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const Lookup lookup = gather.load(i);
-        const Surface surface = make_surface<kKnown>(scene.picture.scene, lookup.hit, lookup.direction);
+        const Surface surface = make_surface<kVariant>(scene.picture.scene, lookup.hit, lookup.direction);
         if (gather.nearest_count > 0) {
             const Place place = place_of(lookup, surface);
             Rgb light = {};
-            if (asks_caustic(lookup)) light = of_nearest(maps.caustic, place, i);
+            if (needs_caustic(lookup)) light = of_nearest(maps.caustic, place, i);
             if (lookup.wants_all) light += of_nearest(maps.global, place, i);
             return add(lookup, light);
         }
         if (is_crowded(lookup, surface.position)) {
-            const uint32_t at = atomic_add(&walks.counts->crowded, 1u);
+            const uint32_t at = atomic_add(&subpaths.counts->crowded, 1u);
             gather.crowded[at] = i;
             gather.shared_sums[at] = {};
             return;
         }
         GatheredSums sums;
-        if (asks_caustic(lookup)) visit(maps.caustic, place_of(lookup, surface), sums.caustic);
+        if (needs_caustic(lookup)) visit(maps.caustic, place_of(lookup, surface), sums.caustic);
         if (lookup.wants_all) visit(maps.global, place_of(lookup, surface), sums.global);
         add_sums(lookup, sums);
     }
@@ -67,9 +67,9 @@ struct EstimateRadiance {
     /// Adds a share of the lookup `gather.crowded[at]`.
     HD INLINE_ON_DEVICE void add_share(uint32_t at, Share share) const {
         const Lookup lookup = gather.load(gather.crowded[at]);
-        const Surface surface = make_surface<kKnown>(scene.picture.scene, lookup.hit, lookup.direction);
+        const Surface surface = make_surface<kVariant>(scene.picture.scene, lookup.hit, lookup.direction);
         GatheredSums sums;
-        if (asks_caustic(lookup)) visit(maps.caustic, place_of(lookup, surface), sums.caustic, share);
+        if (needs_caustic(lookup)) visit(maps.caustic, place_of(lookup, surface), sums.caustic, share);
         if (lookup.wants_all) visit(maps.global, place_of(lookup, surface), sums.global, share);
         GatheredSums& all = gather.shared_sums[at];
         for (int c = 0; c < 3; ++c) {
@@ -84,7 +84,7 @@ private:
     struct Place {
         const Surface& surface;
         Vec3 wo, normal;
-        uint32_t most_scatterings;
+        uint32_t max_scatterings;
     };
 
     HD Place place_of(const Lookup& lookup, const Surface& surface) const {
@@ -92,12 +92,12 @@ private:
         // Maximum number of scatterings of a photon; the surface itself adds one.
         return {surface, wo, normal_towards(surface, wo), scene.settings.max_depth - lookup.scatterings - 1};
     }
-    HD bool asks_caustic(const Lookup& lookup) const { return !lookup.wants_all || !maps.global_has_all; }
+    HD bool needs_caustic(const Lookup& lookup) const { return !lookup.wants_all || !maps.global_has_all; }
     HD bool is_crowded(const Lookup& lookup, Vec3 at) const {
         if constexpr (kSearch != PhotonSearch::Grid) return false;
         if (gather.crowded == nullptr) return false;
         uint32_t count = 0;
-        if (asks_caustic(lookup) && maps.caustic.count > 0) count += count_near(maps.caustic.grid, at);
+        if (needs_caustic(lookup) && maps.caustic.count > 0) count += count_near(maps.caustic.grid, at);
         if (lookup.wants_all && maps.global.count > 0) count += count_near(maps.global.grid, at);
         return count >= kCrowd;
     }
@@ -106,7 +106,7 @@ private:
     }
     HD void add_sums(const Lookup& lookup, const GatheredSums& sums) const {
         Rgb light = {};
-        if (asks_caustic(lookup)) light = radiance_of(maps.caustic, sums.caustic);
+        if (needs_caustic(lookup)) light = radiance_of(maps.caustic, sums.caustic);
         if (lookup.wants_all) light += radiance_of(maps.global, sums.global);
         add(lookup, light);
     }
@@ -117,7 +117,7 @@ private:
     /// Scattered power f(wo, wi) power of photon `number`, W/sr.
     HD static Rgb sent_on(const PhotonMapView& map, const Place& place, uint32_t number) {
         const Float4 power = map.photons.powers[number], way = map.photons.ways[number];
-        if (bits_of(power.w) > place.most_scatterings) return {};
+        if (bits_of(power.w) > place.max_scatterings) return {};
         if (!(dot(unpack_normal(bits_of(way.w)), place.normal) > 0.7071f)) return {};
         const Vec3 wi = {way.x, way.y, way.z};
         const float cosine = abs(dot(wi, place.surface.geometric_normal));
@@ -157,7 +157,7 @@ private:
             find_nearest(structure_of<kSearch>(map), place.surface.position, map.radius, gather.nearest_count, nearest);
         float radius_squared = square(map.radius);
         if (count == gather.nearest_count) radius_squared = nearest[--count].distance_squared;
-        if (!(radius_squared >= square(kLeastPhotonRadius))) return {}; // all at one point
+        if (!(radius_squared >= square(kMinPhotonRadius))) return {}; // all at one point
         Rgb all = {};
         for (uint32_t k = 0; k < count; ++k) all += sent_on(map, place, nearest[k].index);
         return (kInvPi / radius_squared) * all;
@@ -166,13 +166,13 @@ private:
 
 /// Shares the lookups with many photons among threads: thread i takes share i % kShares of lookups i / kShares, i /
 /// kShares + sharing / kShares, ...
-template <MaterialsKnown kKnown>
+template <ShadingVariant kVariant>
 struct ShareLookups {
-    EstimateRadiance<kKnown, PhotonSearch::Grid> estimate;
+    EstimateRadiance<kVariant, PhotonSearch::Grid> estimate;
     uint32_t sharing; // number of threads, a multiple of kShares
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
-        const uint32_t crowded = estimate.walks.counts->crowded;
+        const uint32_t crowded = estimate.subpaths.counts->crowded;
         for (uint32_t at = i / kShares; at < crowded; at += sharing / kShares) {
             estimate.add_share(at, {i % kShares, kShares});
         }
@@ -180,9 +180,9 @@ struct ShareLookups {
 };
 
 /// Adds the shared lookups to the film.
-template <MaterialsKnown kKnown>
+template <ShadingVariant kVariant>
 struct AddSharedLookups {
-    EstimateRadiance<kKnown, PhotonSearch::Grid> estimate;
+    EstimateRadiance<kVariant, PhotonSearch::Grid> estimate;
 
     HD void operator()(uint32_t at) const { estimate.add_shared(at); }
 };

@@ -1,16 +1,16 @@
 #pragma once
 
-// Data of photon-mapping subpaths besides subpaths/walk_memory.h: what their next ray may add, and the lookups in the
-// maps.
+// Data of photon-mapping subpaths besides subpaths/subpath_memory.h: what their next ray may add, and the lookups in
+// the maps.
 
 #include "accel/nearest_points.h"
-#include "integrators/subpaths/walk_memory.h"
+#include "integrators/subpaths/subpath_memory.h"
 #include "render/fixed_sum.h"
 
 namespace pertev {
 
 /// Data of a camera subpath besides its throughput.
-struct Sight {
+struct GatherState {
     Rgb past_mirrors; // part of the throughput that applies to light behind mirrors and smooth glass only; the
                       // caustic map has the rest of that light
     float pdf;        // density with which the ray's direction was sampled, 1/sr; 0 after the camera or a delta lobe
@@ -38,27 +38,28 @@ struct GatherRoom {
 };
 
 struct GatherView {
-    Float4* sights;  // [subpaths]; for a photon only index_squared
+    Float4* gather_states; // [subpaths]; for a photon only index_squared
     uint32_t* marks; // [subpaths] for a photon 1 if other than delta lobes have scattered it; for a camera subpath
                      // whether it has continued at a diffuse surface
-    // Lookups of a round, contiguous; WalkCounts::vertices is their number.
+    // Lookups of a round, contiguous; SubpathCounts::vertices is their number.
     Float4 *places, *directions, *throughputs;
-    NearPoint* nearest; // [walks * nearest_count]
+    NearPoint* nearest; // [subpaths * nearest_count]
     uint32_t nearest_count;
-    // Lookups of a round with many photons, which several threads share. WalkCounts::crowded is their number.
+    // Lookups of a round with many photons, which several threads share. SubpathCounts::crowded is their number.
     uint32_t* crowded = nullptr; // [subpaths] indices of lookups; null: none is shared
     GatheredSums* shared_sums;   // [subpaths]
 
-    HD void store_sight(uint32_t walk, const Sight& sight) const {
-        sights[walk] = {sight.past_mirrors.r, sight.past_mirrors.g, sight.past_mirrors.b, sight.pdf};
+    HD void store_gather_state(uint32_t subpath, const GatherState& gather_state) const {
+        gather_states[subpath] = {gather_state.past_mirrors.r, gather_state.past_mirrors.g, gather_state.past_mirrors.b,
+                                  gather_state.pdf};
     }
-    HD Sight sight_of(uint32_t walk) const {
-        const Float4 s = sights[walk];
+    HD GatherState gather_state_of(uint32_t subpath) const {
+        const Float4 s = gather_states[subpath];
         return {{s.x, s.y, s.z}, s.w};
     }
     /// For a photon: square of the refractive index of its medium, over that of its light's medium.
-    HD float index_squared(uint32_t walk) const { return sights[walk].w; }
-    HD void store_index(uint32_t walk, float squared) const { sights[walk] = {0, 0, 0, squared}; }
+    HD float index_squared(uint32_t subpath) const { return gather_states[subpath].w; }
+    HD void store_index(uint32_t subpath, float squared) const { gather_states[subpath] = {0, 0, 0, squared}; }
     HD void store(uint32_t at, const Lookup& lookup) const {
         const Hit& hit = lookup.hit;
         const Vec3 d = lookup.direction;
@@ -83,13 +84,13 @@ struct GatherView {
 inline std::size_t lay_out(GatherView& view, std::byte* memory, const GatherRoom& room) {
     view.nearest_count = room.nearest;
     return lay_out_arrays(memory, [&](const auto& place) {
-        const std::size_t walks = room.count, shared = room.can_share ? walks : 0;
-        place(view.sights, walks);
-        place(view.marks, walks);
-        place(view.places, walks);
-        place(view.directions, walks);
-        place(view.throughputs, walks);
-        place(view.nearest, walks * room.nearest);
+        const std::size_t subpaths = room.count, shared = room.can_share ? subpaths : 0;
+        place(view.gather_states, subpaths);
+        place(view.marks, subpaths);
+        place(view.places, subpaths);
+        place(view.directions, subpaths);
+        place(view.throughputs, subpaths);
+        place(view.nearest, subpaths * room.nearest);
         place(view.crowded, shared);
         place(view.shared_sums, shared);
     });

@@ -21,33 +21,33 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kLooksForLamps = 2;       // mark in GatherView::marks of a subpath that only looks for
-                                                    // emitters
-inline constexpr uint32_t kSeesLampsWhole = 4;      // mark, combined with others: except for emitters and sky that
-                                                    // the ray hits, the throughput is Sight::past_mirrors
-inline constexpr uint32_t kNumberOfLook = 2;        // index among a vertex's choices: whether a ray looks for
-                                                    // emitters
-inline constexpr float kLeastChanceToLook = 0.125f; // minimum probability of that ray
-inline constexpr float kLookWithin = 4.0f;          // its probability is 1 if an emitter's area is more than 1/4 of the
-                                                    // squared distance
+inline constexpr uint32_t kLooksForEmitters = 2;  // mark in GatherView::marks of a subpath that only looks for
+                                                  // emitters
+inline constexpr uint32_t kSeesEmittersWhole = 4; // mark, combined with others: except for emitters and sky that
+                                                  // the ray hits, the throughput is Sight::past_mirrors
+inline constexpr uint32_t kNumberOfLook = 2;      // index among a vertex's choices: whether a ray looks for
+                                                  // emitters
+inline constexpr float kMinChanceToLook = 0.125f; // minimum probability of that ray
+inline constexpr float kLookWithin = 4.0f;        // its probability is 1 if an emitter's area is more than 1/4 of the
+                                                  // squared distance
 
 /// Starts camera subpaths 0, 1, ... of a pass.
-struct BeginSights {
-    BeginEyes begin;
+struct BeginGather {
+    BeginCameraSubpaths begin;
     GatherView gather;
 
     HD void operator()(uint32_t i) const {
         begin(i);
-        gather.store_sight(i, {{1, 1, 1}, 0});
+        gather.store_gather_state(i, {{1, 1, 1}, 0});
         gather.marks[i] = 0;
     }
 };
 
 /// Shades hits of camera subpaths.
-template <MaterialsKnown kKnown>
-struct ShadeSights {
-    WalkScene scene;
-    WalksView walks;
+template <ShadingVariant kVariant>
+struct ShadeGather {
+    SubpathScene scene;
+    SubpathsView subpaths;
     GatherView gather;
     FilmView film;
     PhotonGather how;
@@ -56,39 +56,39 @@ struct ShadeSights {
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
         const PictureView& picture = scene.picture;
-        const uint32_t walk = walks.owners[round % 2][i];
-        const Ray ray = load_ray(walks.rays[round % 2] + i);
-        const Hit hit = walks.hits().load(i);
-        WalkState state = walks.states[walk];
-        const Sight sight = gather.sight_of(walk);
-        const bool looks_for_lamps = gather.marks[walk] == kLooksForLamps;
-        const bool sees_lamps_whole = (gather.marks[walk] & kSeesLampsWhole) != 0;
+        const uint32_t subpath = subpaths.owners[round % 2][i];
+        const Ray ray = load_ray(subpaths.rays[round % 2] + i);
+        const Hit hit = subpaths.hits().load(i);
+        SubpathState state = subpaths.states[subpath];
+        const GatherState gather_state = gather.gather_state_of(subpath);
+        const bool looks_for_emitters = gather.marks[subpath] == kLooksForEmitters;
+        const bool sees_emitters_whole = (gather.marks[subpath] & kSeesEmittersWhole) != 0;
         if (hit.instance == kNoHit) {
-            if (!looks_for_lamps) add_background(state, sight, ray);
+            if (!looks_for_emitters) add_background(state, gather_state, ray);
             return;
         }
-        if (looks_for_lamps && light_of(picture.scene.lights, hit.instance, hit.primitive) == kNoLight) return;
-        const Surface surface = make_surface<kKnown>(picture.scene, hit, ray.direction);
+        if (looks_for_emitters && light_of(picture.scene.lights, hit.instance, hit.primitive) == kNoLight) return;
+        const Surface surface = make_surface<kVariant>(picture.scene, hit, ray.direction);
         if (state.depth() == 0) {
             add_seen(picture, film, state, ray, hit, surface);
         } else if (!is_black(surface.emission)) {
             const uint32_t light = light_of(picture.scene.lights, hit.instance, hit.primitive);
-            const bool may_be_drawn = sight.pdf > 0 && light != kNoLight;
-            if (sees_lamps_whole && !may_be_drawn) state.throughput = sight.past_mirrors;
-            add_light(state, sight, surface.emission,
+            const bool may_be_drawn = gather_state.pdf > 0 && light != kNoLight;
+            if (sees_emitters_whole && !may_be_drawn) state.throughput = gather_state.past_mirrors;
+            add_light(state, gather_state, surface.emission,
                       may_be_drawn ? pdf_light_hit(picture.scene.lights, light, ray.origin, surface.position) : 0.0f);
         }
         const uint32_t depth = state.depth(), max_depth = scene.settings.max_depth;
-        if (looks_for_lamps || surface.is_unlit || depth >= max_depth) return;
-        if (sees_lamps_whole) {
-            if (is_black(sight.past_mirrors)) return;
-            state.throughput = sight.past_mirrors;
-            gather.marks[walk] &= ~kSeesLampsWhole;
+        if (looks_for_emitters || surface.is_unlit || depth >= max_depth) return;
+        if (sees_emitters_whole) {
+            if (is_black(gather_state.past_mirrors)) return;
+            state.throughput = gather_state.past_mirrors;
+            gather.marks[subpath] &= ~kSeesEmittersWhole;
         }
 
         const bool is_diffuse = surface.bsdf.has(LobeClass::Diffuse), is_glossy = surface.bsdf.has(LobeClass::Glossy);
-        const bool is_near = sight.pdf > 0 && hit.t < near;
-        const bool turns = is_diffuse && how == PhotonGather::Final && (gather.marks[walk] == 0 || is_near);
+        const bool is_near = gather_state.pdf > 0 && hit.t < near;
+        const bool turns = is_diffuse && how == PhotonGather::Final && (gather.marks[subpath] == 0 || is_near);
         const bool may_look = is_diffuse && !is_glossy && !turns;
         const Vertex vertex = {surface,
                                -ray.direction,
@@ -97,12 +97,12 @@ struct ShadeSights {
                                turns,
                                may_look,
                                {state.pixel, state.sample, scene.settings.seed}};
-        const float nearness = is_diffuse || is_glossy ? ask_for_light(vertex, state) : 0.0f;
+        const float nearness = is_diffuse || is_glossy ? sample_direct_light(vertex, state) : 0.0f;
         if (is_diffuse && depth + 2 <= max_depth) {
-            gather.store(atomic_add(&walks.counts->vertices, 1u),
+            gather.store(atomic_add(&subpaths.counts->vertices, 1u),
                          {hit, ray.direction, state.throughput, state.pixel, depth, !turns});
         }
-        go_on(vertex, walk, state, sight, nearness);
+        go_on(vertex, subpath, state, gather_state, nearness);
     }
 
 private:
@@ -117,25 +117,26 @@ private:
 
     /// Adds light that the subpath hit. `light_pdf` is the density with which a shadow ray would have been sampled
     /// there.
-    HD void add_light(const WalkState& state, const Sight& sight, Rgb emission, float light_pdf) const {
-        const float weight = light_pdf > 0 ? power_heuristic(sight.pdf, light_pdf) : 1.0f;
-        add_radiance(film, state.pixel, (sight.pdf > 0 ? weight * state.throughput : sight.past_mirrors) * emission);
+    HD void add_light(const SubpathState& state, const GatherState& gather_state, Rgb emission, float light_pdf) const {
+        const float weight = light_pdf > 0 ? power_heuristic(gather_state.pdf, light_pdf) : 1.0f;
+        add_radiance(film, state.pixel,
+                     (gather_state.pdf > 0 ? weight * state.throughput : gather_state.past_mirrors) * emission);
     }
-    HD void add_background(const WalkState& state, const Sight& sight, const Ray& ray) const {
+    HD void add_background(const SubpathState& state, const GatherState& gather_state, const Ray& ray) const {
         if (state.depth() == 0) return add_seen_background(scene.picture, film, state, ray);
         const LightSetView& lights = scene.picture.scene.lights;
         if (!lights.has_environment()) return;
-        add_light(state, sight, environment_radiance(lights.environment, ray.direction),
-                  sight.pdf > 0 ? pdf_environment(lights, ray.origin, ray.direction) : 0.0f);
+        add_light(state, gather_state, environment_radiance(lights.environment, ray.direction),
+                  gather_state.pdf > 0 ? pdf_environment(lights, ray.origin, ray.direction) : 0.0f);
     }
 
     /// Samples one point of one light, as path tracing does. Returns its nearness_of(), or 0.
-    HD INLINE_ON_DEVICE float ask_for_light(const Vertex& vertex, const WalkState& state) const {
+    HD INLINE_ON_DEVICE float sample_direct_light(const Vertex& vertex, const SubpathState& state) const {
         const SceneView& view = scene.picture.scene;
         const Surface& surface = vertex.surface;
         LightSample light;
         const SampleBits bits = sample_bits(scene.settings.sampler, vertex.key, light_group(state.depth()), Pair::Last);
-        if (!sample_light<has_textures(kKnown)>(view.lights, surface.light_context(vertex.wo), bits, light)) return 0;
+        if (!sample_light<has_textures(kVariant)>(view.lights, surface.light_context(vertex.wo), bits, light)) return 0;
         const float nearness = nearness_of(light);
         const BsdfValue all = surface.evaluate(vertex.wo, light.wi);
         if (is_black(all.f)) return nearness;
@@ -150,7 +151,7 @@ private:
         connection.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
         connection.key = coin;
         connection.light = (1.0f / light.pdf) * (state.throughput * drawn_share(vertex, light, all) * light.radiance);
-        walks.ask(atomic_add(&walks.counts->asked, 1u), connection, state.pixel);
+        subpaths.queue_connection(atomic_add(&subpaths.counts->connections, 1u), connection, state.pixel);
         return nearness;
     }
     /// Area of an emitter over the probability to sample it, relative to the squared distance; 0 for lights without
@@ -166,14 +167,14 @@ private:
         return power_heuristic(light.pdf, all.pdf) * all.f;
     }
 
-    /// `nearness` is the result of ask_for_light.
-    HD INLINE_ON_DEVICE void go_on(const Vertex& vertex, uint32_t walk, WalkState& state, Sight sight,
-                                   float nearness) const {
+    /// `nearness` is the result of sample_direct_light.
+    HD INLINE_ON_DEVICE void go_on(const Vertex& vertex, uint32_t subpath, SubpathState& state,
+                                   GatherState gather_state, float nearness) const {
         const Surface& surface = vertex.surface;
         const SubpathSettings& settings = scene.settings;
-        const uint32_t choices = eye_group(state.depth(), kWalkChoices);
-        const WalkDraw draw =
-            draw_scatter(settings, vertex.key, surface.bsdf, eye_group(state.depth(), kWalkScatter), choices);
+        const uint32_t choices = camera_group(state.depth(), kSubpathChoices);
+        const ScatterDraw draw =
+            draw_scatter(settings, vertex.key, surface.bsdf, camera_group(state.depth(), kSubpathScatter), choices);
         BsdfSample sample = surface.sample(vertex.wo, draw.lobe, draw.u);
         if (!(sample.pdf > 0)) return;
         Rgb past_mirrors = sample.weight; // factor for light beyond delta lobes from here on
@@ -185,9 +186,9 @@ private:
             }
             if (vertex.may_look) {
                 sample.weight = share_that_looks(vertex, nearness, choices) * sample.weight;
-                gather.marks[walk] = kLooksForLamps;
+                gather.marks[subpath] = kLooksForEmitters;
             } else if (!vertex.turns) {
-                gather.marks[walk] |= kSeesLampsWhole;
+                gather.marks[subpath] |= kSeesEmittersWhole;
             }
         }
         if (is_black(sample.weight)) return;
@@ -195,24 +196,24 @@ private:
         if (!survives(settings, vertex.key, choices, state.depth() + 1, sample.weight)) return;
         const float made_up = max_component(sample.weight) / max_component(before);
         const Vec3 wi = sample.wi;
-        sight = {sample.is_delta() ? made_up * (sight.past_mirrors * past_mirrors)
-                                   : made_up * (state.throughput * past_mirrors),
-                 sample.is_delta() ? 0.0f : sample.pdf};
-        if (!sample.is_delta() && vertex.turns) gather.marks[walk] = 1;
+        gather_state = {sample.is_delta() ? made_up * (gather_state.past_mirrors * past_mirrors)
+                                          : made_up * (state.throughput * past_mirrors),
+                        sample.is_delta() ? 0.0f : sample.pdf};
+        if (!sample.is_delta() && vertex.turns) gather.marks[subpath] = 1;
         state.throughput = state.throughput * sample.weight;
         ++state.scatterings;
-        walks.states[walk] = state;
-        gather.store_sight(walk, sight);
+        subpaths.states[subpath] = state;
+        gather.store_gather_state(subpath, gather_state);
         const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wi), 0, wi,
                          kInfinity};
-        walks.queue_ray(atomic_add(&walks.counts->next, 1u), walk, ray, surface.triangle,
-                        coin_key(vertex.key, state.depth(), false), round + 1);
+        subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), subpath, ray, surface.triangle,
+                           coin_key(vertex.key, state.depth(), false), round + 1);
     }
 
     /// Returns 0 if no ray looks for emitters; otherwise the factor that compensates for those that do not.
     HD float share_that_looks(const Vertex& vertex, float nearness, uint32_t choices) const {
         if (scene.picture.scene.lights.triangle_count == 0) return 0;
-        const float chance = clamp(kLookWithin * nearness, kLeastChanceToLook, 1.0f);
+        const float chance = clamp(kLookWithin * nearness, kMinChanceToLook, 1.0f);
         const float u = sample_1d(scene.settings.sampler, vertex.key, choices, kNumberOfLook);
         return u < chance ? 1.0f / chance : 0.0f;
     }

@@ -47,7 +47,7 @@ struct MakeBuckets {
     }
 };
 
-inline constexpr uint32_t kMostKept = 1024; // photons per bucket
+inline constexpr uint32_t kMaxKept = 1024; // photons per bucket
 
 /// Finds the starts of buckets in sorted keys; thread `count` closes the list.
 struct FindBuckets {

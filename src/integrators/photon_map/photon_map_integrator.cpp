@@ -9,8 +9,8 @@ namespace pertev {
 namespace {
 
 /// `in_loop` means the room of a CPU thread, which has other lookups to do when one is long.
-GatherRoom gather_room(uint32_t walks, const PhotonMapSettings& map, bool in_loop) {
-    return {walks, map.nearest, !in_loop && map.search == PhotonSearch::Grid && map.nearest == 0};
+GatherRoom gather_room(uint32_t subpaths, const PhotonMapSettings& map, bool in_loop) {
+    return {subpaths, map.nearest, !in_loop && map.search == PhotonSearch::Grid && map.nearest == 0};
 }
 
 } // namespace
@@ -18,22 +18,23 @@ GatherRoom gather_room(uint32_t walks, const PhotonMapSettings& map, bool in_loo
 GatherRoom PhotonMapIntegrator::loop_room() const {
     constexpr std::size_t kLoopBytes = std::size_t(1) << 18; // per thread, so that it fits the cache
     return room_within(kLoopBytes, kLoopCount,
-                       [&](uint32_t walks) { return gather_room(walks, picture_settings_.map, true); });
+                       [&](uint32_t subpaths) { return gather_room(subpaths, picture_settings_.map, true); });
 }
 
 void PhotonMapIntegrator::reserve(const WorkSize& size) {
     const PhotonMapSettings& map = settings_.map;
-    maps_.make_room(map, settings_.walks.max_depth);
-    targets_.grow(queue_, kMostTargets, "targets of photons");
+    maps_.make_room(map, settings_.subpaths.max_depth);
+    targets_.grow(queue_, kMaxTargets, "targets of photons");
     if (goes_by_loop(size)) return;
-    const uint64_t walks = std::max<uint64_t>(size.pixels(), 2 * uint64_t(map.photons)); // camera subpaths or photons
-    take_room(room_within(kMostBytes, std::min<uint64_t>(walks, batch_),
+    const uint64_t subpaths =
+        std::max<uint64_t>(size.pixels(), 2 * uint64_t(map.photons)); // camera subpaths or photons
+    take_room(room_within(kMaxBytes, std::min<uint64_t>(subpaths, batch_),
                           [&](uint32_t count) { return gather_room(count, map, false); }),
-              "walks of photon mapping");
+              "subpaths of photon mapping");
 }
 
 void PhotonMapIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
-    PERTEV_CHECK(has_room_for_photons(settings_.map.photons, settings_.walks.max_depth));
+    PERTEV_CHECK(has_room_for_photons(settings_.map.photons, settings_.subpaths.max_depth));
     TwoSchedules::begin(picture, tracer, samples);
     const PhotonMapSettings& map = picture_settings_.map;
     world_ = sphere_round(tracer.bounds());
@@ -45,7 +46,7 @@ void PhotonMapIntegrator::begin(const PictureView& picture, SceneTracer& tracer,
 void PhotonMapIntegrator::find_targets() {
     const SceneView& scene = picture_.scene;
     target_count_ = 0;
-    if (scene.known != MaterialsKnown::Nothing || !(world_.radius > 0)) return;
+    if (scene.variant != ShadingVariant::General || !(world_.radius > 0)) return;
     std::vector<Float4> spheres = {{world_.centre.x, world_.centre.y, world_.centre.z, world_.radius}};
     if (scene.first_triangle != nullptr) {
         Buffer<SpecularBounds> bounds(queue_, 1, "bounds of mirrors and glass");
@@ -63,7 +64,7 @@ void PhotonMapIntegrator::find_targets() {
 
 PhotonJob PhotonMapIntegrator::make_job(uint32_t pass, const FilmView& film) {
     PhotonJob job = {};
-    job.scene = {picture_, picture_settings_.walks, world_, false};
+    job.scene = {picture_, picture_settings_.subpaths, world_, false};
     job.film = film;
     job.samples = {0, pixels(), pass, 1};
     const PhotonMapSettings& map = picture_settings_.map;
@@ -80,18 +81,18 @@ void PhotonMapIntegrator::render(uint32_t first, uint32_t count, const FilmView&
 
 void PhotonMapIntegrator::render_pass(uint32_t pass, const FilmView& film) {
     PhotonJob job = make_job(pass, film);
-    const SubpathSettings& walks = picture_settings_.walks;
+    const SubpathSettings& subpaths = picture_settings_.subpaths;
     // Shadow rays alone find light that is scattered once.
-    const uint64_t kinds = walks.max_depth < 2 ? 0 : target_count_ > 0 ? 2 : 1;
+    const uint64_t kinds = subpaths.max_depth < 2 ? 0 : target_count_ > 0 ? 2 : 1;
     run_stages(job, 0, kinds * picture_settings_.map.photons, loop_room(), 1,
                [this](auto& schedule, const PhotonJob& part) {
                    if (!is_abandoned()) run_photons(schedule, part);
                });
     const float shrunk = radius_of_pass(pass), largest = length(world_.centre) + world_.radius;
-    job.near = max(shrunk * global_radius_, kLeastPhotonRadius);
-    job.maps = maps_.build(job.near, max(shrunk * caustic_radius_, kLeastPhotonRadius), largest, pass, walks.seed);
+    job.near = max(shrunk * global_radius_, kMinPhotonRadius);
+    job.maps = maps_.build(job.near, max(shrunk * caustic_radius_, kMinPhotonRadius), largest, pass, subpaths.seed);
     run_stages(job, 0, pixels(), loop_room(), 1, [this](auto& schedule, const PhotonJob& part) {
-        if (!is_abandoned()) run_sights(schedule, part);
+        if (!is_abandoned()) run_gather(schedule, part);
     });
     rays_.camera += pixels();
 }

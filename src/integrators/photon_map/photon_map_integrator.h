@@ -15,7 +15,7 @@ namespace pertev {
 
 /// The settings of a photon map render.
 struct PhotonMapRequest {
-    SubpathSettings walks;
+    SubpathSettings subpaths;
     PhotonMapSettings map;
 };
 

@@ -32,19 +32,19 @@ struct PhotonMapSettings {
     bool operator==(const PhotonMapSettings&) const = default;
 };
 
-inline constexpr uint32_t kMostPhotons = 1u << 24;      // PhotonMapSettings::photons
-inline constexpr uint32_t kMostNearestPhotons = 1024;   // PhotonMapSettings::nearest
-inline constexpr uint32_t kMostPhotonDepth = 64;        // largest max_depth, because memory is reserved for photons of
-                                                        // all depths
-inline constexpr uint64_t kMostStored = (1u << 30) - 1; // photons of a pass that may be stored
+inline constexpr uint32_t kMaxPhotons = 1u << 24;      // PhotonMapSettings::photons
+inline constexpr uint32_t kMaxNearestPhotons = 1024;   // PhotonMapSettings::nearest
+inline constexpr uint32_t kMaxPhotonDepth = 64;        // largest max_depth, because memory is reserved for photons of
+                                                       // all depths
+inline constexpr uint64_t kMaxStored = (1u << 30) - 1; // photons of a pass that may be stored
 /// Minimum radius of a pass, in metres. Light is divided by its square, and rounding limits the distance of points.
-inline constexpr float kLeastPhotonRadius = 1e-9f;
+inline constexpr float kMinPhotonRadius = 1e-9f;
 inline constexpr float kRadiusOfScene = 1.0f / 50; // fraction of the radius of a sphere around the scene
 inline constexpr float kCausticRadius = 1.0f / 4;  // fraction of the global map's radius
 
 /// Whether the photons of paths with up to max_depth scatterings can be stored.
 constexpr bool has_room_for_photons(uint32_t photons, uint32_t max_depth) {
-    return uint64_t(photons) * 2 * (max_depth > 1 ? max_depth - 1 : 1) <= kMostStored;
+    return uint64_t(photons) * 2 * (max_depth > 1 ? max_depth - 1 : 1) <= kMaxStored;
 }
 
 /// Radius of pass `pass` relative to the first one: it shrinks so that the mean over passes converges without blur or

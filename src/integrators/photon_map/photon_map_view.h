@@ -100,7 +100,7 @@ struct PhotonGridView {
     PhotonCells cells;
     const Float4* points = nullptr;   // ordered by bucket: position, bits of the photon's number
     const uint32_t* starts = nullptr; // [buckets + 1] start in `points`
-    uint32_t most_kept = 0xffffffffu; // only the first points of a bucket are used
+    uint32_t max_kept = 0xffffffffu;  // only the first points of a bucket are used
 };
 
 /// Calls visit(begin, end) for each bucket, a range of grid.points, that may contain a photon near `at`.
@@ -123,7 +123,7 @@ HD inline void visit_buckets(const PhotonGridView& grid, Vec3 at, Visit&& visit)
         if (!is_new) continue;
         seen[seen_count++] = bucket;
         const uint32_t begin = grid.starts[bucket];
-        visit(begin, begin + min(grid.starts[bucket + 1] - begin, grid.most_kept));
+        visit(begin, begin + min(grid.starts[bucket + 1] - begin, grid.max_kept));
     }
 }
 

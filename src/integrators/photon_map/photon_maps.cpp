@@ -24,7 +24,7 @@ bool global_has_all(const PhotonMapSettings& settings) { return settings.gather 
 uint64_t room_of_maps(const PhotonMapSettings& settings, uint32_t max_depth) {
     return (global_has_all(settings) ? 3 : 2) * room_of_kind(settings, max_depth);
 }
-std::size_t most_starts(uint64_t room) { return std::bit_ceil(room) + 1; }
+std::size_t max_starts(uint64_t room) { return std::bit_ceil(room) + 1; }
 
 } // namespace
 
@@ -32,7 +32,7 @@ void PhotonMaps::make_room(const PhotonMapSettings& settings, uint32_t max_depth
     const uint64_t of_kind = room_of_kind(settings, max_depth), room = 2 * of_kind;
     const uint64_t in_maps = room_of_maps(settings, max_depth);
     search_ = settings.search;
-    most_kept_ = settings.nearest > 0 ? 0xffffffffu : kMostKept; // the nearest photons are selected from all
+    max_kept_ = settings.nearest > 0 ? 0xffffffffu : kMaxKept; // the nearest photons are selected from all
     global_has_all_ = global_has_all(settings);
     for (int k = 0; k < 3; ++k) {
         stored_[k].grow(queue_, room, "photons as they come");
@@ -41,7 +41,7 @@ void PhotonMaps::make_room(const PhotonMapSettings& settings, uint32_t max_depth
     for (int k = 0; k < 2; ++k) {
         keys_[k].grow(queue_, room, "numbers of photons");
         order_[k].grow(queue_, room, "order of photons");
-        starts_[k].grow(queue_, most_starts(k == 0 ? in_maps - of_kind : of_kind), "hash grid over photons");
+        starts_[k].grow(queue_, max_starts(k == 0 ? in_maps - of_kind : of_kind), "hash grid over photons");
     }
     if (queue_.is_cuda()) {
         scratch_.grow(queue_, sort_scratch_bytes(queue_, static_cast<uint32_t>(room)), "room for sorting photons");
@@ -104,8 +104,8 @@ void PhotonMaps::fill_grid(PhotonMapView& map, Float4* points, Buffer<uint32_t>&
     launch(queue_, "find buckets", map.count + 1,
            FindBuckets{keys_[1].data(), map.count, cells.buckets, starts.data()});
     launch(queue_, "keep photons", map.count,
-           KeepPhotons{map.photons, keys_[1].data(), order_[1].data(), starts.data(), most_kept_, pass, seed, points});
-    map.grid = {cells, points, starts.data(), most_kept_};
+           KeepPhotons{map.photons, keys_[1].data(), order_[1].data(), starts.data(), max_kept_, pass, seed, points});
+    map.grid = {cells, points, starts.data(), max_kept_};
 }
 
 void PhotonMaps::build_trees(PhotonMapView& map, uint32_t first) {

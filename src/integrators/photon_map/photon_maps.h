@@ -37,7 +37,7 @@ private:
     Queue& queue_;
     PhotonSearch search_ = PhotonSearch::Grid;
     bool global_has_all_ = false;
-    uint32_t most_kept_ = 0;      // photons per bucket
+    uint32_t max_kept_ = 0;       // photons per bucket
     uint64_t room_ = 0;           // in photons
     Buffer<Float4> stored_[3];    // stored photons; then the points of the grids: [0] of the global map, [1] of the
                                   // caustic map

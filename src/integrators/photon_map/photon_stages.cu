@@ -12,9 +12,9 @@ template void launch(Queue&, const char*, WorkCount, const OrderPhotons&);
 template void launch(Queue&, const char*, WorkCount, const MakeBuckets&);
 template void launch(Queue&, const char*, WorkCount, const FindBuckets&);
 template void launch(Queue&, const char*, WorkCount, const KeepPhotons&);
-template void launch(Queue&, const char*, WorkCount, const BeginSights&);
-template void launch(Queue&, const char*, WorkCount, const ShadePhotons<MaterialsKnown::Nothing>&);
-template void launch(Queue&, const char*, WorkCount, const ShadePhotons<MaterialsKnown::PlainDiffuse>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeSights<MaterialsKnown::Nothing>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeSights<MaterialsKnown::PlainDiffuse>&);
+template void launch(Queue&, const char*, WorkCount, const BeginGather&);
+template void launch(Queue&, const char*, WorkCount, const ShadePhotons<ShadingVariant::General>&);
+template void launch(Queue&, const char*, WorkCount, const ShadePhotons<ShadingVariant::PlainDiffuse>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeGather<ShadingVariant::General>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeGather<ShadingVariant::PlainDiffuse>&);
 } // namespace pertev

@@ -13,7 +13,7 @@
 #include "integrators/photon_map/gather_memory.h"
 #include "integrators/photon_map/photon_map_view.h"
 #include "integrators/photon_map/photon_targets.h"
-#include "integrators/subpaths/walk_vertex.h"
+#include "integrators/subpaths/subpath_vertex.h"
 #include "render/film_view.h"
 
 namespace pertev {
@@ -49,8 +49,8 @@ struct PhotonPass {
 
 /// Starts photons `first`, first + 1, ... as subpaths 0, 1, ...
 struct BeginPhotons {
-    WalkScene scene;
-    WalksView walks;
+    SubpathScene scene;
+    SubpathsView subpaths;
     GatherView gather;
     PhotonPass pass;
     uint32_t first;
@@ -68,7 +68,7 @@ struct BeginPhotons {
                 ? aim_particle(scene.picture.scene, pass.targets, scene.world, place, direction, coin, particle)
                 : emit_particle(scene.picture.scene, scene.world, place, direction, coin, particle);
         if (!leaves) return;
-        WalkState state = {};
+        SubpathState state = {};
         state.throughput = (1.0f / static_cast<float>(pass.count)) * particle.power;
         if (!(max_component(state.throughput) > 0)) return;
         if (!(max_component(state.throughput) <= kMaxSampleValue)) {
@@ -76,48 +76,48 @@ struct BeginPhotons {
             return;
         }
         state.pixel = path;
-        walks.states[i] = state;
+        subpaths.states[i] = state;
         gather.marks[i] = 0;
         gather.store_index(i, 1);
         pass.tell(&PhotonEnergy::emitted, state.throughput);
-        walks.queue_ray(atomic_add(&walks.counts->next, 1u), i, particle.ray, particle.start, coin, 0);
+        subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), i, particle.ray, particle.start, coin, 0);
     }
 };
 
 /// Shades hits of photons.
-template <MaterialsKnown kKnown>
+template <ShadingVariant kVariant>
 struct ShadePhotons {
-    WalkScene scene;
-    WalksView walks;
+    SubpathScene scene;
+    SubpathsView subpaths;
     GatherView gather;
     PhotonPass pass;
     uint32_t round;
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
-        const Hit hit = walks.hits().load(i);
-        const uint32_t walk = walks.owners[round % 2][i];
-        WalkState state = walks.states[walk];
+        const Hit hit = subpaths.hits().load(i);
+        const uint32_t subpath = subpaths.owners[round % 2][i];
+        SubpathState state = subpaths.states[subpath];
         if (hit.instance == kNoHit) return pass.tell(&PhotonEnergy::escaped, state.throughput);
         const Rgb arrived = state.throughput;
         pass.tell(&PhotonEnergy::arrived, arrived);
-        const Ray ray = load_ray(walks.rays[round % 2] + i);
-        const Surface surface = make_surface<kKnown>(scene.picture.scene, hit, ray.direction);
+        const Ray ray = load_ray(subpaths.rays[round % 2] + i);
+        const Surface surface = make_surface<kVariant>(scene.picture.scene, hit, ray.direction);
         if (state.depth() == 0) state.throughput = left_at(hit.t, ray.t_max) * state.throughput;
         const bool is_caustic = pass.is_caustic(state.pixel);
-        const bool is_kept = state.depth() > 0 && (is_caustic || gather.marks[walk] != 0) && !surface.is_unlit &&
+        const bool is_kept = state.depth() > 0 && (is_caustic || gather.marks[subpath] != 0) && !surface.is_unlit &&
                              surface.bsdf.has(LobeClass::Diffuse);
         if (!is_kept) pass.tell(&PhotonEnergy::left_none, arrived);
         if (surface.is_unlit || is_black(state.throughput)) return;
-        if (is_kept) keep(surface, walk, state, -ray.direction, is_caustic);
+        if (is_kept) keep(surface, subpath, state, -ray.direction, is_caustic);
         if (state.depth() + 1 < scene.settings.max_depth && !(is_caustic && !surface.bsdf.has_delta())) {
-            go_on(surface, walk, state, -ray.direction, is_caustic);
+            go_on(surface, subpath, state, -ray.direction, is_caustic);
         }
     }
 
 private:
-    HD void keep(const Surface& surface, uint32_t walk, const WalkState& state, Vec3 wi, bool is_caustic) const {
+    HD void keep(const Surface& surface, uint32_t subpath, const SubpathState& state, Vec3 wi, bool is_caustic) const {
         // Camera subpaths carry radiance over the squared index (shading/lobes/bsdf_sample.h), photons carry power.
-        const Rgb power = (1.0f / gather.index_squared(walk)) * state.throughput;
+        const Rgb power = (1.0f / gather.index_squared(subpath)) * state.throughput;
         if (!(max_component(power) <= kMaxSampleValue)) {
             atomic_add(pass.invalid, 1);
             return;
@@ -127,13 +127,13 @@ private:
             {surface.position, wi, dot(normal, wi) < 0 ? -normal : normal, power, state.pixel, state.depth()},
             is_caustic);
     }
-    HD INLINE_ON_DEVICE void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wi,
+    HD INLINE_ON_DEVICE void go_on(const Surface& surface, uint32_t subpath, SubpathState& state, Vec3 wi,
                                    bool is_caustic) const {
         const SubpathSettings& settings = scene.settings;
         const SampleKey key = pass.key(state.pixel, settings.seed);
-        const uint32_t choices = particle_group(state.depth(), kWalkChoices);
-        const WalkDraw draw =
-            draw_scatter(settings, key, surface.bsdf, particle_group(state.depth(), kWalkScatter), choices);
+        const uint32_t choices = particle_group(state.depth(), kSubpathChoices);
+        const ScatterDraw draw =
+            draw_scatter(settings, key, surface.bsdf, particle_group(state.depth(), kSubpathScatter), choices);
         BsdfSample sample = sample_adjoint(surface, wi, draw.lobe, draw.u);
         if (!(sample.pdf > 0) || (is_caustic && !sample.is_delta())) return;
         // Photons of similar power give the smoothest maps, so fewer photons continue where only a part is scattered
@@ -144,19 +144,19 @@ private:
             if (!(sample_1d(settings.sampler, key, choices, kNumberOfRoulette) < chance)) return;
             sample.weight = (1.0f / chance) * sample.weight;
         }
-        if (!sample.is_delta()) gather.marks[walk] = 1;
+        if (!sample.is_delta()) gather.marks[subpath] = 1;
         if (sample.is_transmission) {
-            gather.store_index(walk, squared_index_beyond(surface, wi, gather.index_squared(walk)));
+            gather.store_index(subpath, squared_index_beyond(surface, wi, gather.index_squared(subpath)));
         }
         state.throughput = state.throughput * sample.weight;
         ++state.scatterings;
-        walks.states[walk] = state;
+        subpaths.states[subpath] = state;
         pass.tell(&PhotonEnergy::went_on, state.throughput);
         const Vec3 wo = sample.wi;
         const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wo), 0, wo,
                          kInfinity};
-        walks.queue_ray(atomic_add(&walks.counts->next, 1u), walk, ray, surface.triangle,
-                        coin_key(key, state.depth(), false), round + 1);
+        subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), subpath, ray, surface.triangle,
+                           coin_key(key, state.depth(), false), round + 1);
     }
 };
 

@@ -17,7 +17,7 @@ std::vector<Float4> spheres_of_cells(const SpecularBounds& found, uint32_t toget
     constexpr uint32_t kAcross = kTargetCellsAcross;
     const uint32_t across = kAcross / together;
     std::vector<Bounds3> boxes(std::size_t(across) * across * across);
-    for (uint32_t i = 0; i < kMostTargets; ++i) {
+    for (uint32_t i = 0; i < kMaxTargets; ++i) {
         if (is_nothing(found.cells[i])) continue;
         const uint32_t x = i % kAcross / together, y = i / kAcross % kAcross / together;
         boxes[(i / (kAcross * kAcross) / together * across + y) * across + x].extend(

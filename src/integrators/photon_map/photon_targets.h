@@ -18,7 +18,7 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kMostTargets = 64;
+inline constexpr uint32_t kMaxTargets = 64;
 
 struct PhotonTargetsView {
     const Float4* spheres; // centre, radius: translated world, metres
@@ -110,8 +110,8 @@ struct AimFromKind {
     const PhotonTargetsView& targets;
 
     HD bool triangle(uint32_t light, Vec2 at, float) const {
-        LampPlace place;
-        if (!find_lamp_place(freely.scene, light, at, freely.key, place)) return false;
+        EmissionPoint place;
+        if (!find_emission_point(freely.scene, light, at, freely.key, place)) return false;
         if (!(depth_of_cones(targets, place.point) < 1)) return freely.triangle(light, place);
         const EmissiveTriangle& triangle = freely.scene.lights.triangles[light];
         const Direction direction = draw_direction(targets, place.point, freely.u);
@@ -119,7 +119,7 @@ struct AimFromKind {
         if (triangle.is_two_sided == 0 ? triangle.is_mirrored != 0 : dot(normal, direction.to) < 0) normal = -normal;
         const float cosine = dot(normal, direction.to);
         if (!(cosine > 0)) return false; // the target is behind the emitter
-        leave_lamp(triangle, place, normal, direction.to, freely.particle);
+        leave_emitter(triangle, place, normal, direction.to, freely.particle);
         freely.particle.power = (cosine / (place.pdf * direction.pdf)) * place.radiance;
         return true;
     }
@@ -181,11 +181,11 @@ HD inline bool aim_particle(const SceneView& scene, const PhotonTargetsView& tar
 // or those of some cells, whichever is smallest in total.
 
 inline constexpr uint32_t kTargetCellsAcross = 4;
-static_assert(kTargetCellsAcross * kTargetCellsAcross * kTargetCellsAcross <= kMostTargets);
+static_assert(kTargetCellsAcross * kTargetCellsAcross * kTargetCellsAcross <= kMaxTargets);
 
 /// Result of the stages; all bytes are hploc::kNothing while it is empty.
 struct SpecularBounds {
-    hploc::OrderedBounds all, cells[kMostTargets];
+    hploc::OrderedBounds all, cells[kMaxTargets];
     int32_t reach; // hploc::ordered of minus the squared distance of the farthest corner from the middle of `all`
 };
 

@@ -12,12 +12,12 @@
 namespace pertev {
 
 struct Radiosity {
-    static constexpr uint32_t kMostBranches = 2;
+    static constexpr uint32_t kMaxBranches = 2;
     static constexpr bool kHasShutter = false;
     static constexpr LeastWeight kLeast = {0x1p-10f, WeakRays::LeftOut};
 
     HD static uint32_t shadow_rays(const LightSetView&) { return 0; }
-    HD static bool ask_for_light(const TreeVertex&, uint32_t, TreeShadowRay&) { return false; }
+    HD static bool sample_direct_light(const TreeVertex&, uint32_t, TreeShadowRay&) { return false; }
     HD static void follow(const TreeVertex& vertex) {
         const Rgb albedo = vertex.surface.bsdf.diffuse_albedo();
         if (!is_black(albedo)) {

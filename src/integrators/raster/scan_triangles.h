@@ -24,7 +24,7 @@ struct RasterPass {
     uint64_t* depths; // [pixels]
     Uint2* rows;      // triangle and row, deferred to the second pass
     uint64_t* row_count;
-    uint64_t most_rows;
+    uint64_t max_rows;
     uint32_t sample;
 
     /// Sample 0 lies in the middle. Further ones follow a sequence that covers the filter evenly from its start, with
@@ -109,13 +109,13 @@ struct ScanTriangles {
         if (int64_t(rows.last - rows.first) * (columns_of(scan.projected) + 8) >= 1024) {
             const auto count = static_cast<uint64_t>(rows.last - rows.first + 1);
             const uint64_t first = atomic_add(pass.row_count, count);
-            if (first + count <= pass.most_rows) {
+            if (first + count <= pass.max_rows) {
                 for (uint64_t k = 0; k < count; ++k) {
                     pass.rows[first + k] = {i, static_cast<uint32_t>(rows.first) + static_cast<uint32_t>(k)};
                 }
                 return;
             }
-            for (uint64_t k = first; k < min(first + count, pass.most_rows); ++k) pass.rows[k] = {kNoHit, 0};
+            for (uint64_t k = first; k < min(first + count, pass.max_rows); ++k) pass.rows[k] = {kNoHit, 0};
         }
         for (int32_t row = rows.first; row <= rows.last; ++row) scan.scan(row);
     }

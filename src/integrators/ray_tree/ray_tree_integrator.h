@@ -5,7 +5,7 @@
 //   kMostBranches   maximum number of continuation rays per vertex
 //   kHasShutter     whether its rays have a time
 //   shadow_rays     number of shadow rays that a vertex may need
-//   ask_for_light   writes one of them
+//   sample_direct_light   writes one of them
 //   follow          pushes the vertex's continuation rays on the stack, and adds ambient light
 //   ambient         its default ambient light
 // The .cpp of each algorithm instantiates it.
@@ -28,7 +28,7 @@ private:
     static TreeRoom room_for(const RayTreeSettings& settings, bool has_times, std::size_t bytes, uint64_t most) {
         // A stack holds the current ray and, for each vertex above it, all branches but the current one.
         const uint32_t entries =
-            Algorithm::kMostBranches > 1 ? 1 + (Algorithm::kMostBranches - 1) * settings.max_depth : 1;
+            Algorithm::kMaxBranches > 1 ? 1 + (Algorithm::kMaxBranches - 1) * settings.max_depth : 1;
         return room_within(bytes, most, [&](uint32_t trees) { return TreeRoom{trees, entries, has_times}; });
     }
 };
@@ -36,7 +36,7 @@ private:
 template <class Algorithm>
 void RayTreeIntegrator<Algorithm>::reserve(const WorkSize& size) {
     if (goes_by_loop(size)) return;
-    take_room(room_for(settings_, size.has_times, kMostBytes, std::min<uint64_t>(size.all(), batch_)), "ray trees");
+    take_room(room_for(settings_, size.has_times, kMaxBytes, std::min<uint64_t>(size.all(), batch_)), "ray trees");
 }
 
 template <class Algorithm>
@@ -51,11 +51,11 @@ template <class Algorithm>
 void RayTreeIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const FilmView& film) {
     PERTEV_CHECK(film.is_whole_picture());
     constexpr std::size_t kLoopBytes = std::size_t(1) << 19; // per thread, so that it fits the cache
-    constexpr uint64_t kMostInLoop = 128;
+    constexpr uint64_t kMaxInLoop = 128;
     const bool has_times = picture_.scene.motions.is_there();
     const BeginOrder samples = {0, pixels(), first, count};
     run_stages({.picture = picture_, .settings = picture_settings_, .film = film, .samples = samples}, 0,
-               samples.count(), room_for(picture_settings_, has_times, kLoopBytes, kMostInLoop), count,
+               samples.count(), room_for(picture_settings_, has_times, kLoopBytes, kMaxInLoop), count,
                [this](auto& schedule, const TreeJob& part) {
                    if (!is_abandoned()) run_trees<Algorithm>(schedule, part);
                });

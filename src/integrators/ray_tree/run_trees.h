@@ -117,14 +117,14 @@ void run_trees(Schedule& schedule, const TreeJob& job) {
     schedule.run("begin_rounds", 1, BeginRounds{trees.counts, job.count});
     schedule.begin_rounds(job.count);
     for (uint32_t round = 0; schedule.has_rays_left(trees.counts); ++round) {
-        const uint32_t most = schedule.most_rays();
+        const uint32_t most = schedule.max_rays();
         const WorkCount rays = {most, &trees.counts->rays};
         schedule.find_hits(round == 0 ? RayKind::Camera : RayKind::Bounce, job, rays);
         for (uint32_t first = 0; first == 0 || first < shadows; first += kShadowsAtOnce) {
             shade_trees<Algorithm>(schedule, job, rays, round, first, first + kShadowsAtOnce >= shadows);
             if (shadows > 0) {
-                const uint64_t asked = uint64_t(most) * std::min(shadows - first, kShadowsAtOnce);
-                schedule.find_occlusions(job, {static_cast<uint32_t>(asked), &trees.counts->shadows});
+                const uint64_t shadow_slots = uint64_t(most) * std::min(shadows - first, kShadowsAtOnce);
+                schedule.find_occlusions(job, {static_cast<uint32_t>(shadow_slots), &trees.counts->shadows});
                 schedule.run("add_tree_light", rays, AddTreeLight{trees, round});
             }
             schedule.run("count_trees", 1, CountTrees{trees.counts, false});

@@ -80,7 +80,7 @@ struct TreesView {
     uint32_t* shadow_keys; // keys, and after tracing the results
     float* shadow_times;
     Float4* contributions;
-    Uint4* asked; // [capacity]: slots of a tree's shadow rays
+    Uint4* shadow_slots; // [capacity]: slots of a tree's shadow rays
 
     TreeCounts* counts;
 
@@ -166,7 +166,7 @@ inline std::size_t lay_out(TreesView& view, std::byte* memory, const TreeRoom& r
         place(view.shadow_keys, shadows);
         place(view.shadow_times, room.has_times ? shadows : 0);
         place(view.contributions, shadows);
-        place(view.asked, trees);
+        place(view.shadow_slots, trees);
         place(view.counts, 1);
     });
 }

@@ -96,23 +96,23 @@ private:
         }
         if (surface.is_unlit || ray.depth >= settings.max_depth) return;
         const TreeVertex vertex = {picture, settings, trees, tree, state, ray, surface, time, moves, {hit.u, hit.v}};
-        ask_for_lights(vertex);
+        sample_direct_lights(vertex);
         if (is_last) Algorithm::follow(vertex);
     }
-    HD void ask_for_lights(const TreeVertex& vertex) const {
+    HD void sample_direct_lights(const TreeVertex& vertex) const {
         const uint32_t all = Algorithm::shadow_rays(picture.scene.lights);
         const uint32_t key = tree_key(vertex.state, settings.seed, vertex.number(), true);
         uint32_t places[kShadowsAtOnce] = {};
         uint32_t count = 0;
         for (uint32_t number = first_shadow; number < min(all, first_shadow + kShadowsAtOnce); ++number) {
             TreeShadowRay shadow;
-            if (!Algorithm::ask_for_light(vertex, number, shadow)) continue;
+            if (!Algorithm::sample_direct_light(vertex, number, shadow)) continue;
             const uint32_t place = atomic_add(&trees.counts->shadows, 1u);
             trees.queue_shadow(place, shadow, vertex.surface.triangle, key, vertex.time);
             places[count++] = place;
         }
         vertex.state.shadows = count;
-        if (count > 0) trees.asked[vertex.tree] = {places[0], places[1], places[2], places[3]};
+        if (count > 0) trees.shadow_slots[vertex.tree] = {places[0], places[1], places[2], places[3]};
     }
 };
 static_assert(kShadowsAtOnce == 4, "TreesView::asked");
@@ -126,8 +126,8 @@ struct AddTreeLight {
         const uint32_t tree = trees.owners[round % 2][i];
         TreeState& state = trees.states[tree];
         if (state.shadows == 0) return;
-        const Uint4 asked = trees.asked[tree];
-        const uint32_t places[] = {asked.x, asked.y, asked.z, asked.w};
+        const Uint4 shadow_slots = trees.shadow_slots[tree];
+        const uint32_t places[] = {shadow_slots.x, shadow_slots.y, shadow_slots.z, shadow_slots.w};
         Rgb radiance = state.radiance;
         for (uint32_t k = 0; k < state.shadows; ++k) {
             if (trees.shadow_keys[places[k]] != kNoHit) continue;

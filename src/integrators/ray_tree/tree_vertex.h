@@ -60,18 +60,18 @@ struct TreeVertex {
 
     /// Requests light of the punctual light `light`, for all lobes but delta ones. Returns true if `shadow` must be
     /// traced.
-    HD bool ask_for_punctual_light(uint32_t light, TreeShadowRay& shadow) const {
+    HD bool make_punctual_shadow_ray(uint32_t light, TreeShadowRay& shadow) const {
         LightSample sample;
         const LightSetView& lights = picture.scene.lights;
         if (surface.bsdf.has_delta_only()) return false;
         if (!sample_punctual_light(lights.punctual[light], 1.0f, surface.position, sample)) return false;
         const BsdfValue all = scattered(surface, wo(), sample.wi, kAllLobeClasses);
-        return ask_for(sample, all.f * sample.radiance, shadow);
+        return make_shadow_ray(sample, all.f * sample.radiance, shadow);
     }
 
     /// Requests one point of one light, sampled by power, including emitters and the environment. A glossy ray may
     /// hit these too, so what glossy lobes scatter of them is weighted by the power heuristic.
-    HD bool ask_for_drawn_light(TreeShadowRay& shadow) const {
+    HD bool make_drawn_shadow_ray(TreeShadowRay& shadow) const {
         if (surface.bsdf.has_delta_only()) return false;
         const uint32_t of = number() == 0 ? uint32_t(kGroupCamera) : group(kTreeScatter);
         LightSample sample;
@@ -84,7 +84,7 @@ struct TreeVertex {
             const Rgb glossy = scattered(surface, wo(), sample.wi, only(LobeClass::Glossy)).f;
             f = f - (1.0f - power_heuristic(sample.pdf, all.pdf)) * glossy;
         }
-        return ask_for(sample, f * ((1.0f / sample.pdf) * sample.radiance), shadow);
+        return make_shadow_ray(sample, f * ((1.0f / sample.pdf) * sample.radiance), shadow);
     }
 
     /// Adds the light that the diffuse lobe scatters of a constant radiance from all directions (Whitted's ambient
@@ -119,10 +119,10 @@ private:
         return surface.evaluate(wo, wi, classes);
     }
     /// Makes the shadow ray to a light sample; `f_times_light` arrives if it is unoccluded.
-    HD bool ask_for(const LightSample& light, Rgb f_times_light, TreeShadowRay& shadow) const {
+    HD bool make_shadow_ray(const LightSample& light, Rgb f_times_light, TreeShadowRay& shadow) const {
         if (is_black(f_times_light)) return false;
-        const float lamp_error = moves ? lamp_error_at(picture.scene, light, time) : 0.0f;
-        shadow.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal, lamp_error);
+        const float emitter_error = moves ? emitter_error_at(picture.scene, light, time) : 0.0f;
+        shadow.ray = ray_to_light(light, surface.position, surface.error, surface.geometric_normal, emitter_error);
         shadow.target = light.is_delta ? TriangleId{} : TriangleId{light.instance, light.primitive};
         shadow.contribution = ray.weight * f_times_light;
         return true;

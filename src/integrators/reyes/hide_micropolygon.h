@@ -108,7 +108,7 @@ struct ReyesPass {
 };
 
 /// On a displaced surface the micropolygon's own winding determines its front.
-HD inline bool is_hidden_back(const InstanceView& placed, const SeenPlane& plane) {
+HD inline bool is_hidden_back(const InstanceView& placed, const ProjectedPlane& plane) {
     if (placed.hides_back == 0) return false;
     const double away = plane.is_perspective ? plane.constant : plane.depth; // component of the normal away from the
                                                                              // eye
@@ -117,19 +117,19 @@ HD inline bool is_hidden_back(const InstanceView& placed, const SeenPlane& plane
 
 /// Limit of the work of a displaced scene, per pixel of the picture in each of the two passes: pieces, and visits of
 /// its cell by wide micropolygons. Surfaces displaced by half their size made 172 pieces.
-inline constexpr uint64_t kMostWorkOfPixel = 1024;
+inline constexpr uint64_t kMaxWorkOfPixel = 1024;
 inline constexpr uint64_t kWideCells = 256; // micropolygons up to this size are not counted
 
 /// Limits for a picture; a tiny one has the limit of 64x64.
-HD inline uint64_t most_work(uint64_t pixels) { return kMostWorkOfPixel * max(pixels, uint64_t(4096)); }
-HD inline uint64_t most_wide(uint64_t pixels) { return min(most_work(pixels) / kWideCells, uint64_t(1) << 30); }
+HD inline uint64_t max_work(uint64_t pixels) { return kMaxWorkOfPixel * max(pixels, uint64_t(4096)); }
+HD inline uint64_t max_wide(uint64_t pixels) { return min(max_work(pixels) / kWideCells, uint64_t(1) << 30); }
 
 /// Returns false if wide micropolygons have visited so many cells that the pass is aborted.
 HD inline bool may_look(const ReyesPass& pass, uint64_t cells) {
     if (pass.wide == nullptr || cells <= kWideCells) return true;
     constexpr uint64_t kMost = 1u << 15; // prevents overflow of the count, whatever a round of pieces adds
     const auto more = static_cast<uint32_t>(min(cells / kWideCells, kMost));
-    return atomic_add(pass.wide, more) <= most_wide(pass.samples.pixels());
+    return atomic_add(pass.wide, more) <= max_wide(pass.samples.pixels());
 }
 
 enum class HidingPass : uint8_t { FindNearest, FindMicropolygon };

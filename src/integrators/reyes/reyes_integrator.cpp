@@ -14,10 +14,10 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kMostSamplesAtOnce = uint64_t(1) << 23; // samples of all pixels, but at least one of each
-constexpr double kMostPiecesOfTriangle = 64;               // added to kMostWorkOfPixel
-constexpr uint32_t kRoundsWithOneLook = 8;                 // rounds between updates of the farthest depths
-constexpr uint32_t kStack = 1u << 19, kMostUnderWay = 1u << 16;
+constexpr uint64_t kMaxSamplesAtOnce = uint64_t(1) << 23; // samples of all pixels, but at least one of each
+constexpr double kMaxPiecesOfTriangle = 64;               // added to kMostWorkOfPixel
+constexpr uint32_t kRoundsWithOneLook = 8;                // rounds between updates of the farthest depths
+constexpr uint32_t kStack = 1u << 19, kMaxUnderWay = 1u << 16;
 
 // Why the stack suffices: a round takes at least `kLeast` pieces off the top and leaves at most four of each, one
 // level deeper. Thus a piece 4 kLeast higher is one level deeper, and no level exceeds kMostLevels. Larger rounds
@@ -26,7 +26,7 @@ constexpr uint32_t kLeast = 1024, kReserve = 4 * kLeast * (kMostLevels + 2);
 
 uint32_t pieces_at_once(uint32_t height) {
     const uint32_t room = height < kStack - kReserve ? (kStack - kReserve - height) / 4 : 0;
-    return std::min({height, std::max(kLeast, room), kMostUnderWay});
+    return std::min({height, std::max(kLeast, room), kMaxUnderWay});
 }
 
 uint64_t samples_held(uint64_t pixels, uint32_t samples) {
@@ -56,7 +56,7 @@ float reach_of(const HeightMap& map) {
 } // namespace
 
 uint32_t ReyesIntegrator::samples_at_once(uint64_t pixels) {
-    return static_cast<uint32_t>(std::max<uint64_t>(kMostSamplesAtOnce / pixels, 1));
+    return static_cast<uint32_t>(std::max<uint64_t>(kMaxSamplesAtOnce / pixels, 1));
 }
 
 void ReyesIntegrator::reserve(const WorkSize& size) {
@@ -69,7 +69,7 @@ void ReyesIntegrator::reserve(const WorkSize& size) {
     heads_.grow(queue_, size.pixels(), "lists of samples");
     far_.grow(queue_, size.pixels(), "farthest samples");
     stack_.grow(queue_, kStack, "pieces of triangles");
-    under_way_.grow(queue_, kMostUnderWay, "pieces of triangles");
+    under_way_.grow(queue_, kMaxUnderWay, "pieces of triangles");
     if (!settings_.heights || settings_.heights == uploaded_) return;
     uploaded_ = nullptr;
     heights_ = Buffer<float>(), displacements_ = Buffer<DisplacementView>(); // freed before the new allocations
@@ -110,14 +110,14 @@ void ReyesIntegrator::check_work(uint64_t pieces, uint32_t wide) const {
     if (!settings_.heights) return;
     const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;
     const double finer = 1 / std::min(1.0, static_cast<double>(settings_.shading_rate));
-    const double most = kMostPiecesOfTriangle * static_cast<double>(picture_.scene.triangle_count) +
-                        static_cast<double>(most_work(pixels)) * finer * finer;
-    if (static_cast<double>(pieces) <= most && wide <= most_wide(pixels)) return;
+    const double most = kMaxPiecesOfTriangle * static_cast<double>(picture_.scene.triangle_count) +
+                        static_cast<double>(max_work(pixels)) * finer * finer;
+    if (static_cast<double>(pieces) <= most && wide <= max_wide(pixels)) return;
     throw Error(
         ErrorCode::OverLimit, "displacement", "",
         fmt::format("surfaces are moved so far that dicing them does not end (over {} pieces a pixel); a smaller "
                     "SCALE makes fewer, and so does a larger `shading_rate`",
-                    kMostWorkOfPixel));
+                    kMaxWorkOfPixel));
 }
 
 template <HidingPass kPass>
@@ -126,18 +126,18 @@ bool ReyesIntegrator::hide(const ReyesPass& pass, const std::function<bool()>& g
     const auto triangles = static_cast<uint32_t>(picture_.scene.triangle_count);
     uint32_t height = 0, round = 0;
     uint64_t taken_in_all = 0;
-    Stopwatch since_asked;
+    Stopwatch since_request;
     queue_.zero(count_.data() + 1, sizeof(uint32_t));
     for (uint32_t begun = 0; height > 0 || begun < triangles; ++round) {
         if (is_abandoned()) return false;
-        if (since_asked.seconds() > 0.1) {
+        if (since_request.seconds() > 0.1) {
             if (!goes_on()) return false;
-            since_asked = {};
+            since_request = {};
         }
         const bool is_news = kPass == HidingPass::FindNearest ? round % kRoundsWithOneLook == 0 : round == 0;
         if (is_news) launch(queue_, "find_far", pass.samples.pixels(), FindFar{pass.samples});
         const uint32_t taken = pieces_at_once(height);
-        const uint32_t more = taken == height ? std::min(kMostUnderWay - taken, triangles - begun) : 0;
+        const uint32_t more = taken == height ? std::min(kMaxUnderWay - taken, triangles - begun) : 0;
         launch(queue_, "take_pieces", taken + more, TakePieces{pieces, height, taken, begun});
         launch(queue_, "split_pieces", taken + more, SplitPieces<kPass>{pass, pieces});
         begun += more;

@@ -28,7 +28,7 @@ struct HeightMap {
 };
 using HeightMaps = std::vector<HeightMap>;
 
-inline constexpr float kLeastShadingRate = 0.125f, kMostShadingRate = 64; // pixels
+inline constexpr float kMinShadingRate = 0.125f, kMaxShadingRate = 64; // pixels
 
 struct ReyesSettings {
     float shading_rate = 1;                    // maximum length of a micropolygon's edge, pixels

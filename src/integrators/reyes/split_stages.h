@@ -17,7 +17,7 @@ namespace pertev {
 /// Whether a piece is behind everything visible in all pixels that it may cover. Only tested if these are few;
 /// otherwise its children will be.
 HD inline bool is_behind(const ReyesPass& pass, const DicedTriangle& triangle, const DicedPoint (&p)[3]) {
-    constexpr int32_t kMostSamplesOnce = 64;
+    constexpr int32_t kMaxSamplesOnce = 64;
     const Pinhole& camera = pass.camera;
     const double reach = triangle.reach, per_w = camera.is_perspective ? reach : 0;
     const double off_x = reach + per_w * camera.x_of(camera.width + camera.filter_radius + 2);
@@ -37,7 +37,7 @@ HD inline bool is_behind(const ReyesPass& pass, const DicedTriangle& triangle, c
     const int32_t last_column = samples.column_of(to_subpixels(camera.column_of(right)) + 1);
     const int32_t first_row = samples.row_of(to_subpixels(camera.row_of(up)) - 1);
     const int32_t last_row = samples.row_of(to_subpixels(camera.row_of(down)) + 1);
-    if (int64_t(last_column - first_column + 1) * (last_row - first_row + 1) > kMostSamplesOnce) return false;
+    if (int64_t(last_column - first_column + 1) * (last_row - first_row + 1) > kMaxSamplesOnce) return false;
     const auto depth = static_cast<float>((nearest - reach) * (1 - 0x1p-20)); // margin for rounding
     for (int32_t row = first_row; row <= last_row; ++row) {
         for (int32_t column = first_column; column <= last_column; ++column) {

@@ -9,8 +9,8 @@
 
 #include "device_scene/scene_view.h"
 #include "device_scene/surface.h"
+#include "integrators/subpaths/subpath_memory.h"
 #include "integrators/subpaths/subpath_settings.h"
-#include "integrators/subpaths/walk_memory.h"
 #include "math/frame.h"
 
 namespace pertev {
@@ -19,7 +19,7 @@ struct Particle {
     Ray ray;          // t_max: range of the light
     TriangleId start; // triangle that it leaves
     Rgb power;        // W, divided by the density of everything that was sampled
-    MisWalk mis;
+    MisSums mis;
     bool is_from_far; // its ray is one of many parallel ones, so its first segment has no distance
 };
 
@@ -41,7 +41,7 @@ HD inline float left_at(float distance, float t_max) {
 }
 
 /// A point on an emitter that light leaves.
-struct LampPlace {
+struct EmissionPoint {
     Vec3 point, normal; // `normal` is unit, by the winding
     Rgb radiance;
     float pdf; // 1/m2, including the selection of the emitter
@@ -49,7 +49,8 @@ struct LampPlace {
 
 /// Finds the point with the weights `at` of a triangle light's second and third vertex. Returns false if it emits
 /// nothing. `key` is that of the coin of a blended emitter.
-HD inline bool find_lamp_place(const SceneView& scene, uint32_t light, Vec2 at, uint32_t key, LampPlace& place) {
+HD inline bool find_emission_point(const SceneView& scene, uint32_t light, Vec2 at, uint32_t key,
+                                   EmissionPoint& place) {
     const EmissiveTriangle& triangle = scene.lights.triangles[light];
     if (scene.any_alpha != 0 &&
         !AcceptHit{scene, {}, {}, key}.passes_alpha(triangle.instance, triangle.primitive, at.x, at.y)) {
@@ -65,8 +66,8 @@ HD inline bool find_lamp_place(const SceneView& scene, uint32_t light, Vec2 at, 
 }
 
 /// Makes the ray from that point, on the side of `normal`.
-HD inline void leave_lamp(const EmissiveTriangle& triangle, const LampPlace& place, Vec3 normal, Vec3 direction,
-                          Particle& particle) {
+HD inline void leave_emitter(const EmissiveTriangle& triangle, const EmissionPoint& place, Vec3 normal, Vec3 direction,
+                             Particle& particle) {
     particle.ray = {offset_ray_origin(place.point, light_point_error(place.point), normal, direction), 0, direction,
                     kInfinity};
     particle.start = {triangle.instance, triangle.primitive};
@@ -77,14 +78,14 @@ struct EmitFromKind {
     const SceneView& scene;
     const WorldSphere& world;
     Vec2 u;
-    uint32_t key; // the key that find_lamp_place takes
+    uint32_t key; // the key that find_emission_point takes
     Particle& particle;
 
     HD bool triangle(uint32_t light, Vec2 at, float) const {
-        LampPlace place;
-        return find_lamp_place(scene, light, at, key, place) && triangle(light, place);
+        EmissionPoint place;
+        return find_emission_point(scene, light, at, key, place) && triangle(light, place);
     }
-    HD bool triangle(uint32_t light, const LampPlace& place) const {
+    HD bool triangle(uint32_t light, const EmissionPoint& place) const {
         const EmissiveTriangle& triangle = scene.lights.triangles[light];
         Vec3 normal = place.normal;
         Vec2 about = u;
@@ -94,9 +95,9 @@ struct EmitFromKind {
         const Vec3 local = sample_cosine_hemisphere(about);
         const float pdf = pdf_emission(triangle, local.z);
         if (!(pdf > 0)) return false;
-        leave_lamp(triangle, place, normal, normalize(make_frame(normal).to_world(local)), particle);
+        leave_emitter(triangle, place, normal, normalize(make_frame(normal).to_world(local)), particle);
         particle.power = (local.z / (place.pdf * pdf)) * place.radiance;
-        particle.mis = {square(1.0f / pdf), min(square(local.z / (place.pdf * pdf)), kMostOdds)};
+        particle.mis = {square(1.0f / pdf), min(square(local.z / (place.pdf * pdf)), kMaxWeightSum)};
         return true;
     }
     HD bool punctual(uint32_t number, float pmf) const {
@@ -129,7 +130,7 @@ struct EmitFromKind {
         if (!(pdf > 0)) return false;
         from_disc(-sample.wi);
         particle.power = (1.0f / (pdf * through_disc)) * sample.radiance;
-        particle.mis = {square(1.0f / through_disc), min(square(1.0f / (pdf * through_disc)), kMostOdds)};
+        particle.mis = {square(1.0f / through_disc), min(square(1.0f / (pdf * through_disc)), kMaxWeightSum)};
         return true;
     }
 
@@ -159,7 +160,9 @@ struct LightDensities {
     float place = 0, onwards = 0;
 
     /// MIS weight sum of all techniques that find this light, except the subpath's own.
-    HD float odds(const MisWalk& walk) const { return squared_density(place) * min(walk.others(onwards), kMostOdds); }
+    HD float weight_sum(const MisSums& subpath) const {
+        return squared_density(place) * min(subpath.weight_sum(onwards), kMaxWeightSum);
+    }
 };
 
 } // namespace pertev

@@ -3,11 +3,11 @@
 
 namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const BeginParticles&);
-template void launch(Queue&, const char*, WorkCount, const BeginEyes&);
+template void launch(Queue&, const char*, WorkCount, const BeginCameraSubpaths&);
 template void launch(Queue&, const char*, WorkCount, const AddSplats&);
 template void launch(Queue&, const char*, WorkCount, const AddConnections&);
-template void launch(Queue&, const char*, WorkCount, const CountWalks&);
-template void launch(Queue&, const char*, WorkCount, const BeginWalks&);
-template void launch(Queue&, const char*, WorkCount, const ShadeParticles<MaterialsKnown::Nothing>&);
-template void launch(Queue&, const char*, WorkCount, const ShadeParticles<MaterialsKnown::PlainDiffuse>&);
+template void launch(Queue&, const char*, WorkCount, const CountSubpaths&);
+template void launch(Queue&, const char*, WorkCount, const BeginSubpaths&);
+template void launch(Queue&, const char*, WorkCount, const ShadeParticles<ShadingVariant::General>&);
+template void launch(Queue&, const char*, WorkCount, const ShadeParticles<ShadingVariant::PlainDiffuse>&);
 } // namespace pertev

@@ -8,12 +8,12 @@
 
 #include "device/atomic_add.h"
 #include "integrators/subpaths/emit_particle.h"
-#include "integrators/subpaths/walk_vertex.h"
+#include "integrators/subpaths/subpath_vertex.h"
 #include "render/begin_order.h"
+#include "render/connect_to_camera.h"
 #include "render/film_view.h"
 #include "render/first_hit.h"
 #include "render/pixel_filter.h"
-#include "render/see_vertex.h"
 
 namespace pertev {
 
@@ -66,9 +66,9 @@ HD inline void add_splat(const FilmView& film, const PixelFilterView& filter, Ve
 }
 
 /// Initial state of a subpath for the sample `number`.
-HD inline WalkState state_of_sample(const BeginOrder& samples, uint64_t number, const CameraRays& camera) {
+HD inline SubpathState state_of_sample(const BeginOrder& samples, uint64_t number, const CameraRays& camera) {
     const PixelSample begun = samples.at(number, camera.width, camera.height);
-    WalkState state = {};
+    SubpathState state = {};
     state.pixel = begun.pixel, state.sample = begun.sample;
     return state;
 }
@@ -76,8 +76,8 @@ HD inline WalkState state_of_sample(const BeginOrder& samples, uint64_t number, 
 /// Key of a particle's random numbers. If there are only particles, one sequence covers the particles of the whole
 /// picture, so that all of them together are evenly distributed. If they connect to the camera subpath of their
 /// pixel, each pixel has its own sequence.
-HD inline SampleKey particle_sample_key(const WalkScene& scene, uint32_t pixel, uint32_t sample) {
-    if (scene.is_joined) return {pixel, sample, scene.settings.seed};
+HD inline SampleKey particle_sample_key(const SubpathScene& scene, uint32_t pixel, uint32_t sample) {
+    if (scene.is_connected) return {pixel, sample, scene.settings.seed};
     const CameraRays& camera = scene.picture.camera;
     const uint64_t number = uint64_t(sample) * (uint64_t(camera.width) * camera.height) + pixel;
     return {static_cast<uint32_t>(number >> 32), static_cast<uint32_t>(number), scene.settings.seed};
@@ -85,15 +85,15 @@ HD inline SampleKey particle_sample_key(const WalkScene& scene, uint32_t pixel, 
 
 /// Starts the particles of samples `first`, first + 1, ... of `samples` as subpaths 0, 1, ...
 struct BeginParticles {
-    WalkScene scene;
-    WalksView walks;
+    SubpathScene scene;
+    SubpathsView subpaths;
     BeginOrder samples;
     uint64_t first;
 
     HD void operator()(uint32_t i) const {
         const SubpathSettings& settings = scene.settings;
-        WalkState state = state_of_sample(samples, first + i, scene.picture.camera);
-        if (walks.room.kept > 0) walks.kept_counts[i] = 0;
+        SubpathState state = state_of_sample(samples, first + i, scene.picture.camera);
+        if (subpaths.room.kept > 0) subpaths.kept_counts[i] = 0;
         const SampleKey key = particle_sample_key(scene, state.pixel, state.sample);
         const SampleBits place = sample_bits(settings.sampler, key, kGroupLight);
         const Vec2 direction = sample_2d(settings.sampler, key, kGroupLight, Pair::Last);
@@ -104,70 +104,70 @@ struct BeginParticles {
         state.throughput = particle.power;
         state.mis = particle.mis;
         state.is_from_far = particle.is_from_far ? 1 : 0;
-        walks.states[i] = state;
-        walks.squared_indices[i] = 1;
-        walks.queue_ray(atomic_add(&walks.counts->next, 1u), i, particle.ray, particle.start, coin, 0);
+        subpaths.states[i] = state;
+        subpaths.squared_indices[i] = 1;
+        subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), i, particle.ray, particle.start, coin, 0);
     }
 };
 
 /// Shades hits of particles: a connection to the camera, a stored vertex, the continuation.
-template <MaterialsKnown kKnown>
+template <ShadingVariant kVariant>
 struct ShadeParticles {
-    WalkScene scene;
-    WalksView walks;
+    SubpathScene scene;
+    SubpathsView subpaths;
     uint32_t round;
 
     HD INLINE_ON_DEVICE void operator()(uint32_t i) const {
-        const Hit hit = walks.hits().load(i);
+        const Hit hit = subpaths.hits().load(i);
         if (hit.instance == kNoHit) return;
         const SubpathSettings& settings = scene.settings;
-        const uint32_t walk = walks.owners[round % 2][i];
-        const Ray ray = load_ray(walks.rays[round % 2] + i);
-        WalkState state = walks.states[walk];
-        const Surface surface = make_surface<kKnown>(scene.picture.scene, hit, ray.direction);
+        const uint32_t subpath = subpaths.owners[round % 2][i];
+        const Ray ray = load_ray(subpaths.rays[round % 2] + i);
+        SubpathState state = subpaths.states[subpath];
+        const Surface surface = make_surface<kVariant>(scene.picture.scene, hit, ray.direction);
         if (state.depth() == 0) state.throughput = left_at(hit.t, ray.t_max) * state.throughput;
         if (surface.is_unlit || is_black(state.throughput)) return;
         state.mis.arrive(cosine_at(surface, ray.direction), state.is_from_far != 0 ? 1.0f : square(hit.t));
         state.is_from_far = 0;
 
-        const bool can_be_joined = !surface.bsdf.has_delta_only();
-        if (state.depth() < walks.room.kept) {
-            const std::size_t at = walks.kept_place(walk, state.depth());
-            if (can_be_joined) {
-                walks.kept.store(
-                    at, {hit, ray.direction, (1.0f / walks.squared_indices[walk]) * state.throughput, state.mis});
+        const bool can_be_connected = !surface.bsdf.has_delta_only();
+        if (state.depth() < subpaths.room.kept) {
+            const std::size_t at = subpaths.kept_place(subpath, state.depth());
+            if (can_be_connected) {
+                subpaths.kept.store(
+                    at, {hit, ray.direction, (1.0f / subpaths.squared_indices[subpath]) * state.throughput, state.mis});
             } else {
-                walks.kept.store_none(at);
+                subpaths.kept.store_none(at);
             }
-            walks.kept_counts[walk] = state.depth() + 1;
+            subpaths.kept_counts[subpath] = state.depth() + 1;
         }
         const SampleKey key = particle_sample_key(scene, state.pixel, state.sample);
-        if (can_be_joined) ask_camera(surface, hit, walk, state, -ray.direction, key);
-        if (state.depth() + 1 < settings.max_depth) go_on(surface, walk, state, -ray.direction, key);
+        if (can_be_connected) connect_to_lens(surface, hit, subpath, state, -ray.direction, key);
+        if (state.depth() + 1 < settings.max_depth) go_on(surface, subpath, state, -ray.direction, key);
     }
 
 private:
-    HD INLINE_ON_DEVICE void ask_camera(const Surface& surface, const Hit& hit, uint32_t walk, const WalkState& state,
-                                        Vec3 wi, SampleKey key) const {
+    HD INLINE_ON_DEVICE void connect_to_lens(const Surface& surface, const Hit& hit, uint32_t subpath,
+                                             const SubpathState& state, Vec3 wi, SampleKey key) const {
         const SubpathSettings& settings = scene.settings;
         const CameraRays& camera = scene.picture.camera;
         const Vec2 lens = camera.has_lens() ? sample_2d(settings.sampler, key,
-                                                        particle_group(state.depth(), kWalkScatter), Pair::Last)
+                                                        particle_group(state.depth(), kSubpathScatter), Pair::Last)
                                             : Vec2{};
-        SeenVertex seen;
-        if (!see_vertex(camera, surface.position, lens, seen)) return;
+        CameraConnection seen;
+        if (!connect_to_camera(camera, surface.position, lens, seen)) return;
         const AcceptHit accept = {scene.picture.scene, {}, {}, 0};
         if (scene.picture.scene.any_hidden_back != 0 &&
             AcceptCameraHit{accept, seen.direction}.meets_hidden_back(hit.instance, hit.primitive)) {
             return; // the camera sees through its back
         }
         const Vec3 wo = -seen.direction;
-        const BothWays scattered = scatter_both_ways<kKnown>(surface, wo, wi);
+        const BothWays scattered = scatter_both_ways<kVariant>(surface, wo, wi);
         if (is_black(scattered.particle.f)) return;
         float weight = 1;
-        if (scene.is_joined) {
+        if (scene.is_connected) {
             const float density = seen.density * cosine_at(surface, wo) / seen.distance_squared;
-            weight = mis_weight(squared_density(density) * state.mis.others(scattered.eye.pdf));
+            weight = mis_weight(squared_density(density) * state.mis.weight_sum(scattered.camera.pdf));
         }
         Connection connection;
         // The ray starts on the camera's side, because camera rays pass through hidden backs.
@@ -178,78 +178,78 @@ private:
         connection.key = coin_key({state.pixel, state.sample, settings.seed ^ kParticleCoins}, state.depth(), true);
         connection.light = (weight * seen.density / seen.distance_squared) * (scattered.particle.f * state.throughput);
         connection.light =
-            (1.0f / squared_index_along(surface, wi, wo, walks.squared_indices[walk])) * connection.light;
-        const uint32_t place = atomic_add(&walks.counts->asked, 1u);
-        walks.ask(place, connection, state.pixel);
-        walks.asked_rasters[place] = seen.raster;
+            (1.0f / squared_index_along(surface, wi, wo, subpaths.squared_indices[subpath])) * connection.light;
+        const uint32_t place = atomic_add(&subpaths.counts->connections, 1u);
+        subpaths.queue_connection(place, connection, state.pixel);
+        subpaths.connection_rasters[place] = seen.raster;
     }
-    HD INLINE_ON_DEVICE void go_on(const Surface& surface, uint32_t walk, WalkState& state, Vec3 wi,
+    HD INLINE_ON_DEVICE void go_on(const Surface& surface, uint32_t subpath, SubpathState& state, Vec3 wi,
                                    SampleKey key) const {
         const SubpathSettings& settings = scene.settings;
-        const uint32_t choices = particle_group(state.depth(), kWalkChoices);
-        const WalkDraw draw =
-            draw_scatter(settings, key, surface.bsdf, particle_group(state.depth(), kWalkScatter), choices);
+        const uint32_t choices = particle_group(state.depth(), kSubpathChoices);
+        const ScatterDraw draw =
+            draw_scatter(settings, key, surface.bsdf, particle_group(state.depth(), kSubpathScatter), choices);
         BsdfSample sample = sample_adjoint(surface, wi, draw.lobe, draw.u);
         if (!(sample.pdf > 0) || !survives(settings, key, choices, state.depth() + 1, sample.weight)) return;
         const Vec3 wo = sample.wi;
-        if (scene.is_joined) {
+        if (scene.is_connected) {
             if (sample.is_delta()) {
                 state.mis.scatter_by_delta(cosine_at(surface, wo));
             } else {
                 state.mis.scatter(cosine_at(surface, wo), sample.pdf,
-                                  scatter_both_ways<kKnown>(surface, wo, wi).eye.pdf);
+                                  scatter_both_ways<kVariant>(surface, wo, wi).camera.pdf);
             }
         }
         if (sample.is_transmission) {
-            walks.squared_indices[walk] = squared_index_beyond(surface, wi, walks.squared_indices[walk]);
+            subpaths.squared_indices[subpath] = squared_index_beyond(surface, wi, subpaths.squared_indices[subpath]);
         }
         state.throughput = state.throughput * sample.weight;
         ++state.scatterings;
-        walks.states[walk] = state;
+        subpaths.states[subpath] = state;
         const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wo), 0, wo,
                          kInfinity};
         const uint32_t coin =
             coin_key({state.pixel, state.sample, settings.seed ^ kParticleCoins}, state.depth(), false);
-        walks.queue_ray(atomic_add(&walks.counts->next, 1u), walk, ray, surface.triangle, coin, round + 1);
+        subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), subpath, ray, surface.triangle, coin, round + 1);
     }
 };
 
 /// Adds the particles that the camera sees.
 struct AddSplats {
-    WalksView walks; // asked_keys hold the tracer's results, kNoHit if the ray hit nothing
+    SubpathsView subpaths; // connection_keys hold the tracer's results, kNoHit if the ray hit nothing
     PixelFilterView filter;
     FilmView film;
 
     HD void operator()(uint32_t i) const {
-        if (walks.asked_keys[i] != kNoHit) return;
-        const Float4 light = walks.asked_light[i];
-        add_splat(film, filter, walks.asked_rasters[i], {light.x, light.y, light.z});
+        if (subpaths.connection_keys[i] != kNoHit) return;
+        const Float4 light = subpaths.connection_light[i];
+        add_splat(film, filter, subpaths.connection_rasters[i], {light.x, light.y, light.z});
     }
 };
 
 /// Adds other connections to their pixels.
 struct AddConnections {
-    WalksView walks;
+    SubpathsView subpaths;
     FilmView film;
 
     HD void operator()(uint32_t i) const {
-        if (walks.asked_keys[i] != kNoHit) return;
-        const Float4 light = walks.asked_light[i];
+        if (subpaths.connection_keys[i] != kNoHit) return;
+        const Float4 light = subpaths.connection_light[i];
         add_radiance(film, bits_of(light.w), {light.x, light.y, light.z});
     }
 };
 
 /// Counts in one thread: connections since the last count and, if `ends_round`, the rays that continue. `joined` is
 /// the number of light-subpath vertices that each current vertex connects to next.
-struct CountWalks {
-    WalkCounts* counts;
+struct CountSubpaths {
+    SubpathCounts* counts;
     bool ends_round;
-    uint32_t joined;
+    uint32_t connected;
 
     HD void operator()(uint32_t) const {
-        counts->all_asked += counts->asked;
-        counts->asked = 0;
-        counts->pairs = counts->vertices * joined;
+        counts->all_connections += counts->connections;
+        counts->connections = 0;
+        counts->pairs = counts->vertices * connected;
         if (!ends_round) return;
         counts->bounces += counts->next;
         counts->rays = counts->next;
@@ -258,13 +258,13 @@ struct CountWalks {
 };
 
 /// Starts the first round of `rays` in one thread.
-struct BeginWalks {
-    WalkCounts* counts;
+struct BeginSubpaths {
+    SubpathCounts* counts;
     uint32_t rays;
 
     HD void operator()(uint32_t) const {
         counts->rays = rays;
-        counts->next = counts->asked = counts->vertices = counts->pairs = counts->crowded = 0;
+        counts->next = counts->connections = counts->vertices = counts->pairs = counts->crowded = 0;
     }
 };
 
@@ -272,33 +272,33 @@ struct BeginWalks {
 // are equal.
 
 /// Starts the camera subpaths of samples `first`, first + 1, ... of `samples` as subpaths 0, 1, ...
-struct BeginEyes {
-    WalkScene scene;
-    WalksView walks;
+struct BeginCameraSubpaths {
+    SubpathScene scene;
+    SubpathsView subpaths;
     BeginOrder samples;
     uint64_t first;
 
     HD void operator()(uint32_t i) const {
         const CameraRays& camera = scene.picture.camera;
-        WalkState state = state_of_sample(samples, first + i, camera);
+        SubpathState state = state_of_sample(samples, first + i, camera);
         const SampleKey key = {state.pixel, state.sample, scene.settings.seed};
         const Ray ray = camera.ray(state.pixel, scene.settings.sampler, key);
         state.throughput = {1, 1, 1};
-        state.mis = {min(square(1.0f / camera_density(camera, ray.direction)), kMostOdds), 0};
+        state.mis = {min(square(1.0f / camera_density(camera, ray.direction)), kMaxWeightSum), 0};
         state.is_from_far = has_parallel_rays(camera.view.projection) ? 1 : 0;
-        walks.states[i] = state;
-        walks.queue_ray(i, i, ray, {}, coin_key(key, 0, false), 0);
+        subpaths.states[i] = state;
+        subpaths.queue_ray(i, i, ray, {}, coin_key(key, 0, false), 0);
     }
 };
 
 /// Adds auxiliary channels of the first surface, and its emission.
-HD INLINE_ON_DEVICE void add_seen(const PictureView& picture, const FilmView& film, const WalkState& state,
+HD INLINE_ON_DEVICE void add_seen(const PictureView& picture, const FilmView& film, const SubpathState& state,
                                   const Ray& ray, const Hit& hit, const Surface& surface) {
     add_first_hit(film, state.pixel, state.sample, {ray.origin, ray.direction}, hit, surface, picture);
     if (!is_black(surface.emission)) add_radiance(film, state.pixel, surface.emission);
 }
 /// Adds the background for a camera ray that hit nothing.
-HD inline void add_seen_background(const PictureView& picture, const FilmView& film, const WalkState& state,
+HD inline void add_seen_background(const PictureView& picture, const FilmView& film, const SubpathState& state,
                                    const Ray& ray) {
     add_no_first_hit(film, state.pixel, state.sample);
     const LightSetView& lights = picture.scene.lights;

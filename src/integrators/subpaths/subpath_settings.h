@@ -20,7 +20,7 @@ struct SubpathSettings {
 };
 
 /// Largest max_depth of `integrator=bidirectional`, because vertices of light subpaths are stored, 48 bytes each.
-inline constexpr uint32_t kMostJoinedDepth = 255;
+inline constexpr uint32_t kMaxConnectedDepth = 255;
 
 /// A sphere around everything that rays can hit, in the translated world; distant light enters through its discs.
 struct WorldSphere {
@@ -37,18 +37,20 @@ struct WorldSphere {
 ///   light          the light and the point on it, then the direction
 ///   scatter, of v  direction from vertex v, then the point on the lens that it connects to
 ///   choices, of v  lobe, roulette
-enum WalkGroup : uint32_t { kWalkScatter, kWalkChoices, kWalkGroups };
+enum SubpathGroup : uint32_t { kSubpathScatter, kSubpathChoices, kSubpathGroups };
 inline constexpr uint32_t kNumberOfLobe = 0, kNumberOfRoulette = 1;
 inline constexpr uint32_t kGroupLight = 1u << 20; // beyond all groups of camera subpaths
 
-HD inline uint32_t eye_group(uint32_t depth, WalkGroup of) { return kCameraGroups + depth * kWalkGroups + of; }
-HD inline uint32_t particle_group(uint32_t depth, WalkGroup of) { return kGroupLight + 1 + depth * kWalkGroups + of; }
+HD inline uint32_t camera_group(uint32_t depth, SubpathGroup of) { return kCameraGroups + depth * kSubpathGroups + of; }
+HD inline uint32_t particle_group(uint32_t depth, SubpathGroup of) {
+    return kGroupLight + 1 + depth * kSubpathGroups + of;
+}
 /// The group whose last pair samples the light of the camera subpath's vertex.
 HD inline uint32_t light_group(uint32_t depth) {
-    return depth == 0 ? uint32_t(kGroupCamera) : eye_group(depth - 1, kWalkScatter);
+    return depth == 0 ? uint32_t(kGroupCamera) : camera_group(depth - 1, kSubpathScatter);
 }
 
 /// Offsets of the coin keys of blended surfaces, one for each kind of ray of a subpath.
-inline constexpr uint32_t kEyeCoins = 0, kParticleCoins = 0x9e3779b9u, kConnectionCoins = 0x7f4a7c15u;
+inline constexpr uint32_t kCameraCoins = 0, kParticleCoins = 0x9e3779b9u, kConnectionCoins = 0x7f4a7c15u;
 
 } // namespace pertev

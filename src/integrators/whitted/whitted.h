@@ -11,13 +11,13 @@
 namespace pertev {
 
 struct Whitted {
-    static constexpr uint32_t kMostBranches = 2;
+    static constexpr uint32_t kMaxBranches = 2;
     static constexpr bool kHasShutter = true;
     static constexpr LeastWeight kLeast = {0x1p-10f, WeakRays::LeftOut};
 
     HD static uint32_t shadow_rays(const LightSetView& lights) { return lights.punctual_count; }
-    HD static bool ask_for_light(const TreeVertex& vertex, uint32_t number, TreeShadowRay& shadow) {
-        return vertex.ask_for_punctual_light(number, shadow);
+    HD static bool sample_direct_light(const TreeVertex& vertex, uint32_t number, TreeShadowRay& shadow) {
+        return vertex.make_punctual_shadow_ray(number, shadow);
     }
     HD static void follow(const TreeVertex& vertex) {
         vertex.add_ambient();

@@ -23,8 +23,8 @@ using StateSet = std::vector<uint32_t>; // sorted states of all automata
 /// The automata of all expressions, side by side as one.
 class AllExpressions {
 public:
-    AllExpressions(std::span<const LightPathExpression> expressions, uint64_t most_steps, StateSet& firsts)
-        : steps_left_(most_steps) {
+    AllExpressions(std::span<const LightPathExpression> expressions, uint64_t max_steps, StateSet& firsts)
+        : steps_left_(max_steps) {
         uint32_t filters = 0;
         for (const LightPathExpression& expression : expressions) {
             const LightPathNfa one = make_nfa(expression);
@@ -205,11 +205,11 @@ LightPathAutomaton determinise(AllExpressions& all, StateSet firsts, const Light
 } // namespace
 
 LightPathAutomaton make_automaton(std::span<const LightPathExpression> expressions, const LightPathTags& tags,
-                                  uint64_t most_steps) {
+                                  uint64_t max_steps) {
     PERTEV_CHECK(!expressions.empty() && !tags.surfaces.empty() && !tags.lights.empty());
     StateSet firsts;
-    AllExpressions all(expressions, most_steps, firsts);
-    return minimise(determinise(all, std::move(firsts), tags), most_steps);
+    AllExpressions all(expressions, max_steps, firsts);
+    return minimise(determinise(all, std::move(firsts), tags), max_steps);
 }
 
 } // namespace pertev

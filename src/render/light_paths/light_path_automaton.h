@@ -63,6 +63,6 @@ inline constexpr uint64_t kMaxLightPathParts = 1u << 22, kMaxLightPathSteps = 1u
 /// possible, unless minimization takes more than `most_steps`. Throws Error(OverLimit) beyond one of these limits:
 /// expressions that distinguish many pasts of a path may need as many states.
 LightPathAutomaton make_automaton(std::span<const LightPathExpression> expressions, const LightPathTags& tags,
-                                  uint64_t most_steps = kMaxLightPathSteps);
+                                  uint64_t max_steps = kMaxLightPathSteps);
 
 } // namespace pertev

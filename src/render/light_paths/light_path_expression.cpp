@@ -11,8 +11,8 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kMostNesting = 200;
-constexpr uint32_t kMostRepeats = 255;
+constexpr uint32_t kMaxNesting = 200;
+constexpr uint32_t kMaxRepeats = 255;
 constexpr std::string_view kBlanks = " \t";
 
 /// Explains why a letter begins nothing, with the letter that others write for it or that is missing, if known.
@@ -79,7 +79,7 @@ private:
     }
 
     uint32_t parse_choice(uint32_t nesting) {
-        if (nesting > kMostNesting) fail(at_, fmt::format("more than {} parentheses within each other", kMostNesting));
+        if (nesting > kMaxNesting) fail(at_, fmt::format("more than {} parentheses within each other", kMaxNesting));
         LightPathNode choice = {.kind = LightPathNode::Kind::Choice};
         choice.parts.push_back(parse_branch(nesting));
         while (take('|')) choice.parts.push_back(parse_branch(nesting));
@@ -122,10 +122,10 @@ private:
         const std::size_t first = at_;
         uint32_t count = 0;
         for (; at_ < text_.size() && text_[at_] >= '0' && text_[at_] <= '9'; ++at_) {
-            count = std::min(count * 10 + static_cast<uint32_t>(text_[at_] - '0'), kMostRepeats + 1);
+            count = std::min(count * 10 + static_cast<uint32_t>(text_[at_] - '0'), kMaxRepeats + 1);
         }
         if (at_ == first) fail(at_, "a whole number stands here: {2}, {2,} or {2,5}");
-        if (count > kMostRepeats) fail(first, fmt::format("at most {}", kMostRepeats));
+        if (count > kMaxRepeats) fail(first, fmt::format("at most {}", kMaxRepeats));
         return count;
     }
     uint32_t parse_atom(uint32_t nesting) {

@@ -4,15 +4,15 @@
 
 namespace pertev {
 
-LightPathAutomaton minimise(LightPathAutomaton all, uint64_t most_steps) {
+LightPathAutomaton minimise(LightPathAutomaton all, uint64_t max_steps) {
     const uint32_t states = all.state_count(), sets = all.light_count * all.words; // `sets` is the size of a state's
                                                                                    // table of layers
     std::vector<uint16_t> group(states);
     std::size_t groups = 0;
     const uint64_t steps = uint64_t(states) * (all.column_count + 1); // steps per round
     for (bool is_first = true;; is_first = false) {
-        if (steps > most_steps) return all;
-        most_steps -= steps;
+        if (steps > max_steps) return all;
+        max_steps -= steps;
         std::map<std::vector<uint32_t>, uint16_t> of_signature;
         std::vector<uint16_t> finer(states);
         for (uint32_t s = 0; s < states; ++s) {

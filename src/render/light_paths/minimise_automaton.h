@@ -10,6 +10,6 @@ namespace pertev {
 
 /// Merges states that no path distinguishes; kNothing stays 0. Returns `all` unchanged if that takes more than
 /// `most_steps`.
-LightPathAutomaton minimise(LightPathAutomaton all, uint64_t most_steps);
+LightPathAutomaton minimise(LightPathAutomaton all, uint64_t max_steps);
 
 } // namespace pertev

@@ -12,7 +12,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kLeastShift = 3; // tiles of 8 x 8 pixels
+constexpr uint32_t kMinShift = 3; // tiles of 8 x 8 pixels
 
 struct Capacity {
     uint64_t triangles, entries, rows, tiles;
@@ -21,7 +21,7 @@ struct Capacity {
 /// A single tile over the whole picture needs one entry per triangle and no rows, so all visible ones always fit.
 Capacity capacity_for(uint64_t triangles, uint32_t width, uint32_t height) {
     const uint64_t most = std::min<uint64_t>(triangles, kMaxRasterTriangles), pixels = uint64_t(width) * height;
-    const uint64_t tiles = (((uint64_t(width) - 1) >> kLeastShift) + 1) * (((uint64_t(height) - 1) >> kLeastShift) + 1);
+    const uint64_t tiles = (((uint64_t(width) - 1) >> kMinShift) + 1) * (((uint64_t(height) - 1) >> kMinShift) + 1);
     return {most, 2 * most + pixels / 4, most + pixels / 16, tiles};
 }
 
@@ -50,7 +50,7 @@ void CameraRaster::begin(const PictureView& picture) {
     }
     reserve(scene_.triangle_count, picture.camera.width, picture.camera.height);
     const Pinhole camera = make_pinhole(picture.camera);
-    for (uint32_t shift = kLeastShift; !make_lists(camera, shift); ++shift) {
+    for (uint32_t shift = kMinShift; !make_lists(camera, shift); ++shift) {
     }
 }
 

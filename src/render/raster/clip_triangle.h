@@ -8,10 +8,10 @@
 
 namespace pertev {
 
-inline constexpr int kMostCorners = 12; // eight after five planes, plus corners that rounding puts on both sides
+inline constexpr int kMaxCorners = 12; // eight after five planes, plus corners that rounding puts on both sides
 
 struct ClippedTriangle {
-    PinholePoint corners[kMostCorners];
+    PinholePoint corners[kMaxCorners];
     int count;
 };
 
@@ -28,7 +28,7 @@ HD inline void clip(ClippedTriangle& polygon, PinholePoint a, double constant) {
     for (int i = 0; i < polygon.count; ++i) {
         const PinholePoint p = polygon.corners[i];
         const double side_p = side(p);
-        if (kept.count > kMostCorners - 2) return;
+        if (kept.count > kMaxCorners - 2) return;
         if ((side_p < 0) != (side_before < 0)) {
             // Computed from the point that is kept, in either direction, so that neighbours get the same point on
             // their edge.

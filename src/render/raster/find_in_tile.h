@@ -24,7 +24,7 @@ struct TileRasterView {
         const uint32_t row = pixel / width, column = pixel - row * width;
         return tiles[(row >> shift) * tiles_x + (column >> shift)];
     }
-    HD float least_t(uint32_t entry) const { return float_of(static_cast<uint32_t>(codes[entry])); }
+    HD float min_t(uint32_t entry) const { return float_of(static_cast<uint32_t>(codes[entry])); }
 };
 
 /// `ray` is a camera ray of a sample of `pixel`; `key` belongs to the coin of that ray.
@@ -38,7 +38,7 @@ HD inline Hit find_in_tile(const TileRasterView& raster, const SceneView& scene,
     Ray local = ray;
     RayShear local_shear = world_shear;
     uint32_t space = kNoHit; // the instance whose space `local` is in
-    for (uint32_t i = list.x; i < list.y && raster.least_t(i) <= visitor.best.t; ++i) {
+    for (uint32_t i = list.x; i < list.y && raster.min_t(i) <= visitor.best.t; ++i) {
         const BvhTriangle triangle = load_aligned(raster.triangles + raster.order[i]);
         const bool is_baked = (triangle.flags & kIsBaked) != 0;
         if (!is_baked && space != triangle.instance) {

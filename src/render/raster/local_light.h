@@ -14,10 +14,10 @@ struct LocalLight {
 };
 
 /// Radiance from `surface` towards `wo` (unit), W/(sr m2).
-HD inline Rgb local_light(const LightSetView& lights, const Surface& surface, Vec3 wo, const LocalLight& asked) {
+HD inline Rgb local_light(const LightSetView& lights, const Surface& surface, Vec3 wo, const LocalLight& requested) {
     Rgb sum = surface.emission;
-    if (surface.is_unlit || asked.max_depth == 0) return sum;
-    sum += surface.bsdf.diffuse_albedo() * asked.ambient;
+    if (surface.is_unlit || requested.max_depth == 0) return sum;
+    sum += surface.bsdf.diffuse_albedo() * requested.ambient;
     if (surface.bsdf.has_delta_only()) return sum;
     for (uint32_t k = 0; k < lights.punctual_count; ++k) {
         LightSample sample;

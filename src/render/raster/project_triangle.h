@@ -36,7 +36,7 @@ HD inline bool triangle_corners(const Pinhole& camera, const SceneView& scene, u
 }
 
 /// The plane of a triangle, and its depth at (x, y) in camera space.
-struct SeenPlane {
+struct ProjectedPlane {
     double x, y, depth, constant; // x px + y py + depth pd = constant
     bool is_perspective;
 
@@ -46,16 +46,16 @@ struct SeenPlane {
     }
 };
 
-HD inline SeenPlane plane_of(const PinholePoint (&corners)[3], bool is_perspective) {
+HD inline ProjectedPlane plane_of(const PinholePoint (&corners)[3], bool is_perspective) {
     const auto point = [](const PinholePoint& p) { return DoubleVec3{p.x, p.y, p.depth}; };
     const DoubleVec3 a = point(corners[0]), normal = cross(point(corners[1]) - a, point(corners[2]) - a);
     return {normal.x, normal.y, normal.z, dot(normal, a), is_perspective};
 }
 
 struct ProjectedTriangle {
-    int32_t x[kMostCorners], y[kMostCorners]; // 1/256 pixels from the picture's upper left corner
-    int count;                                // number of corners of a convex polygon
-    SeenPlane plane;
+    int32_t x[kMaxCorners], y[kMaxCorners]; // 1/256 pixels from the picture's upper left corner
+    int count;                              // number of corners of a convex polygon
+    ProjectedPlane plane;
     double nearest = 0, farthest = 0; // depth of its corners, metres
 };
 

@@ -14,7 +14,7 @@
 #include "device/atomic_add.h"
 #include "device_scene/scene_view.h"
 #include "math/float4.h"
-#include "render/raster/seen_bounds.h"
+#include "render/raster/screen_bounds.h"
 
 namespace pertev {
 
@@ -35,7 +35,7 @@ struct TileListsView {
     uint32_t* entry_triangles; // index into `triangles`
     Uint2* rows;               // index into `triangles`, row of tiles
     TileCounts* counts;
-    uint64_t most_triangles, most_entries, most_rows;
+    uint64_t max_triangles, max_entries, max_rows;
     uint32_t shift;   // tiles have 2^shift pixels a side
     uint32_t tiles_x; // tiles per row
 };
@@ -81,27 +81,27 @@ struct BinTriangles {
             triangle.b = transform_point(placed.world_from_local, triangle.b);
             triangle.c = transform_point(placed.world_from_local, triangle.c);
         }
-        const SeenTriangle seen = see(camera, scene, triangle);
-        SeenBounds bounds;
-        if (!seen_bounds(camera, seen, 0, camera.height - 1, bounds)) return;
+        const PinholeTriangle seen = see(camera, scene, triangle);
+        ScreenBounds bounds;
+        if (!screen_bounds(camera, seen, 0, camera.height - 1, bounds)) return;
         const uint64_t place = atomic_add(&lists.counts->triangles, uint64_t(1));
-        if (place >= lists.most_triangles) return;
+        if (place >= lists.max_triangles) return;
         lists.triangles[place] = triangle;
         const auto from = static_cast<uint32_t>(bounds.top) >> lists.shift,
                    to = static_cast<uint32_t>(bounds.bottom) >> lists.shift;
         if (from == to) return add_row(lists, camera, static_cast<uint32_t>(place), from, bounds);
         const uint64_t waiting = atomic_add(&lists.counts->rows, uint64_t(to - from + 1));
-        if (waiting + (to - from) >= lists.most_rows) return;
+        if (waiting + (to - from) >= lists.max_rows) return;
         for (uint32_t row = from; row <= to; ++row) {
             lists.rows[waiting + (row - from)] = {static_cast<uint32_t>(place), row};
         }
     }
 
-    /// Triangle in camera space with its error bound (render/raster/seen_bounds.h): in world space 2^-18 (|o| + |p|),
+    /// Triangle in camera space with its error bound (render/raster/screen_bounds.h): in world space 2^-18 (|o| + |p|),
     /// and for a ray in an instance's space with condition K, 2 K times that, as for the top level's boxes
-    /// (accel/bvh/top_level_bvh.h).
-    HD static SeenTriangle see(const Pinhole& camera, const SceneView& scene, const BvhTriangle& triangle) {
-        SeenTriangle seen;
+    /// (accel/bvh/tlas.h).
+    HD static PinholeTriangle see(const Pinhole& camera, const SceneView& scene, const BvhTriangle& triangle) {
+        PinholeTriangle seen;
         const Vec3 corners[] = {triangle.a, triangle.b, triangle.c};
         float reach = 0, growth = 1;
         if ((triangle.flags & kIsBaked) != 0) {
@@ -125,14 +125,14 @@ struct BinTriangles {
 
     /// Adds a triangle to the lists of its tiles in a row.
     HD static void add_row(const TileListsView& lists, const Pinhole& camera, uint32_t place, uint32_t row,
-                           const SeenBounds& bounds) {
+                           const ScreenBounds& bounds) {
         const auto from = static_cast<uint32_t>(bounds.left) >> lists.shift,
                    to = static_cast<uint32_t>(bounds.right) >> lists.shift;
         const uint64_t first_entry = atomic_add(&lists.counts->entries, uint64_t(to - from + 1));
-        if (first_entry + (to - from) >= lists.most_entries) return;
-        const double least_t = max(bounds.depth * camera.distance_scale, 0.0);
+        if (first_entry + (to - from) >= lists.max_entries) return;
+        const double min_t = max(bounds.depth * camera.distance_scale, 0.0);
         // The float below, because it is only compared with a ray's t.
-        const float nearest = static_cast<float>(least_t * (1 - 0x1p-20));
+        const float nearest = static_cast<float>(min_t * (1 - 0x1p-20));
         for (uint32_t tile = from; tile <= to; ++tile) {
             const uint64_t entry = first_entry + (tile - from);
             lists.codes[entry] = uint64_t(row * lists.tiles_x + tile) << 32 | bits_of(nearest);
@@ -151,9 +151,9 @@ struct BinRows {
     HD void operator()(uint32_t i) const {
         const Uint2 at = lists.rows[i];
         const uint32_t top = at.y << lists.shift, bottom = min(camera.height, (at.y + 1) << lists.shift) - 1;
-        SeenBounds bounds;
-        const SeenTriangle seen = BinTriangles::see(camera, scene, lists.triangles[at.x]);
-        if (seen_bounds(camera, seen, top, bottom, bounds)) {
+        ScreenBounds bounds;
+        const PinholeTriangle seen = BinTriangles::see(camera, scene, lists.triangles[at.x]);
+        if (screen_bounds(camera, seen, top, bottom, bounds)) {
             BinTriangles::add_row(lists, camera, at.x, at.y, bounds);
         }
     }

@@ -21,8 +21,8 @@ namespace pertev {
 namespace {
 
 // Splines may overshoot the valid range.
-constexpr float kLeastFov = 0x1p-12f;    // radians
-constexpr float kLeastLength = 0x1p-20f; // metres
+constexpr float kMinFov = 0x1p-12f;    // radians
+constexpr float kMinLength = 0x1p-20f; // metres
 
 std::vector<uint32_t> numbers_of(const std::vector<bool>& flags) {
     std::vector<uint32_t> numbers;
@@ -150,16 +150,16 @@ void PosedScene::read_channels(double time_s) {
                 morph_weights_[channel.target] = v;
                 break;
             case AnimatedPart::CameraFov:
-                cameras_[channel.target].fov_y = clamp(v[0], kLeastFov, kPi - kLeastFov);
+                cameras_[channel.target].fov_y = clamp(v[0], kMinFov, kPi - kMinFov);
                 break;
             case AnimatedPart::CameraHeight:
-                cameras_[channel.target].ortho_height = max(abs(v[0]), kLeastLength);
+                cameras_[channel.target].ortho_height = max(abs(v[0]), kMinLength);
                 break;
             case AnimatedPart::LightIntensity:
                 lights_[channel.target].intensity = {max(0.0f, v[0]), max(0.0f, v[1]), max(0.0f, v[2])};
                 break;
             case AnimatedPart::LightRange:
-                lights_[channel.target].range = max(v[0], kLeastLength);
+                lights_[channel.target].range = max(v[0], kMinLength);
                 break;
             case AnimatedPart::LightInnerCone:
                 lights_[channel.target].cos_inner = cos(clamp(v[0], 0.0f, kPi / 2));

@@ -99,7 +99,7 @@ public:
     explicit GroupTangents(std::vector<Vec4>& tangents) : tangents_(tangents) {}
 
     void set(std::span<const uint32_t> corners, std::span<const Share> shares, float handedness) {
-        if (corners.size() > kMostCompared || all_go_together(shares)) {
+        if (corners.size() > kMaxCompared || all_go_together(shares)) {
             const Vec4 tangent = unit_tangent(weighted_mean(shares, [](std::size_t) { return true; }), handedness);
             for (const uint32_t corner : corners) tangents_[corner] = tangent;
             return;
@@ -121,8 +121,8 @@ public:
 
 private:
     /// Groups with up to this many triangles are compared pair by pair; in a larger group all take part.
-    static constexpr std::size_t kMostCompared = 256;
-    using Members = std::array<uint64_t, kMostCompared / 64>; // a bit for each
+    static constexpr std::size_t kMaxCompared = 256;
+    using Members = std::array<uint64_t, kMaxCompared / 64>; // a bit for each
 
     static Vec4 unit_tangent(Vec3 sum, float handedness) {
         const Vec3 tangent = normalize(sum);

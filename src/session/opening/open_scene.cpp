@@ -15,8 +15,8 @@
 #include "session/degrees.h"
 #include "session/photometry.h"
 #include "session/survey/default_light.h"
+#include "session/survey/emitter_fronts.h"
 #include "session/survey/ground.h"
-#include "session/survey/lamp_fronts.h"
 #include "settings/parse_values.h"
 
 namespace pertev {
@@ -57,12 +57,12 @@ void turn_and_scale(const OpenOptions& options, Scene& scene, Messages& messages
 
 /// Whether such a lamp is set before light is added. An environment is set last, after scaling, and so are added
 /// lamps.
-bool names_lamp_of_file(const Scene& scene, const LampStrength& lamp) {
+bool names_emitter_of_file(const Scene& scene, const EmitterStrength& emitter) {
     if (scene.environment) return false;
-    const auto is_called_so = [&](const auto& thing) { return has_name(names_of(scene, thing), lamp.name); };
+    const auto is_called_so = [&](const auto& thing) { return has_name(names_of(scene, thing), emitter.name); };
     return std::ranges::any_of(scene.lights, is_called_so) ||
            std::ranges::any_of(scene.instances, [&](const Instance& instance) {
-               return scene.materials[instance.material].is_lamp() && is_called_so(instance);
+               return scene.materials[instance.material].is_emitter() && is_called_so(instance);
            });
 }
 
@@ -127,7 +127,7 @@ OpenOptions open_options(const SceneOptions& options) {
     }
     open.environment_rotation_deg = options.environment_rotation_deg;
     open.environment_scale = options.environment_scale;
-    for (const std::string& lamp : options.lamps) open.lamps.push_back(parse_lamp(lamp));
+    for (const std::string& emitter : options.emitters) open.emitters.push_back(parse_emitter(emitter));
     open.efficacy = static_cast<double>(options.efficacy);
     open.two_sided_lights = options.two_sided_lights;
     open.show_back_faces = options.show_back_faces;
@@ -170,19 +170,19 @@ std::string environment_text(const OpenOptions& options) {
     return fmt::format("{},{},{}", radiance.r, radiance.g, radiance.b);
 }
 
-Scene read_scene_and_lamps(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
+Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
     Scene scene = read_scene(path, options, messages);
     if (options.file_scene.empty()) say_which_scene(scene, path.string(), messages);
     if (!(options.space == FileSpace()) && tells_space(path)) {
         messages.warn(
             {Place{path.string()}, "the file is in metres with y up; `up_axis` and `unit` are for .obj and .ply"});
     }
-    if (!options.two_sided_lights && !tells_lamp_sides(path)) say_lamp_fronts(scene, path.string(), messages);
+    if (!options.two_sided_lights && !tells_emitter_sides(path)) say_emitter_fronts(scene, path.string(), messages);
     return scene;
 }
 
 Scene open_scene(const OpenOptions& options, Messages& messages) {
-    Scene scene = read_scene_and_lamps(options.scene, read_options(options), messages);
+    Scene scene = read_scene_and_emitters(options.scene, read_options(options), messages);
     if (options.animation.empty()) say_which_clip(scene, options.scene, messages);
     if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
         messages.warn({"two_sided_lights", "", "no surface of the scene gives light"});
@@ -191,10 +191,10 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
     if (auto environment = environment_of(options, messages)) scene.environment = *std::move(environment);
     const double efficacy = lumens_per_watt(options.scene, options.efficacy);
     const bool has_light = !lacks_light(scene);
-    std::vector<LampStrength> of_file, others;
-    std::ranges::partition_copy(options.lamps, std::back_inserter(of_file), std::back_inserter(others),
-                                [&](const LampStrength& lamp) { return names_lamp_of_file(scene, lamp); });
-    set_lamps(scene, of_file, efficacy);
+    std::vector<EmitterStrength> of_file, others;
+    std::ranges::partition_copy(options.emitters, std::back_inserter(of_file), std::back_inserter(others),
+                                [&](const EmitterStrength& emitter) { return names_emitter_of_file(scene, emitter); });
+    set_emitters(scene, of_file, efficacy);
     Surroundings around;
     // Someone who switches off the last lamp of a file wants it dark.
     const bool is_turned_off = has_light && lacks_light(scene);
@@ -205,7 +205,7 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
         messages.make_up("a made-up ground catches the shadow; `ground=off` leaves it out");
     }
     turn_and_scale(options, scene, messages);
-    set_lamps(scene, others, efficacy);
+    set_emitters(scene, others, efficacy);
     return scene;
 }
 

@@ -13,7 +13,7 @@
 #include "formats/read_scene.h"
 #include "scene/scene.h"
 #include "session/scene_use.h"
-#include "session/set_lamps.h"
+#include "session/set_emitters.h"
 #include "settings/picture_options.h"
 
 namespace pertev {
@@ -32,7 +32,7 @@ struct OpenOptions {
     std::optional<Rgb> environment_radiance; // uniform radiance instead of a panorama, W/(sr m2), at least 0
     float environment_rotation_deg = 0;      // around +y, added to the environment's own
     float environment_scale = 1;             // factor for the environment's own
-    std::vector<LampStrength> lamps;         // amounts of light, in order
+    std::vector<EmitterStrength> emitters;   // amounts of light, in order
     double efficacy = 0;                     // lumens per watt, for lamps; 0: by kind of file (photometry.h)
     bool two_sided_lights = false;           // surfaces emit from both faces, whatever the file says
     bool show_back_faces = false;            // the camera sees backs that a glTF file culls
@@ -58,8 +58,8 @@ std::string environment_text(const OpenOptions& options);
 Scene open_scene(const OpenOptions& options, Messages& messages);
 
 /// Reads a scene with `formats/read_scene.h` and adds nothing. Says which scene of a file with several is shown and,
-/// for files that cannot say which faces of a lamp emit, comments on its lamps (session/survey/lamp_fronts.h). Throws
-/// Error.
-Scene read_scene_and_lamps(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
+/// for files that cannot say which faces of a lamp emit, comments on its lamps (session/survey/emitter_fronts.h).
+/// Throws Error.
+Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
 
 } // namespace pertev

@@ -17,7 +17,7 @@ namespace {
 constexpr float kFovOutside = 0.6981317f, kFovInside = 1.1344640f; // 40 and 65 degrees, for the smaller side
 constexpr float kAside = 28, kAbove = 18;                          // degrees, for a view from outside
 constexpr float kAboveFlat = 38;                                   // degrees, for flat objects
-constexpr uint64_t kMostTrianglesSeen = 8'000'000;                 // a second on one core
+constexpr uint64_t kMaxTrianglesSeen = 8'000'000;                  // a second on one core
 constexpr int kLooks = 8;                                          // rays along each side of a candidate view
 
 Camera look(Vec3 eye, Vec3 target, float fov_y, const char* name) {
@@ -97,7 +97,7 @@ Vec3 way_to_look_from(const Scene& scene, const Bounds3& box) {
         triangles += scene.meshes[instance.mesh].triangle_count();
         hides_any = hides_any || !scene.materials[instance.material].double_sided;
     }
-    if (!hides_any || triangles > kMostTrianglesSeen) return front;
+    if (!hides_any || triangles > kMaxTrianglesSeen) return front;
     if (2 * count_hits(scene, box, front, Backs::Shown) >= count_hits(scene, box, front, Backs::All)) return front;
     std::vector<Vec3> ways;
     std::vector<int> shown;

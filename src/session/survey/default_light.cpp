@@ -54,7 +54,7 @@ OwnLight own_light(const Scene& scene) {
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         if (!is_used[i]) continue;
-        if (material.is_lamp() &&
+        if (material.is_emitter() &&
             (!material.emission_texture.has_image() ||
              has_light(scene.images[static_cast<std::size_t>(material.emission_texture.image)]))) {
             return OwnLight::Glowing;
@@ -64,19 +64,19 @@ OwnLight own_light(const Scene& scene) {
     return is_all_unlit ? OwnLight::Enough : OwnLight::None;
 }
 
-void add_lamps(Scene& scene, const Surroundings& room) {
+void add_emitters(Scene& scene, const Surroundings& room) {
     const Aisle aisle = find_aisle(scene, room);
     constexpr int count = 5;
     for (int i = 0; i < count; ++i) {
         const float at = ((static_cast<float>(i) + 0.5f) / count - 0.5f) * 0.9f * aisle.length;
         const Vec3 below = aisle.middle + at * aisle.along;
         const float up = distance_along(scene, below, {0, 1, 0}, 0.5f * aisle.height);
-        Light lamp;
-        lamp.name = fmt::format("default lamp {}", i);
-        lamp.position = below + Vec3{0, 0.6f * up, 0};
+        Light emitter;
+        emitter.name = fmt::format("default lamp {}", i);
+        emitter.position = below + Vec3{0, 0.6f * up, 0};
         // About 1 W/(sr m2) from a white floor below one.
-        lamp.intensity = (kPi * square(0.6f * up)) * Rgb{1.0f, 0.93f, 0.82f};
-        scene.lights.push_back(std::move(lamp));
+        emitter.intensity = (kPi * square(0.6f * up)) * Rgb{1.0f, 0.93f, 0.82f};
+        scene.lights.push_back(std::move(emitter));
     }
 }
 
@@ -96,9 +96,9 @@ DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages, S
     const Surroundings around = look_around(scene);
     if (seen != nullptr) *seen = around;
     if (around.is_dark) {
-        add_lamps(scene, around);
+        add_emitters(scene, around);
         messages.make_up(fmt::format("{}, a closed room: it gets a row of lamps", why));
-        return DefaultLight::Lamps;
+        return DefaultLight::Emitters;
     }
     // Through the openings of a room, the clear sky's narrow sun shows more than soft boxes do.
     const bool is_thing = around.kind == SurroundingsKind::Object && use != SceneUse::Benchmark;

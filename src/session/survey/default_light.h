@@ -9,7 +9,7 @@
 
 namespace pertev {
 
-enum class DefaultLight { None, Sky, Lamps }; // None: the scene has light, or nothing to be lit
+enum class DefaultLight { None, Sky, Emitters }; // None: the scene has light, or nothing to be lit
 
 /// Whether a scene with surfaces to be lit has no lights (above 0, at rest or at a time), no emitters and no
 /// environment.

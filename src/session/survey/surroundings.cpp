@@ -8,8 +8,8 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kMostTriangles = 8'000'000; // half a second on one core
-constexpr int kAxes = 6;                       // +x -x +y -y +z -z
+constexpr uint64_t kMaxTriangles = 8'000'000; // half a second on one core
+constexpr int kAxes = 6;                      // +x -x +y -y +z -z
 constexpr int kUp = 2;
 constexpr float kMostOfRoom = 0.12f; // share seen from outside: Sponza 0.00, Sibenik 0.03, a shoe 0.23
 
@@ -114,7 +114,7 @@ Surroundings look_around(const Scene& scene) {
     uint64_t triangles = 0;
     for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
     const Vec3 centre = result.bounds.centre(), size = result.bounds.size();
-    if (triangles > kMostTriangles || result.bounds.is_empty() || is_flat(size)) return result;
+    if (triangles > kMaxTriangles || result.bounds.is_empty() || is_flat(size)) return result;
 
     const Vec3 along = size.x >= size.z ? Vec3{0.2f * size.x, 0, 0} : Vec3{0, 0, 0.2f * size.z};
     const Vec3 down = {0, 0.2f * size.y, 0};

@@ -10,9 +10,9 @@ namespace pertev {
 namespace {
 
 constexpr uint32_t kWidth = 64, kHeight = 36, kBlock = 4, kSamples = 16, kDepth = 6;
-constexpr float kVisible = 0.18f / 16;                      // four stops below middle grey
-constexpr float kBurnt = 16;                                // agx maps it to white
-constexpr double kShareToSeeBy = 0.75, kMostBurnt = 0.0625; // shares of the surfaces in the picture
+constexpr float kVisible = 0.18f / 16;                     // four stops below middle grey
+constexpr float kBurnt = 16;                               // agx maps it to white
+constexpr double kShareToSeeBy = 0.75, kMaxBurnt = 0.0625; // shares of the surfaces in the picture
 constexpr double kNextToNothing = 0.03125;
 
 SeenShares look_from(const Camera& camera, const Scene& scene) {
@@ -29,12 +29,12 @@ SeenShares look_from(const Camera& camera, const Scene& scene) {
     session.render(kSamples);
     const Image picture = session.picture();
     // The meter requests the full light, and that of emitters alone; pictures of this size suffice here.
-    const float scale = exposure_scale(meter_exposure(settings, ToneMap::Agx, [&](RenderSettings asked) {
-        asked.width = kWidth, asked.height = kHeight;
-        if (asked.path.max_depth > 0 && asked.transparent) return picture;
-        session.set_settings(asked);
+    const float scale = exposure_scale(meter_exposure(settings, ToneMap::Agx, [&](RenderSettings requested) {
+        requested.width = kWidth, requested.height = kHeight;
+        if (requested.path.max_depth > 0 && requested.transparent) return picture;
+        session.set_settings(requested);
         session.cut();
-        session.render(asked.samples);
+        session.render(requested.samples);
         return session.picture();
     }));
     // Means of blocks, because single pixels with so few samples are dark by chance.
@@ -75,7 +75,7 @@ SeenShares shares_seen(const Scene& scene) {
 
 bool is_light_too_weak(const Scene& scene) {
     const SeenShares seen = shares_seen(scene);
-    return seen.lit < kShareToSeeBy || seen.burnt > kMostBurnt;
+    return seen.lit < kShareToSeeBy || seen.burnt > kMaxBurnt;
 }
 
 bool lights_nothing_seen(const Scene& scene) { return shares_seen(scene).lit < kNextToNothing; }

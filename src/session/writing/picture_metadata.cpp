@@ -100,15 +100,15 @@ ExrMetadata id_metadata(const SceneSource& source, std::span<const PixelIds> ids
 }
 
 SceneSource source_of(const OpenOptions& options, const Scene& scene) {
-    std::string lamps;
-    for (const LampStrength& lamp : options.lamps) lamps += (lamps.empty() ? "" : "\n") + lamp.text;
+    std::string emitters;
+    for (const EmitterStrength& emitter : options.emitters) emitters += (emitters.empty() ? "" : "\n") + emitter.text;
     return {.scene = options.scene,
             .environment = environment_text(options),
             .environment_scale = options.environment_scale,
             .environment_rotation_deg = options.environment_rotation_deg,
             .up_axis = options.up_axis,
             .unit = options.unit,
-            .lamps = lamps,
+            .emitters = emitters,
             .has_environment = scene.environment.has_value(),
             .has_ground = has_ground(scene),
             .two_sided_lights = options.two_sided_lights,
@@ -206,7 +206,7 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     if (!scene.up_axis.empty()) metadata.emplace_back("pertev.up_axis", scene.up_axis);
     if (!scene.unit.empty()) metadata.emplace_back("pertev.unit", scene.unit);
     if (scene.has_ground) metadata.emplace_back("pertev.ground", std::string("on"));
-    if (!scene.lamps.empty()) metadata.emplace_back("pertev.lamp", scene.lamps);
+    if (!scene.emitters.empty()) metadata.emplace_back("pertev.lamp", scene.emitters);
     if (settings.irradiance) metadata.emplace_back("pertev.quantity", std::string("irradiance"));
     if (record.display && record.display->false_colors) {
         metadata.emplace_back("pertev.false_color", record.display->false_colors->quantity);

@@ -29,7 +29,7 @@ struct SceneSource {
     std::string settings;      // all given settings, as JSON (settings/settings_file.h); empty if unknown
     std::string by_scene, by_settings, by_flags; // names of settings from the scene's file, from a settings file, and
                                                  // from flags
-    std::string lamps;                           // amounts of light, one per line; empty: none
+    std::string emitters;                        // amounts of light, one per line; empty: none
     bool has_environment = false;                // the scene has one: requested, its own or the default
     bool has_ground = false;                     // a generated one
     bool two_sided_lights = false, show_back_faces = false;

@@ -1,7 +1,7 @@
 #pragma once
 
 // A clear coat on anything: a second, colourless dielectric interface with its own roughness. It is a layer; what
-// lies beneath gets at most the light that the coat transmits, from either side (Passage::pass).
+// lies beneath gets at most the light that the coat transmits, from either side (LayerTransmittance::pass).
 //
 // Source: KHR_materials_clearcoat, whose layering by Fresnel's term of the view direction alone is not reciprocal;
 // here the coat's directional albedo for both directions replaces it.
@@ -21,7 +21,7 @@ struct CoatLobe {
     HD float energy() const { return strength * interface().energy(); }
     HD Gloss gloss(float cos_o) const {
         const Gloss whole = interface().gloss(cos_o);
-        return {strength * whole.reflectance, alpha, 1.0f - strength * (1.0f - whole.passage)};
+        return {strength * whole.reflectance, alpha, 1.0f - strength * (1.0f - whole.transmittance)};
     }
     HD SpecularBranches specular(Vec3 wo) const {
         SpecularBranches branches;
@@ -29,7 +29,7 @@ struct CoatLobe {
         return branches;
     }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, Passage& way) const {
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
         const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
         const SchlickLobe lobe = interface();
         const SchlickLobe::Average average = lobe.make_average();
@@ -38,10 +38,10 @@ struct CoatLobe {
         BsdfValue value;
         if (!lobe.is_smooth() && wo.z * wi.z > 0) {
             const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
-            value = {(way.light * strength) * lobe.value_of(once, i.z, average, at_o, at_i),
-                     way.reach * lobe.pdf_of(once, i.z, shares.specular, shares.more)};
+            value = {(transmittance.light * strength) * lobe.value_of(once, i.z, average, at_o, at_i),
+                     transmittance.reach * lobe.pdf_of(once, i.z, shares.specular, shares.more)};
         }
-        way.pass(strength * at_o.coat, strength * at_i.coat, shares.beneath);
+        transmittance.pass(strength * at_o.coat, strength * at_i.coat, shares.beneath);
         return value;
     }
 

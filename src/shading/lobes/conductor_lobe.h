@@ -10,7 +10,7 @@
 #include "shading/lobes/fresnel.h"
 #include "shading/lobes/ggx.h"
 #include "shading/lobes/grazing_lobe.h"
-#include "shading/lobes/passage.h"
+#include "shading/lobes/layer_transmittance.h"
 
 namespace pertev {
 
@@ -29,15 +29,16 @@ struct ConductorLobe {
         return branches;
     }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const Passage& way) const {
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const LayerTransmittance& transmittance) const {
         if (is_smooth() || !(wo.z * wi.z > 0)) return {};
         const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
         const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
         const float lost_o = metal_lost(o.z, alpha), lost_i = metal_lost(i.z, alpha);
         const float lost = metal_average_lost(alpha), cosine = i.z * kInvPi;
         const Rgb more = multiple_scattering_tint(fresnel_conductor_average(eta, k), lost);
-        return {way.light * (once.f * fresnel_conductor(once.cos_h, eta, k) + (cosine * lost_o * lost_i / lost) * more),
-                way.reach * ((1.0f - lost_o) * once.pdf + lost_o * pdf_grazing_lobe(i.z, alpha))};
+        return {transmittance.light *
+                    (once.f * fresnel_conductor(once.cos_h, eta, k) + (cosine * lost_o * lost_i / lost) * more),
+                transmittance.reach * ((1.0f - lost_o) * once.pdf + lost_o * pdf_grazing_lobe(i.z, alpha))};
     }
     HD LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
         if (is_smooth()) return draw_mirror(wo, fresnel_conductor(abs(wo.z), eta, k), 1);

@@ -13,7 +13,7 @@
 #include "shading/lobes/fresnel.h"
 #include "shading/lobes/ggx.h"
 #include "shading/lobes/grazing_lobe.h"
-#include "shading/lobes/passage.h"
+#include "shading/lobes/layer_transmittance.h"
 
 namespace pertev {
 
@@ -48,7 +48,7 @@ struct DielectricLobe {
         return branches;
     }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const Passage& way) const {
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const LayerTransmittance& transmittance) const {
         if (is_smooth() || !(abs(wo.z) > 0 && abs(wi.z) > 0)) return {};
         const float eta = eta_from(wo);
         const Vec3 o = {wo.x, wo.y, abs(wo.z)};
@@ -62,8 +62,9 @@ struct DielectricLobe {
             const GgxReflection once = evaluate_ggx_reflection(o, {wi.x, wi.y, cos_i}, alpha);
             const float reflectance = fresnel_dielectric(once.cos_h, eta).reflectance;
             const float more = (1.0f - share) * lost_o * glass_lost(cos_i, alpha, eta) / average_o;
-            return {grey(way.light * (once.f * reflectance + cosine * more)),
-                    way.reach * ((1.0f - lost_o) * reflectance * once.pdf + lost_o * (1.0f - share) * grazing)};
+            return {grey(transmittance.light * (once.f * reflectance + cosine * more)),
+                    transmittance.reach *
+                        ((1.0f - lost_o) * reflectance * once.pdf + lost_o * (1.0f - share) * grazing)};
         }
         float f = share * lost_o * glass_lost(cos_i, alpha, 1.0f / eta) / average_far * cosine;
         float pdf = lost_o * share * grazing;
@@ -83,7 +84,7 @@ struct DielectricLobe {
             f += d * cos_i / (so * cos_i + si * o.z);
             pdf += (1.0f - lost_o) * d / (o.z + so);
         }
-        return {(way.light * f) * tint, way.reach * pdf};
+        return {(transmittance.light * f) * tint, transmittance.reach * pdf};
     }
     HD LobeDraw draw(Vec3 wo, float u_lobe, Vec2 u) const {
         const float eta = eta_from(wo);

@@ -1,13 +1,13 @@
 #pragma once
 
-// Ideal diffuse reflection, on the side of wo. This is the lobe to read first: passage.h defines the interface of
-// lobes, and tests/statistical/bsdf_*_test.cpp check it for all: chi-square of sample against pdf, mean of weight
-// against the integral of eval, energy conservation, reciprocity.
+// Ideal diffuse reflection, on the side of wo. This is the lobe to read first: layer_transmittance.h defines the
+// interface of lobes, and tests/statistical/bsdf_*_test.cpp check it for all: chi-square of sample against pdf, mean of
+// weight against the integral of eval, energy conservation, reciprocity.
 
 #include "base/host_device.h"
 #include "math/sampling.h"
 #include "math/vec2.h"
-#include "shading/lobes/passage.h"
+#include "shading/lobes/layer_transmittance.h"
 
 namespace pertev {
 
@@ -18,10 +18,12 @@ struct DiffuseLobe {
     HD LobeClass lobe_class() const { return LobeClass::Diffuse; }
     HD float energy() const { return share * max_component(albedo); }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const Passage& way) const {
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, const LayerTransmittance& transmittance) const {
         if (!(wo.z * wi.z > 0)) return {};
         const float pdf = abs(wi.z) * kInvPi;
-        return {(way.light * (pdf * share * way.near * way.far / way.average)) * albedo, way.reach * pdf};
+        return {(transmittance.light * (pdf * share * transmittance.near * transmittance.far / transmittance.average)) *
+                    albedo,
+                transmittance.reach * pdf};
     }
     HD LobeDraw draw(Vec3 wo, Vec2 u) const {
         Vec3 wi = sample_cosine_hemisphere(u);

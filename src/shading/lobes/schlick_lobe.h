@@ -12,7 +12,7 @@
 #include "shading/lobes/fresnel.h"
 #include "shading/lobes/ggx.h"
 #include "shading/lobes/grazing_lobe.h"
-#include "shading/lobes/passage.h"
+#include "shading/lobes/layer_transmittance.h"
 
 namespace pertev {
 
@@ -65,7 +65,7 @@ struct SchlickLobe {
     }
     HD Rgb mixed_f0() const { return lerp(grey(f0), base_color, metallic); }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, Passage& way) const {
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
         if (!(wo.z * wi.z > 0)) return {};
         const Vec3 o = {wo.x, wo.y, abs(wo.z)}, i = {wi.x, wi.y, abs(wi.z)};
         const Average average = make_average();
@@ -74,13 +74,13 @@ struct SchlickLobe {
         BsdfValue value;
         if (!is_smooth()) {
             const GgxReflection once = evaluate_ggx_reflection(o, i, alpha);
-            value = {way.light * value_of(once, i.z, average, at_o, at_i),
-                     way.reach * pdf_of(once, i.z, shares.specular, shares.more)};
+            value = {transmittance.light * value_of(once, i.z, average, at_o, at_i),
+                     transmittance.reach * pdf_of(once, i.z, shares.specular, shares.more)};
         }
-        way.near = 1.0f - at_o.coat;
-        way.far = 1.0f - at_i.coat;
-        way.average = 1.0f - average.coat;
-        way.reach = way.reach * shares.beneath;
+        transmittance.near = 1.0f - at_o.coat;
+        transmittance.far = 1.0f - at_i.coat;
+        transmittance.average = 1.0f - average.coat;
+        transmittance.reach = transmittance.reach * shares.beneath;
         return value;
     }
 

@@ -10,7 +10,7 @@
 #include "math/portable_pow.h"
 #include "math/sampling.h"
 #include "shading/lobes/energy_tables.h"
-#include "shading/lobes/passage.h"
+#include "shading/lobes/layer_transmittance.h"
 #include "shading/lobes/sheen_table_data.h"
 
 namespace pertev {
@@ -25,7 +25,7 @@ struct SheenLobe {
     HD LobeClass lobe_class() const { return LobeClass::Diffuse; }
     HD float energy() const { return max_component(color) * min(albedo_at(0.25f), 1.0f); }
 
-    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, Passage& way) const {
+    HD BsdfValue evaluate(Vec3 wo, Vec3 wi, float beneath, LayerTransmittance& transmittance) const {
         const float cos_o = abs(wo.z), cos_i = abs(wi.z);
         const float albedo_o = albedo_at(cos_o), albedo_i = albedo_at(cos_i);
         const float strength = max_component(color);
@@ -37,10 +37,10 @@ struct SheenLobe {
             const float sine2 = (sum.x * sum.x + sum.y * sum.y) / length_squared(sum);
             const float d = (2.0f + 1.0f / alpha) * (0.5f * kInvPi) * pow(min(sine2, 1.0f), 0.5f / alpha);
             const float f = d * cos_i / (4.0f * (cos_o + cos_i - cos_o * cos_i));
-            value = {(way.light * f / max(1.0f, max(albedo_o, albedo_i))) * color,
-                     way.reach * ((1.0f - p_beneath) * pdf_uniform_hemisphere())};
+            value = {(transmittance.light * f / max(1.0f, max(albedo_o, albedo_i))) * color,
+                     transmittance.reach * ((1.0f - p_beneath) * pdf_uniform_hemisphere())};
         }
-        way.pass(at_o, at_i, p_beneath);
+        transmittance.pass(at_o, at_i, p_beneath);
         return value;
     }
 

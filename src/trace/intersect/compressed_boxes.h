@@ -80,8 +80,8 @@ HD inline uint32_t enters_slots(Vec3 origin, const RaySegment& r, const Compress
         const float entry =
             greatest_bits(at(x.near_planes[w], k, x.step, x.near), at(y.near_planes[w], k, y.step, y.near),
                           at(z.near_planes[w], k, z.step, z.near));
-        const float exit = least_bits(at(x.far_planes[w], k, x.step, x.far), at(y.far_planes[w], k, y.step, y.far),
-                                      at(z.far_planes[w], k, z.step, z.far));
+        const float exit = min_bits(at(x.far_planes[w], k, x.step, x.far), at(y.far_planes[w], k, y.step, y.far),
+                                    at(z.far_planes[w], k, z.step, z.far));
         entries[s] = entry;
         const uint32_t entered = bits_of(entry - exit); // negative; of equal ones +0
 #if PERTEV_ON_DEVICE
@@ -95,7 +95,7 @@ HD inline uint32_t enters_slots(Vec3 origin, const RaySegment& r, const Compress
 
 /// The least entry of `slots` as a ray parameter: the upper half of a float's bits, rounded down; infinity for no
 /// slots.
-HD inline uint32_t least_entry(const float (&entries)[8], uint32_t slots, float end) {
+HD inline uint32_t min_entry(const float (&entries)[8], uint32_t slots, float end) {
     // Non-negative floats have the order of their bits as integers.
     const auto at = [&](int s) { return (slots & 1u << s) != 0 ? static_cast<int>(bits_of(entries[s])) : 0x7f800000; };
     const int a = min(min(at(0), at(1)), at(2)), b = min(min(at(3), at(4)), at(5));

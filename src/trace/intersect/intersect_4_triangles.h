@@ -1,7 +1,7 @@
 #pragma once
 
 // intersect_triangle for four triangles at once, host only: the same operations in the same order give the same bits,
-// which tests/consistency/walks_test.cpp checks.
+// which tests/consistency/traversals_test.cpp checks.
 
 #include <immintrin.h>
 
@@ -80,12 +80,12 @@ inline unsigned intersect_4_triangles(Vec3 origin, const RayShear& shear, const 
     const auto mask_of = [](__m128 lanes) { return static_cast<unsigned>(_mm_movemask_ps(lanes)); };
     const __m128 below = _mm_min_ps(ea, _mm_min_ps(eb, ec)), above = _mm_max_ps(ea, _mm_max_ps(eb, ec));
     const unsigned missed = mask_of(_mm_cmpge_ps(_mm_min_ps(_mm_xor_ps(below, sign), above), sure));
-    const unsigned asked = ((1u << count) - 1) & ~missed;
+    const unsigned requested = ((1u << count) - 1) & ~missed;
     const __m128 least =
         _mm_min_ps(_mm_andnot_ps(sign, ea), _mm_min_ps(_mm_andnot_ps(sign, eb), _mm_andnot_ps(sign, ec)));
     // Not "less than", so that NaN takes the slow path too, where it is a miss.
-    unsigned slow = asked & mask_of(_mm_cmpnge_ps(least, sure));
-    unsigned hit = asked & ~slow;
+    unsigned slow = requested & mask_of(_mm_cmpnge_ps(least, sure));
+    unsigned hit = requested & ~slow;
     if ((hit | slow) == 0) return 0;
     if (hit != 0) {
         const __m128 det = _mm_add_ps(_mm_add_ps(ea, eb), ec); // not 0, because all have one sign and none is 0

@@ -25,7 +25,7 @@ struct TriangleHit8 {
 /// is in `hits`.
 [[gnu::always_inline]] inline unsigned intersect_8_rays(const Ray* rays, const RayShear8& ray, __m256 t_min,
                                                         __m256 t_max, __m256 t_limit, const BvhTriangle& triangle,
-                                                        unsigned asked, TriangleHit8& hits) {
+                                                        unsigned requested, TriangleHit8& hits) {
     struct Vertex {
         __m256 x, y, z;
     };
@@ -46,12 +46,12 @@ struct TriangleHit8 {
     const auto mask_of = [](__m256 lanes) { return static_cast<unsigned>(_mm256_movemask_ps(lanes)); };
     const __m256 sign = _mm256_set1_ps(-0.0f), sure = _mm256_set1_ps(kSureEdge);
     const __m256 below = _mm256_min_ps(ea, _mm256_min_ps(eb, ec)), above = _mm256_max_ps(ea, _mm256_max_ps(eb, ec));
-    asked &= ~mask_of(_mm256_cmp_ps(_mm256_min_ps(_mm256_xor_ps(below, sign), above), sure, _CMP_GE_OQ));
+    requested &= ~mask_of(_mm256_cmp_ps(_mm256_min_ps(_mm256_xor_ps(below, sign), above), sure, _CMP_GE_OQ));
     const __m256 least = _mm256_min_ps(_mm256_andnot_ps(sign, ea),
                                        _mm256_min_ps(_mm256_andnot_ps(sign, eb), _mm256_andnot_ps(sign, ec)));
     // Not "less than", so that NaN takes the slow path too, where it is a miss.
-    unsigned slow = asked & mask_of(_mm256_cmp_ps(least, sure, _CMP_NGE_UQ));
-    unsigned hit = asked & ~slow;
+    unsigned slow = requested & mask_of(_mm256_cmp_ps(least, sure, _CMP_NGE_UQ));
+    unsigned hit = requested & ~slow;
     if (hit != 0) {
         const __m256 det = _mm256_add_ps(_mm256_add_ps(ea, eb), ec); // not 0, because all have one sign and none is 0
         const __m256 inv = _mm256_div_ps(_mm256_set1_ps(1.0f), det);

@@ -4,7 +4,7 @@
 // host.
 
 #include "accel/bvh/bvh.h"
-#include "accel/bvh/top_level_bvh.h"
+#include "accel/bvh/tlas.h"
 #include "base/host_device.h"
 
 namespace pertev {

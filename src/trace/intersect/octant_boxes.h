@@ -59,7 +59,7 @@ HD inline bool enters_child(const RayOctantBoxes& r, const BvhNode& node, int k,
     cross(1, node.y, inv.y, r.lo.y, r.hi.y, near_y, far_y);
     cross(2, node.z, inv.z, r.lo.z, r.hi.z, near_z, far_z);
     entry = greatest_bits(near_x, near_y, near_z);
-    return entry < least_bits(far_x, far_y, far_z);
+    return entry < min_bits(far_x, far_y, far_z);
 }
 
 } // namespace pertev

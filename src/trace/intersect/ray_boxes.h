@@ -25,7 +25,7 @@ HD inline float greatest_bits(float a, float b, float c) {
     const int x = static_cast<int>(bits_of(a)), y = static_cast<int>(bits_of(b)), z = static_cast<int>(bits_of(c));
     return float_of(static_cast<uint32_t>(max(max(x, y), z)));
 }
-HD inline float least_bits(float a, float b, float c) {
+HD inline float min_bits(float a, float b, float c) {
     const int x = static_cast<int>(bits_of(a)), y = static_cast<int>(bits_of(b)), z = static_cast<int>(bits_of(c));
     return float_of(static_cast<uint32_t>(min(min(x, y), z)));
 }
@@ -64,7 +64,7 @@ HD inline bool enters_box(const RayBoxes& r, Vec3 lower, Vec3 upper, float t_min
     const float z0 = fma(lower.z, r.inv.z, r.lo.z), z1 = fma(upper.z, r.inv.z, r.hi.z);
 #if PERTEV_ON_DEVICE
     entry = fast_max(greatest_bits(fast_min(x0, x1), fast_min(y0, y1), fast_min(z0, z1)), t_min);
-    const float exit = fast_min(least_bits(fast_max(x0, x1), fast_max(y0, y1), fast_max(z0, z1)), t_limit);
+    const float exit = fast_min(min_bits(fast_max(x0, x1), fast_max(y0, y1), fast_max(z0, z1)), t_limit);
 #else
     entry = fast_max(fast_max(fast_min(x0, x1), fast_min(y0, y1)), fast_max(fast_min(z0, z1), t_min));
     const float exit = fast_min(fast_min(fast_max(x0, x1), fast_max(y0, y1)), fast_min(fast_max(z0, z1), t_limit));

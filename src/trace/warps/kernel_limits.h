@@ -7,7 +7,7 @@
 
 namespace pertev {
 
-inline constexpr int kWalkThreads = 128; // per block
+inline constexpr int kTraversalThreads = 128; // per block
 // Each warp may request up to 64 indices more than there are; the sum must not exceed 2^32.
 inline constexpr uint32_t kMaxPoolCount = 1u << 31;
 
@@ -15,7 +15,7 @@ inline constexpr uint32_t kMaxPoolCount = 1u << 31;
 struct KernelLimits {
     int registers = 0;   // per thread
     int local_bytes = 0; // per thread: stacks and spilled registers
-    int blocks = 0;      // per multiprocessor, with kWalkThreads threads each
+    int blocks = 0;      // per multiprocessor, with kTraversalThreads threads each
     float occupancy = 0; // resident warps / maximum warps of a multiprocessor
     int multiprocessors = 0;
 };
@@ -31,12 +31,12 @@ KernelLimits limits_of(Kernel* kernel) {
     if (cudaGetDevice(&device) != cudaSuccess || cudaFuncGetAttributes(&attributes, kernel) != cudaSuccess ||
         cudaDeviceGetAttribute(&limits.multiprocessors, cudaDevAttrMultiProcessorCount, device) != cudaSuccess ||
         cudaDeviceGetAttribute(&threads, cudaDevAttrMaxThreadsPerMultiProcessor, device) != cudaSuccess ||
-        cudaOccupancyMaxActiveBlocksPerMultiprocessor(&limits.blocks, kernel, kWalkThreads, 0) != cudaSuccess) {
+        cudaOccupancyMaxActiveBlocksPerMultiprocessor(&limits.blocks, kernel, kTraversalThreads, 0) != cudaSuccess) {
         return {};
     }
     limits.registers = attributes.numRegs;
     limits.local_bytes = static_cast<int>(attributes.localSizeBytes);
-    limits.occupancy = static_cast<float>(limits.blocks * kWalkThreads) / static_cast<float>(threads);
+    limits.occupancy = static_cast<float>(limits.blocks * kTraversalThreads) / static_cast<float>(threads);
     return limits;
 }
 
@@ -49,13 +49,13 @@ public:
         int device = 0;
         if (cudaGetDevice(&device) != cudaSuccess) return {};
         if (device >= kDevices) return limits_of(kernel);
-        std::call_once(asked_[device], [&] { limits_[device] = limits_of(kernel); });
+        std::call_once(requested_[device], [&] { limits_[device] = limits_of(kernel); });
         return limits_[device];
     }
 
 private:
     static constexpr int kDevices = 64; // further devices are queried each time
-    std::once_flag asked_[kDevices];
+    std::once_flag requested_[kDevices];
     KernelLimits limits_[kDevices];
 };
 
@@ -65,7 +65,7 @@ private:
 inline uint32_t blocks_that_fit(const KernelLimits& limits, uint32_t count, int streams) {
     const int blocks = streams > 1 ? (limits.blocks + 1) / 2 : limits.blocks;
     const uint32_t fit = static_cast<uint32_t>(blocks * limits.multiprocessors);
-    const uint32_t needed = (count - 1) / kWalkThreads + 1;
+    const uint32_t needed = (count - 1) / kTraversalThreads + 1;
     return fit == 0 ? 1 : (fit < needed ? fit : needed);
 }
 

@@ -24,7 +24,7 @@ namespace pertev {
 /// a call (BMOV in SASS), they do not always. An index that lane 0 fetched for all was then read where there was no
 /// lane 0, and the kernel did not end.
 template <class Stage>
-__global__ void __launch_bounds__(kWalkThreads) run_stage_persistent(Stage stage, WorkCount work, uint32_t* pool) {
+__global__ void __launch_bounds__(kTraversalThreads) run_stage_persistent(Stage stage, WorkCount work, uint32_t* pool) {
     const uint32_t count = work.value();
     uint32_t i;
     do {
@@ -46,7 +46,8 @@ void launch_persistent(Queue& queue, const char* name, WorkCount count, const St
     const Queue::Scope scope(queue, name);
     static LimitsByDevice limits;
     const uint32_t blocks = blocks_that_fit(limits.of(run_stage_persistent<Stage>), count.most, queue.streams());
-    run_stage_persistent<<<blocks, kWalkThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(stage, count, pool);
+    run_stage_persistent<<<blocks, kTraversalThreads, 0, static_cast<cudaStream_t>(queue.stream())>>>(stage, count,
+                                                                                                      pool);
     queue.check_launch();
 }
 

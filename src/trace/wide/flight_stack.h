@@ -1,7 +1,7 @@
 #pragma once
 
-// The stack of a ray in walk_in_flight.h. Its code does not branch on hits, because a misprediction costs as much as
-// a quarter of a node. Entered children are pushed by one permutation of vectors, the nearest of them is found by a
+// The stack of a ray in traversals_in_flight.h. Its code does not branch on hits, because a misprediction costs as much
+// as a quarter of a node. Entered children are pushed by one permutation of vectors, the nearest of them is found by a
 // minimum over lanes, and a hit drops entries beyond it at once, so that a pop need not test them.
 
 #include <immintrin.h>
@@ -10,7 +10,7 @@
 #include <cstdint>
 
 #include "math/scalar.h"
-#include "trace/wide/walk_wide.h"
+#include "trace/wide/traverse_wide.h"
 
 namespace pertev {
 
@@ -38,7 +38,7 @@ public:
     FlightStack() : size_(1) { entry_[0] = -kInfinity, link_[0] = kNoLink, count_[0] = 0; }
 
     /// Pushes the entered children; the last is the nearest, or the builder's first, or the farthest.
-    template <WalkOptions kOptions>
+    template <TraversalOptions kOptions>
     [[gnu::always_inline]] void push(const WideBvhNode<kWideChildren>& node, const EnteredChildren& children,
                                      bool far_first) {
         const unsigned entered = children.mask();
@@ -87,12 +87,12 @@ private:
 
     /// The lane with the least entry, by its upper 16 bits; none is negative. Any lane if none is entered.
     [[gnu::always_inline]] static unsigned nearest_of(const EnteredChildren& children) {
-        return least_lane(_mm_or_si128(keys_of(children), _mm_xor_si128(in_of(children), _mm_set1_epi32(-1))));
+        return min_lane(_mm_or_si128(keys_of(children), _mm_xor_si128(in_of(children), _mm_set1_epi32(-1))));
     }
     /// The lane with the greatest entry. If all are 0, it is lane 0, entered or not; push() leaves it out if it is
     /// not.
     [[gnu::always_inline]] static unsigned farthest_of(const EnteredChildren& children) {
-        return least_lane(_mm_xor_si128(_mm_and_si128(keys_of(children), in_of(children)), _mm_set1_epi32(-1)));
+        return min_lane(_mm_xor_si128(_mm_and_si128(keys_of(children), in_of(children)), _mm_set1_epi32(-1)));
     }
     [[gnu::always_inline]] static __m128i keys_of(const EnteredChildren& children) {
         const __m256i entries = _mm256_srli_epi32(_mm256_castps_si256(children.entries), 16);
@@ -102,7 +102,7 @@ private:
         const __m256i is_in = _mm256_castps_si256(children.is_in);
         return _mm_packs_epi32(_mm256_castsi256_si128(is_in), _mm256_extracti128_si256(is_in, 1));
     }
-    [[gnu::always_inline]] static unsigned least_lane(__m128i keys) {
+    [[gnu::always_inline]] static unsigned min_lane(__m128i keys) {
         return static_cast<unsigned>(_mm_cvtsi128_si32(_mm_minpos_epu16(keys))) >> 16;
     }
 

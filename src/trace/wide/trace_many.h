@@ -10,7 +10,7 @@
 
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
-#include "trace/wide/walk_in_flight.h"
+#include "trace/wide/traversals_in_flight.h"
 #include "trace/wide/wide_packet.h"
 
 namespace pertev {
@@ -20,10 +20,10 @@ enum class RayOrder {
     Together,  // tests whether each eight consecutive rays are coherent
 };
 
-/// Traverses the scene with many rays: see walk_scene_in_flight.
-template <WalkOptions kOptions, class RayOf, class AcceptOf, class MakeVisitor, class End>
-void walk_scene_together(const HostTrees& scene, uint32_t count, const RayOf& ray_of, const AcceptOf& accept_of,
-                         const MakeVisitor& make_visitor, const End& end_of) {
+/// Traverses the scene with many rays: see traverse_scene_in_flight.
+template <TraversalOptions kOptions, class RayOf, class AcceptOf, class MakeVisitor, class End>
+void traverse_scene_together(const HostTrees& scene, uint32_t count, const RayOf& ray_of, const AcceptOf& accept_of,
+                             const MakeVisitor& make_visitor, const End& end_of) {
     using Accept = decltype(accept_of(0));
     using Visitor = decltype(make_visitor(std::declval<const Accept&>(), std::declval<const Ray&>()));
     using Packet = WidePacket<kOptions, Visitor>;
@@ -31,7 +31,7 @@ void walk_scene_together(const HostTrees& scene, uint32_t count, const RayOf& ra
     std::array<uint32_t, kMostAlone> alone;
     uint32_t waiting = 0;
     const auto send_alone = [&] {
-        walk_scene_in_flight<kOptions>(
+        traverse_scene_in_flight<kOptions>(
             scene, waiting, [&](uint32_t i) { return ray_of(alone[i]); },
             [&](uint32_t i) { return accept_of(alone[i]); }, make_visitor,
             [&](uint32_t i, const Visitor& visitor) { end_of(alone[i], visitor); });
@@ -71,7 +71,7 @@ void walk_scene_together(const HostTrees& scene, uint32_t count, const RayOf& ra
 }
 
 /// Closest hits of `count` rays: hits[i] is that of ray_of(i), among the candidates that accept_of(i) accepts.
-template <WalkOptions kOptions, class RayOf, class AcceptOf>
+template <TraversalOptions kOptions, class RayOf, class AcceptOf>
 void trace_closest_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
                         const AcceptOf& accept_of, Hit* hits) {
     const auto make_visitor = []<class Accept>(const Accept& accept, const Ray& ray) {
@@ -79,14 +79,14 @@ void trace_closest_many(const HostTrees& scene, uint32_t count, RayOrder order, 
     };
     const auto end = [&](uint32_t i, const auto& visitor) { hits[i] = visitor.best; };
     if (order == RayOrder::Together) {
-        walk_scene_together<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
+        traverse_scene_together<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
     } else {
-        walk_scene_in_flight<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
+        traverse_scene_in_flight<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
     }
 }
 
 /// Occlusion of `count` rays: met[i].
-template <WalkOptions kOptions, class RayOf, class AcceptOf>
+template <TraversalOptions kOptions, class RayOf, class AcceptOf>
 void trace_any_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
                     const AcceptOf& accept_of, bool* met) {
     const auto make_visitor = []<class Accept>(const Accept& accept, const Ray& ray) {
@@ -94,9 +94,9 @@ void trace_any_many(const HostTrees& scene, uint32_t count, RayOrder order, cons
     };
     const auto end = [&](uint32_t i, const auto& visitor) { met[i] = visitor.found; };
     if (order == RayOrder::Together) {
-        walk_scene_together<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
+        traverse_scene_together<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
     } else {
-        walk_scene_in_flight<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
+        traverse_scene_in_flight<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
     }
 }
 

@@ -5,7 +5,7 @@
 // the eight rays. A triangle is loaded once for all. Each ray gets the hit that it would get alone.
 //
 // Source: Wald, Boulos, Shirley, "Ray Tracing Deformable Scenes Using Dynamic Bounding Volume Hierarchies", ACM TOG
-// 26(1), 2007, section 4: packets over a hierarchy with intervals; nodes of eight as in walk_wide.h. An any-hit
+// 26(1), 2007, section 4: packets over a hierarchy with intervals; nodes of eight as in traverse_wide.h. An any-hit
 // search keeps the builder's order, even for rays without an end (trace_any.h): coherent ones mostly go to one sun,
 // and with far children first fewer of them stay together. No hit is lost by the intervals: planes are moved out for
 // each ray (ray_boxes.h) by 16 units, of which a bound computed as (plane - moved origin) times 1/direction loses
@@ -14,13 +14,13 @@
 #include <cstdint>
 
 #include "trace/intersect/intersect_8_rays.h"
-#include "trace/wide/walk_wide.h"
+#include "trace/wide/traverse_wide.h"
 
 namespace pertev {
 
 inline constexpr int kPacketEights = 4, kWidePacket = 8 * kPacketEights;
 
-template <WalkOptions kOptions, class Visitor>
+template <TraversalOptions kOptions, class Visitor>
 class WidePacket {
     static_assert(kOptions.is_exact());
     static constexpr float kMaxSpread = 0.25f; // maximum spread of slopes; with more, rays share too few nodes
@@ -45,7 +45,7 @@ public:
             }
             set_shear(eight, lanes, first);
             eight.t_min = lanes.t_min, eight.t_max = lanes.t_max;
-            least_t_ = min(least_t_, least_of(lanes.t_min));
+            min_t_ = min(min_t_, least_of(lanes.t_min));
         }
     }
 
@@ -57,7 +57,7 @@ public:
         for (int k = 0; k < kWidePacket; ++k) {
             eights_[k / 8].limits[k % 8] = k < count ? visitors[k].limit() : -kInfinity;
         }
-        walk();
+        traverse();
     }
 
 private:
@@ -84,11 +84,11 @@ private:
         const __m256 q_far = back ? _mm256_xor_ps(above, sign) : below;
         const __m256 size = size_of(inv);
         Extent& all = extents_[axis];
-        all = {min(all.least_inv, least_of(size)), max(all.most_inv, most_of(size)),
-               max(all.most_near, most_of(q_near)), min(all.least_far, least_of(q_far))};
+        all = {min(all.min_inv, least_of(size)), max(all.max_inv, most_of(size)), max(all.most_near, most_of(q_near)),
+               min(all.min_far, least_of(q_far))};
     }
 
-    void walk() {
+    void traverse() {
         struct Waiting {
             __m256 entry[kPacketEights]; // NaN for rays that do not enter
             uint32_t link, count;
@@ -153,7 +153,7 @@ private:
 
     /// Bounds of all rays along an axis: |1/direction|, and the origins that enters_together subtracts from planes.
     struct Extent {
-        float least_inv, most_inv, most_near, least_far;
+        float min_inv, max_inv, most_near, min_far;
     };
 
     /// make_ray_shear of eight rays that share the first one's order of axes.
@@ -200,15 +200,15 @@ private:
                                               int (&order)[kWideChildren]) const {
         __m256 limits = _mm256_load_ps(eights_[0].limits);
         for (int g = 1; g < kPacketEights; ++g) limits = _mm256_max_ps(limits, _mm256_load_ps(eights_[g].limits));
-        __m256 entry = _mm256_set1_ps(least_t_), exit = _mm256_set1_ps(most_of(limits));
+        __m256 entry = _mm256_set1_ps(min_t_), exit = _mm256_set1_ps(most_of(limits));
         for (int axis = 0; axis < 3; ++axis) {
             const Extent& extent = extents_[axis];
             const __m256 sign = _mm256_set1_ps(back_[axis] ? -0.0f : 0.0f);
-            const __m256 least = _mm256_set1_ps(extent.least_inv), most = _mm256_set1_ps(extent.most_inv);
+            const __m256 least = _mm256_set1_ps(extent.min_inv), most = _mm256_set1_ps(extent.max_inv);
             const __m256 a = _mm256_sub_ps(_mm256_xor_ps(_mm256_load_ps(near_planes(node, axis)), sign),
                                            _mm256_set1_ps(extent.most_near));
             const __m256 b = _mm256_sub_ps(_mm256_xor_ps(_mm256_load_ps(far_planes(node, axis)), sign),
-                                           _mm256_set1_ps(extent.least_far));
+                                           _mm256_set1_ps(extent.min_far));
             entry = _mm256_max_ps(entry, _mm256_min_ps(_mm256_mul_ps(a, least), _mm256_mul_ps(a, most)));
             exit = _mm256_min_ps(exit, _mm256_max_ps(_mm256_mul_ps(b, least), _mm256_mul_ps(b, most)));
         }
@@ -226,7 +226,7 @@ private:
         return n;
     }
 
-    /// enters_children (walk_wide.h) of child k for eight rays: nonzero if any enters, with the entry parameters.
+    /// enters_children (traverse_wide.h) of child k for eight rays: nonzero if any enters, with the entry parameters.
     [[gnu::always_inline]] int enter_child(const Eight& eight, const WideBvhNode<kWideChildren>& node, int k,
                                            __m256& entry) const {
         const auto near = [&](int axis) {
@@ -246,20 +246,20 @@ private:
     void test_leaf(const BvhTriangle* triangles, uint32_t count, const unsigned (&active)[kPacketEights]) {
         for (int g = 0; g < kPacketEights; ++g) {
             Eight& eight = eights_[g];
-            unsigned asked = active[g];
-            if (asked == 0) continue;
+            unsigned requested = active[g];
+            if (requested == 0) continue;
             for (uint32_t i = 0; i < count; ++i) {
                 const BvhTriangle& triangle = triangles[i];
                 TriangleHit8 hits;
                 unsigned hit = intersect_8_rays(rays_ + 8 * g, eight.shear, eight.t_min, eight.t_max,
-                                                _mm256_load_ps(eight.limits), triangle, asked, hits);
+                                                _mm256_load_ps(eight.limits), triangle, requested, hits);
                 for (; hit != 0; hit &= hit - 1) {
                     const int k = __builtin_ctz(hit);
                     Visitor& visitor = visitors_[8 * g + k];
                     const bool ended =
                         visitor.visit(triangle.instance, triangle.primitive, {hits.t[k], hits.u[k], hits.v[k]});
                     eight.limits[k] = ended ? -kInfinity : visitor.limit();
-                    if (ended) asked &= ~(1u << k);
+                    if (ended) requested &= ~(1u << k);
                 }
             }
         }
@@ -271,7 +271,7 @@ private:
     Eight eights_[kPacketEights];
     Extent extents_[3];
     bool back_[3], is_coherent_ = true;
-    float least_t_ = kInfinity;
+    float min_t_ = kInfinity;
 };
 
 } // namespace pertev

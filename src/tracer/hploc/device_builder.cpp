@@ -15,7 +15,7 @@ namespace {
 /// Wide nodes of n triangles, at most. The plan leaves no node beside an empty place that its children fit in: where a
 /// node has c children, the one above it has at least 10 - c. So there are the most where nodes of two triangles hang
 /// eight to a node. Counts are compared with it all the same.
-std::size_t most_nodes(uint32_t triangles) { return static_cast<std::size_t>(triangles) * 4 / 7 + 8; }
+std::size_t max_nodes(uint32_t triangles) { return static_cast<std::size_t>(triangles) * 4 / 7 + 8; }
 
 } // namespace
 
@@ -27,15 +27,15 @@ DeviceBuilder::DeviceBuilder(Queue& queue, uint32_t most, const CollapseSettings
       sort_scratch_(queue, sort_scratch_bytes(queue, most), "scratch of the sort"),
       nodes_(queue, std::size_t(most) * 2, "nodes of clusters"), plans_(queue, most, "plans of wide nodes"),
       sizes_(queue, most, "sizes of subtrees"), clusters_(queue, most, "clusters"),
-      items_(queue, most_nodes(most), "places of wide nodes"),
-      item_nodes_(queue, most_nodes(most), "numbers of wide nodes that are placed"),
-      counts_(queue, 1, "counts of wide nodes"), wide_(queue, most_nodes(most), "nodes of the built tree"),
+      items_(queue, max_nodes(most), "places of wide nodes"),
+      item_nodes_(queue, max_nodes(most), "numbers of wide nodes that are placed"),
+      counts_(queue, 1, "counts of wide nodes"), wide_(queue, max_nodes(most), "nodes of the built tree"),
       placed_(queue, most, "triangles of the built tree"), sources_(queue, most, "sources of triangles") {
     PERTEV_CHECK(costs.max_leaf >= 1 && costs.max_leaf <= kCompressedLeaf && costs.triangles_at_once == 1);
     check_reference_count(uint64_t(most) * 2); // nodes of clusters
     if (queue.is_cuda()) return;
-    level_ = Buffer<uint32_t>(queue, most_nodes(most), "a level of wide nodes");
-    next_ = Buffer<uint32_t>(queue, most_nodes(most), "the next level of wide nodes");
+    level_ = Buffer<uint32_t>(queue, max_nodes(most), "a level of wide nodes");
+    next_ = Buffer<uint32_t>(queue, max_nodes(most), "the next level of wide nodes");
     next_count_ = Buffer<uint32_t>(queue, 1, "size of the next level");
 }
 
@@ -84,7 +84,7 @@ hploc::EmitWide DeviceBuilder::prepare_emit() {
     emit.placed = placed_.data();
     emit.sources = sources_.data();
     emit.counts = counts_.data();
-    emit.room = static_cast<uint32_t>(most_nodes(count_));
+    emit.room = static_cast<uint32_t>(max_nodes(count_));
     return emit;
 }
 
@@ -132,14 +132,14 @@ DeviceBuilder::Figures DeviceBuilder::finish() {
     if (count_ == 0) return figures_;
     std::vector<hploc::WideCounts> copy;
     hploc::WideCounts counts = counts_.read(copy).front();
-    if (counts.nodes <= most_nodes(count_) && counts.depth > kMaxBvhDepth) {
+    if (counts.nodes <= max_nodes(count_) && counts.depth > kMaxBvhDepth) {
         const bool was_balanced = std::exchange(balanced_, true);
         PERTEV_CHECK(!was_balanced);
         start(triangles_, count_);
         balanced_ = was_balanced;
         counts = counts_.read(copy).front();
     }
-    PERTEV_CHECK(counts.nodes <= most_nodes(count_) && counts.depth <= kMaxBvhDepth);
+    PERTEV_CHECK(counts.nodes <= max_nodes(count_) && counts.depth <= kMaxBvhDepth);
     figures_ = {counts.nodes, count_, counts.depth, counts.cost, 0, counts.bounds};
     if (is_refitted_) {
         std::vector<RefitResult> of_refit;

@@ -1,26 +1,26 @@
 // The traversals that pictures take by default (tracer/tracer_choice.h), and the one of single rays that are measured.
 
-#include "trace/binary/octant_walk.h"
-#include "trace/binary/while_while_walk.h"
-#include "trace/wide/compressed_walk.h"
-#include "tracer/kernels/walk_kernels_body.h"
+#include "trace/binary/octant_traversal.h"
+#include "trace/binary/while_while_traversal.h"
+#include "trace/wide/compressed_traversal.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
 /// Rendering uses it for camera rays.
 template <>
-inline constexpr bool kOfPictures<OctantWalk<WalkOptions{}>> = true;
+inline constexpr bool kOfPictures<OctantTraversal<TraversalOptions{}>> = true;
 /// Rendering uses these for bounce and shadow rays.
 template <>
-inline constexpr bool kOfPictures<CompressedWalk<WalkOptions{.rta_at_pops = false}>> = true;
+inline constexpr bool kOfPictures<CompressedTraversal<TraversalOptions{.rta_at_pops = false}>> = true;
 template <>
-inline constexpr bool kOfPictures<CompressedWalk<for_any_hit(WalkOptions{})>> = true;
+inline constexpr bool kOfPictures<CompressedTraversal<for_any_hit(TraversalOptions{})>> = true;
 
-void add_picture_kernels(std::vector<WalkKernel>& rows) {
-    add_kernels<OctantWalk, WalkOptions{}, false>(WalkKind::Octants, rows);
-    add_kernels<CompressedWalk, WalkOptions{}, true>(WalkKind::Compressed, rows);
-    add_kernels<CompressedWalk, WalkOptions{.rta_at_pops = false}, true>(WalkKind::Compressed, rows);
-    add_kernels<WhileWhileWalk, WalkOptions{}, true>(WalkKind::WhileWhile, rows);
+void add_picture_kernels(std::vector<TraversalKernel>& rows) {
+    add_kernels<OctantTraversal, TraversalOptions{}, false>(TraversalKind::Octants, rows);
+    add_kernels<CompressedTraversal, TraversalOptions{}, true>(TraversalKind::Compressed, rows);
+    add_kernels<CompressedTraversal, TraversalOptions{.rta_at_pops = false}, true>(TraversalKind::Compressed, rows);
+    add_kernels<WhileWhileTraversal, TraversalOptions{}, true>(TraversalKind::WhileWhile, rows);
 }
 
 } // namespace pertev

@@ -12,15 +12,15 @@
 namespace pertev {
 
 /// Traces ray i of the queue and counts work in `counter`. An any-hit search returns instance 0 if there is a hit.
-template <class Walk, bool kAny, class Accept, class Scene, class Counter>
+template <class Traversal, bool kAny, class Accept, class Scene, class Counter>
 HD inline Hit trace_queued(const Scene& scene, const TraceQuery& query, uint32_t i, const Counter& counter) {
     const Accept accept{query, i};
     const Ray ray = query.rays.load(i);
     Hit hit;
     if constexpr (kAny) {
-        hit.instance = trace_any<Walk>(scene, ray, accept, counter) ? 0 : kNoHit;
+        hit.instance = trace_any<Traversal>(scene, ray, accept, counter) ? 0 : kNoHit;
     } else {
-        trace_closest<Walk>(scene, ray, accept, hit, counter);
+        trace_closest<Traversal>(scene, ray, accept, hit, counter);
     }
     return hit;
 }
@@ -35,14 +35,14 @@ HD inline void store_hit(const HitQueueView& hits, uint32_t i, const Hit& hit) {
 }
 
 /// `Scene` is SceneTrees or SingleTree of the structure; `Accept` is AcceptOpaque or AcceptQueued.
-template <class Walk, bool kAny, class Accept, class Scene>
+template <class Traversal, bool kAny, class Accept, class Scene>
 struct TraceQueue {
     Scene scene;
     TraceQuery query;
     HitQueueView hits;
 
     HD void operator()(uint32_t i) const {
-        store_hit<kAny>(hits, i, trace_queued<Walk, kAny, Accept>(scene, query, i, NoWalkCounter{}));
+        store_hit<kAny>(hits, i, trace_queued<Traversal, kAny, Accept>(scene, query, i, NoTraversalCounter{}));
     }
 };
 
@@ -68,15 +68,15 @@ struct QueueIn {
 };
 
 /// A traversal that counts its work. It is a stage of its own so that counting does not slow down the timed one.
-template <class Walk, bool kAny>
+template <class Traversal, bool kAny>
 struct CountQueue {
-    SceneTrees<typename Walk::Tree> scene;
+    SceneTrees<typename Traversal::Tree> scene;
     TraceQuery query;
     RayWork* work;
 
     HD void operator()(uint32_t i) const {
         uint64_t nodes = 0, triangles = 0;
-        trace_queued<Walk, kAny, AcceptQueued<true>>(scene, query, i, WalkCounter{&nodes, &triangles});
+        trace_queued<Traversal, kAny, AcceptQueued<true>>(scene, query, i, TraversalCounter{&nodes, &triangles});
         work[i] = {static_cast<uint32_t>(nodes), static_cast<uint32_t>(triangles)};
     }
 };

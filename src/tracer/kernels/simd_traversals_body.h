@@ -5,33 +5,34 @@
 #include <cstdint>
 
 #include "base/parallel_for.h"
-#include "trace/wide/walk_wide.h"
+#include "trace/wide/traverse_wide.h"
 #include "tracer/kernels/queue_stages.h"
-#include "tracer/walk_kernels.h"
+#include "tracer/traversal_kernels.h"
 
 namespace pertev {
 
 inline constexpr uint64_t kRaysATask = 256;
 
-template <WalkOptions kOptions, bool kAny>
+template <TraversalOptions kOptions, bool kAny>
 void trace_simd(Queue&, const AnyTrees& trees, const RayBatch& batch, const HitQueueView& hits) {
-    using Walk = Wide8SimdWalk<kOptions>;
-    using Trees = SceneTrees<typename Walk::Tree>;
-    const TraceQueue<Walk, kAny, AcceptQueued<true>, Trees> stage = {std::get<Trees>(trees), batch.query, hits};
+    using Traversal = Wide8SimdTraversal<kOptions>;
+    using Trees = SceneTrees<typename Traversal::Tree>;
+    const TraceQueue<Traversal, kAny, AcceptQueued<true>, Trees> stage = {std::get<Trees>(trees), batch.query, hits};
     parallel_for(batch.count.value(), kRaysATask, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
 }
 
-template <WalkOptions kOptions, bool kAny>
+template <TraversalOptions kOptions, bool kAny>
 void count_simd(Queue&, const AnyTrees& trees, const RayBatch& batch, RayWork* work) {
-    using Walk = Wide8SimdWalk<kOptions>;
-    const CountQueue<Walk, kAny> stage = {std::get<SceneTrees<typename Walk::Tree>>(trees), batch.query, work};
+    using Traversal = Wide8SimdTraversal<kOptions>;
+    const CountQueue<Traversal, kAny> stage = {std::get<SceneTrees<typename Traversal::Tree>>(trees), batch.query,
+                                               work};
     parallel_for(batch.count.value(), kRaysATask, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
 }
 
-template <WalkOptions kOptions, bool kAny>
-void add_simd_row(std::vector<WalkKernel>& rows) {
-    constexpr WalkOptions kCompiled = kAny ? for_any_hit(kOptions) : kOptions;
-    rows.push_back({WalkKind::Wide8Simd, kOptions, Distribution::OneAThread, kAny, false, true,
+template <TraversalOptions kOptions, bool kAny>
+void add_simd_row(std::vector<TraversalKernel>& rows) {
+    constexpr TraversalOptions kCompiled = kAny ? for_any_hit(kOptions) : kOptions;
+    rows.push_back({TraversalKind::Wide8Simd, kOptions, Distribution::OneAThread, kAny, false, true,
                     trace_simd<kCompiled, kAny>, count_simd<kCompiled, kAny>, nullptr, nullptr});
 }
 

@@ -2,27 +2,27 @@
 
 #include <vector>
 
-#include "tracer/walk_kernels.h"
+#include "tracer/traversal_kernels.h"
 
 namespace pertev {
 
-void add_if_if_kernels(std::vector<WalkKernel>& rows);
-void add_while_while_kernels(std::vector<WalkKernel>& rows);
-void add_speculative_kernels(std::vector<WalkKernel>& rows);
-void add_octant_kernels(std::vector<WalkKernel>& rows);
-void add_restart_trail_kernels(std::vector<WalkKernel>& rows);
-void add_short_stack_kernels(std::vector<WalkKernel>& rows);
-void add_parent_links_kernels(std::vector<WalkKernel>& rows);
-void add_skip_links_kernels(std::vector<WalkKernel>& rows);
-void add_compressed_kernels(std::vector<WalkKernel>& rows);
-void add_kd_tree_kernels(std::vector<WalkKernel>& rows);
-void add_octree_kernels(std::vector<WalkKernel>& rows);
-void add_brute_force_kernels(std::vector<WalkKernel>& rows);
-void add_wide_kernels(std::vector<WalkKernel>& rows);
-void add_warp_packet_kernels(std::vector<WalkKernel>& rows);
-void add_host_lab_kernels(std::vector<WalkKernel>& rows);
+void add_if_if_kernels(std::vector<TraversalKernel>& rows);
+void add_while_while_kernels(std::vector<TraversalKernel>& rows);
+void add_speculative_kernels(std::vector<TraversalKernel>& rows);
+void add_octant_kernels(std::vector<TraversalKernel>& rows);
+void add_restart_trail_kernels(std::vector<TraversalKernel>& rows);
+void add_short_stack_kernels(std::vector<TraversalKernel>& rows);
+void add_parent_links_kernels(std::vector<TraversalKernel>& rows);
+void add_skip_links_kernels(std::vector<TraversalKernel>& rows);
+void add_compressed_kernels(std::vector<TraversalKernel>& rows);
+void add_kd_tree_kernels(std::vector<TraversalKernel>& rows);
+void add_octree_kernels(std::vector<TraversalKernel>& rows);
+void add_brute_force_kernels(std::vector<TraversalKernel>& rows);
+void add_wide_kernels(std::vector<TraversalKernel>& rows);
+void add_warp_packet_kernels(std::vector<TraversalKernel>& rows);
+void add_host_lab_kernels(std::vector<TraversalKernel>& rows);
 
-void add_lab_kernels(std::vector<WalkKernel>& rows) {
+void add_lab_kernels(std::vector<TraversalKernel>& rows) {
     add_if_if_kernels(rows);
     add_while_while_kernels(rows);
     add_speculative_kernels(rows);

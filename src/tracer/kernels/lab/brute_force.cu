@@ -1,10 +1,10 @@
-#include "trace/brute_force_walk.h"
-#include "tracer/kernels/walk_kernels_body.h"
+#include "trace/brute_force_traversal.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
-void add_brute_force_kernels(std::vector<WalkKernel>& rows) {
-    add_unordered_kernels<BruteForceWalk>(WalkKind::BruteForce, rows);
+void add_brute_force_kernels(std::vector<TraversalKernel>& rows) {
+    add_unordered_kernels<BruteForceTraversal>(TraversalKind::BruteForce, rows);
 }
 
 } // namespace pertev

@@ -1,12 +1,12 @@
-#include "trace/wide/compressed_walk.h"
-#include "tracer/kernels/walk_kernels_body.h"
+#include "trace/wide/compressed_traversal.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
-void add_compressed_kernels(std::vector<WalkKernel>& rows) {
-    add_other_kernels<CompressedWalk, true>(WalkKind::Compressed, rows);
-    add_kernels<CompressedWalk, WalkOptions{.tests = TestKind::Fast, .rta_at_pops = false}, true>(WalkKind::Compressed,
-                                                                                                  rows);
+void add_compressed_kernels(std::vector<TraversalKernel>& rows) {
+    add_other_kernels<CompressedTraversal, true>(TraversalKind::Compressed, rows);
+    add_kernels<CompressedTraversal, TraversalOptions{.tests = TestKind::Fast, .rta_at_pops = false}, true>(
+        TraversalKind::Compressed, rows);
 }
 
 } // namespace pertev

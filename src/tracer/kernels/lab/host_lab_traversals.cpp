@@ -4,14 +4,14 @@
 #include <array>
 #include <utility>
 
-#include "trace/packet_walk.h"
+#include "trace/packet_traversal.h"
 #include "tracer/kernels/simd_traversals_body.h"
 
 namespace pertev {
 namespace {
 
 /// Traces eight consecutive rays, fewer at the end, and returns their hits.
-template <WalkOptions kOptions, bool kAny, class Counter>
+template <TraversalOptions kOptions, bool kAny, class Counter>
 std::array<Hit, kPacketRays> trace_packet(const SceneBvhView& scene, const RayBatch& batch, uint64_t first,
                                           const Counter& counter) {
     const uint64_t count = std::min<uint64_t>(kPacketRays, batch.count.value() - first);
@@ -38,11 +38,11 @@ void for_each_packet(const RayBatch& batch, const Trace& trace) {
     parallel_for(packets, kRaysATask / kPacketRays, [&](uint64_t packet) { trace(packet * kPacketRays); });
 }
 
-template <WalkOptions kOptions, bool kAny>
+template <TraversalOptions kOptions, bool kAny>
 void trace_packets(Queue&, const AnyTrees& trees, const RayBatch& batch, const HitQueueView& hits) {
     const auto& scene = std::get<SceneBvhView>(trees);
     for_each_packet(batch, [&](uint64_t first) {
-        const auto found = trace_packet<kOptions, kAny>(scene, batch, first, NoWalkCounter{});
+        const auto found = trace_packet<kOptions, kAny>(scene, batch, first, NoTraversalCounter{});
         const uint64_t count = std::min<uint64_t>(kPacketRays, batch.count.value() - first);
         for (uint64_t k = 0; k < count; ++k) store_hit<kAny>(hits, static_cast<uint32_t>(first + k), found[k]);
     });
@@ -63,7 +63,7 @@ struct PacketWorkCounter {
     OfRay of_ray(std::size_t k) const { return {work + k}; }
 };
 
-template <WalkOptions kOptions, bool kAny>
+template <TraversalOptions kOptions, bool kAny>
 void count_packets(Queue&, const AnyTrees& trees, const RayBatch& batch, RayWork* work) {
     const auto& scene = std::get<SceneBvhView>(trees);
     for_each_packet(batch, [&](uint64_t first) {
@@ -73,31 +73,31 @@ void count_packets(Queue&, const AnyTrees& trees, const RayBatch& batch, RayWork
     });
 }
 
-template <WalkOptions kOptions, bool kAny>
-void add_packet_row(std::vector<WalkKernel>& rows) {
-    constexpr WalkOptions kCompiled = kAny ? for_any_hit(kOptions) : kOptions;
-    rows.push_back({WalkKind::Packet, kOptions, Distribution::OneAThread, kAny, false, true,
+template <TraversalOptions kOptions, bool kAny>
+void add_packet_row(std::vector<TraversalKernel>& rows) {
+    constexpr TraversalOptions kCompiled = kAny ? for_any_hit(kOptions) : kOptions;
+    rows.push_back({TraversalKind::Packet, kOptions, Distribution::OneAThread, kAny, false, true,
                     trace_packets<kCompiled, kAny>, count_packets<kCompiled, kAny>, nullptr, nullptr});
 }
 
-template <WalkOptions kOptions>
-void add_packet_rows(std::vector<WalkKernel>& rows) {
+template <TraversalOptions kOptions>
+void add_packet_rows(std::vector<TraversalKernel>& rows) {
     add_packet_row<kOptions, false>(rows);
     if constexpr (kOptions.rta) add_packet_row<kOptions, true>(rows);
 }
 
 } // namespace
 
-void add_host_lab_kernels(std::vector<WalkKernel>& rows) {
-    constexpr WalkOptions kFast = {.tests = TestKind::Fast};
-    add_simd_row<WalkOptions{.rta = false}, false>(rows);
-    add_simd_row<WalkOptions{.rta = false, .near_first = false}, false>(rows);
+void add_host_lab_kernels(std::vector<TraversalKernel>& rows) {
+    constexpr TraversalOptions kFast = {.tests = TestKind::Fast};
+    add_simd_row<TraversalOptions{.rta = false}, false>(rows);
+    add_simd_row<TraversalOptions{.rta = false, .near_first = false}, false>(rows);
     add_simd_row<kFast, false>(rows);
     add_simd_row<kFast, true>(rows);
-    add_packet_rows<WalkOptions{}>(rows);
-    add_packet_rows<WalkOptions{.rta = false}>(rows);
-    add_packet_rows<WalkOptions{.near_first = false}>(rows);
-    add_packet_rows<WalkOptions{.rta = false, .near_first = false}>(rows);
+    add_packet_rows<TraversalOptions{}>(rows);
+    add_packet_rows<TraversalOptions{.rta = false}>(rows);
+    add_packet_rows<TraversalOptions{.near_first = false}>(rows);
+    add_packet_rows<TraversalOptions{.rta = false, .near_first = false}>(rows);
     add_packet_rows<kFast>(rows);
 }
 

@@ -1,8 +1,10 @@
-#include "trace/cells/kd_tree_walk.h"
-#include "tracer/kernels/walk_kernels_body.h"
+#include "trace/cells/kd_tree_traversal.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
-void add_kd_tree_kernels(std::vector<WalkKernel>& rows) { add_all_kernels<KdTreeWalk>(WalkKind::Kd, rows); }
+void add_kd_tree_kernels(std::vector<TraversalKernel>& rows) {
+    add_all_kernels<KdTreeTraversal>(TraversalKind::Kd, rows);
+}
 
 } // namespace pertev

@@ -1,8 +1,10 @@
-#include "trace/binary/octant_walk.h"
-#include "tracer/kernels/walk_kernels_body.h"
+#include "trace/binary/octant_traversal.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
-void add_octant_kernels(std::vector<WalkKernel>& rows) { add_other_kernels<OctantWalk>(WalkKind::Octants, rows); }
+void add_octant_kernels(std::vector<TraversalKernel>& rows) {
+    add_other_kernels<OctantTraversal>(TraversalKind::Octants, rows);
+}
 
 } // namespace pertev

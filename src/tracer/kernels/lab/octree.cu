@@ -1,8 +1,10 @@
-#include "trace/cells/octree_walk.h"
-#include "tracer/kernels/walk_kernels_body.h"
+#include "trace/cells/octree_traversal.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
-void add_octree_kernels(std::vector<WalkKernel>& rows) { add_all_kernels<OctreeWalk>(WalkKind::Octree, rows); }
+void add_octree_kernels(std::vector<TraversalKernel>& rows) {
+    add_all_kernels<OctreeTraversal>(TraversalKind::Octree, rows);
+}
 
 } // namespace pertev

@@ -1,10 +1,10 @@
-#include "trace/binary/parent_links_walk.h"
-#include "tracer/kernels/walk_kernels_body.h"
+#include "trace/binary/parent_links_traversal.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
-void add_parent_links_kernels(std::vector<WalkKernel>& rows) {
-    add_all_kernels<ParentLinksWalk>(WalkKind::ParentLinks, rows);
+void add_parent_links_kernels(std::vector<TraversalKernel>& rows) {
+    add_all_kernels<ParentLinksTraversal>(TraversalKind::ParentLinks, rows);
 }
 
 } // namespace pertev

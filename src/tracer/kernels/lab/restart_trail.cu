@@ -1,10 +1,10 @@
-#include "trace/binary/restart_trail_walk.h"
-#include "tracer/kernels/walk_kernels_body.h"
+#include "trace/binary/restart_trail_traversal.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
-void add_restart_trail_kernels(std::vector<WalkKernel>& rows) {
-    add_all_kernels<RestartTrailWalk>(WalkKind::RestartTrail, rows);
+void add_restart_trail_kernels(std::vector<TraversalKernel>& rows) {
+    add_all_kernels<RestartTrailTraversal>(TraversalKind::RestartTrail, rows);
 }
 
 } // namespace pertev

@@ -1,10 +1,10 @@
-#include "trace/binary/short_stack_walk.h"
-#include "tracer/kernels/walk_kernels_body.h"
+#include "trace/binary/short_stack_traversal.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
-void add_short_stack_kernels(std::vector<WalkKernel>& rows) {
-    add_all_kernels<ShortStackWalk>(WalkKind::ShortStack, rows);
+void add_short_stack_kernels(std::vector<TraversalKernel>& rows) {
+    add_all_kernels<ShortStackTraversal>(TraversalKind::ShortStack, rows);
 }
 
 } // namespace pertev

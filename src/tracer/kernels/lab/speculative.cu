@@ -1,11 +1,11 @@
-#include "trace/binary/speculative_walk.h"
-#include "tracer/kernels/walk_kernels_body.h"
+#include "trace/binary/speculative_traversal.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
-void add_speculative_kernels(std::vector<WalkKernel>& rows) {
-    add_all_kernels<SpeculativeWalk, true>(WalkKind::Speculative, rows);
-    add_woop_kernels<SpeculativeWalk>(WalkKind::Speculative, rows);
+void add_speculative_kernels(std::vector<TraversalKernel>& rows) {
+    add_all_kernels<SpeculativeTraversal, true>(TraversalKind::Speculative, rows);
+    add_woop_kernels<SpeculativeTraversal>(TraversalKind::Speculative, rows);
 }
 
 } // namespace pertev

@@ -1,14 +1,16 @@
-// Packets of a warp. The CPU has packets of its own (host_walks.cpp).
+// Packets of a warp. The CPU has packets of its own (host_traversals.cpp).
 
-#include "trace/binary/warp_packet_walk.h"
-#include "tracer/kernels/walk_kernels_body.h"
+#include "trace/binary/warp_packet_traversal.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
 #if defined(__CUDACC__)
-void add_warp_packet_kernels(std::vector<WalkKernel>& rows) { add_all_kernels<WarpPacketWalk>(WalkKind::Packet, rows); }
+void add_warp_packet_kernels(std::vector<TraversalKernel>& rows) {
+    add_all_kernels<WarpPacketTraversal>(TraversalKind::Packet, rows);
+}
 #else
-void add_warp_packet_kernels(std::vector<WalkKernel>&) {}
+void add_warp_packet_kernels(std::vector<TraversalKernel>&) {}
 #endif
 
 } // namespace pertev

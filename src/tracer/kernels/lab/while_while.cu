@@ -1,11 +1,11 @@
-#include "trace/binary/while_while_walk.h"
-#include "tracer/kernels/walk_kernels_body.h"
+#include "trace/binary/while_while_traversal.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
-void add_while_while_kernels(std::vector<WalkKernel>& rows) {
-    add_other_kernels<WhileWhileWalk, true>(WalkKind::WhileWhile, rows);
-    add_woop_kernels<WhileWhileWalk>(WalkKind::WhileWhile, rows);
+void add_while_while_kernels(std::vector<TraversalKernel>& rows) {
+    add_other_kernels<WhileWhileTraversal, true>(TraversalKind::WhileWhile, rows);
+    add_woop_kernels<WhileWhileTraversal>(TraversalKind::WhileWhile, rows);
 }
 
 } // namespace pertev

@@ -1,11 +1,11 @@
-#include "trace/wide/wide_walk.h"
-#include "tracer/kernels/walk_kernels_body.h"
+#include "trace/wide/wide_traversal.h"
+#include "tracer/kernels/traversal_kernels_body.h"
 
 namespace pertev {
 
-void add_wide_kernels(std::vector<WalkKernel>& rows) {
-    add_all_kernels<Wide4Walk>(WalkKind::Wide4, rows);
-    add_all_kernels<Wide8Walk>(WalkKind::Wide8, rows);
+void add_wide_kernels(std::vector<TraversalKernel>& rows) {
+    add_all_kernels<Wide4Traversal>(TraversalKind::Wide4, rows);
+    add_all_kernels<Wide8Traversal>(TraversalKind::Wide8, rows);
 }
 
 } // namespace pertev

@@ -1,7 +1,0 @@
-#include "denoise/enlarge_picture.h"
-
-#include "device/launch_body.h"
-
-namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const EnlargePicture&);
-} // namespace pertev

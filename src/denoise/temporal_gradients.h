@@ -1,0 +1,51 @@
+#pragma once
+
+// The small pictures from which temporal gradients of light are computed (temporal_gradients_view.h). They use memory
+// that a reconstruction does not need at that time.
+
+#include "denoise/temporal_gradients_view.h"
+#include "render/noisy_frame.h"
+
+namespace pertev {
+
+/// Memory of the small pictures, which have one pixel per 4x4 of the frame.
+struct TemporalGradientsMemory {
+    Float4* before;  // used from one frame to the next
+    Float4* after;   // used until they are compared
+    Float4* numbers; // used afterwards
+
+    /// Number of Float4 of each per pixel of the small pictures. `kNumbers`: guide; light as it was and as it is,
+    /// twice.
+    static constexpr std::size_t kPicture = NoisyFrame::arrays(true), kNumbers = 5;
+    static constexpr uint32_t side(uint32_t of_frame) { return (of_frame + 3) / 4; }
+    static std::size_t pixels(uint32_t frame_width, uint32_t frame_height) {
+        return std::size_t(side(frame_width)) * side(frame_height);
+    }
+};
+
+class TemporalGradients {
+public:
+    /// Makes the pictures for frames of this size. `splits_light` is that of NoisyFrame.
+    TemporalGradients(Queue& queue, uint32_t frame_width, uint32_t frame_height, bool splits_light,
+                      const TemporalGradientsMemory& room);
+
+    /// Whether they fit frames like this one.
+    bool fits(const NoisyFrame& frame) const {
+        return frame_width_ == frame.width() && frame_height_ == frame.height() &&
+               before_.splits_light() == frame.splits_light();
+    }
+
+    // The scene as it was and as it is, with the same camera and random numbers.
+    NoisyFrame& before() { return before_; }
+    NoisyFrame& after() { return after_; }
+    /// Compares both pictures.
+    TemporalGradientsView compare();
+
+private:
+    Queue* queue_;
+    uint32_t frame_width_, frame_height_;
+    NoisyFrame before_, after_;
+    Float4* numbers_;
+};
+
+} // namespace pertev

@@ -1,0 +1,41 @@
+#include "denoise/upsampled_frame.h"
+
+#include "base/error.h"
+#include "denoise/anti_alias.h"
+#include "denoise/sum_blocks.h"
+#include "device/launch.h"
+
+namespace pertev {
+namespace {
+
+constexpr std::size_t kWideArrays = 3; // two shown pictures, and one before anti-aliasing
+
+} // namespace
+
+UpsampledFrame::UpsampledFrame(Queue& queue, uint32_t width, uint32_t height)
+    : queue_(&queue), width_(width), height_(height), wide_(queue, kWideArrays * width * height, "enlarged frame"),
+      was_at_(queue, std::size_t(width) * height, "enlarged frame"),
+      picture_(wide_.data() + std::size_t(2) * width * height),
+      tones_(queue, float4s_of_tones(width, height), "enlarged frame") {}
+
+Float4* UpsampledFrame::shown(uint32_t frame) const { return wide_.data() + frame % 2 * std::size_t(width_) * height_; }
+
+void UpsampledFrame::add(const NoisyFrame& features, const CameraView& camera, const CoarseLight& light,
+                         const SceneView& scene, const PreviousScene& before, const ReconstructionSettings& settings,
+                         bool has_history) {
+    PERTEV_CHECK(features.width() == width_ && features.height() == height_);
+    const uint32_t pixels = width_ * height_;
+    Float4* const now = shown(frames_ + 1);
+    Float4* const picture = settings.anti_alias ? picture_ : now;
+    launch(*queue_, "upsample_picture", pixels,
+           UpsamplePicture{features.view(), light, camera, width_, height_, scene, before, last_camera_, was_at_.data(),
+                           picture, has_history});
+    if (settings.anti_alias) {
+        launch(*queue_, "anti_alias", pixels,
+               AntiAlias{picture, was_at_.data(), shown(frames_), now, width_, height_, has_history});
+    }
+    last_camera_ = camera;
+    ++frames_;
+}
+
+} // namespace pertev

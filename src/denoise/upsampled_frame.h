@@ -1,0 +1,43 @@
+#pragma once
+
+// A frame whose light was reconstructed at a lower resolution than its surfaces: upsamples the picture
+// (upsample_picture.h), and computes its temporal mean (anti_alias.h).
+
+#include "denoise/reconstruction_settings.h"
+#include "denoise/upsample_picture.h"
+#include "device/buffer.h"
+#include "render/noisy_frame.h"
+
+namespace pertev {
+
+class UpsampledFrame {
+public:
+    /// Takes the size of the picture.
+    UpsampledFrame(Queue& queue, uint32_t width, uint32_t height);
+
+    /// `features` is a frame of this size, seen by `camera`, whose paths end at the first surface.
+    void add(const NoisyFrame& features, const CameraView& camera, const CoarseLight& light, const SceneView& scene,
+             const PreviousScene& before, const ReconstructionSettings& settings, bool has_history);
+
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    /// The last picture as ShownColor; w is unused.
+    const Float4* shown() const { return shown(frames_); }
+    /// [pixels * 4]: memory for the bytes of a display.
+    uint8_t* room_for_bytes() const { return reinterpret_cast<uint8_t*>(picture_); }
+    /// Memory for Reconstruction::tones().
+    Float4* room_for_tones() const { return tones_.data(); }
+
+private:
+    Float4* shown(uint32_t frame) const;
+
+    Queue* queue_;
+    uint32_t width_, height_, frames_ = 0;
+    CameraView last_camera_ = {};
+    Buffer<Float4> wide_;
+    Buffer<Vec2> was_at_;
+    Float4* picture_;
+    Buffer<Float4> tones_;
+};
+
+} // namespace pertev

@@ -1,0 +1,56 @@
+#pragma once
+
+// An integrator whose samples consist of a light subpath and a camera subpath. `Algorithm` defines in a few lines how
+// they are used (integrators/light/light.h, bidirectional/bidirectional.h):
+//   kIsConnected  whether the subpaths connect
+//   room       sizes for a number of subpaths
+//   render     the stages in order, written once for both schedules
+// The .cpp of each algorithm instantiates it.
+
+#include "integrators/subpaths/run_subpaths.h"
+#include "integrators/subpaths/subpath_settings.h"
+
+namespace pertev {
+
+template <class Algorithm>
+class SubpathIntegrator final : public TwoSchedules<SubpathSettings, SubpathJob> {
+public:
+    using TwoSchedules::TwoSchedules;
+
+    void reserve(const WorkSize& size) override;
+    void render(uint32_t first, uint32_t count, const FilmView& film) override;
+
+private:
+    static SubpathRoom room_for(const SubpathSettings& settings, std::size_t bytes, uint64_t most) {
+        return room_within(bytes, most, [&](uint32_t subpaths) { return Algorithm::room(settings, subpaths); });
+    }
+};
+
+template <class Algorithm>
+void SubpathIntegrator<Algorithm>::reserve(const WorkSize& size) {
+    if (goes_by_loop(size)) return;
+    take_room(room_for(settings_, kMaxBytes, std::min<uint64_t>(size.all(), batch_)), "light paths");
+}
+
+template <class Algorithm>
+void SubpathIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const FilmView& film) {
+    PERTEV_CHECK(film.is_whole_picture());
+    constexpr std::size_t kLoopBytes = std::size_t(1) << 18; // per thread, so that it fits the cache
+    SubpathJob job = {};
+    job.scene = {picture_, picture_settings_, sphere_round(tracer_->bounds()), Algorithm::kIsConnected};
+    job.film = film;
+    job.samples = {0, pixels(), first, count};
+    run_stages(job, 0, job.samples.count(), room_for(picture_settings_, kLoopBytes, kLoopCount), count,
+               [this](auto& schedule, const SubpathJob& part) {
+                   if (!is_abandoned()) Algorithm::render(schedule, part);
+               });
+    rays_.camera += job.samples.count();
+}
+
+// Explicit instantiations.
+struct ParticlesAlone;
+struct BothDirections;
+extern template class SubpathIntegrator<ParticlesAlone>;
+extern template class SubpathIntegrator<BothDirections>;
+
+} // namespace pertev

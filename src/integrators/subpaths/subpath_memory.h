@@ -1,0 +1,228 @@
+#pragma once
+
+// Subpaths in flight, first from the lights and then from the camera, one of each per sample. The arrays share one
+// allocation, which lay_out() divides, for the device as for a CPU thread. Current rays are contiguous; other data of
+// a subpath is at its own index. Vertices of light subpaths stay for the camera subpaths to connect to.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "device_scene/accept_hit.h"
+#include "device_scene/ray_queue.h"
+#include "integrators/lay_out_arrays.h"
+#include "math/float4.h"
+#include "math/rgb.h"
+#include "math/scalar.h"
+
+namespace pertev {
+
+// MIS weights over all techniques that could have found a light path: a camera subpath and a light subpath of any
+// lengths, connected. A weight needs the densities of all techniques; each subpath carries two numbers that summarize
+// its side, so that no vertex is visited twice.
+//
+// Source: Georgiev, "Implementing Vertex Connection and Merging", 2012, whose dVCM and dVC these are, without
+// merging; the power heuristic (Veach 1997, section 9.2.4) with exponent 2, so all densities are squared. Delta
+// scatterings count as sampled with the same density from both sides, which is valid for any weights that add up to
+// 1.
+
+/// Larger weight sums are clamped to this, because they determine any weight.
+inline constexpr float kMaxWeightSum = 0x1p+100f;
+
+HD inline float squared_density(float density) { return square(min(density, 0x1p+30f)); }
+
+struct MisSums {
+    // Squared density over that of this subpath, for the technique that ends one vertex earlier and reaches the last
+    // vertex from the other side, without the density of that step, which the other side knows;
+    float last = 0;
+    // and for all techniques that end even earlier, without the density of the step back from the last vertex.
+    float earlier = 0;
+
+    /// Updates the weights on arrival at a surface with cosine `cos_in` to its geometric normal at the squared
+    /// distance `distance_squared`, which is 1 for an infinite distance.
+    HD void arrive(float cos_in, float distance_squared) {
+        const float inverse = 1.0f / max(square(cos_in), 0x1p-60f);
+        last = min(last * min(square(distance_squared) * inverse, kMaxWeightSum), kMaxWeightSum);
+        earlier = min(earlier * inverse, kMaxWeightSum);
+    }
+    /// Updates the weights for a scattering with solid angle density `pdf` and cosine `cos_out`; `reverse_pdf` is the
+    /// density of the reverse direction.
+    HD void scatter(float cos_out, float pdf, float reverse_pdf) {
+        const float by = min(squared_density(cos_out) / square(pdf), kMaxWeightSum);
+        earlier = min(by * weight_sum(reverse_pdf), kMaxWeightSum);
+        last = min(1.0f / square(pdf), kMaxWeightSum);
+    }
+    HD void scatter_by_delta(float cos_out) {
+        earlier = earlier * square(cos_out);
+        last = 0;
+    }
+    /// Weight sum of all other techniques that this subpath knows, without the density of the step to its last
+    /// vertex.
+    HD float weight_sum(float reverse_pdf) const {
+        return min(last + earlier * squared_density(reverse_pdf), kMaxWeightSum);
+    }
+};
+
+/// MIS weight of one technique if the weight sum of all others is `others`; 0 if that is not finite.
+HD inline float mis_weight(float weight_sum) { return weight_sum < kInfinity ? 1.0f / (1.0f + weight_sum) : 0.0f; }
+
+/// State of a subpath besides its ray.
+struct alignas(16) SubpathState {
+    Rgb throughput; // from the camera: of radiance; from a light: power, W
+    MisSums mis;
+    uint32_t pixel, sample;   // sample that it belongs to
+    uint16_t scatterings = 0; // so far
+    uint16_t is_from_far = 0; // 1 if its first segment has no distance
+
+    HD uint32_t depth() const { return scatterings; }
+};
+static_assert(sizeof(SubpathState) == 32);
+
+/// A surface that a subpath has hit and that the other subpath may connect to.
+struct SubpathVertex {
+    Hit hit;        // without instance if there are only delta lobes, which cannot connect
+    Vec3 direction; // direction of the subpath, unit
+    Rgb throughput; // on arrival; for a light subpath divided by the squared index there
+    MisSums mis;
+};
+
+struct SubpathVerticesView {
+    Float4 *places, *directions, *throughputs;
+
+    HD void store(std::size_t at, const SubpathVertex& vertex) const {
+        const Hit& hit = vertex.hit;
+        places[at] = {hit.u, hit.v, float_of(hit.instance), float_of(hit.primitive)};
+        directions[at] = {vertex.direction.x, vertex.direction.y, vertex.direction.z, vertex.mis.last};
+        throughputs[at] = {vertex.throughput.r, vertex.throughput.g, vertex.throughput.b, vertex.mis.earlier};
+    }
+    HD void store_none(std::size_t at) const { places[at] = {0, 0, float_of(kNoHit), 0}; }
+    HD bool is_there(std::size_t at) const { return bits_of(places[at].z) != kNoHit; }
+    HD SubpathVertex load(std::size_t at) const {
+        const Float4 p = places[at], d = directions[at], t = throughputs[at];
+        SubpathVertex vertex;
+        vertex.hit = {0, p.x, p.y, bits_of(p.z), bits_of(p.w)};
+        vertex.direction = {d.x, d.y, d.z};
+        vertex.throughput = {t.x, t.y, t.z};
+        vertex.mis = {d.w, t.w};
+        return vertex;
+    }
+};
+
+/// A connection; `light` counts if it is unoccluded.
+struct Connection {
+    Ray ray;
+    TriangleId start, target;
+    uint32_t key; // key of the coin of blended surfaces
+    Rgb light;    // for its pixel, W/(sr m2)
+};
+
+/// Counts of one round.
+struct SubpathCounts {
+    uint32_t rays;                     // current rays
+    uint32_t next;                     // rays that continue after the round
+    uint32_t connections;              // connections since the last count
+    uint32_t vertices;                 // vertices of this round that can connect
+    uint32_t pairs;                    // pairs of these with vertices of light subpaths
+    uint32_t crowded;                  // lookups in a photon map that threads share
+    uint64_t bounces, all_connections; // totals of all rounds
+};
+
+/// Sizes of the arrays.
+struct SubpathRoom {
+    uint32_t count;       // subpaths
+    uint32_t kept;        // stored vertices per light subpath
+    uint32_t connections; // connections per subpath at once
+};
+
+struct SubpathsView {
+    SubpathRoom room;
+    SubpathState* states;   // [subpaths]
+    float* squared_indices; // [subpaths] for light subpaths: squared index at their vertex, over that at their light
+
+    // Current rays, contiguous. Rounds alternate between two arrays for them and for their owners, the subpaths.
+    Ray* rays[2];
+    Uint2* starts;
+    uint32_t* keys; // keys of coins
+    uint32_t* owners[2];
+    Float4* hit_places;
+    uint32_t* hit_instances;
+
+    // Vertices of the light subpaths: vertex k of subpath i at k * subpaths + i, and how many each has.
+    SubpathVerticesView kept;
+    uint32_t* kept_counts;
+    // Vertices of the camera subpaths in the current round, contiguous.
+    SubpathVerticesView present;
+    uint32_t* present_owners;
+
+    Ray* connection_rays;
+    Uint2 *connection_starts, *connection_targets;
+    uint32_t* connection_keys; // keys, and after tracing the results
+    Float4* connection_light;  // rgb, bits of the pixel
+    Vec2* connection_rasters;  // [subpaths] positions of the particles' connections to the camera
+
+    SubpathCounts* counts;
+
+    RayQueueView query(uint32_t round) const { return {.rays = rays[round % 2], .starts = starts, .keys = keys}; }
+    RayQueueView connection_query() const {
+        return {.rays = connection_rays,
+                .starts = connection_starts,
+                .targets = connection_targets,
+                .keys = connection_keys};
+    }
+    HD HitQueueView hits() const { return {hit_places, hit_instances}; }
+    HD std::size_t kept_place(uint32_t subpath, uint32_t number) const {
+        return std::size_t(number) * room.count + subpath;
+    }
+
+    HD void queue_ray(uint32_t place, uint32_t subpath, const Ray& ray, TriangleId start, uint32_t key,
+                      uint32_t round) const {
+        store_ray(rays[round % 2] + place, ray);
+        starts[place] = {start.instance, start.primitive};
+        keys[place] = key;
+        owners[round % 2][place] = subpath;
+    }
+    HD void queue_connection(uint32_t place, const Connection& connection, uint32_t pixel) const {
+        store_ray(connection_rays + place, connection.ray);
+        connection_starts[place] = {connection.start.instance, connection.start.primitive};
+        connection_targets[place] = {connection.target.instance, connection.target.primitive};
+        connection_keys[place] = connection.key;
+        connection_light[place] = {connection.light.r, connection.light.g, connection.light.b, float_of(pixel)};
+    }
+};
+
+/// Places the arrays in one piece of memory (lay_out_arrays).
+inline std::size_t lay_out(SubpathsView& view, std::byte* memory, const SubpathRoom& room) {
+    view.room = room;
+    return lay_out_arrays(memory, [&](const auto& place) {
+        const auto place_vertices = [&](SubpathVerticesView& vertices, std::size_t count) {
+            place(vertices.places, count);
+            place(vertices.directions, count);
+            place(vertices.throughputs, count);
+        };
+        const std::size_t subpaths = room.count, connects = room.kept > 0 ? subpaths : 0,
+                          connections = subpaths * room.connections;
+        place(view.states, subpaths);
+        place(view.squared_indices, subpaths);
+        place(view.rays[0], subpaths);
+        place(view.rays[1], subpaths);
+        place(view.starts, subpaths);
+        place(view.keys, subpaths);
+        place(view.owners[0], subpaths);
+        place(view.owners[1], subpaths);
+        place(view.hit_places, subpaths);
+        place(view.hit_instances, subpaths);
+        place_vertices(view.kept, subpaths * room.kept);
+        place(view.kept_counts, connects);
+        place_vertices(view.present, connects);
+        place(view.present_owners, connects);
+        place(view.connection_rays, connections);
+        place(view.connection_starts, connections);
+        place(view.connection_targets, connections);
+        place(view.connection_keys, connections);
+        place(view.connection_light, connections);
+        place(view.connection_rasters, subpaths);
+        place(view.counts, 1);
+    });
+}
+
+} // namespace pertev

@@ -1,0 +1,64 @@
+#pragma once
+
+// Operations of camera and light subpaths at a surface.
+
+#include "base/host_device.h"
+#include "integrators/subpaths/subpath_memory.h"
+#include "integrators/subpaths/subpath_settings.h"
+#include "render/particle_scatter.h"
+#include "render/picture_view.h"
+
+namespace pertev {
+
+/// Scene, lights and settings of subpaths.
+struct SubpathScene {
+    PictureView picture;
+    SubpathSettings settings;
+    WorldSphere world;
+    bool is_connected; // subpaths connect and contributions have MIS weights; else there are only particles
+};
+
+/// A surface's scattering between two directions, for a camera subpath (light along wi to wo) and for a particle
+/// (from wi, along wo); each is the other's reverse. Long code is not inlined, so that a kernel contains it once.
+struct BothWays {
+    BsdfValue camera, particle;
+};
+HD_CALL inline BothWays scatter_both_ways_of_any(const Surface& surface, Vec3 wo, Vec3 wi) {
+    return {surface.evaluate(wo, wi), evaluate_adjoint(surface, wi, wo)};
+}
+template <ShadingVariant kVariant>
+HD inline BothWays scatter_both_ways(const Surface& surface, Vec3 wo, Vec3 wi) {
+    if constexpr (kVariant == ShadingVariant::General) return scatter_both_ways_of_any(surface, wo, wi);
+    return {surface.evaluate(wo, wi), evaluate_adjoint(surface, wi, wo)};
+}
+
+HD inline float cosine_at(const Surface& surface, Vec3 direction) {
+    return abs(dot(surface.geometric_normal, direction));
+}
+
+/// Russian roulette from a subpath's vertex `vertex` (counted from 1) on: the survival probability is the square root
+/// of the vertex's throughput, by the same rule on both sides. The throughput compensates for it, so the mean is
+/// unbiased; MIS weights ignore it. Returns false if the subpath ends.
+HD inline bool survives(const SubpathSettings& settings, SampleKey key, uint32_t group, uint32_t vertex, Rgb& weight) {
+    if (vertex < settings.roulette_depth) return true;
+    const float chance = sqrt(max_component(weight));
+    if (!(chance < 1)) return true;
+    if (!(sample_1d(settings.sampler, key, group, kNumberOfRoulette) < chance)) return false;
+    weight = (1.0f / chance) * weight;
+    return true;
+}
+
+/// Random numbers that sample the lobe and the direction of a subpath's scattering.
+struct ScatterDraw {
+    float lobe;
+    Vec2 u;
+};
+HD inline ScatterDraw draw_scatter(const SubpathSettings& settings, SampleKey key, const Bsdf& bsdf,
+                                   uint32_t scatter_group, uint32_t choices_group) {
+    ScatterDraw draw = {0.5f, {}};
+    if (bsdf.draws_lobe()) draw.lobe = sample_1d(settings.sampler, key, choices_group, kNumberOfLobe);
+    draw.u = sample_2d(settings.sampler, key, scatter_group);
+    return draw;
+}
+
+} // namespace pertev

@@ -1,0 +1,70 @@
+#pragma once
+
+// The camera's end of a light path: the picture position that sees a point of the scene through a given point of the
+// lens, and the density of camera rays there. It inverts the camera rays of render/camera_view.h.
+
+#include "render/camera_rays.h"
+
+namespace pertev {
+
+/// A point as the camera sees it.
+struct CameraConnection {
+    Vec3 from;      // on the lens, or in the camera's plane for an orthographic camera without one; world space
+    Vec3 direction; // unit, from there to the point
+    Vec2 raster;    // position in the picture, pixels from its upper left corner
+    float density;  // density of camera rays if they were uniform over the picture: 1/sr; orthographic 1/m2 across
+                    // them
+    float distance_squared; // m2; 1 if the rays are parallel
+};
+
+/// Density of camera rays along `direction` (unit), as in CameraConnection.
+HD inline float camera_density(const CameraRays& camera, Vec3 direction) {
+    const float cosine = dot(direction, camera.axis);
+    const float view = 4.0f * camera.view.half_width * camera.view.half_height;
+    return has_parallel_rays(camera.view.projection) ? 1.0f / (view * cosine)
+                                                     : 1.0f / (view * cosine * cosine * cosine);
+}
+
+/// Projects `point` through the lens point `u`. Returns false if it is not in front of the camera, or if the camera
+/// is a light meter.
+HD inline bool connect_to_camera(const CameraRays& camera, Vec3 point, Vec2 u, CameraConnection& seen) {
+    const CameraView& view = camera.view;
+    const Vec3 local = transform_transposed(view.world_from_camera, point - view.world_from_camera.translation);
+    const float depth = -local.z;
+    if (!(depth > 0) || is_light_meter(view.projection)) return false;
+    const Vec2 lens = camera.has_lens() ? view.aperture_radius * sample_uniform_disk_concentric(u) : Vec2{0, 0};
+    float x, y; // in the plane at distance 1, or in the orthographic view
+    Vec3 from = {lens.x, lens.y, 0};
+    const bool is_parallel = has_parallel_rays(view.projection);
+    if (!is_parallel) {
+        x = local.x / depth;
+        y = local.y / depth;
+        if (camera.has_lens()) { // intersection of the ray with the plane in focus
+            const float t = view.focus_distance / depth;
+            x = (lens.x + t * (local.x - lens.x)) / view.focus_distance;
+            y = (lens.y + t * (local.y - lens.y)) / view.focus_distance;
+        }
+    } else { // all rays through one point of the lens are parallel
+        const float lean = camera.has_lens() ? depth / view.focus_distance : 0.0f;
+        from = {local.x + lean * lens.x, local.y + lean * lens.y, 0};
+        x = from.x - lens.x;
+        y = from.y - lens.y;
+    }
+    seen.from = transform_point(view.world_from_camera, from);
+    const Vec3 way = point - seen.from;
+    const float distance_squared = length_squared(way);
+    if (!(distance_squared > 0)) return false;
+    seen.direction = way / sqrt(distance_squared);
+    seen.raster = {(0.5f * x / view.half_width + 0.5f) * static_cast<float>(camera.width),
+                   (0.5f - 0.5f * y / view.half_height) * static_cast<float>(camera.height)};
+    const float reach = camera.filter.radius, right = static_cast<float>(camera.width) + reach,
+                low = static_cast<float>(camera.height) + reach;
+    if (!(seen.raster.x > -reach && seen.raster.x < right && seen.raster.y > -reach && seen.raster.y < low)) {
+        return false;
+    }
+    seen.density = camera_density(camera, seen.direction);
+    seen.distance_squared = is_parallel ? 1.0f : distance_squared;
+    return seen.density > 0 && is_finite(seen.density);
+}
+
+} // namespace pertev

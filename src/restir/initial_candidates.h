@@ -1,0 +1,62 @@
+#pragma once
+
+// First stage of direct light: initial candidates. RIS picks one of several sample points on lights and the light
+// that the path's first bounce hit.
+//
+// Source: Bitterli et al. 2020, section 3 and algorithm 3, with candidates of light sampling and one of BSDF sampling
+// weighted by the balance heuristic (Wyman et al., "A Gentle Introduction to ReSTIR", SIGGRAPH 2023 courses).
+
+#include "render/picture_view.h"
+#include "restir/light_reservoir.h"
+#include "restir/ris_selection.h"
+
+namespace pertev {
+
+struct SampleInitialCandidates {
+    SceneView scene;
+    PixelSurfaces here;
+    const EmitterPoint* met; // light that the first bounce of each path hit
+    LightReservoir* to;
+    uint32_t candidates;
+
+    HD void operator()(uint32_t pixel) const {
+        LightReservoir& reservoir = to[pixel];
+        reservoir = {};
+        if (!here.is_there(pixel)) return;
+        const Vec3 direction = here.direction(pixel), wo = -direction;
+        const Surface surface = make_surface(scene, here.hit(pixel), direction);
+        if (surface.is_unlit || surface.bsdf.has_delta_only()) return;
+        reservoir.count = 1;
+        const SampleKey key = here.key(pixel);
+        RisSelection pick = {sample_1d(here.sampler, key, kGroupPickCandidate)};
+        const float drawn = static_cast<float>(candidates);
+        for (uint32_t k = 0; k < candidates; ++k) {
+            const SampleKey candidate = {key.pixel, key.sample * candidates + k, key.seed};
+            LightSample light;
+            if (!sample_light(scene.lights, surface.light_context(wo),
+                              sample_bits(here.sampler, candidate, kGroupCandidates), light)) {
+                continue;
+            }
+            const BsdfValue value = surface.evaluate(wo, light.wi);
+            const float density = drawn * light.pdf + (light.is_delta ? 0.0f : value.pdf);
+            if (pick.takes(luminance(value.f * light.radiance) / density)) {
+                reservoir.place = place_of(light);
+                reservoir.source = 1; // visibility unknown
+            }
+        }
+        LightSample light;
+        float measure = 1;
+        const EmitterPoint place = met[pixel];
+        if (find_light(scene.lights, place, surface.light_context(wo), light, measure)) {
+            const BsdfValue value = surface.evaluate(wo, light.wi);
+            if (pick.takes(luminance(value.f * light.radiance) / (drawn * light.pdf + value.pdf))) {
+                reservoir.place = place;
+                reservoir.source = 0;
+            }
+        }
+        const float target = luminance(light_scattered(scene, surface, wo, reservoir));
+        reservoir.weight = target > 0 ? pick.sum / target : 0.0f;
+    }
+};
+
+} // namespace pertev

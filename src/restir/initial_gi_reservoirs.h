@@ -1,0 +1,64 @@
+#pragma once
+
+// First stage of indirect light: makes initial GI reservoirs. It moves the point that each path's first bounce hit,
+// and the light found from there, out of the sample into a reservoir.
+//
+// Source: Ouyang et al. 2021 (bounce_reservoir.h), section 4.1.
+
+#include "render/film_view.h"
+#include "restir/bounce_reservoir.h"
+
+namespace pertev {
+
+struct MakeInitialGiReservoirs {
+    SceneView scene;
+    PixelSurfaces here;
+    FilmView film; // the frame's film view
+    BounceReservoir* to;
+
+    HD void operator()(uint32_t pixel) const {
+        BounceReservoir& reservoir = to[pixel];
+        reservoir = {};
+        if (!here.is_there(pixel)) return;
+        reservoir.count = 1;
+        const FirstBounceView& left = film.frame.first_bounce;
+        const Float4 place = left.place[pixel], sent = left.sent[pixel], way = left.way[pixel];
+        const Rgb found = {sent.x, sent.y, sent.z};
+        if (bits_of(place.x) == kNoHit || is_black(found) || film.frame.light[pixel].w == 0) return;
+        const Vec3 direction = here.direction(pixel);
+        const Surface surface = make_surface(scene, here.hit(pixel), direction);
+        BounceReservoir taken = {};
+        taken.instance = bits_of(place.x);
+        taken.primitive = bits_of(place.y);
+        taken.u = place.z;
+        taken.v = place.w;
+        const Reconnection seen = reconnect(place_of(scene, taken), surface.position);
+        if (!seen.is_there) return; // stays in the sample
+        const Surface there = make_surface(scene, taken.hit(), seen.wi);
+        const float transmittance = diffuse_transmittance(there, -seen.wi);
+        if (!(transmittance > 0)) return;
+        const Rgb share = surface.diffuse_share(-direction, seen.wi);
+        if (is_black(share)) return;
+        take_out(pixel, share * found);
+        taken.count = 1;
+        taken.side = seen.side;
+        taken.sent =
+            (1.0f / transmittance) * Rgb{quotient(found.r, way.x), quotient(found.g, way.y), quotient(found.b, way.z)};
+        taken.weight = 1.0f / (way.w * seen.measure);
+        if (is_finite(taken.sent) && is_finite(taken.weight)) reservoir = taken;
+    }
+
+private:
+    /// Subtracts the light from the sample. The diffuse part contains the same light, rounded by its share.
+    HD void take_out(uint32_t pixel, Rgb light) const {
+        Rgb diffuse = light;
+        if (film.frame.splits_light()) {
+            const Float4 there = film.frame.diffuse[pixel];
+            diffuse = {min(light.r, there.x), min(light.g, there.y), min(light.b, there.z)};
+        }
+        add_to_sample(film, pixel, -1.0f * light, -1.0f * diffuse);
+    }
+    HD static float quotient(float light, float throughput) { return throughput > 0 ? light / throughput : 0.0f; }
+};
+
+} // namespace pertev

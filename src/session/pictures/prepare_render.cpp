@@ -1,0 +1,124 @@
+#include "session/pictures/prepare_render.h"
+
+#include <fmt/format.h>
+
+#include "accel/builders/bvh_cache.h"
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "formats/read_camera_path.h"
+#include "session/check_integrator.h"
+#include "session/machine.h"
+#include "session/opening/open_scene.h"
+#include "session/opening/picture_settings.h"
+#include "session/opening/strictness.h"
+#include "settings/check_settings.h"
+#include "settings/settings_file.h"
+#include "settings/tracer_options.h"
+
+namespace pertev {
+namespace {
+
+/// Returns Auto if the view is a default one too and shows a background. An alpha channel removes the ground, and
+/// integrators with only a part of the light would show a ground that differs from the studio's floor.
+Ground ground_of(const PictureOptions& options) {
+    if (options.scene.ground == "on" && options.render.transparent) {
+        throw Error(ErrorCode::BadInput, "ground", "on",
+                    "the ground is a part of the background, which `transparent` leaves out; leave out one of them");
+    }
+    if (options.scene.ground == "on") return Ground::On;
+    const CameraChoice& camera = options.scene.camera;
+    const bool has_camera = camera.eye || !camera.camera.empty() || !options.camera_path.empty();
+    const bool is_off = options.scene.ground == "off" || has_camera || options.render.transparent ||
+                        !finds_all_light(options.render.integrator);
+    return is_off ? Ground::Off : Ground::Auto;
+}
+
+/// Reports all given settings and their sources, with the resulting size and number of samples.
+void tell_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source) {
+    const CameraChoice& choice = options.scene.camera;
+    const Camera* const own = scene_camera(choice.camera, scene);
+    const bool is_own = own != nullptr && !choice.eye && options.camera_path.empty();
+    auto told = options.given; // the scene's own camera has no value that a settings file could contain
+    if (is_own) told.try_emplace("camera", SettingOrigin::Scene);
+    if (own != nullptr && own->aspect > 0) told.try_emplace("size", SettingOrigin::Scene);
+    for (const auto& [name, origin] : told) {
+        std::string& names = origin == SettingOrigin::Flag   ? source.by_flags
+                             : origin == SettingOrigin::File ? source.by_settings
+                                                             : source.by_scene;
+        names += (names.empty() ? "" : " ") + name;
+    }
+    options.size = PictureSize{settings.width, settings.height};
+    options.given.try_emplace("size", SettingOrigin::File);
+    options.given.try_emplace("spp", SettingOrigin::File);
+    source.hash = scene_hash(options.scene.scene);
+    source.settings = settings_json(options, source.hash);
+}
+
+} // namespace
+
+std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
+                                            const SolveRadiosity& solve) {
+    Messages& messages = sink.messages();
+    std::optional<CameraPath> path;
+    if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
+    ComingMachine machine(options.machine, messages);
+    std::optional<TracerChoice> tracers; // a tracer that does not fit the device is refused before the scene is read
+    if (!options.tracer.are_empty()) tracers = tracer_choice(options.tracer, machine.is_cuda());
+    sink.say_messages();
+    sink.set_work(fmt::format("loading {}", options.scene.scene));
+    const Stopwatch watch;
+    auto ready = std::make_unique<RenderSetup>();
+    OpenOptions open = open_options(options.scene);
+    open.ground = ground_of(options);
+    const bool shows_solution =
+        options.render.integrator == IntegratorKind::Radiosity && !options.radiosity.solution.empty();
+    if (shows_solution) open.use = SceneUse::Measurement; // opened as for the solution
+    Scene scene = open_scene(open, messages);
+    take_suggestions(scene, verbs, options, messages);
+    if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
+    RenderSettings& settings = ready->settings;
+    settings = render_settings(options, scene);
+    settings.tracers = tracers;
+    check_light(settings, scene, messages);
+    ready->camera.emplace(options.scene.camera, path, scene, aspect_of(settings.width, settings.height), messages);
+    check_camera(settings, ready->camera->at(scene, std::nullopt));
+    ready->load_s = watch.seconds();
+    // If it turns out not to be a GPU, the session makes what is missing.
+    PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());
+    prepare.may_be_better = may_be_better(options.tracer);
+    if (!options.no_cache) prepare.bvh_cache = bvh_cache_folder();
+    sink.set_work("building trees");
+    ready->sequence = frame_range(options).value_or(FrameRange{.time_s = options.time_s, .shutter = shutter(options)});
+    ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, messages,
+                          ready->sequence.shutter);
+    ready->queue = machine.take();
+    if (settings.integrator == IntegratorKind::Radiosity) {
+        if (ready->moving->is_animated() && !options.frames.empty()) {
+            throw Error(ErrorCode::BadInput, "frames", "",
+                        "radiosity is solved for one time, and this scene moves; `time` shows it at one (`camera_path` "
+                        "and `turntable` take it as it is)");
+        }
+        sink.say_messages();
+        settings.radiosity = solve(*ready);
+    }
+    return ready;
+}
+
+PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, const Messages& messages) {
+    PictureRecord record = {.scene = source_of(open_options(options.scene), ready.scene()),
+                            .camera = {},
+                            .settings = ready.settings,
+                            .device = ready.queue->device_name(),
+                            .frame = {},
+                            .display = {}};
+    if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
+    tell_settings(options, ready.settings, ready.scene(), record.scene);
+    record.scene.made_up = messages.made_up();
+    record.scene.left_out = messages.left_out();
+    record.scene.load_seconds = ready.load_s;
+    record.scene.build_seconds = ready.prepared().build_seconds;
+    place_frame(ready.sequence.first, *ready.moving, {*ready.camera, ready.sequence}, record);
+    return record;
+}
+
+} // namespace pertev

@@ -1,0 +1,18 @@
+#pragma once
+
+// Reports which lamps of a scene emit only from their fronts, for file formats that cannot say so, and which of them
+// seem to be turned the wrong way round.
+
+#include <string>
+
+#include "base/messages.h"
+#include "scene/scene.h"
+
+namespace pertev {
+
+/// Adds a notice that names the lamps, and a warning for each that has a wall right in front and room behind it: up
+/// to the next surface or, without any, most of the scene's box. Nothing is added if no lamp is one-sided. `file`
+/// begins the messages. The scene has passed validate().
+void say_emitter_fronts(const Scene& scene, const std::string& file, Messages& messages);
+
+} // namespace pertev

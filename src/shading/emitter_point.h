@@ -1,0 +1,78 @@
+#pragma once
+
+// A sample point on a light, independent of the receiver: a point on an emissive triangle, a punctual light, or a
+// direction of the environment. 16 bytes. It moves with its instance. Densities of sample points are measured in
+// barycentric weights for triangles, in solid angle for the environment, and as probabilities for punctual lights;
+// `measure` converts them to the solid angles of light sampling (Bitterli et al. 2020 use areas; barycentric weights
+// do not change if an emitter is stretched).
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "math/float4.h"
+#include "shading/light_set.h"
+
+namespace pertev {
+
+struct alignas(16) EmitterPoint {
+    uint32_t instance = kNoLight; // instance of a triangle, or one of the numbers below; kNoLight: none
+    uint32_t index = 0;           // primitive; number of a punctual light; x of an environment direction
+    float u = 0, v = 0;           // weights of the triangle's second and third vertex; y and z of an environment
+                                  // direction
+
+    HD bool is_there() const { return instance != kNoLight; }
+    HD SourceKind kind() const;
+};
+inline constexpr uint32_t kInEnvironment = 0xfffffffeu, kPunctualPoint = 0xfffffffdu;
+HD inline SourceKind EmitterPoint::kind() const {
+    if (instance == kInEnvironment) return SourceKind::Environment;
+    return instance == kPunctualPoint ? SourceKind::Punctual : SourceKind::Triangle;
+}
+static_assert(kMaxInstances < kPunctualPoint);
+
+HD inline EmitterPoint environment_point(Vec3 direction) {
+    return {kInEnvironment, bits_of(direction.x), direction.y, direction.z};
+}
+/// Sample point of a result of sample_light.
+HD inline EmitterPoint place_of(const LightSample& sample) {
+    if (sample.instance != kNoLight) return {sample.instance, sample.primitive, sample.b1, sample.b2};
+    if (sample.is_delta) return {kPunctualPoint, sample.primitive, 0, 0};
+    return environment_point(sample.wi);
+}
+
+/// Light that arrives at `context` from `place`, as sample_light returns it, except for the pdf of punctual lights,
+/// which is 1. `measure` is the ratio of the point's solid angle to its own measure. Returns false if nothing
+/// arrives; occlusion and alpha are up to the caller.
+HD inline bool find_light(const LightSetView& view, const EmitterPoint& place, const LightContext& context,
+                          LightSample& sample, float& measure) {
+    measure = 1;
+    if (!place.is_there()) return false;
+    switch (place.kind()) {
+    case SourceKind::Environment: {
+        sample = {};
+        sample.wi = {float_of(place.index), place.u, place.v};
+        const EnvironmentHit hit = find_environment(view, context, sample.wi, true);
+        if (!(hit.pdf > 0)) return false;
+        sample.pdf = hit.pdf;
+        sample.distance = kInfinity;
+        sample.radiance = hit.radiance;
+        return true;
+    }
+    case SourceKind::Punctual: {
+        if (place.index >= view.punctual_count) return false; // from another scene
+        const bool arrives = sample_punctual_light(view.punctual[place.index], 1.0f, context.point, sample);
+        sample.primitive = place.index;
+        return arrives;
+    }
+    case SourceKind::Triangle:
+        break;
+    }
+    const uint32_t light = light_of(view, place.instance, place.index);
+    if (light == kNoLight) return false;
+    const float pmf = ChosenByPower::pmf_of_triangle(view, context, light);
+    if (!triangle_light_at<true>(view, light, pmf, context.point, {place.u, place.v}, sample)) return false;
+    measure = 2.0f * pmf / sample.pdf; // in weights, a triangle has the area 1/2
+    return true;
+}
+
+} // namespace pertev

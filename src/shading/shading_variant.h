@@ -1,0 +1,49 @@
+#pragma once
+
+// Materials in device code, and the shading variants for what all materials of a scene have in common.
+
+#include <cstdint>
+#include <span>
+
+#include "base/host_device.h"
+#include "scene/material.h"
+
+namespace pertev {
+
+/// Shading variants. A kernel compiled for the simplest variant that covers the scene uses fewer registers.
+enum class ShadingVariant : uint8_t {
+    General,
+    Diffuse,      // all materials are diffuse
+    PlainDiffuse, // all are diffuse, opaque and without textures
+};
+
+inline ShadingVariant variant_of(std::span<const MaterialParameters> materials) {
+    bool are_plain = true;
+    for (const MaterialParameters& m : materials) {
+        if (m.kind != MaterialKind::Diffuse) return ShadingVariant::General;
+        are_plain = are_plain && m.alpha_mode == AlphaMode::Opaque && !m.base_color_texture.has_image() &&
+                    !m.normal_texture.has_image() && !m.emission_texture.has_image();
+    }
+    return are_plain ? ShadingVariant::PlainDiffuse : ShadingVariant::Diffuse;
+}
+
+HD constexpr bool has_textures(ShadingVariant variant) { return variant != ShadingVariant::PlainDiffuse; }
+/// Whether a slot of a material has a texture; constant if the variant has none.
+template <ShadingVariant kVariant>
+HD inline bool has_texture(const TextureRef& slot) {
+    return has_textures(kVariant) && slot.has_image();
+}
+
+/// Returns the least alpha that counts as at least the cutoff. Alpha is a product of a factor, bilinear texels and a
+/// vertex's alpha, and each of these rounds by at most 2^-23 of itself, so a value that equals the cutoff exactly may
+/// come out slightly below it. One step of a 16-bit texel is 32 times more than this. A cutoff above 1 hides
+/// everything.
+inline float alpha_that_reaches(float cutoff) { return cutoff > 1 ? cutoff : (1.0f - 0x1p-21f) * cutoff; }
+
+inline MaterialParameters parameters_for_device(const Material& material) {
+    MaterialParameters parameters = material;
+    parameters.alpha_cutoff = alpha_that_reaches(material.alpha_cutoff);
+    return parameters;
+}
+
+} // namespace pertev

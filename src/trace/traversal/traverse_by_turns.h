@@ -1,0 +1,27 @@
+#pragma once
+
+// Runs a traversal that can be suspended between two turns (interface: trace/dynamic_fetch.h) from root to end.
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "trace/intersect/ray.h"
+#include "trace/warps/warp_vote.h"
+
+namespace pertev {
+
+/// Returns true if the visitor ended it.
+template <class Traversal, class Visitor, class Counter>
+HD inline bool traverse_by_turns(const typename Traversal::Tree& tree, const Ray& ray, uint32_t instance,
+                                 Visitor& visitor, const Counter& counter) {
+    typename Traversal::Place::Slot slots[Traversal::Place::kSlots];
+    typename Traversal::Place place(slots);
+    Traversal::start(tree, ray, visitor, place);
+    while (!place.is_done()) {
+        const LaneMask lanes = lanes_here();
+        if (Traversal::turn(tree, ray, instance, place, visitor, counter, lanes, count_lanes(lanes))) return true;
+    }
+    return false;
+}
+
+} // namespace pertev

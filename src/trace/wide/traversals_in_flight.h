@@ -1,0 +1,188 @@
+#pragma once
+
+// Host traversal of one mesh by several interleaved rays: each makes one step, prefetches the memory of its next
+// step, and lets the others step meanwhile. A single ray waits half of its time for nodes and triangles. Rays at
+// nodes step together, then those at leaves, so that no branch distinguishes them. Boxes and triangles are tested as
+// in traverse_wide.h, and hits are the same to the bit; only the order of children differs.
+//
+// Source of the idea: Kocberber, Falsafi, Grot, "Asynchronous Memory Access Chaining", VLDB 2015.
+
+#include <array>
+#include <cstdint>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+#include "trace/trace_any.h"
+#include "trace/trace_closest.h"
+#include "trace/wide/flight_stack.h"
+#include "trace/wide/traverse_wide.h"
+
+namespace pertev {
+
+/// Number of rays in flight. More are not faster; four are not slower either while the cache is not shared.
+inline constexpr int kFlights = 8;
+
+/// Traverses `bvh` with `count` rays, which `rays` defines:
+///   Ray ray(uint32_t i)                             the i-th ray
+///   Accept accept(uint32_t i)                       its acceptance rule
+///   Visitor visitor(const Accept&, const Ray&)      the visitor of its candidates (trace/traverse_scene.h)
+///   void end(uint32_t i, const Ray&, Visitor&)      called at the end of its traversal of this mesh
+template <TraversalOptions kOptions, class Rays>
+class TraversalInFlight {
+    using Accept = decltype(std::declval<Rays>().accept(0));
+    using Visitor = decltype(std::declval<Rays>().visitor(std::declval<const Accept&>(), std::declval<const Ray&>()));
+    using Node = WideBvhNode<kWideChildren>;
+
+public:
+    TraversalInFlight(const WideBvhView<kWideChildren>& bvh, uint32_t count, const Rays& rays)
+        : bvh_(bvh), count_(count), rays_(rays) {}
+
+    void run() {
+        List at_nodes, at_leaves;
+        for (Room& room : rooms_) {
+            if (next_ < count_) at_nodes.add(start(room));
+        }
+        while (at_nodes.size > 0) {
+            step_at_nodes(at_nodes, at_leaves);
+            while (at_leaves.size > 0) step_at_leaves(at_nodes, at_leaves);
+        }
+    }
+
+private:
+    struct Flight {
+        WideRay wide;
+        Ray ray;
+        LeafOfFour<kOptions> leaf;
+        const void* at;     // a node, or a leaf's first triangle
+        uint32_t count = 0; // triangles of a leaf; 0 for a leaf: nothing is pending
+        uint32_t number;
+        Accept accept;
+        Visitor visitor;
+        FlightStack stack;
+
+        Flight(const WideBvhView<kWideChildren>& bvh, const Rays& rays, uint32_t i, const Ray& r)
+            : wide(make_wide_ray<kOptions>(r, bvh.bounds_max_abs)), ray(r), leaf(ray), at(bvh.nodes), number(i),
+              accept(rays.accept(i)), visitor(rays.visitor(accept, ray)) {}
+    };
+    union Room { // empty before there is a ray for it
+        Flight flight;
+        Room() {}
+        ~Room() {}
+    };
+    static_assert(std::is_trivially_destructible_v<Flight>);
+
+    struct List {
+        int size = 0;
+        Flight* flights[kFlights + 1]; // one more, because add_if writes unconditionally
+
+        void add(Flight* flight) { flights[size++] = flight; }
+        void add_if(bool belongs, Flight* flight) {
+            flights[size] = flight;
+            size += belongs ? 1 : 0;
+        }
+    };
+
+    Flight* start(Room& room) {
+        const uint32_t i = next_++;
+        return new (&room.flight) Flight(bvh_, rays_, i, rays_.ray(i));
+    }
+
+    /// Pops the next entry and prefetches its memory. Returns true for a leaf.
+    [[gnu::always_inline]] bool go_on(Flight& flight) const {
+        const WideEntry entry = flight.stack.pop();
+        const bool is_leaf = (entry.link & kLeafBit) != 0;
+        const auto* const node = reinterpret_cast<const char*>(bvh_.nodes + entry.link);
+        const auto* const triangles = reinterpret_cast<const char*>(bvh_.triangles + (entry.link & ~kLeafBit));
+        const char* const at = is_leaf ? triangles : node;
+        for (int line = 0; line < 4; ++line) _mm_prefetch(at + 64 * line, _MM_HINT_T0); // four triangles fit
+        flight.at = at;
+        flight.count = entry.count;
+        return is_leaf;
+    }
+
+    [[gnu::always_inline]] void step_at_nodes(List& at_nodes, List& at_leaves) const {
+        int left = 0;
+        for (int i = 0; i < at_nodes.size; ++i) {
+            Flight& flight = *at_nodes.flights[i];
+            const Node& node = *static_cast<const Node*>(flight.at);
+            const __m256 t_limit = _mm256_set1_ps(skip_beyond<kOptions>(flight.visitor, flight.ray));
+            const EnteredChildren entered =
+                enters_children(flight.wide, node, _mm256_set1_ps(flight.ray.t_min), t_limit);
+            flight.stack.template push<kOptions>(node, entered, flight.visitor.goes_far_first());
+            const bool is_leaf = go_on(flight);
+            at_leaves.add_if(is_leaf, &flight);
+            at_nodes.flights[left] = &flight;
+            left += is_leaf ? 0 : 1;
+        }
+        at_nodes.size = left;
+    }
+
+    [[gnu::always_inline]] void step_at_leaves(List& at_nodes, List& at_leaves) {
+        int left = 0;
+        for (int i = 0; i < at_leaves.size; ++i) {
+            Flight& flight = *at_leaves.flights[i];
+            const float before = skip_beyond<kOptions>(flight.visitor, flight.ray);
+            if (flight.count == 0 || flight.leaf.test_all(static_cast<const BvhTriangle*>(flight.at), flight.count,
+                                                          kNoHit, flight.visitor, NoTraversalCounter{})) {
+                rays_.end(flight.number, flight.ray, flight.visitor);
+                if (next_ < count_) at_nodes.add(start(reinterpret_cast<Room&>(flight)));
+                continue;
+            }
+            const float limit = skip_beyond<kOptions>(flight.visitor, flight.ray);
+            if (kOptions.rta && limit < before) flight.stack.shorten(limit);
+            const bool is_leaf = go_on(flight);
+            at_nodes.add_if(!is_leaf, &flight);
+            at_leaves.flights[left] = &flight;
+            left += is_leaf ? 1 : 0;
+        }
+        at_leaves.size = left;
+    }
+
+    const WideBvhView<kWideChildren> bvh_;
+    const uint32_t count_;
+    const Rays& rays_;
+    uint32_t next_ = 0;
+    std::array<Room, kFlights> rooms_;
+};
+
+/// Rays that continue in the instances after the baked tree.
+template <TraversalOptions kOptions, class RayOf, class AcceptOf, class MakeVisitor, class End>
+struct RaysOfScene {
+    const HostTrees& instances; // the scene without its baked tree
+    const RayOf& ray;
+    const AcceptOf& accept;
+    const MakeVisitor& visitor;
+    const End& end_of;
+
+    template <class Visitor>
+    void end(uint32_t i, const Ray& r, Visitor& seen) const {
+        if (instances.tlas_root != kNoLink && !seen.is_done()) {
+            traverse_scene<Wide8SimdTraversal<kOptions>>(instances, r, seen, NoTraversalCounter{});
+        }
+        end_of(i, seen);
+    }
+};
+
+/// Traverses the scene with many rays: the baked tree in flight, and instances ray by ray. Calls `end(i, visitor)`
+/// for each at its end.
+template <TraversalOptions kOptions, class RayOf, class AcceptOf, class MakeVisitor, class End>
+void traverse_scene_in_flight(const HostTrees& scene, uint32_t count, const RayOf& ray_of, const AcceptOf& accept_of,
+                              const MakeVisitor& make_visitor, const End& end_of) {
+    HostTrees instances = scene;
+    instances.baked = {};
+    using Rays = RaysOfScene<kOptions, RayOf, AcceptOf, MakeVisitor, End>;
+    const Rays rays{instances, ray_of, accept_of, make_visitor, end_of};
+    if (scene.baked.nodes != nullptr) {
+        TraversalInFlight<kOptions, Rays>(scene.baked, count, rays).run();
+        return;
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        const Ray ray = ray_of(i);
+        const auto accept = accept_of(i);
+        auto visitor = make_visitor(accept, ray);
+        rays.end(i, ray, visitor);
+    }
+}
+
+} // namespace pertev

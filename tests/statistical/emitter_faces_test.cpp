@@ -1,0 +1,165 @@
+// Light of lamps that shine from their fronts, from both faces, or not this way at all; found by next-event estimation,
+// by BSDF sampling and by both, with and without a clamp, held to the closed form.
+
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "device_scene/scene_on_device.h"
+#include "integrators/path/path_stages.h"
+#include "tests/support/options.h"
+#include "tests/support/render_scenes.h"
+
+using namespace pertev;
+
+namespace {
+
+constexpr float kHalf = 0.44f, kRadiance = 78.9f, kAlbedo = 0.5f; // the lamp, 1 m above the floor
+
+Mesh square_at(float half, float y) {
+    Mesh mesh;
+    mesh.positions = {{-half, y, -half}, {-half, y, half}, {half, y, half}, {half, y, -half}};
+    mesh.indices = {0, 1, 2, 0, 2, 3}; // facing +y
+    return mesh;
+}
+
+/// A floor and a black lamp above its middle that faces down, or up; in one of two ways, by its mesh or by a node that
+/// turns an up-facing mesh over as a mirror does.
+Scene emitter_over_floor(bool faces_down, bool is_two_sided, bool by_mirror) {
+    Scene scene;
+    scene.meshes = {square_at(1, 0), square_at(kHalf, by_mirror ? -1.0f : 1.0f)};
+    if (by_mirror != faces_down) std::ranges::reverse(scene.meshes[1].indices);
+    scene.materials.push_back({{.base_color = grey(kAlbedo)}, "floor"});
+    scene.materials.push_back(
+        {{.two_sided_emission = is_two_sided, .base_color = {0, 0, 0}, .emission = grey(kRadiance)}, "lamp"});
+    scene.instances.push_back({"floor", 0, 0, {}});
+    scene.instances.push_back({"lamp", 1, 1, by_mirror ? make_scale({1, -1, 1}) : Transform{}});
+    return scene;
+}
+
+/// Radiance of the floor under the lamp's middle, from a rectangle parallel to it.
+double floor_radiance() {
+    const double x = static_cast<double>(kHalf), p = std::sqrt(1 + x * x);
+    return static_cast<double>(kAlbedo * kRadiance) / 3.141592653589793 * 4 * (x / p * std::atan(x / p));
+}
+
+struct SeenFloor {
+    double mean, error;
+};
+
+/// Renders a tiny patch of the scene, between lamp and floor: down at the floor, or up at the lamp from `y`.
+SeenFloor look(const Scene& scene, PathSettings path, bool up = false, float y = 0.5f) {
+    RenderSettings settings;
+    settings.width = settings.height = 32;
+    settings.samples = static_cast<uint32_t>(test::effort(64, 1024));
+    settings.filter = PixelFilter::Box;
+    settings.path = path;
+    settings.path.sampler = SamplerKind::Independent;
+    Camera camera;
+    camera.world_from_camera = look_at({0.01f, y, 0}, {0.01f, up ? y + 1 : y - 1, 0}, {0, 0, 1});
+    camera.projection = Projection::Orthographic;
+    camera.ortho_height = 1e-3f;
+    Queue queue = test::requested_queue();
+    const Image picture = test::render(queue, scene, camera, settings).picture;
+    double sum = 0, squares = 0;
+    for (std::size_t i = 0; i < picture.pixels.size(); i += 3) {
+        const auto value = static_cast<double>(picture.pixels[i]);
+        sum += value;
+        squares += value * value;
+    }
+    const double n = 32 * 32, mean = sum / n;
+    return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
+}
+
+} // namespace
+
+TEST_CASE("a lamp shines from its front or from both faces, however its light is found, mirrored or not") {
+    for (const bool by_mirror : {false, true}) {
+        for (const bool faces_down : {false, true}) {
+            for (const bool is_two_sided : {false, true}) {
+                CAPTURE(by_mirror);
+                CAPTURE(faces_down);
+                CAPTURE(is_two_sided);
+                const Scene scene = emitter_over_floor(faces_down, is_two_sided, by_mirror);
+                const bool is_lit = faces_down || is_two_sided;
+                for (const LightStrategy strategy : test::kLightStrategies) {
+                    CAPTURE(static_cast<int>(strategy));
+                    const SeenFloor floor = look(scene, {.strategy = strategy});
+                    CAPTURE(floor.mean);
+                    CAPTURE(floor.error);
+                    CHECK(std::abs(floor.mean - (is_lit ? floor_radiance() : 0)) <= 4 * floor.error + 1e-3);
+                }
+                const double shown = static_cast<double>(kRadiance);
+                CHECK(look(scene, {}, true).mean == doctest::Approx(is_lit ? shown : 0));
+                const bool shines_up = !faces_down || is_two_sided;
+                CHECK(look(scene, {}, false, 2).mean == doctest::Approx(shines_up ? shown : 0));
+            }
+        }
+    }
+}
+
+TEST_CASE("a clamp leaves light that was scattered once alone, however it is found") {
+    CHECK(floor_radiance() == doctest::Approx(7.74).epsilon(1e-3));
+    const Scene scene = emitter_over_floor(true, false, false);
+    for (const LightStrategy strategy : test::kLightStrategies) {
+        CAPTURE(static_cast<int>(strategy));
+        const SeenFloor floor = look(scene, {.strategy = strategy, .clamp = 5});
+        CAPTURE(floor.mean);
+        CAPTURE(floor.error);
+        CHECK(std::abs(floor.mean - floor_radiance()) <= 4 * floor.error + 1e-3);
+        CHECK(floor.error < 0.1);
+    }
+}
+
+TEST_CASE("a clamp takes later light alike, however it is found, before it is weighted") {
+    PathState path;
+    path.throughput = {2, 4, 1};
+    path.bsdf_pdf = 3;
+    const auto found = [&](uint32_t depth, LightStrategy strategy, float light_pdf, float clamp) {
+        PathState here = path;
+        here.depth = depth;
+        return emitted_light({.strategy = strategy, .clamp = clamp}, here, grey(5), light_pdf);
+    };
+    const float weight = power_heuristic(3, 1);
+    for (const uint32_t depth : {0u, 1u}) CHECK(found(depth, LightStrategy::Mis, 0, 10) == Rgb{10, 20, 5});
+    for (const uint32_t depth : {2u, 7u}) {
+        CHECK(found(depth, LightStrategy::Mis, 0, 0) == Rgb{10, 20, 5});
+        CHECK(found(depth, LightStrategy::BsdfOnly, 1, 10) == Rgb{5, 10, 2.5f});
+        CHECK(found(depth, LightStrategy::Mis, 0, 10) == Rgb{5, 10, 2.5f});
+        CHECK(found(depth, LightStrategy::Mis, 1, 10).g == doctest::Approx(static_cast<double>(weight * 10)));
+        CHECK(found(depth, LightStrategy::Mis, 1, 19).g == doctest::Approx(static_cast<double>(weight * 19)));
+        CHECK(found(depth, LightStrategy::Mis, 1, 21).g == doctest::Approx(static_cast<double>(weight * 20)));
+    }
+
+    Scene scene = emitter_over_floor(true, false, false);
+    Messages messages;
+    const PreparedScene prepared = prepare_scene(scene, {}, messages);
+    Queue queue = Queue::make_cpu();
+    const SceneOnDevice device(queue, prepared);
+    Hit hit{0.5f, 0.3f, 0.3f, 0, 0};
+    const Surface surface = make_surface(device.view(), hit, {0, -1, 0});
+    const auto requested = [&](uint32_t depth, LightStrategy strategy, float clamp) {
+        PathState here = path;
+        here.depth = depth;
+        ShadowRay shadow;
+        PathJob job = {};
+        job.picture.scene = device.view();
+        job.settings = {.strategy = strategy, .clamp = clamp, .sampler = SamplerKind::Independent};
+        FilmListeners listener(job);
+        REQUIRE(sample_direct<kAllMaterials>(job, here, SurfaceVertex{surface, {0, 1, 0}}, DrawOnDemand(), shadow,
+                                             listener));
+        return static_cast<double>(max_component(shadow.contribution));
+    };
+    CHECK(requested(0, LightStrategy::NeeOnly, 1) == requested(0, LightStrategy::NeeOnly, 0));
+    for (const uint32_t depth : {1u, 6u}) {
+        const double whole = requested(depth, LightStrategy::NeeOnly, 0);
+        const double share = requested(depth, LightStrategy::Mis, 0) / whole;
+        REQUIRE(share > 0.01);
+        REQUIRE(share < 0.99);
+        const float clamp = static_cast<float>(0.4 * whole), loose = static_cast<float>(1.01 * whole);
+        CHECK(requested(depth, LightStrategy::NeeOnly, clamp) == doctest::Approx(0.4 * whole));
+        CHECK(requested(depth, LightStrategy::Mis, clamp) == doctest::Approx(share * 0.4 * whole));
+        CHECK(requested(depth, LightStrategy::Mis, loose) == doctest::Approx(share * whole));
+    }
+}

@@ -1,0 +1,49 @@
+#pragma once
+
+// The laboratory's traversals of binary and compressed trees as launches, by every way of handing out rays, for tests
+// that run them on either device.
+
+#include <cstdint>
+#include <vector>
+
+#include "accel/bvh/compressed_bvh.h"
+#include "device/queue.h"
+#include "trace/intersect/ray.h"
+#include "trace/scene_trees.h"
+#include "trace/warps/lane_counter.h"
+
+namespace pertev::test {
+
+/// Device pointers. Of an any-hit search a hit's instance is 0 or kNoHit and the rest is as of a new Hit.
+struct TraversalBatch {
+    const Ray* rays;
+    Hit* hits;
+    uint32_t count;
+    uint32_t* pool; // one number, 0
+};
+
+/// Trees over the same triangles.
+struct TraversalTrees {
+    BvhView binary;
+    CompressedBvhView compressed;
+};
+struct TraversalScenes {
+    SceneBvhView binary;
+    SceneTrees<CompressedBvhView> compressed;
+};
+
+struct TraversalLaunch {
+    const char* traversal;
+    const char* distribution;
+    bool rta, near_first, any;
+    void (*run)(Queue&, const TraversalTrees&, const TraversalBatch&);        // one tree
+    void (*run_scene)(Queue&, const TraversalScenes&, const TraversalBatch&); // null: not for scenes
+};
+/// On a CPU one ray a thread alone.
+std::vector<TraversalLaunch> traversal_launches(bool on_cuda);
+
+/// Closest hits by while-while with all switches on, counted; each way of handing out rays that the device has.
+using LaneLaunch = void (*)(Queue&, const BvhView&, const TraversalBatch&, LaneCounts*);
+std::vector<LaneLaunch> lane_launches(bool on_cuda);
+
+} // namespace pertev::test
