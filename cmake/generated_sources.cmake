@@ -26,7 +26,7 @@ add_custom_command(OUTPUT ${PERTEV_GENERATED_DIR}/builtin_scenes.cpp
 target_sources(pertev_formats PRIVATE ${PERTEV_GENERATED_DIR}/builtin_scenes.cpp)
 
 # The laboratory's page, and figures of other programs.
-file(GLOB embedded_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/lab/page/* ${PROJECT_SOURCE_DIR}/bench/figures.json)
+file(GLOB embedded_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/lab/page/* ${PROJECT_SOURCE_DIR}/bench/figures.json ${PROJECT_SOURCE_DIR}/bench/thesis.json)
 list(JOIN embedded_files "|" embedded_list)
 add_custom_command(OUTPUT ${PERTEV_GENERATED_DIR}/embedded_files.cpp
   DEPENDS ${embedded_files} ${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake

@@ -41,7 +41,7 @@ Camera camera_of(const Camera& first, uint32_t frame, float scene_size) {
 
 struct FrameFigures {
     RunTimes whole, reconstruction, copy; // `copy`: of what is shown, to the host
-    RayCounts rays;                       // of all frames
+    RayCounts rays;                       // rays of all frames
     double seconds = 0;
 };
 
@@ -85,7 +85,7 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
     return figures;
 }
 
-/// Of the last frame.
+/// Returns the picture of the last frame.
 Image last_picture(Session& session) {
     return makes_frames(session.settings().integrator) ? session.frame().picture() : session.picture();
 }

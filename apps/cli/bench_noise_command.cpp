@@ -24,7 +24,7 @@ struct NoiseFlags {
 /// The pictures of one sampler.
 struct Pictures {
     VarianceOfPictures variance;
-    double seconds = 0; // of one
+    double seconds = 0; // time of one
     uint64_t invalid_samples = 0;
 };
 

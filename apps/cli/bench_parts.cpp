@@ -22,7 +22,7 @@ void check_bench_scene(const std::string& name, std::string_view others) {
     if (!is_scene_name(name)) {
         throw Error(ErrorCode::BadInput, fmt::format("--scene {}: neither {}{}", name, others, scene_kinds()));
     }
-    std::error_code no_such_name; // of a name too long for a file, too
+    std::error_code no_such_name; // a name may be too long for a file
     if (!builtin_scene(name) && !std::filesystem::exists(name, no_such_name)) {
         throw Error(ErrorCode::BadInput, fmt::format("--scene {}: no such file", name));
     }

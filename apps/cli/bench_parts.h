@@ -1,6 +1,6 @@
 #pragma once
 
-// What the benchmarks under `pertev bench` share.
+// Parts that the benchmarks under `pertev bench` share.
 
 #include <cstdint>
 #include <cstdlib>
@@ -46,10 +46,10 @@ std::vector<std::string> check_record_scenes(std::vector<std::string> names);
 /// Reads a scene of the record by its name, else the geometry of a built-in scene or a file.
 Scene read_record_scene(const std::string& name, Messages& messages);
 
-/// Of all channels and pixels.
+/// Returns the mean over all channels and pixels.
 double mean_of(const Image& image);
 
-/// What a benchmark of one scene begins with.
+/// The start of a benchmark of one scene.
 struct BenchedScene {
     std::unique_ptr<Queue> queue;
     Scene scene;
@@ -62,11 +62,11 @@ struct BenchedScene {
 /// the way, and listens for Ctrl-C from then on. Throws Error: of the line before anything is read.
 std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, Reporter& reporter);
 
-/// What benchmarks of whole pictures take.
+/// Flags of benchmarks of whole pictures.
 struct PictureFlags : PictureOptions {
     std::vector<std::string> scenes;
     std::string size_text; // empty: the benchmark's own, as of `samples` 0
-    uint32_t samples = 0;  // of a pixel
+    uint32_t samples = 0;  // samples per pixel
     SettingFlags settings;
     ReportFlags report;
 };
@@ -80,7 +80,8 @@ PrepareOptions trees_for(const RenderSettings& settings, const Queue& queue);
 /// Adds --report, the file of the measurement, beside -q and --json.
 void add_bench_report_flags(CLI::App& verb, ReportFlags& flags);
 
-/// What a benchmark measures: said as it comes, and a measurement (lab/measurement.h) in the file of --report.
+/// Results of a benchmark: printed as they come, and written as a measurement (lab/measurement.h) into the file of
+/// --report.
 class BenchReport {
 public:
     BenchReport(Reporter& reporter, const ReportFlags& flags, const Queue& queue, std::string title);

@@ -45,8 +45,8 @@ struct SetFigures {
     WorkSummary work;
     double hit_share = 0;
     const RecordScene* record = nullptr; // seen by its own camera; null: none of the record
-    std::size_t number = 0;              // of the set
-    uint64_t triangles = 0;              // of the scene
+    std::size_t number = 0;              // index of the set
+    uint64_t triangles = 0;              // triangles of the scene
 
     double rays_per_second() const { return times.median > 0 ? static_cast<double>(rays) / times.median : 0.0; }
     Ratio ratio() const {
@@ -85,7 +85,7 @@ SetFigures measure(Queue& queue, const RaySet& set, const RaysFlags& flags, cons
     figures.hit_share = hit_share(hits);
     throw_if_interrupted();
     Combination counted = kBinaryTracer;
-    counted.options.near_first = !set.any_hit; // as the record has it
+    counted.options.near_first = !set.any_hit; // the record's choice
     figures.work = summarize_work(rays.count_work(make_tracer(queue, counted, prepared)));
     const int runs = flags.runs > 0 ? static_cast<int>(flags.runs) : (queue.is_cuda() ? 25 : 5);
     figures.times = time_runs(queue, queue.is_cuda() ? 3 : 1, runs, [&] {
@@ -130,7 +130,7 @@ Fields fields_of(const SetFigures& f, bool is_checked) {
     return fields;
 }
 
-/// Of ratios to the best public tracers, where there are any; `scene` is "" of all scenes together.
+/// Prints the summary of ratios to the best public tracers, if there are any; `scene` is "" of all scenes together.
 void print_summary(const std::string& scene, std::span<const double> ratios, Reporter& reporter) {
     if (ratios.empty()) return;
     const auto [mean, least] = summarize(ratios);

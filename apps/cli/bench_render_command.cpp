@@ -1,4 +1,4 @@
-// pertev bench render: one job that other renderers were timed on (lab/record_jobs.h), and how many times as fast as
+// pertev bench render: one job that other renderers were timed on (bench/figures.json), and how many times as fast as
 // they it is done where that can be said (lab/stored_figures.h).
 
 #include <memory>
@@ -45,7 +45,7 @@ RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
 }
 
 struct JobBytes {
-    std::size_t of_queues = 0;           // of paths in flight
+    std::size_t of_queues = 0;           // queues of paths in flight
     std::optional<double> of_structures; // on a GPU, a triangle; on a CPU trees are not copied
 };
 
@@ -87,7 +87,7 @@ IsolatedRates isolated_rates(Queue& queue, const RecordJob& job, const Scene& sc
     reporter.set_work("measuring rays by themselves");
     const PreparedScene prepared = prepare_scene(
         scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, reporter.messages());
-    const Camera camera = job_camera(job, scene, 16.0f / 9.0f, reporter.messages()); // as the sets' frames
+    const Camera camera = job_camera(job, scene, 16.0f / 9.0f, reporter.messages()); // the aspect of the sets' frames
     const uint32_t count = queue.is_cuda() ? kRecordRays : kRecordRays / 16;         // a CPU takes seconds for these
     return measure_isolated_rays(queue, scene, camera, prepared, choice, count, throw_if_interrupted);
 }
@@ -175,7 +175,7 @@ int bench_job(JobFlags& flags) {
 void add_bench_render_command(CLI::App& bench, int& status) {
     CLI::App& verb = *bench.add_subcommand("render", "One job that other renderers were timed on");
     const auto flags = std::make_shared<JobFlags>();
-    flags->picture.tracer.default_build = TreeBuild::Best; // what is timed is the render alone
+    flags->picture.tracer.default_build = TreeBuild::Best; // only the render is timed
     std::vector<std::string> names;
     for (const RecordJob& job : the_record().jobs) names.emplace_back(job.name);
     verb.add_option(

@@ -31,12 +31,12 @@ struct SequenceFlags {
     std::string write, write_samples, peer, strips;
 };
 
-/// What one way of making frames is measured by, over a sequence.
+/// Scores of one way of making frames, over a sequence.
 struct Score {
     double flip = 0, flip_of_first = 0, flip_of_last = 0; // HDR-FLIP against the references: mean, of single frames
     double flicker = 0; // mean absolute change of the shown error from frame to frame, in [0, 1]
     uint32_t frames = 0;
-    std::vector<float> error; // of the frame before, as a display shows it
+    std::vector<float> error; // error of the previous frame, as a display shows it
 
     /// `shown` and `shown_reference`: both as a display shows them. `hdr_flip`: of the picture.
     void add(double hdr_flip, const Rgba8Image& shown, const Rgba8Image& shown_reference) {
@@ -62,8 +62,8 @@ struct Scores {
     Score ours, sample;
     std::optional<Score> peer;
     double noise = 0; // HDR-FLIP of one half of the first reference's samples against the other
-    // Of a half of each reference's samples against all of them, which differ as much as all of them do from the truth:
-    // its flicker is what the references' own noise adds to the others'.
+    // Scores of a half of each reference's samples against all of them, which differ as much as all of them do from the
+    // truth: its flicker is what the references' own noise adds to the others'.
     Score half;
 };
 

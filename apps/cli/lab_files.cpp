@@ -17,13 +17,13 @@
 namespace pertev {
 namespace {
 
-/// Of a combination's heat maps, nodes first.
+/// Returns the files of a combination's heat maps, nodes first.
 std::array<std::string, 2> heat_map_files(std::string combination) {
     std::ranges::replace(combination, ' ', '-');
     return {"nodes-" + combination + ".png", "triangles-" + combination + ".png"};
 }
 
-/// Of every combination there is, on any device.
+/// Returns the files of every combination that exists, on any device.
 std::set<std::string> all_heat_map_files() {
     std::set<std::string> files;
     for (const StructureKind structure : kValuesOf<StructureKind>) {
@@ -77,7 +77,7 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
 }
 
 void remove_files(const std::filesystem::path& folder, const std::set<std::string>& names) {
-    std::error_code error; // what cannot be removed or listed stays
+    std::error_code error; // files that cannot be removed or listed stay
     std::vector<std::filesystem::path> found;
     for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
         const bool is_file = std::filesystem::is_regular_file(at->symlink_status(error));

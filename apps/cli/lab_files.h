@@ -1,6 +1,6 @@
 #pragma once
 
-// What the laboratory's command writes and shows while it runs.
+// Files and progress of the laboratory's commands.
 
 #include <filesystem>
 #include <functional>

@@ -23,7 +23,7 @@ Scene read_lab_scene(const SceneOptions& options, Messages& messages) {
         }
         return make_record_scene(*record, public_scenes_folder(), messages);
     }
-    std::error_code no_such_name; // of a name too long for a file, too
+    std::error_code no_such_name; // a name may be too long for a file
     if (!builtin_scene(name) && !std::filesystem::exists(name, no_such_name)) {
         std::vector<std::string_view> known = builtin_scene_names();
         for (const RecordScene& record : the_record().scenes) known.emplace_back(record.name);

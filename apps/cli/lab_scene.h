@@ -13,7 +13,7 @@ namespace pertev {
 /// the names that there are.
 Scene read_lab_scene(const SceneOptions& options, Messages& messages);
 
-/// What reports call it: its file's name without folder and extension, in UTF-8 whatever its bytes are.
+/// Returns its title in reports: its file's name without folder and extension, in UTF-8 whatever its bytes are.
 std::string lab_scene_title(const std::string& scene);
 
 } // namespace pertev

@@ -133,7 +133,7 @@ void write_file(const std::filesystem::path& folder, const ThesisPicture& pictur
     }
 }
 
-/// Those of chapters 2 to 4. Each is written once it is made.
+/// Adds the pictures of chapters 2 to 4. Each is written once it is made.
 void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, const std::filesystem::path& folder,
                              Reporter& reporter, Attempts& attempts, ThesisReport& thesis) {
     RenderSettings picture;

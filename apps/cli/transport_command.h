@@ -26,7 +26,7 @@ struct TransportFlags {
     uint32_t reference_samples = 0; // 0: by the device
 };
 
-/// Beside --transport itself, which each of them needs.
+/// Adds the flags that need --transport, except for --transport itself.
 void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags& flags);
 
 /// Measures the scene, or the presets, that are asked for; `size` and `output` are lab's flags, or empty. Returns the

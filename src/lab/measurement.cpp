@@ -71,7 +71,7 @@ std::string system_text(const char* path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What follows `key` and blanks on its line.
+/// Returns the rest of the line behind `key` and blanks.
 std::string value_after(const std::string& text, std::string_view key, std::string_view end = "\n") {
     const std::size_t at = text.find(key);
     if (at == std::string::npos) return {};

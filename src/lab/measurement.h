@@ -48,7 +48,7 @@ public:
     bool is_there() const { return !std::holds_alternative<std::monostate>(value_); }
     bool operator==(const ResultCell&) const = default;
     std::string json() const;
-    /// As CSV has it (RFC 4180): quoted where it must be, true as 1.
+    /// Returns the value for CSV (RFC 4180): quoted if necessary, true as 1.
     std::string csv() const;
     /// For a terminal. `format` is that of a number, "" for the usual one; "-" if there is no value.
     std::string text(const std::string& format) const;
@@ -74,7 +74,7 @@ struct ResultField {
     const char* title; // for people; empty: the key alone, and a terminal leaves the column out
     ResultCell value;
     const char* unit = "";
-    const char* format = ""; // of a number on a terminal, as fmt has it
+    const char* format = ""; // fmt's format for numbers on a terminal
 };
 using Fields = std::vector<ResultField>;
 
@@ -96,16 +96,16 @@ struct ResultTable {
 struct ResultPicture {
     std::string group, title, caption; // pictures of one group stand side by side
     Rgba8Image image = {};
-    Rgba8Image error = {};   // what differs from the group's reference, in false colours; empty: there is none
+    Rgba8Image error = {};   // differences from the group's reference, in false colours; empty: there are none
     std::string svg = {};    // in place of `image`
     Image linear = {};       // radiance, for an EXR file beside the page
     std::string file, exr{}; // names beside the page; empty: not written
 };
 
 struct Measurement {
-    std::string kind = {}; // of page/views.json; empty: tables only
+    std::string kind = {}; // key in page/views.json; empty: tables only
     std::string title, program, date, command, processor;
-    uint32_t threads = 0;       // of the CPU
+    uint32_t threads = 0;       // CPU threads
     std::string device, driver; // empty: the CPU's
     bool interrupted = false;
     std::vector<ResultTable> tables = {};
@@ -126,7 +126,7 @@ std::string json_of(std::string_view event, const Fields& fields);
 std::string csv_of(const ResultTable& table, const Fields& common = {});
 /// Columns with a title, aligned; with `keys` those of them alone, in that order.
 std::string text_of(const ResultTable& table, const std::vector<std::string_view>& keys = {});
-/// The same of one row alone, in columns as wide as its title or 8 characters (the first 16), so that rows can be
+/// Returns one row alone, in columns as wide as its title or 8 characters (the first 16), so that rows can be
 /// printed as they come; `row` is the head's if it is none.
 std::string line_of(const ResultTable& table, std::optional<std::size_t> row);
 /// A line a field, for a result of one row.

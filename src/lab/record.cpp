@@ -1,7 +1,6 @@
 #include "lab/record.h"
 
-#include "formats/json/json_value.h"
-#include "lab/report_page.h"
+#include "lab/embedded_json.h"
 
 namespace pertev {
 namespace {
@@ -61,10 +60,8 @@ TransportPreset preset_of(const JsonValue& value) {
 }
 
 Record read_record() {
-    const std::string name = "figures.json";
-    const std::string_view text = embedded_file(name);
-    simdjson::dom::parser parser;
-    const JsonValue root(name, "", parser.parse(text.data(), text.size()).value());
+    const EmbeddedJson json("figures.json");
+    const JsonValue& root = json.root();
     Record read = {.device = root.string_or("device", "")};
     for (const JsonValue& value : root.elements_of("scenes")) read.scenes.push_back(scene_of(value));
     for (const JsonValue& value : root.elements_of("jobs")) read.jobs.push_back(job_of(value));

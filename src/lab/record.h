@@ -20,12 +20,12 @@ struct RecordView {
     float fov_y_deg;  // full vertical angle of view
 };
 
-/// What other tracers' record says of one set of rays, 8,294,400 of them: the share that hit, nodes and triangles a ray
+/// The record of other tracers for one set of 8,294,400 rays: the share that hit, nodes and triangles a ray
 /// in a binary tree. A tracer that makes the same rays in the same scene has the same hit share.
 struct RecordedSet {
     std::string name;
     double hit_share = 0, nodes = 0, triangles = 0;
-    double best_rays_per_second = 0; // of public tracers
+    double best_rays_per_second = 0; // the best public tracer
 };
 
 struct RecordScene {
@@ -35,7 +35,7 @@ struct RecordScene {
     RecordView view;
     std::vector<RecordedSet> sets; // in the order in which they are made
     double optix_fast_trace_s = 0,
-           optix_fast_build_s = 0; // of builds for fast tracing (not compacted), for fast building
+           optix_fast_build_s = 0; // builds for fast tracing (not compacted), for fast building
 };
 
 struct RecordJob {
@@ -43,7 +43,7 @@ struct RecordJob {
     bool is_grey = false; // S5, S8
     uint32_t width = 0, height = 0, samples = 0;
     uint32_t max_depth = 0; // scatterings: one less than edges from the camera to a light
-    // What tells the scene: its triangles, and the mean over channels and pixels of others' pictures.
+    // The scene is recognised by its triangles and by the mean over channels and pixels of others' pictures.
     uint64_t triangles = 0;
     double mean = 0;
     double mitsuba = 0, cycles = 0, pbrt = 0; // samples a second

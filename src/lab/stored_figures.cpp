@@ -10,8 +10,8 @@
 namespace pertev {
 namespace {
 
-constexpr double kMeanError = 2e-3;      // of a picture, relative
-constexpr double kShareError = 1e-3;     // of rays that hit: the record has three digits
+constexpr double kMeanError = 2e-3;      // relative error of a picture's mean
+constexpr double kShareError = 1e-3;     // error of the share of hits: the record has three digits
 constexpr double kShareErrorAnew = 5e-2; // where the scene is made anew from a description
 
 bool is_the_record(const RaysRun& run) {

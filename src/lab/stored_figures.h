@@ -26,12 +26,12 @@ struct Ratio {
     std::optional<double> value; // nothing: device, scene or job are not the figure's
 };
 
-// What was measured, and what tells whether it is what a figure is of.
+// A run has its result and the facts that decide whether a figure is of the same thing.
 
 struct RaysRun {
     std::string_view device;
     const RecordScene* scene = nullptr; // seen by its own camera; null: none of the record
-    std::size_t set = 0;                // of RecordScene::sets
+    std::size_t set = 0;                // index into RecordScene::sets
     uint64_t triangles = 0, rays = 0;
     double hit_share = 0, rays_per_second = 0;
 };
@@ -46,9 +46,9 @@ struct BuildRun {
 struct JobRun {
     std::string_view device;
     const RecordJob* job = nullptr;
-    uint32_t width = 0, height = 0, samples = 0; // of a pixel
+    uint32_t width = 0, height = 0, samples = 0; // samples per pixel
     uint64_t triangles = 0;
-    double mean = 0, samples_per_second = 0; // of all pixels
+    double mean = 0, samples_per_second = 0; // mean over all pixels
 };
 
 /// To the best public tracer.
@@ -62,7 +62,7 @@ ResultField field_of(const Ratio& ratio);
 /// A line for people: what the figures of this job are of.
 std::string why_no_ratios(const RecordJob& job);
 
-/// Of a number of ratios, at least one.
+/// Summary of at least one ratio.
 struct RatioSummary {
     double geometric_mean, least;
 };

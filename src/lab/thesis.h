@@ -37,7 +37,7 @@ struct ThesisReport {
     std::vector<LabReport> scenes;
     std::vector<ResultPicture> local_and_global; // figures 6.7 and 6.8
     std::vector<ThesisPicture> pictures;         // pictures of chapters 2 to 4, in the thesis's order
-    std::vector<std::string> lacking;            // what could not be made and why, one line each
+    std::vector<std::string> lacking;            // parts that could not be made, with the reason, one line each
 };
 
 /// Tables 6.3 to 6.6, the data of figures 6.9 to 6.11, "frames" (a row for each scene, variant and depth, from which

@@ -11,6 +11,7 @@
 #include "lab/heat_map.h"
 #include "lab/thesis_recipes.h"
 #include "radiosity/solve_radiosity.h"
+#include "settings/setting_table.h"
 #include "settings/value_names.h"
 
 namespace pertev {
@@ -74,16 +75,27 @@ std::string settings_of(const RadiosityPanel& panel, const RadiositySettings& re
                        panel.is_flat ? " `flat_patches`" : "");
 }
 
+/// Each setting is NAME or NAME=VALUE, as the table of settings has them.
+RenderSettings with_settings(const RenderSettings& settings, const std::vector<std::string>& given) {
+    PictureOptions options;
+    options.render = settings;
+    for (const std::string& one : given) {
+        const std::size_t end = one.find('=');
+        const std::string value = end == std::string::npos ? "true" : one.substr(end + 1);
+        set_value(options, *find_setting(one.substr(0, end)), {&value, 1});
+    }
+    return options.render;
+}
+
 std::string command_text(const ThesisRecipe& recipe, const RenderSettings& settings) {
     const std::string scene = command_of(recipe.scene);
     const bool is_whole =
         recipe.way == ThesisWay::Render || (recipe.way == ThesisWay::Radiosity && recipe.panel.has_ambient);
     if (scene.empty() || !is_whole) return {};
-    std::string others = *recipe.settings != 0 ? fmt::format(" {}", recipe.settings) : "";
+    std::string others;
+    for (const std::string& setting : recipe.settings) others += fmt::format(" `{}`", setting);
     if (recipe.way == ThesisWay::Radiosity) others += settings_of(recipe.panel, solution_of(recipe.panel, settings));
-    if (settings.photon_map.photons != RenderSettings().photon_map.photons) {
-        others += fmt::format(" `photons={}`", settings.photon_map.photons);
-    }
+    if (recipe.has_photons_by_size) others += fmt::format(" `photons={}`", settings.photon_map.photons);
     return fmt::format(
         "pertev render {} `integrator={}`{} `size={}x{}` `spp={}` `max_depth={}` `exposure={:g}` `output={}.png`",
         scene, recipe.integrator, others, settings.width, settings.height, settings.samples, settings.path.max_depth,
@@ -137,9 +149,10 @@ ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progre
     if (!recipe.is_whole) {
         settings.width = std::max(1u, settings.width / 2), settings.height = std::max(1u, settings.height / 2);
     }
-    if (*recipe.integrator != 0) PERTEV_CHECK(set_integrator(settings, recipe.integrator));
+    if (!recipe.integrator.empty()) PERTEV_CHECK(set_integrator(settings, recipe.integrator));
     settings.path.max_depth = std::min(settings.path.max_depth, most_depth(settings.integrator));
-    if (recipe.set != nullptr) recipe.set(settings);
+    settings = with_settings(settings, recipe.settings);
+    if (recipe.has_photons_by_size) settings.photon_map.photons = thesis_detail(settings.height).photons;
     if (recipe.way == ThesisWay::Work) {
         settings.tracers =
             same_for_all({.structure = recipe.structure,

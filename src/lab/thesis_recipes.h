@@ -1,8 +1,9 @@
 #pragma once
 
-// The table of the thesis's pictures (lab/thesis_pictures.h), one row per picture.
+// Recipes of the thesis's pictures (lab/thesis_pictures.h): one row of bench/thesis.json per picture.
 
-#include <span>
+#include <string>
+#include <vector>
 
 #include "lab/thesis_scenes.h"
 #include "settings/render_settings.h"
@@ -20,7 +21,12 @@ enum class ThesisWay : uint8_t {
     Octree,    // a drawing of the points that an octree search finds
 };
 
-/// Settings of a picture with ThesisWay::Radiosity.
+inline constexpr ValueName<ThesisWay> kThesisWayNames[] = {
+    {ThesisWay::Render, "render"}, {ThesisWay::Radiosity, "radiosity"}, {ThesisWay::Photons, "photons"},
+    {ThesisWay::Work, "work"},     {ThesisWay::KdTree, "kd-tree"},      {ThesisWay::Octree, "octree"}};
+constexpr const auto& names_of_all(ThesisWay) { return kThesisWayNames; }
+
+/// A panel of the figure of radiosity.
 struct RadiosityPanel {
     bool is_early = false;   // shown after a few steps of the solver
     bool has_ambient = true; // unsent light is shown as ambient light
@@ -36,24 +42,20 @@ struct ThesisDetail {
 };
 ThesisDetail thesis_detail(uint32_t panel_height);
 
-inline constexpr uint32_t kThesisPhotons = 16384; // photons per pass and map in pictures that show them one by one
-
 struct ThesisRecipe {
-    const char *name, *title, *shows; // see ThesisPicture
+    std::string name, title, shows; // ThesisPicture's
     ThesisWay way = ThesisWay::Render;
     ThesisScene scene = ThesisScene::Box;
-    const char* integrator = "";
-    bool is_whole = false;                  // otherwise one of several panels with half the width and height
-    const char* settings = "";              // settings of the command, other than scene, integrator, patches and
-                                            // photons
-    void (*set)(RenderSettings&) = nullptr; // applies `settings` and chooses photons; null if there is nothing to
-                                            // apply
-    RadiosityPanel panel = {};              // used by ThesisWay::Radiosity
-    StructureKind structure = {};           // used by ThesisWay::Work
-    float stops = 2;                        // exposure in stops
+    std::string integrator;
+    bool is_whole = false;             // else one panel of several: half the width and height
+    std::vector<std::string> settings; // NAME or NAME=VALUE, beside scene, integrator and patches
+    bool has_photons_by_size = false;  // thesis_detail's
+    RadiosityPanel panel = {};         // for Radiosity
+    StructureKind structure = {};      // for Work
+    float stops = 2;                   // exposure stops
 };
 
-/// Returns all recipes in the thesis's order.
-std::span<const ThesisRecipe> thesis_recipes();
+/// Ordered as the thesis is.
+const std::vector<ThesisRecipe>& thesis_recipes();
 
 } // namespace pertev

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "base/value_names.h"
 #include "scene/scene.h"
 
 namespace pertev {
@@ -14,16 +15,24 @@ enum class ThesisScene : uint8_t {
     PointLight,  // a point light in the lamp's place
     MirrorBall,  // a mirror sphere in the short block's place
     PlasticBall, // a point light near the front, a sphere of glossy plastic of few triangles in the short block's place
-    TwoBalls,    // the same light, a mirror sphere there and one of glass in the tall block's place
+    TwoBalls,    // that point light, a mirror sphere there and one of glass in the tall block's place
     Caustic,     // caustic, with the camera of the transport report
 };
+
+inline constexpr ValueName<ThesisScene> kThesisSceneNames[] = {{ThesisScene::Box, "box"},
+                                                               {ThesisScene::PointLight, "point-light"},
+                                                               {ThesisScene::MirrorBall, "mirror-ball"},
+                                                               {ThesisScene::PlasticBall, "plastic-ball"},
+                                                               {ThesisScene::TwoBalls, "two-balls"},
+                                                               {ThesisScene::Caustic, "caustic"}};
+constexpr const auto& names_of_all(ThesisScene) { return kThesisSceneNames; }
 
 Scene make_thesis_scene(ThesisScene which);
 
 /// Its view in a picture of this width / height.
 Camera camera_of(ThesisScene which, const Scene& scene, float aspect);
 
-/// As the command line names it, with the camera's settings; empty where only this file has it.
+/// Name on the command line with the camera's settings; empty if only this file has the scene.
 const char* command_of(ThesisScene which);
 
 } // namespace pertev

@@ -246,7 +246,7 @@ function ratio(table, view, rows, title) {
 
 const KINDS = { lines, bars, matrix, ratio };
 
-/** What a view draws of a measurement: one thing, or one for each value of `split`. */
+/** Draws a view of a measurement: one thing, or one for each value of `split`. */
 function show(measurement, view) {
   const table = measurement.tables.find((one) => one.name === view.table);
   if (!table) return null;
