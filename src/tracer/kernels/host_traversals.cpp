@@ -1,4 +1,4 @@
-// What pictures take on a CPU: eight boxes of one ray at a time.
+// The traversals of pictures on a CPU: eight boxes of one ray at a time.
 
 #include "tracer/kernels/simd_traversals_body.h"
 
