@@ -77,7 +77,7 @@ double difference_of(const RadiositySolution& a, const RadiositySolution& b) {
 
 } // namespace
 
-TEST_CASE("links come to the light that rows of form factors find, the nearer the less they may be wrong by") {
+TEST_CASE("links converge to the solution by form factor rows as their error bound shrinks") {
     const Scene scene = room_with_boxes();
     const SolvedRadiosity rows = solved_by(scene, RadiositySolver::GaussSeidel, 0.2f);
     double before = 1e9;
@@ -139,7 +139,7 @@ TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) by
     CHECK(sum == doctest::Approx(known).epsilon(0.01));
 }
 
-TEST_CASE("too many links are made anew by a larger error, to the bytes of that error asked for at once") {
+TEST_CASE("links over the limit are refined again with a larger error, with the bytes of that error") {
     const test::PatchedScene patched(room_with_boxes(), kInfinity);
     const auto solve = [&](float link_error, uint64_t max_links) {
         RadiositySettings settings;
@@ -166,7 +166,7 @@ TEST_CASE("too many links are made anew by a larger error, to the bytes of that 
     CHECK(test::is_about(error, ErrorCode::OverLimit, "solver", "hierarchical"));
 }
 
-TEST_CASE("what is made anew by a larger error says so, and its solution has that error") {
+TEST_CASE("a solution with an enlarged error warns and records that error") {
     const test::PatchedScene patched(room_with_boxes(), kInfinity);
     RadiositySettings settings;
     settings.solver = RadiositySolver::Hierarchical;
@@ -182,7 +182,7 @@ TEST_CASE("what is made anew by a larger error says so, and its solution has tha
     CHECK(told.contains(fmt::format("links, pass 1, anew by `link_error={}`", solved.stats.link_error)));
 }
 
-TEST_CASE("a solution by a larger error than was asked for, or of more steps than there are, is warned of") {
+TEST_CASE("solutions with a larger error or fewer steps than requested warn") {
     RadiositySettings settings;
     settings.solver = RadiositySolver::Hierarchical;
     const auto said = [&](const SolveStats& stats) {
@@ -199,7 +199,7 @@ TEST_CASE("a solution by a larger error than was asked for, or of more steps tha
     CHECK(limit.reason.find("after 24 steps") != std::string::npos);
 }
 
-TEST_CASE("links make the same bytes by any number of threads") {
+TEST_CASE("links do not depend on the number of threads") {
     const Scene scene = room_with_boxes();
     const Hash128 reference = solved_by(scene, RadiositySolver::Hierarchical, 0.5f).solution.hash();
     for (const int threads : {1, 5}) {
@@ -210,7 +210,7 @@ TEST_CASE("links make the same bytes by any number of threads") {
     CHECK(solved_by(scene, RadiositySolver::Hierarchical, 0.5f, 0.1f).solution.hash() != reference);
 }
 
-TEST_CASE("what a cluster sends is known by direction") {
+TEST_CASE("light that leaves a cluster depends on direction") {
     test::Random random(9);
     SentLight sent;
     std::vector<Vec3> normals;

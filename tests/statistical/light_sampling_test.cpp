@@ -120,7 +120,7 @@ TEST_CASE("lights: a triangle emits from its front, which a mirroring node leave
     }
 }
 
-TEST_CASE("lights: one face is drawn half as often as two") {
+TEST_CASE("lights: a one-sided triangle is sampled half as often as a two-sided one") {
     Scene scene;
     for (const float height : {1.0f, 3.0f})
         add_emitter(scene, make_square(1), {1, 1, 1}, make_translation({0, height, 0}));
@@ -209,7 +209,7 @@ TEST_CASE("lights: triangles of a textured mesh are drawn as their texture shine
     CHECK(on_bright > 0.8); // some dark ones touch a bright square
 }
 
-TEST_CASE("lights: point, spot and directional lights give what their definitions say") {
+TEST_CASE("lights: point, spot and directional lights match their definitions") {
     const Vec3 above = {0, 2, 0}, down = {0, -1, 0};
     LightSample sample;
     Scene scene;
@@ -414,7 +414,7 @@ TEST_CASE("lights: a hit finds its light by instance and primitive; unlit and da
     CHECK(light_of(Lights(dark).view, 0, 0) == kNoLight);
 }
 
-TEST_CASE("lights: what cannot be lit is no sample, never a value that is not finite") {
+TEST_CASE("lights: unlit points yield no sample, and no value is infinite or NaN") {
     LightSample sample;
     Scene empty;
     const Lights none(empty);

@@ -56,7 +56,7 @@ Image picture_by(Queue& queue, const PreparedScene& prepared, IntegratorKind int
 
 } // namespace
 
-TEST_CASE("photon mapping comes to path tracing's picture, at least as fast as Knaus and Zwicker say") {
+TEST_CASE("photon mapping converges to path tracing at least at Knaus and Zwicker's rate") {
     Queue queue = test::requested_queue();
     for (const PhotonCase& c : photon_cases()) {
         Messages messages;

@@ -147,7 +147,7 @@ TEST_CASE("a sphere in a furnace receives pi of the furnace's radiance, and show
     }
 }
 
-TEST_CASE("radiosity comes to path tracing's picture of the Cornell box as patches become smaller") {
+TEST_CASE("radiosity converges to path tracing in the Cornell box as patches shrink") {
     Messages messages;
     const Scene scene = open_scene({.scene = "cornell-box"}, messages);
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
