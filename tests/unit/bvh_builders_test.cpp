@@ -328,7 +328,7 @@ TEST_CASE("each builder's tree is as good as its kind should be, in Sponza") {
     check_costs(triangles_of(read_obj_geometry(*path)));
 }
 
-TEST_CASE("what is wrong with a tree by spatial splits is found") {
+TEST_CASE("the checker notices faults of trees with spatial splits") {
     const std::vector<BvhTriangle> mesh = nasty_meshes()[2].triangles; // slivers
     const Bvh good = build_bvh(BvhBuilder::SpatialSplits, mesh);
     REQUIRE(!find_split_fault(good, mesh));

@@ -73,7 +73,7 @@ TEST_CASE("the picture is the mean of the samples of each pixel, rounded once") 
     }
 }
 
-TEST_CASE("a small sample is not lost beside a million large ones") {
+TEST_CASE("a small sample is not lost among a million large ones") {
     Queue queue = Queue::make_cpu();
     Film film(queue, 1, 1, 0);
     for (int i = 0; i < 1'000'000; ++i) add_radiance(film.view(), 0, {1000.0f, -1.0f, 0x1p-40f});

@@ -45,7 +45,7 @@ TEST_CASE("a virtual point at no distance behind the surface moves as the surfac
     CHECK(abs(far.pixel.x - pixel.x) < 0.02f * abs(same.pixel.x - pixel.x) + 0.01f);
 }
 
-TEST_CASE("what has moved is looked for where it was") {
+TEST_CASE("reprojection follows moved objects") {
     const Vec3 positions[] = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
     const uint32_t indices[] = {0, 1, 2};
     const MeshView mesh = {.positions = positions,
@@ -99,7 +99,7 @@ TEST_CASE("colours come back from the form in which pictures are kept") {
     }
 }
 
-TEST_CASE("taps take what shows the same object at this depth with this normal, and nothing else") {
+TEST_CASE("taps accept only the same object at a similar depth and normal") {
     constexpr uint32_t kWidth = 4, kHeight = 3;
     std::vector<Float4> guide(kWidth * kHeight, pack({{0, 0, 1}, 1, 2, 7}));
     std::vector<Float4> values(kWidth * kHeight);
