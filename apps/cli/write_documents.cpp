@@ -1,6 +1,7 @@
 // A page for man, completion for shells and docs/settings.md are made of all flags.
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -133,9 +134,24 @@ std::string verbs_with(const Setting& setting) {
                                                            {kBenchSequence, "bench sequence"}};
     std::string names;
     for (const auto& [bit, name] : kVerbs) {
-        if ((setting.verbs & bit) != 0) names += (names.empty() ? "" : ", ") + std::string(name);
+        if ((setting.verbs & bit) == 0) continue;
+        const std::string_view verb = name;
+        if (verb.starts_with("bench ") && names.find("bench ") != std::string::npos) {
+            names += fmt::format("/{}", verb.substr(6)); // bench noise/frames/sequence
+        } else {
+            names += fmt::format("{}{}", names.empty() ? "" : ", ", verb);
+        }
     }
     return names;
+}
+
+/// The verbs that most settings of a group belong to.
+std::string common_verbs(std::string_view group) {
+    std::map<std::string, int> counts;
+    for (const Setting& setting : all_settings()) {
+        if (group == setting.group) ++counts[verbs_with(setting)];
+    }
+    return std::ranges::max_element(counts, {}, &std::pair<const std::string, int>::second)->first;
 }
 
 std::string range_of(const Setting& setting) {
@@ -209,11 +225,14 @@ std::string settings_document() {
         "stored there, because they\n"
         "belong to the machine and the run: threads, folders to read from, or a time limit.\n";
     std::string_view group;
+    std::string verbs;
     for (const Setting& setting : all_settings()) {
         if (group != setting.group) {
             group = setting.group;
-            text += fmt::format("\n## {}\n\n| setting | values | unit | default | |\n| --- | --- | --- | --- | --- |\n",
-                                group);
+            verbs = common_verbs(group);
+            text += fmt::format("\n## {}\n\nVerbs, where a row names no others: {}.\n\n"
+                                "| setting | values | unit | default | |\n| --- | --- | --- | --- | --- |\n",
+                                group, verbs);
         }
         std::string says = setting.sentence;
         if (*setting.more != '\0') says += fmt::format(" {}", setting.more);
@@ -221,7 +240,7 @@ std::string settings_document() {
             says += fmt::format(" Integrators: {}.", fmt::join(integrators_with(setting), ", "));
         if (!setting.needs.empty()) says += fmt::format(" Needs one of: {}.", setting.needs);
         if (!setting.excludes.empty()) says += fmt::format(" Not with: {}.", setting.excludes);
-        says += fmt::format(" Verbs: {}.", verbs_with(setting));
+        if (verbs_with(setting) != verbs) says += fmt::format(" Verbs: {}.", verbs_with(setting));
         if (!setting.is_kept) says += " Not kept.";
         text += fmt::format("| `{}` | {} | {} | {} | {} |\n", flag_of(setting.name), cell(range_of(setting)),
                             setting.unit, cell(default_of(setting)), cell(says));
