@@ -62,7 +62,7 @@ void check_tree(const Tree& tree, const Expected& expected) {
 
 } // namespace
 
-TEST_CASE("traversals of wide and compressed trees give the hits of testing every triangle, bit for bit") {
+TEST_CASE("traversals of wide and compressed trees match brute force bit for bit") {
     for (const NastyMesh& c : nasty_meshes(static_cast<uint32_t>(effort(3000, 1'000'000)))) {
         CAPTURE(c.name);
         const bool million = c.triangles.size() > 100'000; // brute force takes its time
@@ -194,7 +194,7 @@ void check_instances(const Tlas& top, const std::vector<Trees>& trees, Tree Tree
 
 } // namespace
 
-TEST_CASE("wide and compressed trees of instances give the hits of testing every triangle, bit for bit") {
+TEST_CASE("traversals of wide and compressed trees over instances match brute force bit for bit") {
     const std::vector<std::vector<BvhTriangle>> meshes = {triangles_of(make_torus(16, 12)), make_soup(300, 0),
                                                           triangles_of(make_sphere(0, {}, 1)), make_soup(2, 0)};
     std::vector<Trees> trees;

@@ -104,7 +104,7 @@ TEST_CASE("every file of the malformed collection is refused by name, quickly an
     CHECK(peak_memory() - before < uint64_t(128) << 20);
 }
 
-TEST_CASE("a picture cut at any length is refused") {
+TEST_CASE("a truncated picture is refused") {
     for (const Sample& sample : samples()) {
         CAPTURE(sample.name);
         REQUIRE(try_to_decode(sample.bytes) == Outcome::Picture);
@@ -146,7 +146,7 @@ TEST_CASE("pictures with a few bits turned or bytes replaced end in an error or 
     CHECK(peak_memory() - before < uint64_t(128) << 20);
 }
 
-TEST_CASE("the header alone tells the size, of whole and of damaged pictures") {
+TEST_CASE("the header suffices to read the size of whole and damaged pictures") {
     for (const Sample& sample : samples()) {
         CAPTURE(sample.name);
         const ImageHeader header = read_image_header(sample.bytes, "whole");

@@ -98,7 +98,7 @@ TEST_CASE("links converge to the solution by form factor rows as their error bou
     CHECK(links_before < rows.stats.patches * rows.stats.patches / 10);
 }
 
-TEST_CASE("links lose no light on what lies inside solid things") {
+TEST_CASE("links lose no light to surfaces inside solids") {
     Scene scene = test::closed_box(test::white(0.7f));
     test::add(scene, test::sheet({0, 0.98f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), test::emitter_material(0, 20));
     for (int x = 0; x < 6; ++x) {
@@ -229,7 +229,7 @@ TEST_CASE("light that leaves a cluster depends on direction") {
     }
 }
 
-TEST_CASE("clusters hold each face once, within their balls") {
+TEST_CASE("clusters contain each face once, within their bounding spheres") {
     test::Random random(4);
     std::vector<uint32_t> faces;
     std::vector<Ball> balls;
@@ -277,7 +277,7 @@ TEST_CASE("clusters of triangles are linked to each other, so that links grow as
     CHECK(links_a_triangle[1] < 1.3 * links_a_triangle[0]);
 }
 
-TEST_CASE("the form factor of a triangle from a place is the share of rays by the cosine that meet it") {
+TEST_CASE("a triangle's form factor at a point is the share of cosine-weighted rays that hit it") {
     test::Random random(7);
     for (int i = 0; i < 40; ++i) {
         const Vec3 a = random.point(-2, 2), b = random.point(-2, 2), c = random.point(-2, 2);

@@ -131,7 +131,7 @@ TEST_CASE("a point light's diffuse and glossy parts are those of the lobes") {
     CHECK(test::mean_of(glossy) > 0.01 * test::mean_of(diffuse));
 }
 
-TEST_CASE("classes that are drawn for a path have the mean of those that are split for a shadow ray") {
+TEST_CASE("randomly chosen lobe classes have the mean of split ones") {
     Queue queue = test::requested_queue();
     Scene scene = varnished_floor(0.6f);
     Material glow = test::white(0);

@@ -126,7 +126,7 @@ TEST_CASE("every tree is sound, whatever the triangles and the settings") {
     }
 }
 
-TEST_CASE("the flags that are not the builder's are kept") {
+TEST_CASE("flags that the builder does not own are kept") {
     std::vector<BvhTriangle> triangles = random_triangles(100, 0.1f, 1);
     for (BvhTriangle& t : triangles) t.flags = (t.primitive << 1) | kLastInLeaf; // left over from another tree
     const Bvh bvh = build_bvh(triangles);

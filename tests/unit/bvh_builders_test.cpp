@@ -152,7 +152,7 @@ TEST_CASE("coincident triangles, however many, neither stall a builder nor make 
     }
 }
 
-TEST_CASE("the flags that are not a builder's are kept, and its own set anew") {
+TEST_CASE("a builder keeps flags of other owners and resets its own") {
     std::vector<BvhTriangle> triangles = make_soup(500, 0);
     for (BvhTriangle& t : triangles) t.flags = (t.primitive << 1) | kLastInLeaf; // left over from another tree
     for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {

@@ -221,7 +221,7 @@ TEST_CASE("a better cached tree is used unless one structure is named") {
     CHECK(messages.all().empty());
 }
 
-TEST_CASE("the cache forgets what was used longest ago when it grows too large") {
+TEST_CASE("the cache evicts the least recently used entries when it grows too large") {
     const fs::path folder = scratch_folder();
     Messages messages;
     std::vector<fs::path> files;

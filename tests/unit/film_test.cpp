@@ -164,7 +164,7 @@ TEST_CASE("a sample with a channel that is not finite or too large adds 0 to all
     CHECK(layers_of(film, 1)[0].image.pixels == std::vector<float>{0, 10, 0}); // valid channels of a layer count
 }
 
-TEST_CASE("threads that add to one pixel at once lose nothing") {
+TEST_CASE("concurrent additions to a pixel lose nothing") {
     Queue queue = Queue::make_cpu();
     Film film(queue, 1, 1, 0);
     const FilmView view = film.view();

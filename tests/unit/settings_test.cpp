@@ -47,7 +47,7 @@ TEST_CASE("each setting has a name of its own, a sentence, and rules that name s
     CHECK(find_setting("max-depth") == nullptr);
 }
 
-TEST_CASE("a setting's value in words leads back to the value") {
+TEST_CASE("a setting's text parses back to its value") {
     for (const Setting& setting : all_settings()) {
         INFO(setting.name);
         PictureOptions options;
@@ -103,7 +103,7 @@ TEST_CASE("conflicting settings are found") {
     CHECK(conflict->kind == SettingConflict::Kind::Excludes);
 }
 
-TEST_CASE("settings that are written as JSON are read back") {
+TEST_CASE("settings survive writing to JSON and reading back") {
     const std::filesystem::path file = std::filesystem::temp_directory_path() / "pertev-settings-test.json";
     PictureOptions options;
     options.scene.scene = "cornell-box";

@@ -59,7 +59,7 @@ TEST_CASE("Student's t matches tables and approaches the normal distribution") {
     CHECK(student_t(1u << 30) == doctest::Approx(1.959964).epsilon(1e-6));
 }
 
-TEST_CASE("at equal time every repetition is interpolated in logarithms") {
+TEST_CASE("equal-time figures interpolate each repetition logarithmically") {
     const TransportScene scene = small_transport_scene();
     CHECK(equal_seconds(scene) == doctest::Approx(0.8));
     CHECK(equal_samples(scene) == 8);
@@ -121,7 +121,7 @@ TEST_CASE("equal samples are the largest number that all integrators have reache
     REQUIRE(at_samples(scene.rows[0], 4));
 }
 
-TEST_CASE("an error of 0 is interpolated as it is") {
+TEST_CASE("an error of 0 is interpolated linearly") {
     TransportRow row = transport_row("raster", {{{1, 1, 0, 0.5}, {2, 2, 0, 0.5}}});
     const auto point = at_time(row, 1.5);
     REQUIRE(point);
@@ -194,7 +194,7 @@ TEST_CASE("efficiency is one over error times time, and its ratio to path's stan
     CHECK(by_time.at(1, "of_path").text("{:.3g}") == "0.667");
 }
 
-TEST_CASE("a repetition that an interrupt cut short counts where it has figures") {
+TEST_CASE("an interrupted repetition counts as far as it has figures") {
     TransportRow row = transport_row("path", {falling(1, 0.1), {falling(3, 0.1)[0]}});
     const std::vector<TransportPoint> points = points_of(row);
     REQUIRE(points.size() == 4);

@@ -46,7 +46,7 @@ constexpr const char* kHello = R"({"type":"hello","key":"a"})";
 
 } // namespace
 
-TEST_CASE("the size while moving is the largest that keeps the frame rate, on machines fast and slow") {
+TEST_CASE("the size in motion is the largest that keeps the frame rate") {
     for (const double full_s : {0.001, 0.1, 0.5, 2.0, 20.0}) {
         FramePace pace(0.12);
         for (int i = 0; i < 60; ++i) pace.took(pace.scale(), frame_time(full_s, pace.scale()));
@@ -229,7 +229,7 @@ TEST_CASE("a slow link gets smaller pictures and a fast one good ones") {
     CHECK(slow.piece_bytes(0.2) < fast.piece_bytes(0.2));
 }
 
-TEST_CASE("a far link is not taken for a slow one") {
+TEST_CASE("a link with high latency is not treated as slow") {
     LinkPace pace;
     double now = 0;
     for (uint32_t i = 1; i < 300; ++i) { // 0.25 s of way, 10 MB/s
@@ -399,7 +399,7 @@ TEST_CASE("where the renderer takes nothing, whoever steers is dropped before th
     CHECK(why == "too many messages wait");
 }
 
-TEST_CASE("there is room for so many clients, and those without a hello are dropped") {
+TEST_CASE("clients over the limit and those without a hello are dropped") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     for (uint32_t i = 1; i <= Audience::kMaxClients; ++i) CHECK(audience.open(i, 0));
