@@ -30,7 +30,7 @@ bool names(const Remark& remark, const std::string& text) { return remark.reason
 
 } // namespace
 
-TEST_CASE("a scene that cast or whitted would show as black is refused, with what to use instead") {
+TEST_CASE("a scene that cast or whitted would render black is refused with alternatives") {
     Scene scene;
     test::add(scene, test::floor_at(0, 1), test::white());
     test::add(scene, test::floor_at(1, 1), {{.emission = {1, 1, 1}}, "lamp"});
