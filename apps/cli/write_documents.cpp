@@ -207,22 +207,23 @@ std::string completion(const CLI::App& app, const std::string& shell) {
 }
 
 std::string settings_document() {
-    std::string text = "# Settings\n\n"
-                       "This file is made by `pertev --settings-document`; a test holds it to the table of settings "
-                       "(`src/settings/`).\n\n"
-                       "A setting has one name: `max_depth` in C++, in JSON and in a picture's metadata "
-                       "(`pertev.max_depth`), `--max-depth` on\n"
-                       "the command line. A file suggests some of them (its camera, its size); `--settings FILE` "
-                       "overrules it, and flags overrule\n"
-                       "both. `pertev info PICTURE.exr` says what came from where (`pertev.by_scene`, "
-                       "`pertev.by_settings`, `pertev.by_flags`),\n"
-                       "and `pertev info PICTURE.exr --settings` prints a file of settings by which `pertev render "
-                       "SCENE --settings FILE` makes the\npicture again. "
-                       "Such a file is `{\"version\":1,\"scene\":{\"name\":...,\"hash\":...},\"settings\":{...}}`. "
-                       "What it holds that is no setting is\n"
-                       "left out with a warning, and `--strict` refuses it. Settings that are marked \"not kept\" do "
-                       "not stand there: they are of\n"
-                       "the machine and the run, such as threads, folders to read from and a limit of time.\n";
+    std::string text =
+        "# Settings\n\n"
+        "`pertev --settings-document` makes this file from the table of settings (`src/settings/`); a test compares "
+        "them.\n\n"
+        "A setting has one name: `max_depth` in C++, in JSON and in a picture's metadata "
+        "(`pertev.max_depth`), `--max-depth` on\n"
+        "the command line. A scene's file suggests some settings (its camera, its size); `--settings "
+        "FILE` overrules it, and flags\n"
+        "overrule both. `pertev info PICTURE.exr` says where each came from (`pertev.by_scene`, "
+        "`pertev.by_settings`, `pertev.by_flags`),\n"
+        "and `pertev info PICTURE.exr --settings` prints a file of settings with which `pertev render "
+        "SCENE --settings FILE` makes the\nsame picture. "
+        "Such a file is `{\"version\":1,\"scene\":{\"name\":...,\"hash\":...},\"settings\":{...}}`. "
+        "Unknown entries are\n"
+        "left out with a warning, and `--strict` refuses them. Settings marked \"not kept\" are not "
+        "stored there, because they\n"
+        "belong to the machine and the run: threads, folders to read from, or a time limit.\n";
     std::string_view group;
     std::string verbs;
     for (const Setting& setting : all_settings()) {
@@ -235,7 +236,8 @@ std::string settings_document() {
         }
         std::string says = setting.sentence;
         if (*setting.more != '\0') says += fmt::format(" {}", setting.more);
-        if (setting.integrators != 0) says += fmt::format(" Of {}.", fmt::join(integrators_with(setting), ", "));
+        if (setting.integrators != 0)
+            says += fmt::format(" Integrators: {}.", fmt::join(integrators_with(setting), ", "));
         if (!setting.needs.empty()) says += fmt::format(" Needs one of: {}.", setting.needs);
         if (!setting.excludes.empty()) says += fmt::format(" Not with: {}.", setting.excludes);
         if (verbs_with(setting) != verbs) says += fmt::format(" Verbs: {}.", verbs_with(setting));

@@ -20,7 +20,7 @@ namespace pertev {
 
 // A `Traversal` defines the traversal of one tree over triangles; that of the scene is common to all:
 //   using Tree                                                  the structure, a view
-//   static bool traversal(tree, ray, instance, visitor, counter)     `instance` is kNoHit if the triangles carry their
+//   static bool traverse(tree, ray, instance, visitor, counter)     `instance` is kNoHit if the triangles carry their
 //   own;
 //                                                               returns true if the visitor ended it
 
