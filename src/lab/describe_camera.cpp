@@ -25,8 +25,7 @@ std::string describe_camera(const Camera& camera, DoubleVec3 origin) {
     const Transform& m = camera.world_from_camera;
     const Vec3 eye = m.translation, forward = -column(m, 2);
     // The target is as far from the camera as the camera is from the origin. If it were nearer, the direction would
-    // lose
-    // digits in the difference of the two.
+    // lose digits in the difference of the two.
     float distance = 1;
     while (distance < max_component(abs(eye))) distance *= 2;
     const std::string place = fmt::format("`eye={}` `target={}` `up={}`", text_of(eye, origin),

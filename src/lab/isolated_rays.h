@@ -28,8 +28,7 @@ Tracer make_tracer(Queue& queue, const Combination& combination, const PreparedS
 const Combination& tracer_of_pictures(const RaySet& set, const TracerChoice& choice);
 
 /// `prepared` must come from `scene` and keep its coordinates. `between()` is called now and then and may throw to
-/// end
-/// the work.
+/// end the work.
 std::vector<RaySet> make_isolated_sets(Queue& queue, const Scene& scene, const Camera& camera,
                                        const PreparedScene& prepared, uint32_t count,
                                        const std::function<void()>& between);

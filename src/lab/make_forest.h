@@ -2,8 +2,7 @@
 
 // The scene "forest" of the record (docs/ray_sets.md): hilly ground with trees of loose leaves. Its 8.2 million
 // triangles are small, sparse and randomly oriented, unlike a room with walls. Its bits are equal on every machine
-// and
-// for any number of threads.
+// and for any number of threads.
 
 #include "scene/mesh.h"
 

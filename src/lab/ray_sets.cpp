@@ -112,8 +112,7 @@ std::vector<Ray> make_primary(const RaySetJob& job, uint32_t count, uint32_t fir
 }
 
 /// The random state of ray o. Rays are numbered from 0 in each group; the second group's seed is offset by the size
-/// of
-/// the first.
+/// of the first.
 uint32_t state_of(const StartPoints& starts, std::size_t o, uint32_t seed) {
     const bool is_first = o < starts.first_group;
     const std::size_t made = is_first ? 0 : starts.first_group;

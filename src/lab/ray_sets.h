@@ -40,15 +40,13 @@ FrameSize record_frame(uint32_t count);
 
 /// The record's five sets: "primary", "shadow", "diffuse1", "diffuse2" and "diffuse3". Primary rays are whole frames
 /// with one sample per pixel until there are `count` rays. Other sets start at the hits of the set before, in order.
-/// If
-/// these are fewer than `count`, the hits of a second such set with other random numbers follow; if both together are
-/// fewer, the set is smaller.
+/// If these are fewer than `count`, the hits of a second such set with other random numbers follow; if both together
+/// are fewer, the set is smaller.
 std::vector<RaySet> make_record_ray_sets(const RaySetJob& job, uint32_t count);
 
 /// "along_axes" has the rays of `from`, turned to each one's nearest axis. "beside_axes" has the same rays tilted by
 /// a thousandth to both sides, so that they hit nearly the same surfaces. A traversal takes equal time for both
-/// unless
-/// zero components of the direction slow it down.
+/// unless zero components of the direction slow it down.
 std::vector<RaySet> make_axis_ray_sets(const RaySet& from);
 
 inline constexpr int kMaxFrameDepth = 8;
@@ -62,8 +60,7 @@ std::vector<RaySet> make_frame_ray_sets(const RaySetJob& job, int depth);
 // Building blocks of the sets.
 
 /// Replaces the state by its hash and returns the hash's upper 24 bits as a number in [0, 1). Zero occurs once in
-/// 2^24
-/// draws.
+/// 2^24 draws.
 inline float draw(uint32_t& state) {
     state = hash_word(state);
     return static_cast<float>(state >> 8) * 0x1p-24f;

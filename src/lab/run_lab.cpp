@@ -310,8 +310,7 @@ private:
     }
 
     /// Any-hit traversals with and without RTA are identical, as there is no nearest hit to use. Returns the figures
-    /// of
-    /// the one that was measured.
+    /// of the one that was measured.
     const RunFigures* same_run(const CombinationFigures& c, uint32_t set) const {
         if (!sets_[set].figures.any_hit) return nullptr;
         for (const auto& [rta, at_pops] : {std::pair(true, true), std::pair(true, false), std::pair(false, true)}) {
@@ -334,8 +333,7 @@ private:
 
     static uint32_t count_of(const TracedSet& set) { return static_cast<uint32_t>(set.rays.size()); }
     /// Runs work over the set: at once on a GPU, as when timed, since it is soon done; in pieces on a CPU, where it
-    /// may
-    /// take an hour.
+    /// may take an hour.
     template <class Work>
     void over_set(const TracedSet& set, const std::string& doing, const Work& work) {
         if (queue_.is_cuda()) {

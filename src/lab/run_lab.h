@@ -2,8 +2,7 @@
 
 // The traversal laboratory. It makes the rays of a frame and compares the proven traversal (while-while over the
 // binned binary tree) with brute force on some of them. It then compares every combination with the proven traversal
-// on
-// all rays and times those that agree.
+// on all rays and times those that agree.
 
 #include <cstdint>
 #include <functional>
@@ -51,10 +50,8 @@ struct LabProgress {
 
 /// Stops early, with `interrupted` set, when keep_going returns false; a running build or timed run is finished
 /// first. Throws Error(BadInput) for a scene without triangles or if no combination can be measured,
-/// Error(OutOfMemory)
-/// if the rays do not fit, and Error(DeviceFault) if the proven traversal differs from brute force. A combination
-/// that
-/// differs from the proven traversal or does not fit into memory has no figures but a reason.
+/// Error(OutOfMemory) if the rays do not fit, and Error(DeviceFault) if the proven traversal differs from brute force.
+/// A combination that differs from the proven traversal or does not fit into memory has no figures but a reason.
 LabReport run_lab(Queue& queue, const Scene& scene, const Camera& camera, const LabSettings& settings,
                   const std::function<bool(const LabProgress&)>& keep_going);
 

@@ -269,8 +269,7 @@ private:
 
     /// Renders solutions of growing detail, each about four times the patches of the one before, while the next one
     /// alone would fit into a repetition's share of the time. Later repetitions make as many as the first. Returns
-    /// false if
-    /// it was stopped.
+    /// false if it was stopped.
     bool add_solutions(TransportRow& row, uint32_t number, const std::string& doing, Repetition& figures,
                        std::vector<Image>& pictures) {
         const Stopwatch watch;

@@ -46,22 +46,18 @@ inline uint32_t reference_seed(const TransportSettings& settings, uint32_t half)
 
 /// The number of samples of the next picture after `last`: twice as many if they fit into `share_s` seconds, else as
 /// many as fit if that is at least an eighth more, else 0. made_seconds is already spent and not counted again. At
-/// most
-/// `most`.
+/// most `most`.
 uint32_t next_samples(const TransportFigures& last, double share_s, uint32_t most);
 
 /// Renders one uncounted sample per pixel, so that memory allocation, caches and the driver's first launches are not
 /// timed. If the integrator prepares something before its samples, rendering stops once that has begun: it is made
-/// only
-/// once and timed. The film is cleared afterwards. Throws what Session::render throws.
+/// only once and timed. The film is cleared afterwards. Throws what Session::render throws.
 void warm_up(Session& session, const std::function<void()>& tell = {});
 
 /// Lets all integrators take their first turn, then all their second, and so on, so that an interrupt leaves results
 /// of each. An integrator's first repetition has 1, 2, 4, ... samples as long as the next picture fits into its share
-/// of
-/// the time (one sample is always rendered), and then as many as fit; its other repetitions use these numbers.
-/// Radiosity makes solutions of growing detail instead (lab/transport_solutions.h), while the next alone would fit
-/// into
+/// of the time (one sample is always rendered), and then as many as fit; its other repetitions use these numbers.
+/// Radiosity makes solutions of growing detail instead (lab/transport_solutions.h), while the next alone would fit into
 /// the share. An integrator that cannot render the scene is refused in its row. `scene` must have passed validate().
 /// Stops early, with `interrupted` set, when keep_going returns false; an unfinished repetition is kept if it is an
 /// integrator's first. Throws Error(BadInput) if a given reference has another size or is not finite, or if the

@@ -3,8 +3,7 @@
 // Remakes the pictures of chapters 2 to 4 of the thesis (lab/thesis.h), each by the algorithm that it shows. Figures
 // have the thesis's numbers: 3.3 hard shadows, 3.4 soft shadows, 3.6 indirect light alone, 3.7 radiosity in four
 // panels, 3.8 the Cornell box with a mirror sphere, 3.9 the photon map, 3.10 the caustic under glass, 4.1 points
-// found
-// in a tree. Other pictures that belong to these chapters are listed under their section.
+// found in a tree. Other pictures that belong to these chapters are listed under their section.
 
 #include <functional>
 #include <string>
@@ -45,8 +44,7 @@ public:
     using Progress = std::function<bool(const char* doing, double share)>;
 
     /// `settings` gives size, samples, depth and the path tracer's body. Pictures that stand side by side have half
-    /// the
-    /// width and height. `queue` must outlive this.
+    /// the width and height. `queue` must outlive this.
     ThesisPictures(Queue& queue, const RenderSettings& settings) : queue_(queue), settings_(settings) {}
 
     /// Makes the picture with this name. Throws Error(Interrupted) if it is stopped before there is anything to show,

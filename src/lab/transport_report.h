@@ -3,9 +3,8 @@
 // Results of the light transport laboratory as plain data, which becomes tables, plots, CSV and JSON. Each integrator
 // renders one view several times with different seeds (repetitions) and is compared with one reference after 1, 2, 4,
 // ... samples per pixel. `pertev compare` defines the errors: relMSE is the mean of (x - r)^2 / (r^2 + 0.01) over
-// pixels
-// and channels, FLIP is HDR-FLIP. Derived figures (means, confidence intervals, equal time, efficiency) are computed
-// here.
+// pixels and channels, FLIP is HDR-FLIP. Derived figures (means, confidence intervals, equal time, efficiency) are
+// computed here.
 
 #include <cstddef>
 #include <cstdint>
@@ -78,8 +77,7 @@ struct TransportReport {
 };
 
 /// A mean over repetitions. `half_width` belongs to its 95 % confidence interval by Student's t, which assumes
-/// normally
-/// distributed values; absent for fewer than two values.
+/// normally distributed values; absent for fewer than two values.
 struct Estimate {
     double mean = 0;
     std::optional<double> half_width;
@@ -103,16 +101,14 @@ std::vector<TransportPoint> points_of(const TransportRow& row);
 
 /// Interpolates each repetition's curve and averages. Interpolation is linear in the logarithms of the value and of
 /// the sampling time (values of 0 are interpolated linearly). Absent if `seconds` lies outside a repetition's figures
-/// or
-/// there are none. For solutions the last one that was ready is used.
+/// or there are none. For solutions the last one that was ready is used.
 std::optional<TransportPoint> at_time(const TransportRow& row, double seconds);
 /// Absent if some repetition lacks this number of samples, and for solutions, which samples do not improve.
 std::optional<TransportPoint> at_samples(const TransportRow& row, uint32_t samples);
 
 /// The longest time that all repetitions of all integrators with figures have reached, and the largest number of
 /// samples for which all of them have a picture; 0 if there is none. Solutions are ignored, except for the time if
-/// there
-/// is nothing else.
+/// there is nothing else.
 double equal_seconds(const TransportScene& scene);
 uint32_t equal_samples(const TransportScene& scene);
 
