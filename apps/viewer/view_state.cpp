@@ -254,7 +254,7 @@ std::vector<ViewSetting> make_settings() {
         "How triangles are kept so that rays find them. Another one is faster or slower", names_of<StructureKind>(),
         [](const ViewState& s) { return name_of(shown_combination(s).structure); }, set_structure);
     choice(
-        "walk", "Walk", "Rays (the picture stays the same)",
+        "traversal", "Traversal", "Rays (the picture stays the same)",
         "How rays go through the structure. Another one is faster or slower", names_of<TraversalKind>(),
         [](const ViewState& s) { return name_of(shown_combination(s).traversal); }, set_traversal);
     choice(

@@ -118,17 +118,17 @@ std::vector<Setting> frame_settings() {
     std::vector<Setting> rows = {
         row("no_reconstruction", "Frames", "", FIELD(reconstruction.none), "Frames show their samples as they are."),
         row(
-            "no_firefly_limit", "Frames", "",
+            "no_firefly_clamping", "Frames", "",
             [](PictureOptions& o) -> SettingField { return InverseSwitch{&o.reconstruction.settings.clamp_fireflies}; },
-            "Samples far brighter than their neighbours are not clamped."),
+            "Samples far brighter than their neighbours are not clamped.", OldName{"no_firefly_limit"}),
         row(
-            "no_history_limit", "Frames", "",
+            "no_history_clamping", "Frames", "",
             [](PictureOptions& o) -> SettingField { return InverseSwitch{&o.reconstruction.settings.clamp_history}; },
-            "Long means are not clamped to those of recent frames where these disagree."),
+            "Long means are not clamped to those of recent frames where these disagree.", OldName{"no_history_limit"}),
         row(
-            "no_follow_light", "Frames", "",
+            "no_temporal_gradients", "Frames", "",
             [](PictureOptions& o) -> SettingField { return InverseSwitch{&o.reconstruction.settings.follow_light}; },
-            "Where the scene moves, means over frames do not follow changes of light."),
+            "Where the scene moves, means over frames do not follow changes of light.", OldName{"no_follow_light"}),
         row(
             "no_anti_alias", "Frames", "",
             [](PictureOptions& o) -> SettingField { return InverseSwitch{&o.reconstruction.settings.anti_alias}; },

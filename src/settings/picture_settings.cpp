@@ -98,8 +98,9 @@ std::vector<Setting> picture_settings() {
             "The scene is sorted for rays so, as pertev lab names it, whatever build says. It may be given for one "
             "kind of ray: camera=, bounce= or shadow=NAME.",
             On{kTracing}, Mark::NotKept),
-        row("walk", "Tracing", "[KIND=]NAME", FIELD(tracer.traversals),
-            "Rays traverse it by this algorithm, as pertev lab names it.", On{kTracing}, Mark::NotKept),
+        row("traversal", "Tracing", "[KIND=]NAME", FIELD(tracer.traversals),
+            "Rays traverse it by this algorithm, as pertev lab names it.", On{kTracing}, Mark::NotKept,
+            OldName{"walk"}),
         row("rta", "Tracing", "[KIND=]WHICH", FIELD(tracer.rta), "Redundant traversal avoidance: on, nodes or off.",
             On{kTracing}, Mark::NotKept),
         row("order", "Tracing", "[KIND=]WHICH", FIELD(tracer.order), "Nearer children are traversed first: on or off.",
