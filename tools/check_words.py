@@ -22,7 +22,7 @@ FOLDERS = ["src", "apps", "tests", "tools", "bench"]
 C_SUFFIXES = {".h", ".cpp", ".cu", ".inl", ".js"}
 FRAGMENTS = re.compile(r"(?:of|what|those|the same|likewise|as|beside)\b", re.IGNORECASE)
 LONGEST_SUBJECT = 72
-OLDER_SUBJECTS = {"22e5fac4"}  # 73 characters, merged before the limit was noticed
+OLDER_SUBJECTS = {"22e5fac4", "365e3296"}  # a little longer, merged before the limit was noticed
 
 # Strings are matched so that a "//" in one begins no comment; a ' between digits separates them.
 TOKEN = re.compile(

@@ -1,17 +1,21 @@
 #!/usr/bin/env bash
 # Gathers programs of a build folder with every library they load (but the C library's own) into one folder that runs
 # on another machine, whose libraries may be fewer or older: tools/make_portable.sh build OUT pertev pertev_tests ...
-# Needs patchelf.
+# Licences go with them: ours, docs/notices.md, and those of the libraries' Debian packages. Needs patchelf.
 set -euo pipefail
 build=$1 out=$2
 shift 2
-mkdir -p "$out/bin" "$out/lib"
+mkdir -p "$out/bin" "$out/lib" "$out/licences"
+root=$(cd "$(dirname "$0")/.." && pwd)
+cp "$root/LICENSE" "$root/docs/notices.md" "$out/licences/"
 for program in "$@"; do
     cp "$build/bin/$program" "$out/bin/"
     strip "$out/bin/$program"
     ldd "$build/bin/$program" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' |
         grep -vE '/(libc|libm|libdl|libpthread|librt|ld-linux[^/]*)\.so' | while read -r library; do
         cp -Ln "$library" "$out/lib/"
+        package=$(dpkg -S "*/$(basename "$(readlink -f "$library")")" 2>/dev/null | cut -d: -f1 | head -1) || true
+        [[ ! -f /usr/share/doc/$package/copyright ]] || cp "/usr/share/doc/$package/copyright" "$out/licences/$package"
     done
     patchelf --set-rpath '$ORIGIN/../lib' --force-rpath "$out/bin/$program"
 done

@@ -106,6 +106,18 @@ def remade(text, read):
     return MARKER.sub(lambda m: m[1] + render(m[2], read(m[2]), m[3], m[4]) + m[6], text)
 
 
+def strays(text, read):
+    """Figures in rows that link a file of results but do not stand in it: those of the second cell, and of the third after its
+    colon."""
+    for line in text.splitlines():
+        if match := re.match(r"\|.*\(\.\./bench/(results/\S+\.json)\) \|$", line):
+            cells = line.split("|")
+            known = {str(cell) for table in read(match[1])["tables"] for row in table["rows"] for cell in row}
+            for figure in re.findall(r"[\d.]+", cells[2] + " " + cells[3].partition(":")[2]):
+                if figure not in known:
+                    yield f"{figure} does not stand in {match[1]}"
+
+
 def make_page():
     """The page that `pertev lab` writes (src/lab/report_page.h), with every file of bench/results/."""
     data = "".join('<script type="application/json" class="measurement">' + path.read_text(encoding="utf-8").replace("<", "\\u003c")
@@ -131,6 +143,8 @@ def self_test():
     chosen = render("results/x.json", good, "a", "columns=k,r where=k:two_words")
     assert "1.10" not in chosen and "| two words | 2 |" in chosen, chosen
     assert make_page().count('class="measurement"') > 50 and "{{" not in make_page().partition("<script>")[0]
+    row = "| what | 1.10 | Other 3: 3e-5 | 2 | [x](../bench/results/x.json) |"
+    assert not list(strays(row.replace("3e-5", "2"), lambda _: good)) and list(strays(row.replace("1.10", "1.1"), lambda _: good))
     document = "before\n<!-- table: results/x.json a -->\nold 1.2\n<!-- end -->\nafter\n"
     once = remade(document, lambda _: good)
     assert "old" not in once and once == remade(once, lambda _: good) and once.endswith("after\n")
@@ -162,6 +176,7 @@ def main(arguments):
         except (KeyError, ValueError) as error:
             faults.append(f"{document.name}: {error}")
             continue
+        faults += [f"{document.name}: {stray}" for stray in strays(text, lambda name: seen[name])]
         if new != text and check:
             faults.append(f"{document.name}: a table differs from its JSON; run tools/make_tables.py")
         elif new != text:

@@ -131,9 +131,9 @@ void add_bench_build_command(CLI::App& bench, int& status) {
     CLI::App& verb = *bench.add_subcommand("build", "Trees that are built on the device");
     const auto flags = std::make_shared<BuildFlags>();
     add_record_scenes(verb, flags->scenes);
-    add_whole(verb, "--runs", flags->runs, "timed (3 on the CPU, 25 in CUDA)", 1, 10000);
+    add_whole(verb, "--runs", flags->runs, "number of timed builds (3 on the CPU, 25 in CUDA)", 1, 10000);
     verb.add_flag("--compare", flags->compare,
-                  "build by sbvh, sbvh-reinsertion, reinsertion, binned and\nploc on the CPU too");
+                  "also build sbvh, sbvh-reinsertion, reinsertion, binned and\nploc on the CPU");
     flags->settings.add(verb, kBenchBuild, *flags);
     add_bench_report_flags(verb, flags->report);
     verb.callback([&verb, flags, &status] {

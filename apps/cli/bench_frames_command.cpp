@@ -179,11 +179,11 @@ void add_bench_frames_command(CLI::App& bench, int& status) {
     flags->render.size = PictureSize{1920, 1080};
     flags->render.render.path.max_depth = 4;
     add_scene_name(verb, flags->render.scene);
-    add_whole(verb, "--frames", flags->frames, "of the sequence; the first two are not timed", 1, 100000)
+    add_whole(verb, "--frames", flags->frames, "number of frames; the first two are not timed", 1, 100000)
         ->capture_default_str();
-    verb.add_flag("--still", flags->still, "the camera stands still");
+    verb.add_flag("--still", flags->still, "keep the camera still");
     verb.add_option("--reference", flags->reference,
-                    "compare the last frame with a picture of so many samples,\nby HDR-FLIP, and its first sample too")
+                    "compare the last frame and its first sample with a picture of\nthis many samples, by HDR-FLIP")
         ->type_name("SPP")
         ->check(whole_between(1, kMaxSamplesPerPixel));
     verb.add_option("--write", flags->write, "write each frame as a PNG file into this folder")->type_name("FOLDER");

@@ -89,7 +89,7 @@ Fields fields_of(const NoiseFlags& flags, const RenderSettings& settings, const 
             {"device", "device", queue.device_name()},
             {"width", "width", settings.width},
             {"height", "height", settings.height},
-            {"samples", "samples of each pixel", settings.samples},
+            {"samples", "samples per pixel", settings.samples},
             {"seeds", "seeds", flags.seeds},
             {"keep_percent", "of the pixels", static_cast<double>(flags.keep_percent), "%"},
             {"pixels", "pixels", figures.pixels},
@@ -134,11 +134,10 @@ void add_bench_noise_command(CLI::App& bench, int& status) {
     const auto flags = std::make_shared<NoiseFlags>();
     flags->render.size = PictureSize{640, 360};
     add_scene_name(verb, flags->render.scene);
-    add_whole(verb, "--seeds", flags->seeds, "pictures of each sampler", 2, 1024)->capture_default_str();
-    verb.add_option(
-            "--keep", flags->keep_percent,
-            "of the pixels: those where the low-discrepancy sampler varies\nleast, for the figures of both samplers; a "
-            "small part of few\nseeds flatters it")
+    add_whole(verb, "--seeds", flags->seeds, "number of pictures of each sampler", 2, 1024)->capture_default_str();
+    verb.add_option("--keep", flags->keep_percent,
+                    "share of the pixels that both samplers' figures use: those where\nthe low-discrepancy sampler "
+                    "varies least; a small share with few\nseeds flatters it")
         ->type_name("PERCENT")
         ->check(number_above_zero(100))
         ->capture_default_str();

@@ -211,10 +211,9 @@ void add_bench_rays_command(CLI::App& bench, int& status) {
     CLI::App& verb = *bench.add_subcommand("rays", "Sets of rays that other tracers can be timed on");
     const auto flags = std::make_shared<RaysFlags>();
     add_record_scenes(verb, flags->scenes);
-    add_whole(verb, "--count", flags->count, "rays of a set; that of the record is four frames of 1920x1080", 1,
-              1u << 30)
+    add_whole(verb, "--count", flags->count, "rays per set; the record's is four frames of 1920x1080", 1, 1u << 30)
         ->capture_default_str();
-    add_whole(verb, "--runs", flags->runs, "timed, of each set (5 on the CPU, 25 in CUDA)", 1, 10000);
+    add_whole(verb, "--runs", flags->runs, "timed runs per set (5 on the CPU, 25 in CUDA)", 1, 10000);
     verb.add_flag("--check", flags->check, "compare every hit with the binary traversal's on the CPU, bit for bit");
     verb.add_flag("--axes", flags->axes, "two more sets: diffuse1 turned along axes, and a thousandth beside them");
     flags->tracer.default_build = TreeBuild::Best; // no tree's making is timed

@@ -145,7 +145,7 @@ int bench_job(JobFlags& flags) {
         {"device", "device", device},
         {"width", "width", settings.width},
         {"height", "height", settings.height},
-        {"samples", "samples of each pixel", settings.samples},
+        {"samples", "samples per pixel", settings.samples},
         {"triangles", "triangles", prepared.triangles},
         {"load_seconds", "load", load_s, "s", "{:.3f}"},
         {"build_seconds", "trees", prepared.build_seconds, "s", "{:.3f}"},
@@ -187,16 +187,15 @@ void add_bench_render_command(CLI::App& bench, int& status) {
         ->check(one_of(std::move(names)))
         ->capture_default_str();
     verb.add_option("--scene", flags->picture.scenes,
-                    "the job's: Crytek's Sponza or Bitterli's Cornell box, as a\nglTF")
+                    "the job's scene: Crytek's Sponza or Bitterli's Cornell box, as\na glTF")
         ->type_name("FILE")
         ->required()
         ->expected(1);
-    add_whole(verb, "--seed", flags->seed, "of the random numbers", 0, UINT32_MAX)->capture_default_str();
+    add_whole(verb, "--seed", flags->seed, "seed of the random number generator", 0, UINT32_MAX)->capture_default_str();
     add_whole(verb, "--moves", flags->moves,
-              "move the camera so often, too, and time one sample of every\npixel after each move (0)", 0, 100000);
+              "also move the camera this often and time one sample per pixel\nafter each move (0)", 0, 100000);
     verb.add_flag("--isolated", flags->isolated,
-                  "trace the sets of `bench rays` by themselves, too, and say\nwhat share of their rate the job's rays "
-                  "have");
+                  "also trace the sets of `bench rays` in isolation and report\nthe job's rate relative to theirs");
     verb.add_option("-o,--output", flags->output, "keep the picture")->type_name("FILE");
     add_picture_flags(verb, flags->picture, "the job's", "the job's");
     verb.callback([&verb, flags, &status] {

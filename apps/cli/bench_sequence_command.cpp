@@ -168,10 +168,10 @@ int bench_sequence(SequenceFlags& flags) {
     Reporter reporter(flags.render.report);
     flags.render.settings.read(flags.render, reporter.messages());
     if (!frame_range(flags.render)) {
-        throw Error(ErrorCode::BadInput, "bench sequence: which frames? say --frames A-B or --turntable N");
+        throw Error(ErrorCode::BadInput, "bench sequence: the frames are missing; add --frames A-B or --turntable N");
     }
     if (flags.reference == 0 && (!flags.peer.empty() || !flags.strips.empty())) {
-        throw Error(ErrorCode::BadInput, "--peer, --strips: against which pictures? say --reference SPP");
+        throw Error(ErrorCode::BadInput, "--peer, --strips: the reference is missing; add --reference SPP");
     }
     check_motion_flags(flags.render);
     check_radiosity_flags(flags.render.radiosity, flags.render.render, flags.render.limits_memory);
@@ -230,20 +230,21 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
     flags->render.render.path.max_depth = 4;
     add_scene_name(verb, flags->render.scene);
     verb.add_option("--reference", flags->reference,
-                    "compare each frame with a picture of so many samples, by HDR-FLIP;\nits errors' mean change from "
-                    "frame to frame is the flicker")
+                    "compare each frame with a picture of this many samples, by\nHDR-FLIP; the error's mean change "
+                    "between frames is the flicker")
         ->type_name("SPP")
         ->check(whole_between(2, kMaxSamplesPerPixel));
     verb.add_option("--write", flags->write, "write each frame as a PNG file into this folder")->type_name("FOLDER");
     verb.add_option("--write-samples", flags->write_samples,
                     "write each frame's samples, albedo and normals as PFM into this\nfolder, for another denoiser")
         ->type_name("FOLDER");
-    verb.add_option("--peer", flags->peer,
-                    "compare what another denoiser made of these: frame-0000-denoised.pfm\nand so on in this folder")
+    verb.add_option(
+            "--peer", flags->peer,
+            "compare another denoiser's output for these frames, in\nframe-0000-denoised.pfm and so on in this folder")
         ->type_name("FOLDER");
-    verb.add_option("--strips", flags->strips,
-                    "write of each fifteenth frame samples, frame, peer and reference\nside by side as PNG into this "
-                    "folder")
+    verb.add_option(
+            "--strips", flags->strips,
+            "write samples, frame, peer and reference of each fifteenth\nframe side by side as PNG into this folder")
         ->type_name("FOLDER");
     add_bench_report_flags(verb, flags->render.report);
     flags->render.settings.add(verb, kBenchSequence, flags->render);

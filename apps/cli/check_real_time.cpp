@@ -9,12 +9,10 @@ void check_real_time_flags(const RenderFlags& flags) {
     if (!flags.real_time) return;
     const RenderSettings& settings = flags.render;
     refuse(settings.samples != 1,
-           fmt::format("--spp {}: a frame of --real-time has one sample a pixel", settings.samples));
-    refuse(
-        !makes_frames(settings.integrator),
-        fmt::format("--real-time: frames are reconstructed of the samples of --integrator path, direct, indirect and "
-                    "hybrid, not of {}'s",
-                    integrator_name(settings)));
+           fmt::format("--spp {}: a frame of --real-time has one sample per pixel", settings.samples));
+    refuse(!makes_frames(settings.integrator),
+           fmt::format("--real-time: works with --integrator path, direct, indirect and hybrid, not with {}",
+                       integrator_name(settings)));
 }
 
 } // namespace pertev

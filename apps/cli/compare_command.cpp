@@ -71,7 +71,7 @@ int compare(const CompareFlags& flags) {
 } // namespace
 
 void add_compare_command(CLI::App& app, int& status) {
-    CLI::App& verb = *app.add_subcommand("compare", "Say how far a picture is from a reference: relMSE, FLIP, hash");
+    CLI::App& verb = *app.add_subcommand("compare", "Compare a picture with a reference: relMSE, FLIP, hash");
     const auto flags = std::make_shared<CompareFlags>();
     verb.add_option("A", flags->picture, "the picture: .exr .hdr .png .jpg")
         ->type_name("")

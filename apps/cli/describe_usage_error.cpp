@@ -52,8 +52,7 @@ std::string describe_flag(const std::string& word, const std::vector<const CLI::
     for (std::size_t later = i + 1; later < verbs.size(); ++later) {
         const std::vector<std::string> flags = flags_of(*verbs[later]);
         if (std::ranges::find(flags, flag) != flags.end()) {
-            return fmt::format("{0}: stands before {1}; flags of {1} stand behind that name", flag,
-                               verbs[later]->get_name());
+            return fmt::format("{0}: is a flag of {1} and must come after that name", flag, verbs[later]->get_name());
         }
     }
     return fmt::format("{}: no such flag{}", flag, did_you_mean(suggest_name(flag, flags_of(*verbs[i]))));
@@ -67,10 +66,10 @@ std::string describe_words(const std::vector<std::string>& words, const CLI::App
     const std::string meant = suggest_name(words.front(), names_below(verb));
     if (!meant.empty()) return text + did_you_mean(meant);
     if (std::ranges::all_of(words, [](const std::string& word) { return number_in(word).has_value(); })) {
-        return text + "; numbers that belong together are joined by commas: 1,2,3";
+        return text + "; components of a vector are joined by commas: 1,2,3";
     }
     if (takes(verb, "SCENE") && takes(verb, "--output")) {
-        return text + "; there is one SCENE, and each picture has a -o of its own";
+        return text + "; only one SCENE is accepted, and each picture needs its own -o";
     }
     return takes(verb, "--scene") ? text + "; scenes are named by --scene" : text;
 }
@@ -101,7 +100,7 @@ std::string describe_repetition(const CLI::App& verb) {
     for (const CLI::Option* flag : verb.get_options()) {
         const int most = std::max(flag->get_items_expected_max(), 1);
         if (flag->get_multi_option_policy() == CLI::MultiOptionPolicy::Throw && int(flag->count()) > most) {
-            return fmt::format("{}: given {} times, taken once", flag->get_name(), flag->count());
+            return fmt::format("{}: given {} times; it is accepted once", flag->get_name(), flag->count());
         }
     }
     return "";

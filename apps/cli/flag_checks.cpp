@@ -40,13 +40,13 @@ void refuse_list(const std::string& output) {
     std::string each = output;
     for (std::size_t at = 0; (at = each.find(',', at)) != std::string::npos; at += 4) each.replace(at, 1, " -o ");
     throw Error(ErrorCode::BadInput,
-                fmt::format("-o {}: this is the name of one file; each has a -o of its own: -o {}", output, each));
+                fmt::format("-o {}: is the name of one file; give each file its own -o: -o {}", output, each));
 }
 
 void note_number_signs(const std::string& output, const char* when, Messages& messages) {
     if (!names_frames(output)) return;
     messages.note(
-        fmt::format("-o {}: # stands for a frame's number {}; this is one file, which is called so", output, when));
+        fmt::format("-o {}: # stands for a frame's number {}; here it is a part of the file's name", output, when));
 }
 
 } // namespace pertev

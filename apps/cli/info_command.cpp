@@ -187,7 +187,7 @@ int info(InfoFlags& flags) {
     Facts facts;
     facts.add("file", name);
     refuse(!flags.scene.file_scene.empty() && (is_picture_name(name) || !is_scene_name(name)),
-           fmt::format("--file-scene: of a scene; {} is none", name));
+           fmt::format("--file-scene: applies to scenes; {} is none", name));
     if (is_picture_name(name)) {
         describe_image(flags, facts, messages);
     } else if (is_scene_name(flags.scene.scene)) {
@@ -207,7 +207,7 @@ int info(InfoFlags& flags) {
 } // namespace
 
 void add_info_command(CLI::App& app, int& status) {
-    CLI::App& verb = *app.add_subcommand("info", "Say what a scene, a picture or a radiosity solution holds");
+    CLI::App& verb = *app.add_subcommand("info", "Describe a scene, a picture or a radiosity solution");
     const auto flags = std::make_shared<InfoFlags>();
     verb.add_option("FILE", flags->scene.scene,
                     "a scene (.gltf .glb .obj .ply, or a built-in one:\n" + builtin_scene_list() +
@@ -217,7 +217,7 @@ void add_info_command(CLI::App& app, int& status) {
         ->required();
     flags->settings.add(verb, kInfo, *flags);
     verb.add_flag("--settings", flags->shows_settings,
-                  "The settings that made a picture are printed as JSON, for pertev render --settings.");
+                  "Prints the settings that made a picture as JSON, for pertev render --settings.");
     add_report_flags(verb, flags->report);
     verb.callback([flags, &status] { status = info(*flags); });
 }

@@ -102,8 +102,7 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
     settings.options = traversal_options(flags);
     settings.distributions.clear();
     if (!is_cuda && flags.persistent == "on") {
-        throw Error(ErrorCode::BadInput,
-                    "--persistent on: that is for a GPU; threads of a CPU take rays from a pool anyway");
+        throw Error(ErrorCode::BadInput, "--persistent on: applies to GPUs; CPU threads always take rays from a pool");
     }
     if (!is_cuda || flags.persistent != "on") settings.distributions.push_back(Distribution::OneAThread);
     if (is_cuda && flags.persistent != "off") {
@@ -119,13 +118,13 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
     if (traces("record")) {
         if (flags.rays.size() > 1 || !flags.size_text.empty() || !flags.depths.empty()) {
             throw Error(ErrorCode::BadInput,
-                        "--rays record: its sets are fixed; no other kind, --size or --depths goes with it");
+                        "--rays record: its sets are fixed; leave out other kinds, --size and --depths");
         }
         settings.record_rays = flags.count > 0 ? flags.count : kRecordRays;
         const FrameSize frame = record_frame(settings.record_rays);
         settings.width = frame.width, settings.height = frame.height;
     } else if (flags.count > 0) {
-        throw Error(ErrorCode::BadInput, "--count: is for --rays record; the rays of a frame follow from --size");
+        throw Error(ErrorCode::BadInput, "--count: applies to --rays record; --size sets the rays of a frame");
     }
     settings.runs = static_cast<int>(flags.runs);
     settings.warm_ups = is_cuda ? 3 : 1;
@@ -202,10 +201,9 @@ void add_lab_command(CLI::App& app, int& status) {
         ->type_name("NAME,...")
         ->delimiter(',')
         ->check(one_of(names_of<TraversalKind>()));
-    verb.add_option(
-            "--rta", flags->rta,
-            "redundant traversal avoidance: skip what lies beyond the\nnearest hit; nodes: at nodes and not at pops "
-            "(compressed only)")
+    verb.add_option("--rta", flags->rta,
+                    "redundant traversal avoidance: skip nodes behind the nearest\nhit; nodes: test at nodes and not "
+                    "at pops (compressed only)")
         ->type_name("WHICH,...")
         ->delimiter(',')
         ->check(one_of({"on", "off", "both", "nodes"}))
@@ -218,7 +216,7 @@ void add_lab_command(CLI::App& app, int& status) {
         ->delimiter(',')
         ->check(one_of(names_of<TestKind>()))
         ->capture_default_str();
-    add_switch(verb, "--persistent", flags->persistent, "CUDA: rays from a pool");
+    add_switch(verb, "--persistent", flags->persistent, "CUDA: threads take rays from a pool");
     verb.add_option("--size", flags->size_text, "camera rays (1024x768; with --transport pictures of 256x256)")
         ->type_name("WIDTHxHEIGHT")
         ->check(picture_size());
@@ -231,16 +229,16 @@ void add_lab_command(CLI::App& app, int& status) {
         ->type_name("KIND,...")
         ->delimiter(',')
         ->check(one_of({"primary", "shadow", "diffuse", "record"}));
-    add_whole(verb, "--count", flags->count, "rays of a set of the record (8294400)", 1, 1u << 30);
-    add_whole(verb, "--runs", flags->runs, "times that each is traced; the figure is the median", 1, 10000)
+    add_whole(verb, "--count", flags->count, "rays per set of the record (8294400)", 1, 1u << 30);
+    add_whole(verb, "--runs", flags->runs, "number of timed runs; the result is the median", 1, 10000)
         ->capture_default_str();
-    verb.add_flag("--no-heat-maps", flags->no_heat_maps, "no pictures of the tests a pixel");
+    verb.add_flag("--no-heat-maps", flags->no_heat_maps, "write no heat maps of traversal tests per pixel");
     CLI::Option* thesis = verb.add_flag("--thesis", flags->thesis,
                                         "chapter 6 of the thesis anew: the Cornell box and Sibenik (SCENE,\nor found "
                                         "under PERTEV_SCENES), depths 1-8; with -o pictures of\nchapters 2 to 4 too");
     CLI::Option* transport =
         verb.add_flag("--transport", flags->transport,
-                      "integrators side by side in place of traversals: error over time,\nagainst a reference");
+                      "compare integrators instead of traversals: error over time\nagainst a reference");
     for (const char* flag : {"--structures", "--traversals", "--rta", "--order", "--tests", "--persistent", "--rays",
                              "--count", "--no-heat-maps"}) {
         thesis->excludes(verb.get_option(flag)); // it is what the thesis compared

@@ -95,10 +95,10 @@ int run(std::vector<std::string> words, bool json) {
     add_info_command(app, status);
     add_bench_command(app, status);
     add_lab_command(app, status);
-    app.add_flag("--man")->description("A page for man is printed.");
-    app.add_flag("--settings-document")->description("docs/settings.md is printed.");
+    app.add_flag("--man")->description("Prints a man page.");
+    app.add_flag("--settings-document")->description("Prints docs/settings.md.");
     app.add_option("--completion")
-        ->description("A script is printed by which this shell completes flags.")
+        ->description("Prints a completion script for this shell.")
         ->type_name("bash|zsh|fish")
         ->check(one_of({"bash", "zsh", "fish"}));
     try {
@@ -119,7 +119,7 @@ int run(std::vector<std::string> words, bool json) {
                             fmt::format("{}: {}", error.path1().string(), error.code().message()));
     } catch (const std::exception& error) {
         return report_error(json, ErrorCode::DeviceFault,
-                            fmt::format("a mistake of pertev's own, please report it: {}", error.what()));
+                            fmt::format("internal error of pertev, please report it: {}", error.what()));
     }
 }
 

@@ -33,7 +33,7 @@ MeterPlace place_of(const MeasureFlags& flags) {
     const float squared = length_squared(place.normal);
     if (!(squared > 0) || !is_finite(normalize(place.normal))) {
         throw Error(ErrorCode::BadInput,
-                    fmt::format("--normal {}: no direction; it has a length above 0", flags.normal));
+                    fmt::format("--normal {}: is no direction; expected a length above 0", flags.normal));
     }
     return place;
 }
@@ -108,11 +108,11 @@ int measure(MeasureFlags& flags) {
 } // namespace
 
 void add_measure_command(CLI::App& app, int& status) {
-    CLI::App& verb = *app.add_subcommand("measure", "Say how much light arrives at a point: W/m2 and lux");
+    CLI::App& verb = *app.add_subcommand("measure", "Measure the light that arrives at a point: W/m2 and lux");
     const auto flags = std::make_shared<MeasureFlags>();
     add_scene_name(verb, flags->scene);
     verb.add_option("--at", flags->at, "the point, metres")->type_name("X,Y,Z")->required();
-    verb.add_option("--normal", flags->normal, "the way that a surface there faces, of any length")
+    verb.add_option("--normal", flags->normal, "the normal of a surface there, of any length")
         ->type_name("X,Y,Z")
         ->required();
     flags->settings.add(verb, kMeasure, *flags);

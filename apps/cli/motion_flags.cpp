@@ -12,7 +12,7 @@ void check_motion_flags(const RenderFlags& flags) {
     if (const auto open = shutter(flags)) {
         refuse(open->close_s < open->open_s, fmt::format("--shutter {}: it closes before it opens", flags.shutter));
         refuse(flags.turntable > 0 && flags.frames.empty(),
-               "--shutter: with --turntable it needs to know how long a turn takes; say --frames A-B and --fps");
+               "--shutter: with --turntable, the duration of a turn is needed; add --frames A-B and --fps");
     }
     for (const std::string& output : flags.outputs) {
         refuse(

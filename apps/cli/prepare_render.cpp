@@ -17,7 +17,7 @@ void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Message
                                   flags.scene.scene, counted(moving.scene().animations.size(), "animation"), end_s));
     }
     if (std::ranges::count(flags.aovs, "motion") > 0 && flags.frames.empty()) {
-        messages.note("--aov motion: 0 without --frames, whose frames have one before them");
+        messages.note("--aov motion: 0 without --frames, as there is no frame before");
     }
     const bool camera_moves = !flags.camera_path.empty() || flags.turntable > 0;
     if (!moving.is_animated() && has_time && !camera_moves && !flags.real_time) { // which gather light at rest

@@ -23,15 +23,15 @@ RadiositySettings radiosity_settings(const RadiosityOptions& options, uint32_t s
     settings.seed = seed;
     settings.hemicube = settings.hemicube / 2 * 2; // the sides have half of them
     refuse(settings.solver == RadiositySolver::Hierarchical && settings.form_factors == FormFactors::Hemicube,
-           "--form-factors hemicube: --solver hierarchical has links in place of rows, whose light is found by rays; "
-           "leave out one of them");
+           "--form-factors hemicube: --solver hierarchical finds its links by rays; leave out one of them");
     return settings;
 }
 
 void check_radiosity_flags(const RadiosityOptions& options, const RenderSettings& settings, bool limits_memory) {
     if (settings.integrator != IntegratorKind::Radiosity) {
         refuse(options.max_memory > 0 && !limits_memory,
-               fmt::format("--max-memory: of --integrator radiosity; {} has no patches", integrator_name(settings)));
+               fmt::format("--max-memory: applies to --integrator radiosity; {} has no patches",
+                           integrator_name(settings)));
         return;
     }
     refuse(options.max_memory > 0 && !limits_memory && !options.solution.empty(),

@@ -97,10 +97,9 @@ void report_start(const RenderFlags& flags, const Scene& scene, const PreparedSc
 /// Error for a picture that was interrupted before its first sample.
 Error ended_before_samples(const RenderSettings& settings) {
     if (interrupted()) return {ErrorCode::Interrupted, "interrupted before there was anything to keep"};
-    return {ErrorCode::Interrupted,
-            fmt::format("--time-limit {:g}: it was over before the first sample, and there is nothing to keep: "
-                        "--integrator {} makes more than samples beforehand",
-                        settings.time_limit_s, integrator_name(settings))};
+    return {ErrorCode::Interrupted, fmt::format("--time-limit {:g}: no sample was finished in this time, so nothing is "
+                                                "written; --integrator {} prepares more than samples first",
+                                                settings.time_limit_s, integrator_name(settings))};
 }
 
 int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureRecord& record,
@@ -162,7 +161,7 @@ void add_render_command(CLI::App& app, int& status) {
     flags->limits_memory = true;
     add_scene_name(verb, flags->scene);
     verb.add_option("-o,--output", flags->outputs,
-                    "The picture is written to this file: .exr .png .jpg .hdr. It may be given again.")
+                    "A picture file to write: .exr .png .jpg .hdr. It may be given again.")
         ->type_name("FILE")
         ->allow_extra_args(false)
         ->check(file_name())

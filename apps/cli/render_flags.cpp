@@ -86,7 +86,7 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
     for (const std::string& output : flags.outputs) {
         refuse_list(output);
         check_image_output(frames ? frame_file(output, frames->first) : output, size.width, size.height);
-        if (!frames) note_number_signs(output, "with --frames A-B or --turntable N alone", messages);
+        if (!frames) note_number_signs(output, "only with --frames A-B or --turntable N", messages);
     }
     refuse_twins(flags.outputs, frames);
     // A file of settings may be for other outputs: what they cannot keep is refused where a flag asks for it.
@@ -95,25 +95,25 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
         return given != flags.given.end() && given->second == SettingOrigin::Flag;
     };
     refuse(by_flag("aov") && !writes_any(flags, {ImageFormat::Exr}),
-           "--aov: layers are kept in EXR files alone; add -o NAME.exr");
+           "--aov applies only to EXR output; add -o NAME.exr");
     refuse(by_flag("lpe") && !writes_any(flags, {ImageFormat::Exr}),
-           "--lpe: layers are kept in EXR files alone; add -o NAME.exr");
+           "--lpe applies only to EXR output; add -o NAME.exr");
     refuse(by_flag("transparent") && std::ranges::none_of(flags.outputs, keeps_alpha),
-           "--transparent: alpha is kept in EXR and PNG alone; add -o NAME.exr or .png");
+           "--transparent applies only to EXR and PNG output; add -o NAME.exr or .png");
     for (const std::string& output : flags.outputs) {
         if (flags.render.transparent && !keeps_alpha(output)) {
             messages.warn(output + ": --transparent: this format has no alpha; the background becomes black");
         }
     }
     refuse(by_flag("false_color") && flags.false_color == "luminance" && !writes_tone_mapped(flags),
-           "--false-color luminance: numbers are shown in PNG and JPEG alone; add -o NAME.png");
+           "--false-color luminance applies only to PNG and JPEG output; add -o NAME.png");
     refuse(!flags.false_color.empty() && flags.false_color_range.empty() && frames && writes_tone_mapped(flags),
-           "--false-color: frames of a sequence need one scale for all; say --false-color-range");
+           "--false-color: the frames of a sequence need one scale; add --false-color-range");
     refuse(by_flag("f_number") && !writes_tone_mapped(flags),
-           "--f-number: light is exposed in PNG and JPEG alone; add -o NAME.png or .jpg");
+           "--f-number applies only to PNG and JPEG output; add -o NAME.png or .jpg");
     for (const char* name : {"exposure", "tone_map"}) {
         refuse(by_flag(name) && !writes_tone_mapped(flags),
-               flag_of(name) + ": light is mapped to tones in PNG and JPEG alone; add -o NAME.png or .jpg");
+               flag_of(name) + " applies only to PNG and JPEG output; add -o NAME.png or .jpg");
     }
 }
 

@@ -195,7 +195,7 @@ int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingSce
                              tally.written, counted(sequence.count(), "frame"), kept_text(tally), watch.seconds(),
                              1e3 * tally.update_s / std::max(tally.written, 1u),
                              counted(tally.invalid_samples, "invalid sample"),
-                             cut_short ? "; interrupted: the same command with --continue goes on" : ""));
+                             cut_short ? "; interrupted: the same command with --continue resumes" : ""));
     reporter.result(fmt::format(
         R"({{"event":"sequence","frames":{},"written":{},"kept":{},"rendered_again":{},"seconds":{:.6f},"update_seconds":{:.6f},"invalid_samples":{},"interrupted":{}}})",
         sequence.count(), tally.written, tally.kept, tally.again, watch.seconds(), tally.update_s,

@@ -61,7 +61,7 @@ void report_result(const RenderResult& result, const WrittenPicture& written, co
         samples_per_second * 1e-6, rays_per_second * 1e-6, mebibytes(host_bytes),
         queue.is_cuda() ? fmt::format(" and {:.0f} MiB on the GPU", mebibytes(result.device_peak_bytes)) : "",
         counted(result.invalid_samples, "invalid sample"), written.hash,
-        result.denoised ? " (of its samples; the files show it denoised)" : ""));
+        result.denoised ? " (before denoising; the files are denoised)" : ""));
     reporter.result(fmt::format(
         R"({{"event":"done","samples":{},"seconds":{:.6f},"total_seconds":{:.6f},"frames":{},"seconds_per_frame":{},"samples_per_second":{},"rays_per_second":{},"peak_bytes":{},"device_peak_bytes":{},"invalid_samples":{},{},"device":{},"interrupted":{}}})",
         result.samples, result.render_seconds, total_seconds, result.samples, json_number(frame_seconds),

@@ -33,8 +33,8 @@ bool is_drawn_on() {
 } // namespace
 
 void add_report_flags(CLI::App& verb, ReportFlags& flags) {
-    verb.add_flag("-q,--quiet", flags.quiet, "say nothing but errors");
-    verb.add_flag("--json", flags.json, "one JSON object a line on stdout, errors too, and nothing\nelse there");
+    verb.add_flag("-q,--quiet", flags.quiet, "print only errors");
+    verb.add_flag("--json", flags.json, "print one JSON object per line on stdout, errors included, and\nnothing else");
 }
 
 Reporter::Reporter(const ReportFlags& flags) : flags_(flags), redraws_(is_drawn_on()) {

@@ -41,13 +41,13 @@ std::string words_of(const SettingConflict& conflict, const PictureOptions& opti
     std::string flag = flag_of(conflict.setting->name);
     switch (conflict.kind) {
     case SettingConflict::Kind::Integrator:
-        return fmt::format("{}: is of --integrator {}, not of {}", flag, fmt::join(others, ", "),
+        return fmt::format("{}: applies to --integrator {}, not to {}", flag, fmt::join(others, ", "),
                            texts_of(options, *find_setting("integrator")).front());
     case SettingConflict::Kind::Needs:
         std::ranges::transform(others, others.begin(), [](const std::string& other) { return words_of(other); });
         return fmt::format("{}: needs {}", flag, fmt::join(others, " or "));
     case SettingConflict::Kind::Excludes:
-        return fmt::format("{}: does not go with {}; leave out one of them", flag, words_of(others.front()));
+        return fmt::format("{}: cannot be combined with {}; leave out one of them", flag, words_of(others.front()));
     }
     return flag;
 }

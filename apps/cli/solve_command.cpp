@@ -46,7 +46,7 @@ int solve(SolveFlags& flags) {
                     "--solution {} shows it",
                     flags.output, solution_name(flags.output), solution_name(flags.output)));
     refuse_list(flags.output);
-    note_number_signs(flags.output, "in names of pictures alone", messages);
+    note_number_signs(flags.output, "only in names of pictures", messages);
     check_writable(flags.output);
     set_thread_count(static_cast<int>(flags.machine.threads));
     const Stopwatch total_time;
@@ -66,7 +66,7 @@ int solve(SolveFlags& flags) {
     reporter.write_output(flags.output, [&] { write_solution(flags.output, solved.solution); });
     const bool cut_short = solved.stats.was_interrupted;
     const std::string holds =
-        cut_short ? fmt::format(", ended before it was whole: it holds {}", describe(solved.solution.extent)) : "";
+        cut_short ? fmt::format(", stopped early: it holds {}", describe(solved.solution.extent)) : "";
     const std::string hash = solved.solution.hash().hex();
     reporter.say(fmt::format("wrote {}{}: hash {}", flags.output, holds, hash));
     const SolveStats& stats = solved.stats;
@@ -82,8 +82,8 @@ int solve(SolveFlags& flags) {
 void add_solve_command(CLI::App& app, int& status) {
     CLI::App& all = *app.add_subcommand("solve", "Solve a scene's light once, for any number of pictures");
     all.require_subcommand(1);
-    CLI::App& verb =
-        *all.add_subcommand("radiosity", "Of diffuse surfaces, by patches; the integrator radiosity shows it");
+    CLI::App& verb = *all.add_subcommand(
+        "radiosity", "Solve the light of diffuse surfaces by patches, for the integrator radiosity");
     const auto flags = std::make_shared<SolveFlags>();
     add_scene_name(verb, flags->scene);
     verb.add_option("-o,--output", flags->output, "the solution")->type_name("FILE")->check(file_name())->required();

@@ -57,7 +57,7 @@ Subject read_subject(SceneOptions options, const TransportPreset* preset, float 
 /// Null stands for the scene of the command line.
 std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const TransportFlags& flags) {
     if (flags.preset.empty() && !scene.scene.empty()) return {nullptr};
-    refuse(!scene.scene.empty(), "--preset: it has a scene of its own; leave out SCENE or --preset");
+    refuse(!scene.scene.empty(), "--preset: has its own scene; leave out SCENE or --preset");
     std::vector<const TransportPreset*> presets;
     for (const TransportPreset& preset : the_record().presets) {
         const std::string wanted = flags.preset.empty() ? "cornell" : flags.preset;
@@ -66,8 +66,8 @@ std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const 
     const CameraChoice& camera = scene.camera;
     refuse(!camera.camera.empty() || camera.eye || camera.target || camera.up || camera.fov_deg || camera.projection ||
                camera.view_height,
-           "--preset: it has a camera of its own; name a SCENE to see it by another");
-    refuse(presets.size() > 1 && !flags.reference.empty(), "--reference: is of one scene; name one preset");
+           "--preset: has its own camera; name a SCENE to use another");
+    refuse(presets.size() > 1 && !flags.reference.empty(), "--reference: belongs to one scene; name one preset");
     return presets;
 }
 
@@ -214,13 +214,15 @@ void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags&
                         "structure that finds the photons of photon_map; its picture is the same (grid)"),
         "NAME")
         ->check(one_of(names_of<PhotonSearch>()));
-    add(verb.add_option("--seconds", flags.seconds, "of rendering for each integrator, all repetitions together"), "S")
+    add(verb.add_option("--seconds", flags.seconds, "rendering time of each integrator over all repetitions"), "S")
         ->check(number_above_zero(1e6f))
         ->capture_default_str();
-    add(verb.add_option("--repetitions", flags.repetitions, "pictures of each integrator, by different seeds"), "N")
+    add(verb.add_option("--repetitions", flags.repetitions,
+                        "number of pictures of each integrator, with different seeds"),
+        "N")
         ->check(whole_between(1, kMaxRepetitions))
         ->capture_default_str();
-    add(verb.add_option("--spp", flags.max_samples, "samples of each pixel at most, of one repetition"), "N")
+    add(verb.add_option("--spp", flags.max_samples, "maximum samples per pixel of one repetition"), "N")
         ->check(whole_between(1, 1u << 20))
         ->capture_default_str();
     add(verb.add_option("--reference", flags.reference,
@@ -228,16 +230,17 @@ void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags&
         "FILE")
         ->check(file_name());
     add(verb.add_option("--reference-integrator", flags.reference_integrator,
-                        "that it is made by (path; bidirectional where it is better)"),
+                        "integrator of the reference (path; bidirectional where it is better)"),
         "NAME")
         ->check(one_of({"path", "bidirectional", "photon_map"}));
-    add(verb.add_option("--reference-spp", flags.reference_samples, "samples of each of its pixels (1024; CUDA 16384)"),
+    add(verb.add_option("--reference-spp", flags.reference_samples,
+                        "samples per pixel of the reference (1024; CUDA 16384)"),
         "N")
         ->check(whole_between(2, 1u << 24));
-    add(verb.add_option("--max-depth", flags.max_depth, "scatterings of a light path at most"), "N")
+    add(verb.add_option("--max-depth", flags.max_depth, "maximum number of scatterings on a light path"), "N")
         ->check(whole_between(0, 255))
         ->capture_default_str();
-    add(verb.add_option("--seed", flags.seed, "of the first repetition"), "N")
+    add(verb.add_option("--seed", flags.seed, "seed of the first repetition"), "N")
         ->check(whole_between(0, 0x7fffffff))
         ->capture_default_str();
 }

@@ -56,10 +56,11 @@ bool is_this_machine_alone(const std::string& host) {
 
 void check_host(const std::string& host) {
     if (host == "0.0.0.0" || host == "::" || host == "[::]" || host == "*") {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--host {}: say the one name or address that browsers will ask for; "
-                                "requests for another one are refused",
-                                host));
+        throw Error(
+            ErrorCode::BadInput,
+            fmt::format(
+                "--host {}: expected the one name or address that browsers will use; requests for another are refused",
+                host));
     }
 }
 
@@ -81,9 +82,8 @@ void report_address(const ViewFlags& flags, const std::string& address, Reporter
     reporter.event(fmt::format(R"({{"event":"listening","address":{}}})", json_string(address)));
     if (!is_this_machine_alone(flags.host)) {
         reporter.messages().warn(fmt::format(
-            "--host {}: whoever reaches this machine by that name can try to connect, what is sent is not encrypted, "
-            "and "
-            "whoever has the address below can watch and steer; without --host, ssh -L does the same in safety",
+            "--host {}: anyone who reaches this machine by that name can try to connect, the connection is not "
+            "encrypted, and anyone with the address below can watch and steer; without --host, ssh -L is a safe way",
             flags.host));
         reporter.say_messages();
     }
@@ -187,7 +187,7 @@ std::vector<std::pair<IntegratorKind, std::string>> dark_integrators(RenderSetti
         const std::optional<Remark> is_dark = why_dark(settings, scene);
         std::string why = is_dark ? panel_phrase(*is_dark) : "";
         if (why.empty() && settings.integrator == IntegratorKind::Radiosity && !settings.radiosity.solution) {
-            why = "radiosity: it is solved before anything is shown: pertev view --integrator radiosity";
+            why = "radiosity is solved before anything is shown: start pertev view --integrator radiosity";
         }
         if (!why.empty()) dark.emplace_back(settings.integrator, std::move(why));
     }
@@ -210,10 +210,9 @@ int view(ViewFlags& flags) {
     check_shown_picture_flags(flags.render);
     const std::unique_ptr<RenderSetup> ready = prepare_render(flags.render, kView, reporter);
     if (!makes_frames(ready->settings.integrator) && has_frame_options(flags.render.reconstruction)) {
-        reporter.messages().note(fmt::format(
-            "--integrator {}: its frames are samples as they are; --restir and --resolution-scale count once "
-            "the panel's integrator is path or hybrid",
-            integrator_name(ready->settings)));
+        reporter.messages().note(fmt::format("--integrator {}: its frames are not reconstructed; --restir and "
+                                             "--resolution-scale apply once the panel's integrator is path or hybrid",
+                                             integrator_name(ready->settings)));
     }
     if (flags.render.time_s) say_what_moves(flags.render, *ready->moving, reporter.messages());
     check_jpeg_size("--size", ready->settings.width, ready->settings.height); // that is how pictures are sent
@@ -274,26 +273,26 @@ int view(ViewFlags& flags) {
 } // namespace
 
 void add_view_command(CLI::App& app, int& status) {
-    CLI::App& verb = *app.add_subcommand("view", "Look at a scene in a browser, through one port");
+    CLI::App& verb = *app.add_subcommand("view", "Show a scene in a browser, through one port");
     const auto flags = std::make_shared<ViewFlags>();
     add_scene_name(verb, flags->render.scene);
     const char* group = "Server";
-    add_whole(verb, "--port", flags->port, "to listen on; 0: any that is free", 0, 65535)
+    add_whole(verb, "--port", flags->port, "port to listen on; 0 is any free one", 0, 65535)
         ->capture_default_str()
         ->group(group);
-    verb.add_option("--host", flags->host, "name or address to listen on, which browsers ask for")
+    verb.add_option("--host", flags->host, "host name or address to listen on, as browsers will use it")
         ->type_name("NAME")
         ->check(file_name())
         ->capture_default_str()
         ->group(group);
-    verb.add_option("--jpeg", flags->jpeg, "who packs pictures: auto (a GPU that renders, where nvJPEG is\nfound), cpu")
+    verb.add_option("--jpeg", flags->jpeg, "JPEG encoder: auto (the GPU that renders if nvJPEG is\nfound), cpu")
         ->type_name("NAME")
         ->check(one_of({"auto", "cpu"}))
         ->capture_default_str()
         ->group(group);
-    verb.add_flag("--no-browser", flags->no_browser, "open none, though there is a desktop")->group(group);
+    verb.add_flag("--no-browser", flags->no_browser, "do not open a browser")->group(group);
     add_whole(verb, "--moving-depth", flags->moving_depth,
-              fmt::format("most scatterings of a path ({}, or --max-depth where that is given)", kMovingDepth), 0,
+              fmt::format("maximum path depth in motion ({}, or --max-depth if given)", kMovingDepth), 0,
               kMaxPathDepth - 1)
         ->group("Frames");
     flags->render.settings.add_file(verb);

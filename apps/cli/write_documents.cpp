@@ -1,6 +1,7 @@
 // A page for man, completion for shells and docs/settings.md are made of all flags.
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -133,9 +134,24 @@ std::string verbs_with(const Setting& setting) {
                                                            {kBenchSequence, "bench sequence"}};
     std::string names;
     for (const auto& [bit, name] : kVerbs) {
-        if ((setting.verbs & bit) != 0) names += (names.empty() ? "" : ", ") + std::string(name);
+        if ((setting.verbs & bit) == 0) continue;
+        const std::string_view verb = name;
+        if (verb.starts_with("bench ") && names.find("bench ") != std::string::npos) {
+            names += fmt::format("/{}", verb.substr(6)); // bench noise/frames/sequence
+        } else {
+            names += fmt::format("{}{}", names.empty() ? "" : ", ", verb);
+        }
     }
     return names;
+}
+
+/// The verbs that most settings of a group belong to.
+std::string common_verbs(std::string_view group) {
+    std::map<std::string, int> counts;
+    for (const Setting& setting : all_settings()) {
+        if (group == setting.group) ++counts[verbs_with(setting)];
+    }
+    return std::ranges::max_element(counts, {}, &std::pair<const std::string, int>::second)->first;
 }
 
 std::string range_of(const Setting& setting) {
@@ -191,35 +207,40 @@ std::string completion(const CLI::App& app, const std::string& shell) {
 }
 
 std::string settings_document() {
-    std::string text = "# Settings\n\n"
-                       "This file is made by `pertev --settings-document`; a test holds it to the table of settings "
-                       "(`src/settings/`).\n\n"
-                       "A setting has one name: `max_depth` in C++, in JSON and in a picture's metadata "
-                       "(`pertev.max_depth`), `--max-depth` on\n"
-                       "the command line. A file suggests some of them (its camera, its size); `--settings FILE` "
-                       "overrules it, and flags overrule\n"
-                       "both. `pertev info PICTURE.exr` says what came from where (`pertev.by_scene`, "
-                       "`pertev.by_settings`, `pertev.by_flags`),\n"
-                       "and `pertev info PICTURE.exr --settings` prints a file of settings by which `pertev render "
-                       "SCENE --settings FILE` makes the\npicture again. "
-                       "Such a file is `{\"version\":1,\"scene\":{\"name\":...,\"hash\":...},\"settings\":{...}}`. "
-                       "What it holds that is no setting is\n"
-                       "left out with a warning, and `--strict` refuses it. Settings that are marked \"not kept\" do "
-                       "not stand there: they are of\n"
-                       "the machine and the run, such as threads, folders to read from and a limit of time.\n";
+    std::string text =
+        "# Settings\n\n"
+        "`pertev --settings-document` makes this file from the table of settings (`src/settings/`); a test compares "
+        "them.\n\n"
+        "A setting has one name: `max_depth` in C++, in JSON and in a picture's metadata "
+        "(`pertev.max_depth`), `--max-depth` on\n"
+        "the command line. A scene's file suggests some settings (its camera, its size); `--settings "
+        "FILE` overrules it, and flags\n"
+        "overrule both. `pertev info PICTURE.exr` says where each came from (`pertev.by_scene`, "
+        "`pertev.by_settings`, `pertev.by_flags`),\n"
+        "and `pertev info PICTURE.exr --settings` prints a file of settings with which `pertev render "
+        "SCENE --settings FILE` makes the\nsame picture. "
+        "Such a file is `{\"version\":1,\"scene\":{\"name\":...,\"hash\":...},\"settings\":{...}}`. "
+        "Unknown entries are\n"
+        "left out with a warning, and `--strict` refuses them. Settings marked \"not kept\" are not "
+        "stored there, because they\n"
+        "belong to the machine and the run: threads, folders to read from, or a time limit.\n";
     std::string_view group;
+    std::string verbs;
     for (const Setting& setting : all_settings()) {
         if (group != setting.group) {
             group = setting.group;
-            text += fmt::format("\n## {}\n\n| setting | values | unit | default | |\n| --- | --- | --- | --- | --- |\n",
-                                group);
+            verbs = common_verbs(group);
+            text += fmt::format("\n## {}\n\nVerbs, where a row names no others: {}.\n\n"
+                                "| setting | values | unit | default | |\n| --- | --- | --- | --- | --- |\n",
+                                group, verbs);
         }
         std::string says = setting.sentence;
         if (*setting.more != '\0') says += fmt::format(" {}", setting.more);
-        if (setting.integrators != 0) says += fmt::format(" Of {}.", fmt::join(integrators_with(setting), ", "));
+        if (setting.integrators != 0)
+            says += fmt::format(" Integrators: {}.", fmt::join(integrators_with(setting), ", "));
         if (!setting.needs.empty()) says += fmt::format(" Needs one of: {}.", setting.needs);
         if (!setting.excludes.empty()) says += fmt::format(" Not with: {}.", setting.excludes);
-        says += fmt::format(" Verbs: {}.", verbs_with(setting));
+        if (verbs_with(setting) != verbs) says += fmt::format(" Verbs: {}.", verbs_with(setting));
         if (!setting.is_kept) says += " Not kept.";
         text += fmt::format("| `{}` | {} | {} | {} | {} |\n", flag_of(setting.name), cell(range_of(setting)),
                             setting.unit, cell(default_of(setting)), cell(says));

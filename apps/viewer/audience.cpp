@@ -84,10 +84,9 @@ void Audience::note_wish(uint32_t id, Client& client, const ClientMessage& messa
     client.told_why_s = now_s;
     const std::string why =
         wheel_.holder() != 0
-            ? fmt::format(
-                  "viewer {} steers, so this page cannot {}. Viewer {} sees that you wish it, and may hand over",
-                  wheel_.holder(), wish, wheel_.holder())
-            : "whoever steered has left, and the wheel waits a moment for them. \"ask to steer\" takes it";
+            ? fmt::format("viewer {} steers, so this page cannot {}. Viewer {} sees your request and may hand over",
+                          wheel_.holder(), wish, wheel_.holder())
+            : "the viewer that steered has left and has a moment to return. \"ask to steer\" takes over";
     put_text(client, notice_text("why", why));
     changed_.notify_one();
 }

@@ -52,8 +52,7 @@ struct NumberRow {
 std::string rays_per_second(uint64_t rays, double kind_s, const ViewNumbers& numbers) {
     const double seconds = kind_s > 0 ? kind_s : numbers.frame->render_s;
     if (rays == 0 || !(seconds > 0)) return "";
-    return fmt::format("{:.1f} M/s{}", static_cast<double>(rays) / seconds * 1e-6,
-                       kind_s > 0 ? "" : " of all the time");
+    return fmt::format("{:.1f} Mrays/s{}", static_cast<double>(rays) / seconds * 1e-6, kind_s > 0 ? "" : " on average");
 }
 
 constexpr NumberRow kRows[] = {

@@ -216,10 +216,10 @@ void RenderLoop::pick(const Steer& requested) {
         return audience_.tell(requested.client,
                               picked_text(*start_.scene, point ? &*point : nullptr, message.x, message.y));
     }
-    if (!point) return audience_.tell(requested.client, notice_text("note", "there is nothing but background"));
+    if (!point) return audience_.tell(requested.client, notice_text("note", "there is only background"));
     if (message.use == PickUse::Orbit) {
         camera_.turn_about(point->position);
-        return audience_.tell(requested.client, notice_text("note", "the view now turns about this place"));
+        return audience_.tell(requested.client, notice_text("note", "the view now turns about this point"));
     }
     const Transform& from = now.world_from_camera;
     view_.lens.focus_distance = max(-dot(point->position - from.translation, column(from, 2)), 1e-6f);

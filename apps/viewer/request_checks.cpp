@@ -113,13 +113,13 @@ RequestVerdict check_request(const RequestText& request, const ServerIdentity& s
         verdict.reason = reason;
         return verdict;
     };
-    if (!request.is_single) return refuse(400, "A header stands twice.");
+    if (!request.is_single) return refuse(400, "A header occurs twice.");
     if (!is_own_host(request.host, server.host)) return refuse(403, "This server has another name.");
-    if (request.method != "GET") return refuse(405, "GET alone is answered.");
-    if (!is_plain_target(request.target)) return refuse(400, "This is no path.");
+    if (request.method != "GET") return refuse(405, "Only GET is supported.");
+    if (!is_plain_target(request.target)) return refuse(400, "Not a valid path.");
     // Browsers do not apply the same-origin rule to WebSockets, so the page's origin must be checked.
     if ((request.is_upgrade || !request.origin.empty()) && !is_same_origin(request.origin, request.host)) {
-        return refuse(403, "A page of another origin asks.");
+        return refuse(403, "Requests of another origin are refused.");
     }
     const std::size_t mark = std::min(request.target.find('?'), request.target.size());
     verdict.path = request.target.substr(0, mark);

@@ -189,7 +189,7 @@ Rgba8Image SessionFrames::show(const FrameRequest& request, ShownFrame& frame) {
     const bool nodes = request.view.layer == ShownLayer::NodeHeat;
     const std::vector<RayWork> work = session_.count_camera_work();
     if (work.empty()) {
-        frame.caption = "this traversal cannot count what one ray tests: its rays go together";
+        frame.caption = "this traversal traces rays together and cannot count the tests of one";
         return shown_picture(session_, request.view.display.tone_map, frame.exposure_stops);
     }
     uint32_t most = 0;
@@ -204,11 +204,12 @@ Rgba8Image SessionFrames::show_layer(const FrameRequest& request, ShownFrame& fr
     float most = 0;
     if (request.view.layer == ShownLayer::Motion) {
         Rgba8Image image = show_motion(session_.frame().motion(), most);
-        frame.caption = fmt::format("grey: still; to the right red, down green; full at {:.3g} pixels a frame", most);
+        frame.caption =
+            fmt::format("grey: no motion; right is red, down is green; saturated at {:.3g} pixels a frame", most);
         return image;
     }
     Rgba8Image image = show_deviation(session_.frame().deviation(), most);
-    frame.caption = fmt::format("deviation of the signals: black: none; pale yellow: {:.3g}, or not known", most);
+    frame.caption = fmt::format("standard deviation: black is 0; pale yellow is {:.3g}, or unknown", most);
     return image;
 }
 

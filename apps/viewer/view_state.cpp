@@ -148,8 +148,7 @@ std::vector<ViewSetting> make_settings() {
 
     choice(
         "layer", "Show", "Picture",
-        "The picture, or something else of each pixel, in colours of its own. Heat: how much its camera ray had to "
-        "test",
+        "The picture or another quantity of each pixel in false colours. Heat: the number of tests of its camera ray",
         strings(kLayers), [](const ViewState& s) { return name_of(s.layer); },
         [](ViewState& s, const std::string& name) {
             const auto layer = static_cast<ShownLayer>(std::ranges::find(kLayers, name) - std::begin(kLayers));
@@ -158,9 +157,8 @@ std::vector<ViewSetting> make_settings() {
             return why_not;
         });
     choice(
-        "exposed", "Exposure", "Picture",
-        "auto: a light meter finds how bright the picture is shown; fixed: the stops below alone do", {"auto", "fixed"},
-        [](const ViewState& s) { return s.finds_exposure ? "auto" : "fixed"; },
+        "exposed", "Exposure", "Picture", "auto: a light meter sets the exposure; fixed: only the stops below do",
+        {"auto", "fixed"}, [](const ViewState& s) { return s.finds_exposure ? "auto" : "fixed"; },
         [](ViewState& s, const std::string& name) {
             const bool finds = name == "auto";
             if (finds == s.finds_exposure) return;
@@ -168,9 +166,8 @@ std::vector<ViewSetting> make_settings() {
             s.finds_exposure = finds;
         });
     numeric(
-        "exposure", "Stops", "Picture",
-        "A stop more is twice the light. Where the exposure is auto, it is added to that", Kind::Number, -60, 60, 0.25,
-        [](const ViewState& s) { return s.display.exposure_stops; },
+        "exposure", "Stops", "Picture", "Each stop doubles the light. It is added to an automatic exposure",
+        Kind::Number, -60, 60, 0.25, [](const ViewState& s) { return s.display.exposure_stops; },
         [](ViewState& s, float v) { s.display.exposure_stops = v; });
     shared_choice(
         "tone_map", "Tone map", "Picture", [](const ViewState& s) { return name_of(s.display.tone_map); },
@@ -184,7 +181,7 @@ std::vector<ViewSetting> make_settings() {
                 if (kind == wanted.integrator) return why_dark;
             }
             if (rasterises_camera(wanted.integrator) && s.lens.aperture_radius > 0) {
-                return fmt::format("{}: its camera has no lens; the radius of the lens is to be 0", name);
+                return fmt::format("{}: its camera has no lens; the lens radius must be 0", name);
             }
             const std::string why_not = why_no_layer(s.layer, wanted);
             if (!why_not.empty()) return why_not;
@@ -193,8 +190,7 @@ std::vector<ViewSetting> make_settings() {
             return too_deep;
         });
     shared_number(
-        "max_depth", "Scatterings, at most", "Light", Kind::Whole, 1,
-        [](const ViewState& s) { return s.picture.path.max_depth; },
+        "max_depth", "Max depth", "Light", Kind::Whole, 1, [](const ViewState& s) { return s.picture.path.max_depth; },
         [](ViewState& s, float v) {
             s.picture.path.max_depth = std::min(static_cast<uint32_t>(v), most_depth(s.picture.integrator));
             s.moving_depth = s.picture.path.max_depth;
@@ -204,33 +200,32 @@ std::vector<ViewSetting> make_settings() {
         [](ViewState& s, float v) { s.picture.samples = static_cast<uint32_t>(v); });
     choice(
         "mode", "At rest", "Frames",
-        "reference: samples gather until the picture is that of pertev render; real time: as while moving",
+        "reference: samples accumulate to the picture of pertev render; real time: as in motion",
         {"reference", "real time"}, [](const ViewState& s) { return s.is_real_time ? "real time" : "reference"; },
         [](ViewState& s, const std::string& name) { s.is_real_time = name == "real time"; });
     numeric(
-        "moving_depth", "Scatterings while moving", "Frames",
-        "Fewer are faster, and darker where light comes by many surfaces. At rest the picture has all of them",
-        Kind::Whole, 0, kMaxPathDepth - 1, 1, [](const ViewState& s) { return s.moving_depth; },
+        "moving_depth", "Max depth in motion", "Frames",
+        "Less is faster, but darker where light is scattered often. A picture at rest has full depth", Kind::Whole, 0,
+        kMaxPathDepth - 1, 1, [](const ViewState& s) { return s.moving_depth; },
         [](ViewState& s, float v) { s.moving_depth = static_cast<uint32_t>(v); });
     choice(
-        "denoiser", "Denoiser while moving", "Frames",
-        "svgf: frames are filtered and keep what those before have seen; off: they are their samples", {"svgf", "off"},
+        "denoiser", "Denoiser in motion", "Frames",
+        "svgf: frames are filtered and accumulated; off: frames show their samples", {"svgf", "off"},
         [](const ViewState& s) { return s.is_reconstructed ? "svgf" : "off"; },
         [](ViewState& s, const std::string& name) { s.is_reconstructed = name == "svgf"; });
     shared_choice(
-        "restir", "ReSTIR: light that pixels share", "Frames",
-        [](const ViewState& s) { return name_of(s.restir.light); },
+        "restir", "ReSTIR", "Frames", [](const ViewState& s) { return name_of(s.restir.light); },
         [](ViewState& s, const std::string& name) { s.restir.light = *value_named<RestirLight>(name); });
     shared_number(
-        "restir_history", "Frames that share it, at most", "Frames", Kind::Whole, 1,
+        "restir_history", "ReSTIR max history, frames", "Frames", Kind::Whole, 1,
         [](const ViewState& s) { return s.restir.history; },
         [](ViewState& s, float v) { s.restir.history = static_cast<uint32_t>(v); });
     shared_number(
-        "resolution_scale", "Resolution of light, a side", "Frames", Kind::Number, 0.05,
+        "resolution_scale", "Light resolution, per side", "Frames", Kind::Number, 0.05,
         [](const ViewState& s) { return s.reconstruction.resolution_scale; },
         [](ViewState& s, float v) { s.reconstruction.resolution_scale = v; });
     choice(
-        "moving_scale", "Size while moving", "Frames", "automatic: as large as the frame rate allows", strings(kScales),
+        "moving_scale", "Size in motion", "Frames", "automatic: as large as the frame rate permits", strings(kScales),
         [](const ViewState& s) {
             return kScales[std::ranges::find(kScaleValues, s.moving_scale) - std::begin(kScaleValues)];
         },
@@ -238,33 +233,33 @@ std::vector<ViewSetting> make_settings() {
             s.moving_scale = kScaleValues[std::ranges::find(kScales, name) - std::begin(kScales)];
         });
     shared_number(
-        "fov", "Angle of view, degrees", "Camera", Kind::Number, 1,
+        "fov", "Field of view, degrees", "Camera", Kind::Number, 1,
         [](const ViewState& s) { return degrees_for(s.lens.fov_y); },
         [](ViewState& s, float v) { s.lens.fov_y = v * kRadiansPerDegree; });
     shared_number(
-        "aperture", "Radius of the lens, m", "Camera", Kind::Number, 0.005,
+        "aperture", "Lens radius, m", "Camera", Kind::Number, 0.005,
         [](const ViewState& s) { return s.lens.aperture_radius; },
         [](ViewState& s, float v) { s.lens.aperture_radius = rasterises_camera(s.picture.integrator) ? 0.0f : v; });
     shared_number(
-        "focus", "Distance in focus, m", "Camera", Kind::Number, 0.1,
+        "focus", "Focus distance, m", "Camera", Kind::Number, 0.1,
         [](const ViewState& s) { return s.lens.focus_distance; },
         [](ViewState& s, float v) { s.lens.focus_distance = v; });
     choice(
         "structure", "Structure", "Rays (the picture stays the same)",
-        "How triangles are kept so that rays find them. Another one is faster or slower", names_of<StructureKind>(),
+        "The acceleration structure. It changes only the speed", names_of<StructureKind>(),
         [](const ViewState& s) { return name_of(shown_combination(s).structure); }, set_structure);
     choice(
         "traversal", "Traversal", "Rays (the picture stays the same)",
-        "How rays go through the structure. Another one is faster or slower", names_of<TraversalKind>(),
+        "The traversal algorithm. It changes only the speed", names_of<TraversalKind>(),
         [](const ViewState& s) { return name_of(shown_combination(s).traversal); }, set_traversal);
     choice(
         "rta", "Redundant traversal avoidance", "Rays (the picture stays the same)",
-        "Rays skip what lies behind the nearest hit so far. Off: they go through it all", {"on", "nodes", "off"},
+        "Rays skip nodes behind the nearest hit so far. Off: they test them", {"on", "nodes", "off"},
         [](const ViewState& s) { return name_of_rta(shown_combination(s).options); }, set_rta);
     choice(
         "clocks", "Time", "Rays (the picture stays the same)",
-        "by kind: rays of each kind and shading are timed apart (Stages, below). Each waits for the one before, so "
-        "that frames take longer",
+        "by kind: each kind of ray and shading is timed separately (Stages, below). Stages wait for each other, so "
+        "frames take longer",
         {"together", "by kind"}, [](const ViewState& s) { return s.picture.time_kinds ? "by kind" : "together"; },
         [](ViewState& s, const std::string& name) { s.picture.time_kinds = name == "by kind"; });
     return all;
@@ -323,7 +318,7 @@ std::string set_view_setting(ViewState& state, const std::string& name, const Se
         const std::string why_not = why_no_value(setting, value);
         return why_not.empty() ? setting.set(state, value) : why_not;
     }
-    return "no setting is named so";
+    return "unknown setting";
 }
 
 } // namespace pertev

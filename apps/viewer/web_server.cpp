@@ -154,8 +154,8 @@ private:
             const auto data = self->buffer_.cdata();
             const std::string text(static_cast<const char*>(data.data()), data.size());
             self->buffer_.consume(self->buffer_.size());
-            const std::string why =
-                self->stream_.got_text() ? self->server_.events.said(self->client_, text) : "texts alone are read";
+            const std::string why = self->stream_.got_text() ? self->server_.events.said(self->client_, text)
+                                                             : "only text messages are read";
             if (!why.empty()) return self->drop(websocket::close_code::policy_error, why);
             if (self->is_open_) self->read();
         });
@@ -202,13 +202,13 @@ public:
         http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code fault, std::size_t) {
             if (!fault) return self->handle();
             if (fault == http::error::header_limit || fault == http::error::body_limit) {
-                return self->reply(refusal(413, "That is too large."), false);
+                return self->reply(refusal(413, "The request is too large."), false);
             }
             if (fault == http::error::end_of_stream || fault == beast::error::timeout ||
                 fault.category() != http::make_error_code(http::error::bad_method).category()) {
                 return self->close();
             }
-            self->reply(refusal(400, "That is no HTTP."), false);
+            self->reply(refusal(400, "Not an HTTP request."), false);
         });
     }
 
@@ -219,13 +219,13 @@ private:
         const bool keeps = request.keep_alive();
         if (verdict.status != 200) return reply(refusal(verdict.status, verdict.reason), false);
         if (verdict.path == "/socket") {
-            if (!websocket::is_upgrade(request)) return reply(refusal(400, "A WebSocket stands here."), keeps);
+            if (!websocket::is_upgrade(request)) return reply(refusal(400, "A WebSocket is expected here."), keeps);
             return become_socket(request);
         }
-        if (websocket::is_upgrade(request)) return reply(refusal(404, "No WebSocket stands here."), keeps);
+        if (websocket::is_upgrade(request)) return reply(refusal(404, "No WebSocket is served here."), keeps);
         if (verdict.path == "/save") return save(verdict, keeps);
         const auto file = std::ranges::find(server_.files, std::string_view(verdict.path), &PageFile::path);
-        if (file == server_.files.end()) return reply(refusal(404, "There is nothing of this name."), keeps);
+        if (file == server_.files.end()) return reply(refusal(404, "Not found."), keeps);
         Response response = answer(200, file->type, std::string(file->text));
         if (verdict.gives_cookie) {
             response.set(http::field::set_cookie,

@@ -21,7 +21,7 @@ constexpr float kDotRadius = 1.2f; // times the scene's longest side over the pi
                                    // pixels
 
 const ThesisRecipe& recipe_named(std::string_view name) {
-    const auto recipes = thesis_recipes();
+    const auto& recipes = thesis_recipes();
     const auto found = std::ranges::find(recipes, name, &ThesisRecipe::name);
     PERTEV_CHECK(found != recipes.end());
     return *found;

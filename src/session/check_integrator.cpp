@@ -63,7 +63,7 @@ std::string lights_of(const Scene& scene) {
     const std::string others =
         fmt::format("{}{}{}", has_emitter(scene) ? "lamps" : "", has_emitter(scene) && has_environment ? " and " : "",
                     has_environment ? "an environment" : "");
-    return others.empty() ? "this scene has none" : fmt::format("this scene has {} alone", others);
+    return others.empty() ? "this scene has none" : fmt::format("this scene has only {}", others);
 }
 
 } // namespace
@@ -137,8 +137,8 @@ void check_light(const RenderSettings& settings, const Scene& scene, Messages& m
     if (const auto why = why_dark(settings, scene)) throw Error(ErrorCode::BadInput, *why);
     const bool is_ambient = needs_punctual_lights(settings.integrator) && settings.ambient;
     if (!is_ambient && !has_any_light(scene) && !has_unlit(scene)) {
-        messages.warn("nothing in this scene gives light: " + no_lights_of(scene) +
-                      "; what light would have to show is black (`environment=1,1,1` gives some)");
+        messages.warn("nothing in this scene emits light: " + no_lights_of(scene) +
+                      "; the picture would be black (`environment=1,1,1` adds light)");
         return;
     }
     if (!lacks_lights(settings, scene)) return;

@@ -48,7 +48,7 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
     DeviceScene& scene = pictures_.scene();
     if (!makes_frames(settings.integrator)) {
         throw Error(ErrorCode::BadInput, "integrator", std::string(integrator_name(settings)),
-                    "frames are reconstructed of path's samples alone");
+                    "only path's samples can be reconstructed");
     }
     if (!camera.motion.empty() || scene.view().motions.is_there()) {
         throw Error(ErrorCode::BadInput, "shutter", "", "frames that are reconstructed are of one moment each");

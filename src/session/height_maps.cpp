@@ -108,7 +108,7 @@ std::shared_ptr<const HeightMaps> read_height_maps(std::span<const HeightMapText
             check_coordinates(map, scene, i);
             of_material[i] = {i, *heights, map.scale, map.middle, map.text};
         }
-        if (!heights) refuse(map, "no material of the scene is called so; " + some_names(all));
+        if (!heights) refuse(map, "no material of the scene has this name; " + some_names(all));
     }
     if (of_material.empty()) return nullptr;
     HeightMaps maps;

@@ -170,7 +170,7 @@ void set_emitters(Scene& scene, std::span<const EmitterStrength> emitters, doubl
         if (scene.environment && is_called_so({kEnvironmentName})) {
             set_environment(emitter, lumens_per_watt, *scene.environment);
         }
-        if (!is_found) refuse(emitter, "no lamp of the scene is called so; " + some_names(all));
+        if (!is_found) refuse(emitter, "no lamp of the scene has this name; " + some_names(all));
     }
 }
 

@@ -63,8 +63,7 @@ void check_choice(const TracerChoice& choice, bool on_cuda) {
             throw Error(ErrorCode::BadInput, fmt::format("{}: {}", name_of(c), *reason));
         }
         if (!c.options.is_exact()) {
-            throw Error(ErrorCode::BadInput, fmt::format("{}: {} tests let rays slip through edges; pictures are made "
-                                                         "with exact ones",
+            throw Error(ErrorCode::BadInput, fmt::format("{}: {} tests miss hits at edges; renders use exact tests",
                                                          name_of(c), name_of(c.options.tests)));
         }
     }

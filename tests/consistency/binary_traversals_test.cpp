@@ -156,7 +156,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("so they do over trees with spatial splits, where hits lie outside their leaves' boxes") {
+TEST_CASE("every traversal matches brute force over trees with spatial splits") {
     for (const NastyMesh& c : nasty_meshes()) {
         CAPTURE(std::string(c.name));
         const Bvh bvh = with_parent_links(build_split_bvh(c.triangles, 6));
@@ -166,7 +166,7 @@ TEST_CASE("so they do over trees with spatial splits, where hits lie outside the
     }
 }
 
-TEST_CASE("so they do over instances, with and without a baked tree") {
+TEST_CASE("every traversal matches brute force over instances, with and without a baked tree") {
     InstancedScene s = make_instanced_scene(static_cast<uint32_t>(effort(200, 5000)));
     std::vector<BvhView> views;
     std::vector<SkipBvh> skips;
@@ -194,7 +194,7 @@ TEST_CASE("so they do over instances, with and without a baked tree") {
     }
 }
 
-TEST_CASE("a box entered just where the nearest hit lies is still entered: of coincident triangles the first counts") {
+TEST_CASE("a box entered exactly at the nearest hit is traversed: the first of coincident triangles counts") {
     // Boxes of no thickness that the fast tests do not grow, and numbers without rounding: entry and hit are equal.
     constexpr TraversalOptions kFast = {.tests = TestKind::Fast};
     std::vector<BvhTriangle> triangles;
@@ -227,7 +227,7 @@ TEST_CASE("a box entered just where the nearest hit lies is still entered: of co
     for (const Hit& hit : hits) CHECK((hit.t == 1 && hit.primitive == 0));
 }
 
-TEST_CASE("redundant traversal avoidance never visits more, and saves") {
+TEST_CASE("redundant traversal avoidance never visits more nodes and saves some") {
     const Bvh bvh = with_parent_links(build_bvh(shells()));
     const SkipBvh skip = make_skip_bvh(bvh);
     const std::vector<Ray> rays = rays_at_shells(2000);
@@ -241,7 +241,7 @@ TEST_CASE("redundant traversal avoidance never visits more, and saves") {
     check_rta_saves<SkipLinksTraversal>("skip links", view_of(skip), rays);
 }
 
-TEST_CASE("traversals with a stack visit the same, traversals without one visit more, brute force tests all") {
+TEST_CASE("traversals with a stack visit equally many nodes, those without one more, brute force all") {
     constexpr TraversalOptions kAll = {};
     const Bvh bvh = with_parent_links(build_bvh(shells()));
     uint64_t by_stack = 0, by_short_stack = 0, by_trail = 0, far_first = 0, near_first = 0, wrong = 0;

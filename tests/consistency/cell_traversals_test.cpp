@@ -39,7 +39,7 @@ void check_all_options(const SceneTrees<Tree>& scene, const std::vector<Ray>& ra
 
 } // namespace
 
-TEST_CASE("a kd-tree of any build setting gives the hits of testing every triangle, bit for bit") {
+TEST_CASE("kd-trees of all build settings match brute force bit for bit") {
     for (const NastyMesh& c : nasty_meshes()) {
         CAPTURE(c.name);
         const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(600, 20000)), c, 41);
@@ -55,7 +55,7 @@ TEST_CASE("a kd-tree of any build setting gives the hits of testing every triang
     }
 }
 
-TEST_CASE("an octree of any build setting gives the hits of testing every triangle, bit for bit") {
+TEST_CASE("octrees of all build settings match brute force bit for bit") {
     for (const NastyMesh& c : nasty_meshes()) {
         CAPTURE(c.name);
         const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(600, 20000)), c, 43);
@@ -125,7 +125,7 @@ struct PlacedMeshes {
 
 } // namespace
 
-TEST_CASE("instances of kd-trees and octrees give the hits of testing every triangle of every instance, bit for bit") {
+TEST_CASE("instances of kd-trees and octrees match brute force bit for bit") {
     const PlacedMeshes scene;
     scene.check<KdTreeTraversal>([](const auto& mesh) { return build_kd_tree(mesh); });
     scene.check<KdTreeTraversal>(

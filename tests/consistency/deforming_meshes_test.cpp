@@ -165,7 +165,7 @@ TEST_CASE("a step in time uploads joints and weights, not vertices, and takes no
     }
 }
 
-TEST_CASE("what deforms takes the bytes that are said beforehand") {
+TEST_CASE("memory of deforming meshes equals its prediction") {
     Messages messages;
     Queue queue = test::requested_queue();
     const MovingScene moving(make_bending_scene(), 0.25, {}, messages);
@@ -220,7 +220,7 @@ void check_rebuilds(Queue& queue) {
 
 } // namespace
 
-TEST_CASE("a tree that fits have made dear is built anew, and no other") {
+TEST_CASE("only trees whose refits raised their cost are rebuilt") {
     Queue cpu = Queue::make_cpu();
     check_rebuilds<DeformingWide>(cpu);
     check_rebuilds<DeformingCompressed>(cpu);
@@ -229,7 +229,7 @@ TEST_CASE("a tree that fits have made dear is built anew, and no other") {
     check_rebuilds<DeformingCompressed>(gpu);
 }
 
-TEST_CASE("what a skin or morph targets move is looked for where it was in the frame before") {
+TEST_CASE("reprojection follows skins and morph targets") {
     Messages messages;
     Queue cpu = Queue::make_cpu();
     const Scene rest = make_bending_scene();
@@ -345,7 +345,7 @@ TEST_CASE("motion vectors follow skins and morph targets, and are a function of 
     CHECK(motion_of_frame(cuda, settings, 5, 5).pixels == motion.pixels);
 }
 
-TEST_CASE("vertices that give light, mirror or are baked are made on the host, at those times alone") {
+TEST_CASE("vertices of emissive, mirrored or baked meshes are computed on the host only at those times") {
     const auto left_at = [](const Scene& rest, double time_s, uint32_t shape) {
         Messages messages;
         const MovingScene moving(rest, time_s, {}, messages);

@@ -77,7 +77,7 @@ TEST_CASE("a denoised picture has the same bytes on every device, by every body,
     }
 }
 
-TEST_CASE("the film beside a denoised picture has the bytes it has without, with all its layers") {
+TEST_CASE("denoising does not change the film and its layers") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -115,7 +115,7 @@ TEST_CASE("the film beside a denoised picture has the bytes it has without, with
     }
 }
 
-TEST_CASE("a denoised picture is nearer to that of many samples than its samples are, and as bright") {
+TEST_CASE("a denoised picture has less error than its samples and equal brightness") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -134,7 +134,7 @@ TEST_CASE("a denoised picture is nearer to that of many samples than its samples
     CHECK(brightness_of(*few.denoised) == doctest::Approx(brightness_of(few.picture)).epsilon(0.02));
 }
 
-TEST_CASE("a denoised picture takes the bytes that are said beforehand") {
+TEST_CASE("memory of a denoised render equals its prediction") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -171,13 +171,13 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("rays are sheared alike on both devices, also along axes and nearly so") {
+TEST_CASE("ray setup has the same bits on both devices, also along axes and nearly so") {
     check_same_bits(
         static_cast<uint32_t>(effort_of_two(1 << 12, 1 << 20)),
         [&](Queue& queue, uint32_t* out, uint32_t count) { launch(queue, "shear_rays", count, test::ShearRays{out}); });
 }
 
-TEST_CASE("vertices are deformed alike on both devices") {
+TEST_CASE("deformed vertices have the same bits on both devices") {
     constexpr uint32_t kCount = 1u << 14, kJoints = 16, kPerVertex = 8, kTargets = 3;
     test::Random random(21);
     const auto vectors = [&](uint32_t count, float scale) {

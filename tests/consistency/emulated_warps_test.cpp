@@ -162,7 +162,7 @@ TEST_CASE("on warps, every traversal by every way of handing out rays gives each
     }
 }
 
-TEST_CASE("so they do for any number of rays and of warps") {
+TEST_CASE("on warps, every ray gets its hit once for any number of rays and warps") {
     const NastyMesh mesh = nasty_meshes()[3];
     const TestTrees trees(mesh.triangles);
     uint32_t seed = 0;
@@ -184,7 +184,7 @@ TEST_CASE("so they do for any number of rays and of warps") {
     }
 }
 
-TEST_CASE("so they do over instances, where rays of a warp come to different meshes") {
+TEST_CASE("on warps, every ray gets its hit over instances where lanes diverge between meshes") {
     const InstancedScene s = make_instanced_scene(static_cast<uint32_t>(effort(kRays, 20'011)));
     std::vector<BvhView> views;
     std::vector<CompressedBvh> compressed;

@@ -137,7 +137,7 @@ TEST_CASE("each kind of ray may have a tracer of its own") {
     }
 }
 
-TEST_CASE("pictures are refused by tests that leak, and by traversals that a device has not") {
+TEST_CASE("renders refuse inexact tests and traversals that the device lacks") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

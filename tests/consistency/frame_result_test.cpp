@@ -94,7 +94,7 @@ TEST_CASE("frames of a moving sequence have the same bytes by every body, on eve
     }
 }
 
-TEST_CASE("layers of a frame are those of its own sample, whatever order samples are drawn in") {
+TEST_CASE("layers of a frame come from its own sample in any order of samples") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -124,7 +124,7 @@ TEST_CASE("layers of a frame are those of its own sample, whatever order samples
     CHECK(picture_hash(layer_named(session.frame_result(), "albedo")) != picture_hash(seen));
 }
 
-TEST_CASE("the bytes that are predicted of frames are those that a session takes") {
+TEST_CASE("memory of real-time frames equals its prediction") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

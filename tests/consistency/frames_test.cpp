@@ -89,7 +89,7 @@ TEST_CASE("frame 30 has the same bytes on every device, by every body and batch,
     }
 }
 
-TEST_CASE("another size or another scene begins the history anew, and so does the way back") {
+TEST_CASE("a change of size or scene restarts the history, and so does the change back") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const Scenes other = diffuse_scene();
@@ -145,7 +145,7 @@ Hash128 hash_of_motion(Queue& queue, const RenderSettings& settings, bool moves,
 
 } // namespace
 
-TEST_CASE("frames of what moves have the same bytes on every device and by every body") {
+TEST_CASE("frames of moving scenes have the same bytes on every device and by every body") {
     Queue cpu = Queue::make_cpu();
     const RenderSettings settings = frame_settings();
     for (const RestirLight light : {RestirLight::Off, RestirLight::Indirect}) {
@@ -234,7 +234,7 @@ TEST_CASE("a frame that is not reconstructed is the film's picture of the same s
     }
 }
 
-TEST_CASE("the mean of frames from a still camera is the picture's, but for what bounded parts take") {
+TEST_CASE("the mean of frames from a still camera is the picture, except for losses of biased parts") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

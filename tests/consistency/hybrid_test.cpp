@@ -250,7 +250,7 @@ TEST_CASE("hybrid has path's picture of public scenes") {
     }
 }
 
-TEST_CASE("hybrid's memory is said beforehand, and other cameras and sizes give fresh pictures") {
+TEST_CASE("hybrid's memory equals its prediction, and other cameras and sizes give new pictures") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

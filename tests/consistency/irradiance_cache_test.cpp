@@ -50,7 +50,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("irradiance caching tells the same of the first surface as path tracing, and of light scattered once") {
+TEST_CASE("irradiance caching has path tracing's first-surface layers and direct light") {
     Queue queue = test::requested_queue();
     const auto layers_of = [&](IntegratorKind integrator, bool shows_records = false) {
         RenderSettings settings = cache_settings();
@@ -75,7 +75,7 @@ TEST_CASE("irradiance caching tells the same of the first surface as path tracin
     }
 }
 
-TEST_CASE("a session goes to irradiance caching and back, ends early and goes on, and each picture is whole") {
+TEST_CASE("a session that switches to irradiance caching and back renders whole pictures") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -110,7 +110,7 @@ uint64_t rays_of_a_sample(Session& session) {
 
 } // namespace
 
-TEST_CASE("records are made once for a picture, and anew for another") {
+TEST_CASE("records are made once per picture and anew for another picture") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -194,7 +194,7 @@ TEST_CASE("a meter and looks aside trace no ray of the picture that goes on, and
     }
 }
 
-TEST_CASE("an overture tells how far it is, from nothing to all, and never less than before") {
+TEST_CASE("an overture's progress rises monotonically from 0 to 1") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -232,7 +232,7 @@ TEST_CASE("an overture tells how far it is, from nothing to all, and never less 
     }
 }
 
-TEST_CASE("what is invalid of records is told with sample 0, whatever was rendered before") {
+TEST_CASE("invalid values of records are reported with sample 0, whatever was rendered before") {
     Queue queue = test::requested_queue();
     Scene scene = test::make_mixed_scene();
     test::add(scene, test::sheet({0, 3, 0}, {1, 0, 0}, {0, 0, 1}),
@@ -296,7 +296,7 @@ TEST_CASE("an overture is broken off by who watches, by the time and by abandoni
     }
 }
 
-TEST_CASE("memory of irradiance caching is said beforehand") {
+TEST_CASE("memory of irradiance caching equals its prediction") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

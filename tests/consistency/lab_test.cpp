@@ -183,7 +183,7 @@ TEST_CASE("CUDA: every combination gives the same hits") {
     for (std::size_t file = 0; file < std::size(kFiles); ++file) check_file(file, queue, 1'000'000);
 }
 
-TEST_CASE("tests that leak miss a few rays, which are counted") {
+TEST_CASE("inexact tests miss a few rays, which are counted") {
     Queue queue = requested_queue();
     const Vec3 centre = {1.5e5f, 0, -1.5e5f}; // 150 km away: a float's last bits are centimetres there
     const Scene scene = scene_of({"soup", make_soup(1500, 1.5e5f), centre});
@@ -218,7 +218,7 @@ TEST_CASE("tests that leak miss a few rays, which are counted") {
     CHECK(bytes[TestKind::Woop] == bytes[TestKind::Exact] + 1500 * sizeof(WoopTriangle));
 }
 
-TEST_CASE("Woop's tests go through instances: but for few rays the hits are those of pictures") {
+TEST_CASE("Woop's tests traverse instances and differ from exact tests on few rays") {
     Queue queue = requested_queue();
     LabSettings settings;
     for (const TraversalKind traversal : {TraversalKind::WhileWhile, TraversalKind::Speculative}) {

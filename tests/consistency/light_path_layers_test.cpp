@@ -96,7 +96,7 @@ TEST_CASE("layers do not depend on threads, passes, bodies and batches") {
     }
 }
 
-TEST_CASE("the picture beside layers is the one without them, and so are the auxiliary layers") {
+TEST_CASE("layers change neither the picture nor the auxiliary layers") {
     Queue queue = test::requested_queue();
     RenderSettings settings = with_light_layers(test::make_mixed_scene());
     RenderResult with = render_mixed_layers(queue, settings);
@@ -107,7 +107,7 @@ TEST_CASE("the picture beside layers is the one without them, and so are the aux
     CHECK(test::render_hash(with) == test::render_hash(without));
 }
 
-TEST_CASE("layers that share out all paths add up to the picture within 1e-6") {
+TEST_CASE("layers that partition all paths sum to the picture within 1e-6") {
     Queue queue = test::requested_queue();
     for (const LightStrategy strategy : test::kLightStrategies) {
         RenderSettings settings = with_light_layers(test::make_mixed_scene());
@@ -135,7 +135,7 @@ TEST_CASE("layers that share out all paths add up to the picture within 1e-6") {
     }
 }
 
-TEST_CASE("each of 33, 64, 65 and 100 layers has the bytes that it has alone") {
+TEST_CASE("each of 33, 64, 65 and 100 layers has the bytes of the layer rendered alone") {
     const Scene scene = test::make_mixed_scene();
     const std::vector<std::string> texts = hundred_expressions();
     REQUIRE(texts.size() == 100);
@@ -187,7 +187,7 @@ TEST_CASE("each of 33, 64, 65 and 100 layers has the bytes that it has alone") {
     check(gpu, PathBody::Wavefront, IntegratorKind::Path);
 }
 
-TEST_CASE("a session goes from layers to none and to others, and has the pictures of fresh ones") {
+TEST_CASE("a session that changes its layers renders the pictures of new sessions") {
     Queue queue = test::requested_queue();
     const Scene scene = test::make_mixed_scene();
     Messages messages;
@@ -207,7 +207,7 @@ TEST_CASE("a session goes from layers to none and to others, and has the picture
     CHECK(test::render_hash(session.result()) == reference_layers_hash());
 }
 
-TEST_CASE("what layers take is said beforehand, by either body") {
+TEST_CASE("memory of layers equals its prediction in both bodies") {
     const Scene scene = test::make_mixed_scene();
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -120,13 +120,13 @@ void check_steps(const Scene& rest, const std::vector<double>& times, const Came
 
 } // namespace
 
-TEST_CASE("a time that is stepped to gives the picture of one that is prepared afresh") {
+TEST_CASE("a step to a time renders like a scene newly prepared at that time") {
     // 1: an instance is hidden; 2 to 3: one of a shared mesh is so squeezed that it is baked, and others with it anew.
     check_steps(make_moving_scene(), {0, 0.5, 1, 1.5, 2, 2.5, 3.25, 1, 100, 0}, test::mixed_scene_camera(),
                 test::layered_settings());
 }
 
-TEST_CASE("what is squeezed past the limit of baking is baked at that time alone") {
+TEST_CASE("an instance squeezed past the limit is baked only at that time") {
     Messages messages;
     MovingScene moving(make_moving_scene(), 0, {}, messages);
     const auto none_moving_is_baked = [&] { return !moving.prepared().is_baked[1]; };
@@ -137,7 +137,7 @@ TEST_CASE("what is squeezed past the limit of baking is baked at that time alone
     CHECK(none_moving_is_baked());
 }
 
-TEST_CASE("what a scale of 0 hides is not there: it is not seen, throws no shadow and gives no light") {
+TEST_CASE("an instance with a scale of 0 is invisible, casts no shadow and emits no light") {
     Messages messages;
     Scene without = test::make_mixed_scene();
     validate(without, "mixed", messages);
@@ -159,7 +159,7 @@ TEST_CASE("what a scale of 0 hides is not there: it is not seen, throws no shado
     CHECK(hash_at(with, 0, camera, test::layered_settings()) != hash_at(without, 0, camera, test::layered_settings()));
 }
 
-TEST_CASE("a step that changes nothing asks for nothing") {
+TEST_CASE("a step without changes updates nothing") {
     Messages messages;
     MovingScene moving(make_moving_scene(), 200, {}, messages);
     CHECK(moving.set_time(100, messages) == 0);
@@ -183,7 +183,7 @@ TEST_CASE("a step after one that failed is whole") {
     CHECK(test::render_hash(session.result()) == hash_at(rest, 1.5, camera, settings));
 }
 
-TEST_CASE("Khronos' animated models give the same pictures stepped to as afresh") {
+TEST_CASE("Khronos' animated models render the same after steps as when newly prepared") {
     for (const char* name : {"SimpleSkin/SimpleSkin.gltf", "InterpolationTest/InterpolationTest.glb",
                              "MorphPrimitivesTest/MorphPrimitivesTest.glb"}) {
         CAPTURE(name);

@@ -73,7 +73,7 @@ TEST_CASE("the wavefront gives the bytes of the loop, for any number of paths in
     }
 }
 
-TEST_CASE("the wavefront gives the bytes of the loop, however lights are found") {
+TEST_CASE("the wavefront gives the bytes of the loop under every light sampling strategy") {
     for (const LightStrategy strategy : test::kLightStrategies) {
         CAPTURE(static_cast<int>(strategy));
         RenderSettings settings = odd_settings();
@@ -107,7 +107,7 @@ ShadingVariant variant_of(const Scene& scene) {
 
 } // namespace
 
-TEST_CASE("bodies that know something of materials give the bytes of those that do not") {
+TEST_CASE("bodies specialised for materials give the bytes of the general ones") {
     Hash128 before = {};
     for (const ShadingVariant variant :
          {ShadingVariant::General, ShadingVariant::Diffuse, ShadingVariant::PlainDiffuse}) {
@@ -156,7 +156,7 @@ TEST_CASE("the picture does not depend on how the trees were built") {
     }
 }
 
-TEST_CASE("another seed or number of samples gives another hash: it can tell pictures apart") {
+TEST_CASE("another seed or number of samples gives another hash") {
     RenderSettings settings = odd_settings();
     settings.path.seed = 1;
     CHECK(cpu_hash(settings) != reference_hash());
@@ -204,7 +204,7 @@ TEST_CASE("pictures and frames that two wavefronts share, or one with the memory
     CHECK(gpu.allocation_count() == allocations);
 }
 
-TEST_CASE("frames that split light after a picture of many samples keep to the bytes of queues, and to their own") {
+TEST_CASE("frames that split light after a large picture keep their bytes and the memory of queues") {
     if (!test::cuda_requested()) return;
     Queue gpu = test::make_cuda_queue();
     Messages messages;

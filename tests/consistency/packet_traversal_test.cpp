@@ -63,7 +63,7 @@ void check_all_options(const SceneBvhView& scene, const std::vector<Ray>& rays, 
 
 } // namespace
 
-TEST_CASE("packets give each ray the hit of testing every triangle") {
+TEST_CASE("packets match brute force") {
     for (const NastyMesh& c : nasty_meshes()) {
         CAPTURE(std::string(c.name));
         const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(400, 20000)), c, 41);
@@ -76,7 +76,7 @@ TEST_CASE("packets give each ray the hit of testing every triangle") {
     }
 }
 
-TEST_CASE("packets do so over instances, with and without a baked tree") {
+TEST_CASE("packets match brute force over instances, with and without a baked tree") {
     const InstancedScene s = make_instanced_scene(static_cast<uint32_t>(effort(800, 20000)));
     std::vector<BvhView> views;
     for (const Bvh& tree : s.trees) views.push_back(view_of(tree));
@@ -86,7 +86,7 @@ TEST_CASE("packets do so over instances, with and without a baked tree") {
     }
 }
 
-TEST_CASE("a packet of one ray visits what the ray visits alone, rays that go together share their visits") {
+TEST_CASE("a packet of one ray visits the ray's own nodes, and coherent rays share visits") {
     constexpr TraversalOptions kOptions = {};
     const Bvh bvh = build_bvh(triangles_of(make_torus(60, 40)));
     Random random(12);

@@ -55,7 +55,7 @@ TEST_CASE("pictures by photons do not depend on threads, passes, bodies, how man
     }
 }
 
-TEST_CASE("pictures by photons that crowd do not depend on them either, with plain surfaces and others") {
+TEST_CASE("pictures by crowded photons do not depend on threads, passes, bodies or the structure") {
     Queue queue = Queue::make_cpu();
     for (const Material& ball : {test::white(0.6f), test::of_roughness(MaterialKind::Dielectric, 0)}) {
         const Scene scene = test::room_with_ball(ball, test::white(0.6f), false);
@@ -76,7 +76,7 @@ TEST_CASE("pictures by photons that crowd do not depend on them either, with pla
     }
 }
 
-TEST_CASE("photon mapping tells the same of the first surface as path tracing, and of what emits") {
+TEST_CASE("photon mapping has path tracing's first-surface layers and visible emission") {
     Queue queue = test::requested_queue();
     const auto layers_of = [&](IntegratorKind integrator) {
         RenderSettings settings = photon_settings();
@@ -92,7 +92,7 @@ TEST_CASE("photon mapping tells the same of the first surface as path tracing, a
     CHECK(test::checked_picture(queue, test::make_mixed_scene(), settings).hash == seen);
 }
 
-TEST_CASE("a session goes to photon mapping and back, ends early and goes on, and each picture is whole") {
+TEST_CASE("a session that switches to photon mapping and back renders whole pictures") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -113,7 +113,7 @@ TEST_CASE("a session goes to photon mapping and back, ends early and goes on, an
     }
 }
 
-TEST_CASE("memory of photon mapping is said beforehand") {
+TEST_CASE("memory of photon mapping equals its prediction") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

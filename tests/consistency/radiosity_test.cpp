@@ -50,7 +50,7 @@ TEST_CASE("pictures of a radiosity solution do not depend on threads, passes, bo
     }
 }
 
-TEST_CASE("a picture of radiosity tells the same of the first surface as path tracing, and of what emits") {
+TEST_CASE("radiosity has path tracing's first-surface layers and visible emission") {
     Queue queue = test::requested_queue();
     RenderSettings settings = shown(look_at_mixed_scene(2));
     const auto layers_of = [&](IntegratorKind integrator) {
@@ -65,7 +65,7 @@ TEST_CASE("a picture of radiosity tells the same of the first surface as path tr
     CHECK(test::checked_picture(queue, test::make_mixed_scene(), settings).hash == seen);
 }
 
-TEST_CASE("a session goes to radiosity, another solution and back, ends early and goes on, and each picture is whole") {
+TEST_CASE("a session that switches to radiosity, another solution and back renders whole pictures") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -96,7 +96,7 @@ TEST_CASE("a session goes to radiosity, another solution and back, ends early an
     CHECK(test::bad_input_message([&] { session.render(1); }).find("of another scene") != std::string::npos);
 }
 
-TEST_CASE("memory of pictures of radiosity is said beforehand") {
+TEST_CASE("memory of radiosity renders equals its prediction") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

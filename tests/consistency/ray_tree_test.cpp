@@ -47,7 +47,7 @@ TEST_CASE("pictures of trees of rays do not depend on threads, passes, bodies or
     }
 }
 
-TEST_CASE("every integrator tells the same of the first surface") {
+TEST_CASE("every integrator has the same first-surface layers") {
     Queue queue = test::requested_queue();
     const auto layers_of = [&](IntegratorKind integrator) {
         RenderSettings settings = tree_settings(integrator);
@@ -58,7 +58,7 @@ TEST_CASE("every integrator tells the same of the first surface") {
     for (const IntegratorKind integrator : kTrees) CHECK(layers_of(integrator) == of_path);
 }
 
-TEST_CASE("a session goes from one integrator to another, and each picture is that of a fresh one") {
+TEST_CASE("a session that changes its integrator renders the pictures of new sessions") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = tree_scene();
@@ -77,7 +77,7 @@ TEST_CASE("a session goes from one integrator to another, and each picture is th
     }
 }
 
-TEST_CASE("a picture of trees that is abandoned leaves no sample behind, and the next one is whole") {
+TEST_CASE("an abandoned picture of ray trees leaves no sample, and the next picture is whole") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = tree_scene();
@@ -91,7 +91,7 @@ TEST_CASE("a picture of trees that is abandoned leaves no sample behind, and the
     }
 }
 
-TEST_CASE("memory of trees is said beforehand") {
+TEST_CASE("memory of ray trees equals its prediction") {
     Messages messages;
     const Scene scene = tree_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -102,7 +102,7 @@ TEST_CASE("memory of trees is said beforehand") {
     }
 }
 
-TEST_CASE("trees of rays are no frames, and are not too deep") {
+TEST_CASE("ray trees refuse real-time frames and depths over their limit") {
     RenderSettings settings = tree_settings(IntegratorKind::Whitted);
     settings.denoise = Denoise::Svgf;
     Queue queue = Queue::make_cpu();

@@ -122,7 +122,7 @@ TEST_CASE("two sessions with different thread counts run at once on two threads,
     CHECK(of_three == 3);
 }
 
-TEST_CASE("a sink hears how far a session is, and ends it at a whole sample") {
+TEST_CASE("a progress callback gets a session's progress and stops it at a whole sample") {
     const MixedWorld world;
     Queue queue = test::requested_queue();
     RenderSettings settings = part_settings();

@@ -89,7 +89,7 @@ void change_a_setting(RenderSettings& settings, test::Random& random) {
 
 } // namespace
 
-TEST_CASE("a session that has changed scene, camera, size and settings gives the bytes of a fresh render") {
+TEST_CASE("a session after changes of scene, camera, size and settings has the bytes of a new render") {
     const World world;
     Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     std::size_t scene = 0, camera = 0;
@@ -139,7 +139,7 @@ TEST_CASE("samples that are added later give the bytes of samples rendered at on
     }
 }
 
-TEST_CASE("settings of the machine go on with the film that another body began") {
+TEST_CASE("changed machine settings continue the film of another body") {
     const World world;
     Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     RenderSettings settings = changing_settings();
@@ -172,7 +172,7 @@ TEST_CASE("two sessions on one queue do not see each other") {
     CHECK(hash_of(b.result()) == hash_of(render_picture(cpu, world.prepared[1], world.cameras[1], other)));
 }
 
-TEST_CASE("a session that takes parts of a changed scene gives the picture of the changed scene, and copies no more") {
+TEST_CASE("a session that updates parts of a scene renders the changed scene and copies only those parts") {
     const World world;
     Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     RenderSettings settings = changing_settings();
@@ -200,7 +200,7 @@ TEST_CASE("a session that takes parts of a changed scene gives the picture of th
     CHECK(session.history().cuts == 0); // one sequence still
 }
 
-TEST_CASE("an integrator that knows nothing of the path tracer renders through the same seam") {
+TEST_CASE("an integrator independent of the path tracer renders through the same interface") {
     const World world;
     Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     const Camera camera = camera_from({0, 0.5f, 5}); // along -z

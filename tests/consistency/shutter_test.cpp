@@ -166,7 +166,7 @@ TEST_CASE("every tracer finds the same in a scene that moves") {
     CHECK(wrong == 0);
 }
 
-TEST_CASE("a ray meets what it meets in the scene that stands still as it is at the ray's time") {
+TEST_CASE("a ray in a moving scene hits what it hits in the still scene at its time") {
     Messages messages;
     const Scene rest = make_rushing_scene();
     MovingScene moving(rest, 0.3, {}, messages, kHalfASecond);
@@ -220,7 +220,7 @@ TEST_CASE("a ray meets what it meets in the scene that stands still as it is at 
     CHECK(worst[worst.size() * 99 / 100] < 0.002f);
 }
 
-TEST_CASE("each sample of a blurred picture shows the scene that stands still at the time that it draws") {
+TEST_CASE("each sample of a blurred picture equals the still scene at the sampled time") {
     Messages messages;
     const Scene rest = make_rushing_scene();
     MovingScene moving(rest, 0.3, {}, messages, kHalfASecond);

@@ -40,7 +40,7 @@ TEST_CASE("pictures of light subpaths do not depend on threads, passes, bodies o
     }
 }
 
-TEST_CASE("camera subpaths tell the same of the first surface as path tracing") {
+TEST_CASE("camera subpaths have path tracing's first-surface layers") {
     Queue queue = test::requested_queue();
     const auto layers_of = [&](IntegratorKind integrator) {
         RenderSettings settings = subpath_settings(integrator);
@@ -51,7 +51,7 @@ TEST_CASE("camera subpaths tell the same of the first surface as path tracing") 
     for (const IntegratorKind integrator : kSubpaths) CHECK(layers_of(integrator) == of_path);
 }
 
-TEST_CASE("without a scattering all that is left is what the camera looks straight at, whatever the integrator") {
+TEST_CASE("at depth 0 every integrator shows only directly visible emission") {
     Queue queue = test::requested_queue();
     RenderSettings settings = subpath_settings(IntegratorKind::Path);
     settings.path.max_depth = 0;
@@ -62,7 +62,7 @@ TEST_CASE("without a scattering all that is left is what the camera looks straig
     }
 }
 
-TEST_CASE("a session goes to light subpaths and back, ends early and goes on, and each picture is whole") {
+TEST_CASE("a session that switches to light subpaths and back, stops and resumes renders whole pictures") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -79,7 +79,7 @@ TEST_CASE("a session goes to light subpaths and back, ends early and goes on, an
     }
 }
 
-TEST_CASE("memory of subpaths is said beforehand, and is a GiB at most") {
+TEST_CASE("memory of subpaths equals its prediction and is at most 1 GiB") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -95,7 +95,7 @@ TEST_CASE("memory of subpaths is said beforehand, and is a GiB at most") {
     }
 }
 
-TEST_CASE("light subpaths are no frames, and are not too deep") {
+TEST_CASE("light subpaths refuse real-time frames and depths over their limit") {
     RenderSettings settings = subpath_settings(IntegratorKind::Bidirectional);
     settings.denoise = Denoise::Svgf;
     Queue queue = Queue::make_cpu();

@@ -115,7 +115,7 @@ Halves halves_of_two(Queue& queue, bool follows, float step) {
 
 } // namespace
 
-TEST_CASE("of two lamps frames follow most of what the one that dims takes, and less of what it brings") {
+TEST_CASE("with two emitters, frames follow a dimming one's loss and part of a brightening one's gain") {
     Queue queue = requested_queue();
     const auto reference = [&](float left) {
         RenderSettings settings;
@@ -168,7 +168,7 @@ Hash128 dimming_frames(Queue& queue, uint32_t width, uint32_t height, const Reco
 
 } // namespace
 
-TEST_CASE("what finds a change of light lies where a reconstruction has room, and takes no memory") {
+TEST_CASE("temporal gradients reuse the reconstruction's memory") {
     Queue queue = requested_queue();
     for (const auto& [width, height] : {std::pair(1u, 1u), std::pair(1u, 9u), std::pair(5u, 3u), std::pair(64u, 48u)}) {
         CAPTURE(width);
@@ -197,7 +197,7 @@ TEST_CASE("what finds a change of light lies where a reconstruction has room, an
     CHECK(held_by_frames(true) == held_by_frames(false));
 }
 
-TEST_CASE("a look at a frame in between leaves what follows as it is") {
+TEST_CASE("a frame rendered aside does not change the following frames") {
     Queue queue = requested_queue();
     const auto frames = [&](float scale, bool looks) {
         const ReconstructionSettings settings = {.follow_light = true, .keep_layers = true, .resolution_scale = scale};
@@ -211,7 +211,7 @@ TEST_CASE("a look at a frame in between leaves what follows as it is") {
     for (const float scale : {1.0f, 0.5f}) CHECK(frames(scale, true) == frames(scale, false));
 }
 
-TEST_CASE("where light does not change, looking for a change leaves the frame as it is") {
+TEST_CASE("temporal gradients do not change frames of constant light") {
     Queue queue = requested_queue();
     Hash128 with, without;
     last_frame(queue, true, false, &with);

@@ -70,7 +70,7 @@ uint64_t count_coherent(const std::vector<Ray>& groups, const HostTrees& scene) 
 
 } // namespace
 
-TEST_CASE("many rays at once meet what testing every triangle gives, bit for bit") {
+TEST_CASE("tracing many rays at once matches brute force bit for bit") {
     for (const NastyMesh& c : nasty_meshes()) {
         CAPTURE(c.name);
         const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(1000, 10'000)), c, 7);
@@ -105,7 +105,7 @@ TEST_CASE("any number of rays can be traced at once, and leaves may be of any le
     }
 }
 
-TEST_CASE("many rays at once meet baked triangles and instances, whichever comes first") {
+TEST_CASE("tracing many rays at once finds the nearest of baked triangles and instances") {
     const std::vector<BvhTriangle> baked = make_soup(300, 0), mesh = triangles_of(make_torus(16, 12));
     const WideBvh<8> baked_tree = make_wide_bvh<8>(build_bvh(baked), kSimdCollapse);
     const WideBvh<8> mesh_tree = make_wide_bvh<8>(build_bvh(mesh), kSimdCollapse);

@@ -93,7 +93,7 @@ uint64_t count_wrong(const std::vector<Hit>& hits, const std::vector<Hit>& expec
 
 } // namespace
 
-TEST_CASE("each way of handing out rays gives each ray its hit") {
+TEST_CASE("each way of distributing rays gives each ray its hit") {
     Queue queue = requested_queue();
     for (const NastyMesh& c : nasty_meshes()) {
         CAPTURE(std::string(c.name));
@@ -116,7 +116,7 @@ TEST_CASE("each way of handing out rays gives each ray its hit") {
     }
 }
 
-TEST_CASE("so they do over instances, those that can, and packets whose rays part there") {
+TEST_CASE("each way of distributing rays gives each ray its hit over instances, also in divergent packets") {
     Queue queue = requested_queue();
     InstancedScene s = make_instanced_scene(static_cast<uint32_t>(effort(300, 20011)));
     std::vector<TreeOnDevice> trees;

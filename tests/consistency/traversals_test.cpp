@@ -27,7 +27,7 @@ using SimdTraversal = Wide8SimdTraversal<TraversalOptions{}>;
 
 } // namespace
 
-TEST_CASE("a tree of any build setting gives the hits of testing every triangle, bit for bit") {
+TEST_CASE("binary trees of all build settings match brute force bit for bit") {
     for (const NastyMesh& c : nasty_meshes()) {
         CAPTURE(c.name);
         const std::vector<Ray> rays = nasty_rays(2000, c, 17);
@@ -48,7 +48,7 @@ TEST_CASE("a tree of any build setting gives the hits of testing every triangle,
     }
 }
 
-TEST_CASE("instances give the hits of testing every triangle of every instance, bit for bit") {
+TEST_CASE("instances match brute force bit for bit") {
     const InstancedScene s = make_instanced_scene(3000);
     std::vector<BvhView> views;
     for (const Bvh& tree : s.trees) views.push_back(view_of(tree));
@@ -66,7 +66,7 @@ TEST_CASE("instances give the hits of testing every triangle of every instance, 
     }
 }
 
-TEST_CASE("rays at the very edge of instances whose boxes leave no slack are not lost at the top level") {
+TEST_CASE("the top level loses no rays at the edges of instances with tight boxes") {
     const std::vector<BvhTriangle> quad = {{{0, 0, 0}, 0, {1, 0, 0}, 0, {1, 1, 0}, 0},
                                            {{0, 0, 0}, 1, {1, 1, 0}, 0, {0, 1, 0}, 0}};
     const Bvh bvh = build_bvh(quad);

@@ -102,7 +102,7 @@ TEST_CASE("two queues used in turns from one thread give the pictures of renders
     CHECK(hash_alone(0) != hash_alone(1));
 }
 
-TEST_CASE("a picture whose samples are shared out between two queues is the one of a queue alone") {
+TEST_CASE("a picture whose samples are split between two queues equals that of one queue") {
     IntegratorSettings settings;
     settings.photon_map = {.photons = 3000, .radius = 0.3f};
     settings.irradiance_cache = {.accuracy = 0.4f, .hemisphere_rays = 48};

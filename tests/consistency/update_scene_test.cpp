@@ -61,7 +61,7 @@ std::vector<Step> steps() {
 
 } // namespace
 
-TEST_CASE("an updated scene gives the picture of one prepared afresh, by every structure and traversal") {
+TEST_CASE("an updated scene renders like a newly prepared one with every structure and traversal") {
     Messages messages;
     Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     RenderSettings settings = test::layered_settings();
@@ -109,7 +109,7 @@ TEST_CASE("an updated scene gives the picture of one prepared afresh, by every s
     CHECK(pictures >= 6 * 20);
 }
 
-TEST_CASE("a change rebuilds no tree but those of what changed") {
+TEST_CASE("a change rebuilds only the trees of changed meshes") {
     Messages messages;
     Scene scene = test::make_mixed_scene();
     for (const TreeBuild build : kValuesOf<TreeBuild>) {
@@ -148,7 +148,7 @@ TEST_CASE("a change rebuilds no tree but those of what changed") {
     }
 }
 
-TEST_CASE("where a change would have other instances baked, all is prepared anew, with the same centre") {
+TEST_CASE("a change of which instances are baked prepares the scene anew with the same centre") {
     Messages messages;
     Scene scene = test::make_mixed_scene();
     const PreparedScene before = prepare_scene(scene, {}, messages);

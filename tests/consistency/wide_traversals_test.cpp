@@ -62,7 +62,7 @@ void check_tree(const Tree& tree, const Expected& expected) {
 
 } // namespace
 
-TEST_CASE("traversals of wide and compressed trees give the hits of testing every triangle, bit for bit") {
+TEST_CASE("traversals of wide and compressed trees match brute force bit for bit") {
     for (const NastyMesh& c : nasty_meshes(static_cast<uint32_t>(effort(3000, 1'000'000)))) {
         CAPTURE(c.name);
         const bool million = c.triangles.size() > 100'000; // brute force takes its time
@@ -111,7 +111,7 @@ using TraversalPostponedAlways = PostponingTraversal<kOptions, true>;
 
 } // namespace
 
-TEST_CASE("triangles that are put off, as for the sake of a warp, give the same hits") {
+TEST_CASE("postponed triangle tests give the same hits") {
     for (const NastyMesh& c : nasty_meshes()) {
         CAPTURE(c.name);
         const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(700, 20'000)), c, 17);
@@ -194,7 +194,7 @@ void check_instances(const Tlas& top, const std::vector<Trees>& trees, Tree Tree
 
 } // namespace
 
-TEST_CASE("wide and compressed trees of instances give the hits of testing every triangle, bit for bit") {
+TEST_CASE("traversals of wide and compressed trees over instances match brute force bit for bit") {
     const std::vector<std::vector<BvhTriangle>> meshes = {triangles_of(make_torus(16, 12)), make_soup(300, 0),
                                                           triangles_of(make_sphere(0, {}, 1)), make_soup(2, 0)};
     std::vector<Trees> trees;
@@ -273,7 +273,7 @@ double nodes_saved_by_no_end(const typename Traversal::Tree& tree) {
 
 } // namespace
 
-TEST_CASE("a search for any hit of a ray that has no end begins at its far end, and so visits fewer nodes") {
+TEST_CASE("any-hit traversal of an infinite ray starts at its far end and visits fewer nodes") {
     const Trees trees(build_bvh(things_in_a_room()));
     CHECK(nodes_saved_by_no_end<CompressedTraversal<for_any_hit(kBoth)>>(view_of(trees.compressed)) > 1.3);
     CHECK(nodes_saved_by_no_end<Wide8SimdTraversal<for_any_hit(kBoth)>>(view_of(trees.wide8)) > 1.3);

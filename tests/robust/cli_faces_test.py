@@ -46,10 +46,10 @@ class FacesTest(CliTest):
 
     def test_lamps_of_an_obj_are_named_with_the_flag_that_lights_their_backs(self):
         said = self.said("lamp.obj")
-        self.assertRegex(said, r"note: lamp\.obj: 1 lamp with light on the front alone: bulb; .*--two-sided-lights")
+        self.assertRegex(said, r"note: lamp\.obj: 1 lamp with light on the front only: bulb; .*--two-sided-lights")
         self.assertNotIn("turn its faces round", said)
         self.assertNotIn("bulb", self.said("lamp.obj", "--two-sided-lights"))
-        self.assertNotIn("on the front alone", self.said("cornell-box"))
+        self.assertNotIn("on the front only", self.said("cornell-box"))
 
     def test_the_camera_looks_through_backs_unless_asked_to_show_them(self):
         hidden = self.render(*FROM_BEHIND, scene="sheet.gltf")["hash"]
@@ -70,7 +70,7 @@ class FacesTest(CliTest):
         self.assertEqual(len(shares), 1)
 
     def test_flags_of_faces_that_a_scene_makes_useless_are_warnings(self):
-        self.assertIn("warning: --two-sided-lights: no surface of the scene gives light",
+        self.assertIn("warning: --two-sided-lights: no surface of the scene emits light",
                       self.said("sheet.gltf", "--two-sided-lights"))
         self.assertIn("warning: --show-back-faces: no surface of the scene hides its back",
                       self.said("lamp.obj", "--show-back-faces"))

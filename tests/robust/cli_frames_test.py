@@ -195,7 +195,7 @@ class MovingPictures(CliTest):
         program.send_signal(signal.SIGINT)
         said = program.communicate(timeout=300)[1].decode()
         self.assertEqual(program.returncode, 75, said)
-        self.assertIn("interrupted: the same command with --continue goes on", said)
+        self.assertIn("interrupted: the same command with --continue resumes", said)
         there = [name for name in self.files() if name.endswith(".png")]
         self.assertEqual(there, [f"f-{k:02}.png" for k in range(len(there))])
         self.assertLess(len(there), 40)

@@ -68,7 +68,7 @@ class Layers(CliTest):
             self.refuse(status, "render", "cornell-box", "-o", "x.exr", *flags, says=says)
 
         refuse(2, "--lpe", "a=L(DE", says=["--lpe a: character 2: this ( is not closed\n  L(DE\n   ^"])
-        refuse(2, "--lpe", "a=L<'none'>E", says=["character 4: no light of the scene is called so; there are"])
+        refuse(2, "--lpe", "a=L<'none'>E", says=["character 4: no light of the scene has this name; there are"])
         refuse(2, "--lpe", "LDE", says=["expected NAME=EXPRESSION"])
         refuse(2, "--lpe", "a=LE", "--lpe", "a=LDE", says=["two expressions have this name"])
         refuse(2, "--lpe", "depth=LE", says=["another layer of this name"])
@@ -88,7 +88,7 @@ class Layers(CliTest):
         refuse(2, "--lpe=", says=["--lpe", "NAME=EXPRESSION missing"])
         refuse(2, "--lpe", "a=CDL", says=["--lpe a: character 1: from the light to the eye: LD*E is what is CD*L elsewhere"])
         refuse(2, "--lpe", "a=LDE,b=LE", says=["--lpe a: character 4: each expression has a --lpe"])
-        self.refuse(2, "render", "cornell-box", "-o", "x.png", "--lpe", "a=LE", says=["EXR files alone"])
+        self.refuse(2, "render", "cornell-box", "-o", "x.png", "--lpe", "a=LE", says=["EXR output"])
 
 
 if __name__ == "__main__":

@@ -45,7 +45,7 @@ class Photometry(CliTest):
             self.refuse(2, "render", "cornell-box", "-o", output, *flags, says=says)
 
         refuse("--lamp", "light=800", says=["--lamp light=800", "units are W, lm, cd, lx and nits"])
-        refuse("--lamp", "sun=800lm", says=["no lamp of the scene is called so; there are 'light'"])
+        refuse("--lamp", "sun=800lm", says=["no lamp of the scene has this name; there are 'light'"])
         refuse("--false-color", "luminance", "--exposure", "1", says=["--false-color"])
         refuse("--false-color", "luminance", output="x.exr", says=["PNG and JPEG"])
         refuse("--false-color-range", "1,10", says=["--false-color-range"])

@@ -128,7 +128,7 @@ class RealTime(CliTest):
         program.send_signal(signal.SIGINT)
         said = program.communicate(timeout=300)[1].decode()
         self.assertEqual(program.returncode, 75, said)
-        self.assertIn("interrupted: the same command with --continue goes on", said)
+        self.assertIn("interrupted: the same command with --continue resumes", said)
         there = self.pictures("x")
         self.assertEqual(list(there), [f"f-{k:02}.png" for k in range(len(there))])
         self.assertLess(len(there), 30)
@@ -168,7 +168,7 @@ class RealTime(CliTest):
                             says=[says])
         for name in ("cast", "whitted", "distributed", "raster", "light", "bidirectional"):
             self.refuse(2, "render", "m.gltf", "-o", "f-#.png", *LINE, "--frames", "0-1", "--integrator", name,
-                        says=["--real-time: frames are reconstructed of the samples of --integrator path", f"not of {name}'s"])
+                        says=["--real-time: works with --integrator path", f"not with {name}"])
         self.assertEqual(self.render("one", "--frames", "0-0", "--spp", "1").events("frame")[0]["samples"], 1)
 
 

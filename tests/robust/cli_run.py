@@ -100,7 +100,7 @@ class CliTest(unittest.TestCase):
         self.assertEqual(outcome.status, status, outcome)
         for text in says:
             self.assertIn(text, outcome.error(), outcome)
-        self.assertNotIn("mistake of pertev's own", outcome.error(), outcome)
+        self.assertNotIn("internal error of pertev", outcome.error(), outcome)
         self.assertNotEqual(outcome.error().strip(), "", outcome)
         if "--json" in outcome.arguments:
             self.assertEqual(outcome.stderr, "", outcome)

@@ -54,7 +54,7 @@ class Flags(CliTest):
         self.refuse(2, "render", "cornell-box", "-o", "x.png", "--eyes", "-.5,0,1", says=["--eyes", "--eye?)\n"])
 
         self.refuse(2, "render", "cornell-box", "-o", "x.png", "--eye", "1", "2", "3",
-                    says=["2, 3: not understood; numbers that belong together are joined by commas: 1,2,3\n"])
+                    says=["2, 3: not understood; components of a vector are joined by commas: 1,2,3\n"])
         self.refuse(2, "bench", "cornell-box", says=["cornell-box: not understood; scenes are named by --scene\n"])
 
     def test_an_empty_name_is_said_to_be(self):
@@ -64,7 +64,7 @@ class Flags(CliTest):
             self.refuse(2, *line, says=[f"pertev: {what}: the name is empty\n"])
 
     def test_a_flag_before_its_verb_is_told_where_it_belongs(self):
-        self.refuse(2, "--spp", "4", "render", "cornell-box", "-o", "x.png", says=["--spp: stands before render"])
+        self.refuse(2, "--spp", "4", "render", "cornell-box", "-o", "x.png", says=["--spp: is a flag of render"])
         self.refuse(2, "--json", "info", "cornell-box", says=[])
 
     def test_json_that_is_switched_off_gives_errors_as_text(self):
@@ -76,7 +76,7 @@ class Flags(CliTest):
         for on in [["--json"], ["--json=true"], ["--json=false", "--json"]]:
             outcome = self.run_pertev("info", "gone.obj", *on)
             self.assertEqual((outcome.stderr, outcome.events("error")[0]["status"]), ("", 2), outcome)
-        self.refuse(2, "--quiet", "bench", "rays", says=["--quiet: stands before bench"])
+        self.refuse(2, "--quiet", "bench", "rays", says=["--quiet: is a flag of bench"])
 
     def test_a_list_of_outputs_is_refused_and_told_how_pictures_are_asked_for(self):
         for given, meant in [("a.png,b.exr", "-o a.png -o b.exr\n"), ("a.png,b", "-o a.png -o b\n"),

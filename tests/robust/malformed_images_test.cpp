@@ -104,7 +104,7 @@ TEST_CASE("every file of the malformed collection is refused by name, quickly an
     CHECK(peak_memory() - before < uint64_t(128) << 20);
 }
 
-TEST_CASE("a picture cut at any length is refused") {
+TEST_CASE("a truncated picture is refused") {
     for (const Sample& sample : samples()) {
         CAPTURE(sample.name);
         REQUIRE(try_to_decode(sample.bytes) == Outcome::Picture);
@@ -146,7 +146,7 @@ TEST_CASE("pictures with a few bits turned or bytes replaced end in an error or 
     CHECK(peak_memory() - before < uint64_t(128) << 20);
 }
 
-TEST_CASE("the header alone tells the size, of whole and of damaged pictures") {
+TEST_CASE("the header suffices to read the size of whole and damaged pictures") {
     for (const Sample& sample : samples()) {
         CAPTURE(sample.name);
         const ImageHeader header = read_image_header(sample.bytes, "whole");
@@ -158,7 +158,7 @@ TEST_CASE("the header alone tells the size, of whole and of damaged pictures") {
     }
 }
 
-TEST_CASE("a picture may unfold to so much and no more, whatever its format") {
+TEST_CASE("decoded pictures of every format have a size limit") {
     const auto outcome = [](uint64_t side, uint64_t decoded_bytes, uint64_t file_bytes) {
         const auto error =
             test::thrown_error([&] { check_image_size("a.png", side, side, decoded_bytes, file_bytes, 1 << 16); });
@@ -174,7 +174,7 @@ TEST_CASE("a picture may unfold to so much and no more, whatever its format") {
     CHECK(outcome(0, 0, 100'000) == bad_input);
 }
 
-TEST_CASE("content decides over the name, and what is no picture is told what would be") {
+TEST_CASE("a file's content overrules its name, and errors for other files list the formats") {
     const std::string text = "solid ascii\n";
     try {
         read_image(std::as_bytes(std::span(text)), "wall.png");

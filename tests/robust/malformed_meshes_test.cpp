@@ -101,7 +101,7 @@ TEST_CASE("a damaged binary PLY ends in an error or a scene") {
     }
 }
 
-TEST_CASE("files made to be slow are not: many materials, many missing textures, one endless line") {
+TEST_CASE("adversarial files are read quickly: many materials, many missing textures, one endless line") {
     const fs::path folder = test::scratch_folder();
     std::string obj = "mtllib many.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n", mtl;
     for (int i = 0; i < 50'000; ++i) {

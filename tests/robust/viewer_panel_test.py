@@ -107,7 +107,7 @@ class TwoWindows(unittest.TestCase):
             second.until("document.querySelector('#notice').textContent.includes('cannot turn the view')")
             first.until("document.querySelector('#wheel-text').textContent.includes('would like to turn the view')")
             second.key("Digit2", "2")
-            first.until("document.querySelector('#wheel-text').textContent.includes('Scatterings')")
+            first.until("document.querySelector('#wheel-text').textContent.includes('Max depth')")
             before = first.value("document.body.dataset.flags")
             first.value("[...document.querySelectorAll('#wheel button')].find((b) => b.textContent == 'hand over').click()")
             second.until("document.body.dataset.steers == 'true'")

@@ -226,7 +226,7 @@ class Pictures(CliTest):
             client.set("layer", "motion")
             self.assertIn("which distributed does not make", client.text("notice")["text"])
             client.set("integrator", "whitted")
-            self.assertIn("this scene has lamps alone", client.text("notice")["text"])
+            self.assertIn("this scene has only lamps", client.text("notice")["text"])
             client.set("integrator", "path")
             for name, value, flag in [("max_depth", 1, "--max-depth"), ("integrator", "direct", "--integrator"),
                                       ("spp", 7, "--spp")]:
@@ -306,7 +306,7 @@ class Pictures(CliTest):
             client.set("mode", "reference")
             self.assertEqual(client.done(lambda s: s["values"]["mode"] == "reference" and s["hash"])["hash"], home["hash"])
             client.set("resolution_scale", 0.05)
-            self.assertIn("Resolution of light", client.text("notice")["text"])
+            self.assertIn("Light resolution", client.text("notice")["text"])
 
     def test_saved_files_are_those_of_a_render(self):
         with Viewer() as viewer:

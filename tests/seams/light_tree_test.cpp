@@ -99,7 +99,7 @@ TEST_CASE("a light tree gives the same bytes on both devices, and others than th
     CHECK(picture_hash(emitters.render<test::TableRounds>({}, 4)) != hash);
 }
 
-TEST_CASE("a light tree finds the light that the table of lights finds, however lights are found, with less noise") {
+TEST_CASE("a light tree converges to the light table's picture under every strategy, with less noise") {
     Queue queue = test::requested_queue();
     TwoEmitters emitters(queue);
     constexpr uint32_t kRenders = 24, kOfOne = 64;

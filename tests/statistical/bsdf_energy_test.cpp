@@ -62,7 +62,7 @@ TEST_CASE("a rough conductor that absorbs nothing returns all light to 0.5 %") {
     CHECK(range.b < 1.005);
 }
 
-TEST_CASE("without its second lobe the rough conductor loses half the light, and the furnace shows it") {
+TEST_CASE("the furnace test notices a rough conductor without its second lobe") {
     double mean = 0;
     constexpr uint32_t kPoints = 10'000;
     const Vec3 wo = direction_at(0.9f);
@@ -153,7 +153,7 @@ TEST_CASE("every bsdf is reciprocal, refraction up to the squares of the indices
     CHECK(compared > count);
 }
 
-TEST_CASE("what lies beneath layers loses little light, and sheen alone gives at most what it gets") {
+TEST_CASE("bases beneath layers lose little light, and sheen alone reflects at most all") {
     const uint32_t points = furnace_points();
     const auto varnished = [](float r) { return make_coated(make_diffuse(grey(1)), 1, r, 1.5f); };
     const MeanWeight on_white = furnace_range(varnished, 1, points);
@@ -176,7 +176,7 @@ TEST_CASE("what lies beneath layers loses little light, and sheen alone gives at
     CHECK(alone.b < 1.001);
 }
 
-TEST_CASE("diffuse and glossy light add up to all, and each is what its lobe alone scatters") {
+TEST_CASE("diffuse and glossy light add up to all light, and each equals its lobe's") {
     for (const BsdfCase& c : rough_bsdf_cases()) {
         CAPTURE(c.name);
         for (uint32_t i = 0; i < 200; ++i) {

@@ -112,7 +112,7 @@ TEST_CASE("distributed is path tracing where no diffuse surface lights another")
     }
 }
 
-TEST_CASE("what distributed leaves out is what diffuse surfaces send to each other") {
+TEST_CASE("distributed ray tracing misses only interreflection between diffuse surfaces") {
     const Scene scene = test::make_mixed_scene();
     Queue queue = test::requested_queue();
     RenderSettings settings = distributed_settings(24, 32);

@@ -74,7 +74,7 @@ SeenFloor look(const Scene& scene, PathSettings path, bool up = false, float y =
 
 } // namespace
 
-TEST_CASE("a lamp shines from its front or from both faces, however its light is found, mirrored or not") {
+TEST_CASE("emitters emit from the front or both faces under every sampling strategy, mirrored or not") {
     for (const bool by_mirror : {false, true}) {
         for (const bool faces_down : {false, true}) {
             for (const bool is_two_sided : {false, true}) {
@@ -99,7 +99,7 @@ TEST_CASE("a lamp shines from its front or from both faces, however its light is
     }
 }
 
-TEST_CASE("a clamp leaves light that was scattered once alone, however it is found") {
+TEST_CASE("clamping leaves light scattered once unchanged under every sampling strategy") {
     CHECK(floor_radiance() == doctest::Approx(7.74).epsilon(1e-3));
     const Scene scene = emitter_over_floor(true, false, false);
     for (const LightStrategy strategy : test::kLightStrategies) {
@@ -112,7 +112,7 @@ TEST_CASE("a clamp leaves light that was scattered once alone, however it is fou
     }
 }
 
-TEST_CASE("a clamp takes later light alike, however it is found, before it is weighted") {
+TEST_CASE("clamping limits indirect light equally under every sampling strategy, before MIS weights") {
     PathState path;
     path.throughput = {2, 4, 1};
     path.bsdf_pdf = 3;

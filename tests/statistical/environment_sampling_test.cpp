@@ -114,7 +114,7 @@ TEST_CASE("environment: the density integrates to 1 and is positive wherever the
     }
 }
 
-TEST_CASE("environment: a sample's density and radiance are found again from its direction") {
+TEST_CASE("environment: density and radiance of a direction equal those of its sample") {
     for (const auto& [width, height] : {std::pair{16u, 9u}, {64u, 2048u}}) {
         const EnvironmentData data = build(make_sky(width, height, -2.0f));
         const EnvironmentView view = view_of(data);
@@ -218,7 +218,7 @@ TEST_CASE("environment: a sun of one texel has hardly more variance than a const
     }
 }
 
-TEST_CASE("environment: no image, one pixel and equal pixels are drawn uniformly over the sphere") {
+TEST_CASE("environment: no image, one pixel and equal pixels are sampled uniformly") {
     Environment none, one, equal;
     none.scale = one.scale = {1, 2, 3};
     one.image = {1, 1, 3, {1, 1, 1}};
@@ -244,7 +244,7 @@ TEST_CASE("environment: no image, one pixel and equal pixels are drawn uniformly
     CHECK(environment_radiance(view_of(build(one)), {0, 1, 0}) == Rgb{1, 2, 3});
 }
 
-TEST_CASE("environment: the image of one bright row at the pole is drawn with full precision") {
+TEST_CASE("environment: an image with one bright row at the pole is sampled with full precision") {
     Environment sky;
     sky.image = {4, 8192, 3, std::vector<float>(4 * 8192 * 3)};
     for (int i = 0; i < 12; ++i) sky.image.pixels[static_cast<std::size_t>(i)] = 1;
@@ -261,7 +261,7 @@ TEST_CASE("environment: the image of one bright row at the pole is drawn with fu
     CHECK(std::abs(power.mean - exact) < 4 * power.error + 1e-4 * exact);
 }
 
-TEST_CASE("environment: a black one is never drawn, and bad pixels are repaired with a warning") {
+TEST_CASE("environment: a black image is never sampled, and bad pixels are repaired with a warning") {
     Environment black;
     black.image = {4, 2, 3, std::vector<float>(24)};
     const EnvironmentData data = build(black);

@@ -138,13 +138,13 @@ ReconstructionSettings with_passes(uint32_t passes) {
 
 } // namespace
 
-TEST_CASE("the wavelet filter blurs, and leaves the light that there is") {
+TEST_CASE("the wavelet filter preserves the mean light") {
     bound_bias(history_alone(), {{"1 pass", with_passes(1), {0.01, 0.08, 0.055}},
                                  {"5 passes", with_passes(5), {0.015, 0.14, 0.18}},
                                  {"8 passes", with_passes(8), {0.03, 0.22, 0.18}}});
 }
 
-TEST_CASE("limits of bright samples and of histories take little of the light, each alone") {
+TEST_CASE("clamping of fireflies and of history each lose little light") {
     ReconstructionSettings fireflies = history_alone(), held = history_alone();
     fireflies.clamp_fireflies = true;
     held.clamp_history = true;
@@ -152,7 +152,7 @@ TEST_CASE("limits of bright samples and of histories take little of the light, e
                {{"limit_fireflies", fireflies, {0.002, 0.014, 0.002}}, {"limit_history", held, {0.002, 0.014, 0.002}}});
 }
 
-TEST_CASE("anti-aliasing and a lower resolution take little of the light, each alone") {
+TEST_CASE("anti-aliasing and a lower resolution each lose little light") {
     ReconstructionSettings smooth = with_passes(5), coarse = smooth, coarser = smooth;
     smooth.anti_alias = true;
     coarse.resolution_scale = 0.5f;
@@ -200,7 +200,7 @@ BiasScene bent_normals() {
 
 } // namespace
 
-TEST_CASE("shared bounces at bent normals seen at grazing angles send nearly the light that they should") {
+TEST_CASE("shared bounces at bent normals lose little light at grazing angles") {
     const BiasScene bent = bent_normals();
     Messages messages;
     const PreparedScene prepared = prepare_scene(bent.scene, {}, messages);
@@ -254,7 +254,7 @@ TEST_CASE("light beneath a layer that reflects more of it from the side does not
     CHECK(bias.of_block < 0.01);
 }
 
-TEST_CASE("with a clamp shared bounces send as much as clamped paths do") {
+TEST_CASE("clamped shared bounces have the light of clamped paths") {
     for (const BiasScene& s : bias_scenes()) {
         Messages messages;
         const PreparedScene prepared = prepare_scene(s.scene, {}, messages);

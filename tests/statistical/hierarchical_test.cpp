@@ -77,7 +77,7 @@ double difference_of(const RadiositySolution& a, const RadiositySolution& b) {
 
 } // namespace
 
-TEST_CASE("links come to the light that rows of form factors find, the nearer the less they may be wrong by") {
+TEST_CASE("links converge to the solution by form factor rows as their error bound shrinks") {
     const Scene scene = room_with_boxes();
     const SolvedRadiosity rows = solved_by(scene, RadiositySolver::GaussSeidel, 0.2f);
     double before = 1e9;
@@ -98,7 +98,7 @@ TEST_CASE("links come to the light that rows of form factors find, the nearer th
     CHECK(links_before < rows.stats.patches * rows.stats.patches / 10);
 }
 
-TEST_CASE("links lose no light on what lies inside solid things") {
+TEST_CASE("links lose no light to surfaces inside solids") {
     Scene scene = test::closed_box(test::white(0.7f));
     test::add(scene, test::sheet({0, 0.98f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), test::emitter_material(0, 20));
     for (int x = 0; x < 6; ++x) {
@@ -139,7 +139,7 @@ TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) by
     CHECK(sum == doctest::Approx(known).epsilon(0.01));
 }
 
-TEST_CASE("too many links are made anew by a larger error, to the bytes of that error asked for at once") {
+TEST_CASE("links over the limit are refined again with a larger error, with the bytes of that error") {
     const test::PatchedScene patched(room_with_boxes(), kInfinity);
     const auto solve = [&](float link_error, uint64_t max_links) {
         RadiositySettings settings;
@@ -166,7 +166,7 @@ TEST_CASE("too many links are made anew by a larger error, to the bytes of that 
     CHECK(test::is_about(error, ErrorCode::OverLimit, "solver", "hierarchical"));
 }
 
-TEST_CASE("what is made anew by a larger error says so, and its solution has that error") {
+TEST_CASE("a solution with an enlarged error warns and records that error") {
     const test::PatchedScene patched(room_with_boxes(), kInfinity);
     RadiositySettings settings;
     settings.solver = RadiositySolver::Hierarchical;
@@ -182,7 +182,7 @@ TEST_CASE("what is made anew by a larger error says so, and its solution has tha
     CHECK(told.contains(fmt::format("links, pass 1, anew by `link_error={}`", solved.stats.link_error)));
 }
 
-TEST_CASE("a solution by a larger error than was asked for, or of more steps than there are, is warned of") {
+TEST_CASE("solutions with a larger error or fewer steps than requested warn") {
     RadiositySettings settings;
     settings.solver = RadiositySolver::Hierarchical;
     const auto said = [&](const SolveStats& stats) {
@@ -199,7 +199,7 @@ TEST_CASE("a solution by a larger error than was asked for, or of more steps tha
     CHECK(limit.reason.find("after 24 steps") != std::string::npos);
 }
 
-TEST_CASE("links make the same bytes by any number of threads") {
+TEST_CASE("links do not depend on the number of threads") {
     const Scene scene = room_with_boxes();
     const Hash128 reference = solved_by(scene, RadiositySolver::Hierarchical, 0.5f).solution.hash();
     for (const int threads : {1, 5}) {
@@ -210,7 +210,7 @@ TEST_CASE("links make the same bytes by any number of threads") {
     CHECK(solved_by(scene, RadiositySolver::Hierarchical, 0.5f, 0.1f).solution.hash() != reference);
 }
 
-TEST_CASE("what a cluster sends is known by direction") {
+TEST_CASE("light that leaves a cluster depends on direction") {
     test::Random random(9);
     SentLight sent;
     std::vector<Vec3> normals;
@@ -229,7 +229,7 @@ TEST_CASE("what a cluster sends is known by direction") {
     }
 }
 
-TEST_CASE("clusters hold each face once, within their balls") {
+TEST_CASE("clusters contain each face once, within their bounding spheres") {
     test::Random random(4);
     std::vector<uint32_t> faces;
     std::vector<Ball> balls;
@@ -277,7 +277,7 @@ TEST_CASE("clusters of triangles are linked to each other, so that links grow as
     CHECK(links_a_triangle[1] < 1.3 * links_a_triangle[0]);
 }
 
-TEST_CASE("the form factor of a triangle from a place is the share of rays by the cosine that meet it") {
+TEST_CASE("a triangle's form factor at a point is the share of cosine-weighted rays that hit it") {
     test::Random random(7);
     for (int i = 0; i < 40; ++i) {
         const Vec3 a = random.point(-2, 2), b = random.point(-2, 2), c = random.point(-2, 2);

@@ -71,7 +71,7 @@ TEST_CASE("a sphere in a furnace shows its albedo by irradiance caching") {
     for (const float value : image.pixels) CHECK(static_cast<double>(value) == doctest::Approx(0.7).epsilon(0.01));
 }
 
-TEST_CASE("irradiance caching comes to path tracing's picture as records become more and better") {
+TEST_CASE("irradiance caching converges to path tracing with more and better records") {
     Queue queue = test::requested_queue();
     for (const CacheCase& c : cache_cases()) {
         Messages messages;

@@ -50,7 +50,7 @@ Scene varnished_floor(float albedo) {
 
 } // namespace
 
-TEST_CASE("paths of so many scatterings are those that a smaller depth leaves") {
+TEST_CASE("layers of at most n scatterings equal pictures of depth n") {
     Queue queue = test::requested_queue();
     const Scene scene = test::make_mixed_scene();
     RenderSettings settings = small_lpe_settings(4);
@@ -65,7 +65,7 @@ TEST_CASE("paths of so many scatterings are those that a smaller depth leaves") 
     }
 }
 
-TEST_CASE("direct and indirect light are expressions") {
+TEST_CASE("direct and indirect light equal their light path expressions") {
     Queue queue = test::requested_queue();
     const Scene scene = test::make_mixed_scene();
     RenderSettings settings = small_lpe_settings(4);
@@ -81,7 +81,7 @@ TEST_CASE("direct and indirect light are expressions") {
     }
 }
 
-TEST_CASE("each lamp's layer is the picture under that lamp alone") {
+TEST_CASE("each emitter's layer equals the picture with only that emitter") {
     Queue queue = test::requested_queue();
     const Light lights[] = {test::point_light({0.7f, 1.5f, -0.4f}, {3, 2, 1}),
                             test::point_light({-0.8f, 2.0f, 0.2f}, {1, 4, 6})};
@@ -131,7 +131,7 @@ TEST_CASE("a point light's diffuse and glossy parts are those of the lobes") {
     CHECK(test::mean_of(glossy) > 0.01 * test::mean_of(diffuse));
 }
 
-TEST_CASE("classes that are drawn for a path have the mean of those that are split for a shadow ray") {
+TEST_CASE("randomly chosen lobe classes have the mean of split ones") {
     Queue queue = test::requested_queue();
     Scene scene = varnished_floor(0.6f);
     Material glow = test::white(0);
@@ -156,7 +156,7 @@ TEST_CASE("classes that are drawn for a path have the mean of those that are spl
     CHECK(means[0][1] > 0.02 * means[0][0]);
 }
 
-TEST_CASE("a lamp within glass lights a floor by caustics alone") {
+TEST_CASE("an emitter within glass lights a floor only by caustics") {
     Queue queue = test::requested_queue();
     Scene scene;
     test::add(scene, test::sheet({0.05f, 0, 0}, {0, 0, 10}, {10, 0, 0}), test::white(0.5f));

@@ -120,7 +120,7 @@ TEST_CASE("lights: a triangle emits from its front, which a mirroring node leave
     }
 }
 
-TEST_CASE("lights: one face is drawn half as often as two") {
+TEST_CASE("lights: a one-sided triangle is sampled half as often as a two-sided one") {
     Scene scene;
     for (const float height : {1.0f, 3.0f})
         add_emitter(scene, make_square(1), {1, 1, 1}, make_translation({0, height, 0}));
@@ -129,7 +129,7 @@ TEST_CASE("lights: one face is drawn half as often as two") {
     CHECK(light_pmf(lights.view, 2) == doctest::Approx(2 * as_double(light_pmf(lights.view, 0))));
 }
 
-TEST_CASE("lights: a texture's emission is where the texture has it") {
+TEST_CASE("lights: emission follows its texture") {
     for (const TextureFilter filter : {TextureFilter::Nearest, TextureFilter::Linear}) {
         Scene scene;
         add_emitter(scene, make_square(1), {2, 2, 2}, make_translation({0, 1, 0}));
@@ -149,7 +149,7 @@ TEST_CASE("lights: a texture's emission is where the texture has it") {
     }
 }
 
-TEST_CASE("lights: a triangle is drawn wherever its texture has one bright texel, and not where it has none") {
+TEST_CASE("lights: a triangle with one bright texel is sampled, and one without is not") {
     Random random(8);
     int drawn = 0, dark = 0;
     for (int i = 0; i < 400; ++i) {
@@ -195,7 +195,7 @@ TEST_CASE("lights: a triangle is drawn wherever its texture has one bright texel
     CHECK(dark > 100);
 }
 
-TEST_CASE("lights: triangles of a textured mesh are drawn as their texture shines") {
+TEST_CASE("lights: triangles of a textured mesh are sampled by their emission") {
     Scene scene;
     add_emitter(scene, make_square(16), {1, 1, 1}, make_translation({0, 1, 0}));
     add_checkers(scene, 4, TextureFilter::Nearest);
@@ -209,7 +209,7 @@ TEST_CASE("lights: triangles of a textured mesh are drawn as their texture shine
     CHECK(on_bright > 0.8); // some dark ones touch a bright square
 }
 
-TEST_CASE("lights: point, spot and directional lights give what their definitions say") {
+TEST_CASE("lights: point, spot and directional lights match their definitions") {
     const Vec3 above = {0, 2, 0}, down = {0, -1, 0};
     LightSample sample;
     Scene scene;
@@ -254,7 +254,7 @@ TEST_CASE("lights: point, spot and directional lights give what their definition
     CHECK(std::isfinite(only(spot)));
 }
 
-TEST_CASE("lights: all kinds together add up, however near and far ones share the draws") {
+TEST_CASE("lights: all kinds together add up, near and far") {
     Scene scene;
     add_emitter(scene, make_square(1), {3, 1, 0}, make_translation({0, 1, 0}));
     add_emitter(scene, make_square(40), {1, 1, 1}, make_translation({0, 3, 0}));
@@ -286,7 +286,7 @@ TEST_CASE("lights: all kinds together add up, however near and far ones share th
     }
 }
 
-TEST_CASE("lights: draws follow the density, over lights of eight decades of power, each triangle and the sky") {
+TEST_CASE("lights: samples follow the density over eight decades of power, each triangle and the sky") {
     const auto draws = static_cast<uint32_t>(effort(1'000'000, 10'000'000));
     for (const uint32_t count : {100u, 3000u}) {
         Random random(count);
@@ -333,7 +333,7 @@ TEST_CASE("lights: draws follow the density, over lights of eight decades of pow
     }
 }
 
-TEST_CASE("lights: the density of a sample is found again from its point or its direction") {
+TEST_CASE("lights: density at a point or direction equals that of its sample") {
     Scene scene;
     add_emitter(scene, make_square(50), {3, 1, 0}, compose(make_translation({0, 1, 0}), make_scale({2, 1, 1})));
     scene.environment = Environment{};
@@ -388,7 +388,7 @@ TEST_CASE("lights: the density of directions to a triangle integrates to its pro
     CHECK(integral == doctest::Approx(1 - as_double(light_pmf(lights.view, 2))).epsilon(1e-4));
 }
 
-TEST_CASE("lights: a hit finds its light by instance and primitive; unlit and dark instances have none") {
+TEST_CASE("lights: a hit finds its light by instance and primitive, and unlit or dark instances have none") {
     Scene scene;
     add_emitter(scene, make_square(2), {0, 0, 0}, {});
     add_emitter(scene, make_square(3), {1, 0, 0}, {});
@@ -414,7 +414,7 @@ TEST_CASE("lights: a hit finds its light by instance and primitive; unlit and da
     CHECK(light_of(Lights(dark).view, 0, 0) == kNoLight);
 }
 
-TEST_CASE("lights: what cannot be lit is no sample, never a value that is not finite") {
+TEST_CASE("lights: unlit points yield no sample, and no value is infinite or NaN") {
     LightSample sample;
     Scene empty;
     const Lights none(empty);

@@ -87,7 +87,7 @@ TEST_CASE("strata: a row of lamps of different power") {
     CHECK(times > 100);
 }
 
-TEST_CASE("strata: a ball of light, and lamps in a square, whose places no single row could keep together") {
+TEST_CASE("strata: a sphere of light, and lamps on a square grid") {
     Scene ball, square;
     add_square_emitter(ball, {0, 0, 0}, 2, 24, 1);
     ball.materials[0].two_sided_emission = true; // whichever way the wrapping turns it
@@ -119,7 +119,7 @@ TEST_CASE("strata: a sky, alone and beside a lamp") {
     CHECK(beside > 5);
 }
 
-TEST_CASE("strata: where a path goes and the light that it asks there belong together, from the pixel on") {
+TEST_CASE("strata: a path's directions and light samples are stratified together from the pixel on") {
     for (const uint32_t depth : {0u, 1u, 4u}) {
         const auto variance = [&](SamplerKind kind) {
             return relative_variance_of([&](SampleKey key) {

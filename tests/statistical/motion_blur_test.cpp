@@ -201,7 +201,7 @@ TEST_CASE("a blurred picture is the mean of the pictures of all moments") {
     }
 }
 
-TEST_CASE("moving lamps are found alike by drawing them and by running into them") {
+TEST_CASE("light sampling and BSDF sampling agree on moving emitters") {
     Queue queue = test::requested_queue();
     Messages messages;
     Scene scene = make_lit_scene();

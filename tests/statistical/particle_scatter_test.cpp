@@ -88,7 +88,7 @@ TEST_CASE("particles carry the power that paths carry, by every BSDF, flat and a
     }
 }
 
-TEST_CASE("without the cosines of the two normals particles carry other power, and the comparison shows it") {
+TEST_CASE("the particle test notices missing cosines of the two normals") {
     const Surface surface = tilted_surface(make_diffuse(grey(1)), 0.3f);
     const Estimate by_path = transported(surface, false, 100'000);
     double bare = 0; // the BSDF's own adjoint about the shading normal

@@ -56,7 +56,7 @@ Image picture_by(Queue& queue, const PreparedScene& prepared, IntegratorKind int
 
 } // namespace
 
-TEST_CASE("photon mapping comes to path tracing's picture, at least as fast as Knaus and Zwicker say") {
+TEST_CASE("photon mapping converges to path tracing at least at Knaus and Zwicker's rate") {
     Queue queue = test::requested_queue();
     for (const PhotonCase& c : photon_cases()) {
         Messages messages;
@@ -91,7 +91,7 @@ TEST_CASE("photon mapping comes to path tracing's picture, at least as fast as K
     }
 }
 
-TEST_CASE("photons find a caustic with a 60th of path tracing's error or less at equal time") {
+TEST_CASE("photon mapping has at most a 60th of path tracing's error on a caustic at equal time") {
     Messages messages;
     const Scene scene = open_scene({.scene = "caustic"}, messages);
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -175,7 +175,7 @@ TEST_CASE("a lamp that stands on the floor is no noisier than by path tracing, f
     }
 }
 
-TEST_CASE("no radius is too small to divide light by its square, nor k photons in one place") {
+TEST_CASE("tiny radii and coincident photons do not divide by zero") {
     Queue queue = Queue::make_cpu();
     Scene scene = test::closed_box(test::white(0.5f)); // where photons are left, so that there is something to look up
     scene.lights.push_back(test::point_light({0, 0.5f, 0}, {1, 1, 1}));

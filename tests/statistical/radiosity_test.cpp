@@ -69,7 +69,7 @@ TEST_CASE("all of a closed box that emits E and reflects r has radiosity E / (1 
     }
 }
 
-TEST_CASE("an unfinished solution of a closed box shows E / (1 - r) on the mean, with divided patches as without") {
+TEST_CASE("an unfinished solution of a closed box has mean radiosity E / (1 - r), subdivided or not") {
     Messages messages;
     const float reflectance = 0.6f, radiance = 2;
     const Scene scene = test::closed_box(test::emitter_material(reflectance, radiance));
@@ -103,7 +103,7 @@ TEST_CASE("an unfinished solution of a closed box shows E / (1 - r) on the mean,
     }
 }
 
-TEST_CASE("a closed box that reflects all light is refused, by every solver of rows") {
+TEST_CASE("every row solver refuses a closed box that reflects all light") {
     Messages messages;
     for (const RadiositySolver solver :
          {RadiositySolver::Southwell, RadiositySolver::GaussSeidel, RadiositySolver::Matrix}) {
@@ -147,7 +147,7 @@ TEST_CASE("a sphere in a furnace receives pi of the furnace's radiance, and show
     }
 }
 
-TEST_CASE("radiosity comes to path tracing's picture of the Cornell box as patches become smaller") {
+TEST_CASE("radiosity converges to path tracing in the Cornell box as patches shrink") {
     Messages messages;
     const Scene scene = open_scene({.scene = "cornell-box"}, messages);
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

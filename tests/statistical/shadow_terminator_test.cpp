@@ -148,7 +148,7 @@ TEST_CASE("raised directions clear the horizon, and lowering takes them back") {
     CHECK(terminator_tilt(0.5f * kMinTilt, 0) == 0);
 }
 
-TEST_CASE("a tilted surface samples its density, for every BSDF") {
+TEST_CASE("sampling a tilted surface follows its density for every BSDF") {
     const std::vector<BsdfCase> cases = rough_bsdf_cases();
     constexpr float tilts[] = {0.1f, 0.3f};
     const int tests = static_cast<int>(cases.size() * std::size(tilts));
@@ -291,7 +291,7 @@ TEST_CASE("no light leaks into a coarse smooth room") {
     }
 }
 
-TEST_CASE("on coarse smooth meshes lights are found alike by every strategy") {
+TEST_CASE("light sampling strategies agree on coarse smooth meshes") {
     const Material metal{{.kind = MaterialKind::Conductor, .roughness = 0.6f}, "metal"};
     const Material plastic{{.kind = MaterialKind::MetallicRoughness, .base_color = grey(0.8f), .roughness = 0.5f},
                            "plastic"};

@@ -88,7 +88,7 @@ TEST_CASE("a blended surface stops as large a share of the paths as its alpha sa
     CHECK(test.stopped(kTinted, 0.5f, 0.5f) == 0);
 }
 
-TEST_CASE("the coin of a blended surface is a function of path, instance and primitive") {
+TEST_CASE("the random decision at a blended surface is a function of path, instance and primitive") {
     const AlphaScene test;
     uint32_t other_primitive = 0, other_place = 0;
     for (uint32_t key = 0; key < 1000; ++key) {
@@ -259,7 +259,7 @@ TEST_CASE("the triangles of a blended surface that a ray meets on their edge or 
     CHECK(on_edges > 100);
 }
 
-TEST_CASE("each edge of a blended surface tosses a coin of its own") {
+TEST_CASE("each edge of a blended surface has its own random decision") {
     test::Random random(12);
     const Mesh mesh = fan(6, random);
     const OneSurface pane(mesh, {{.alpha_mode = AlphaMode::Blend, .alpha = 0.5f}});

@@ -101,7 +101,7 @@ TEST_CASE("the middle of the picture weighs more in the mean than a pale backgro
     CHECK(stops_of(two_tones(0.18f, 0.045f), ToneMap::Agx) == doctest::Approx(-dark_thing).epsilon(0.05));
 }
 
-TEST_CASE("a thing that fills a tenth of the picture burns no more of itself than one that fills it") {
+TEST_CASE("an object that fills a tenth of the picture clips no more than one that fills it") {
     Image image{160, 80, 4, {}}; // bright: 4.7 % of the thing, 0.47 % of the picture
     for (uint32_t i = 0; i < 160 * 80; ++i) {
         const uint32_t x = i % 160;
@@ -112,7 +112,7 @@ TEST_CASE("a thing that fills a tenth of the picture burns no more of itself tha
     CHECK(tone_map(grey(200), ToneMap::Srgb, exposure_scale(stops_of(image, ToneMap::Srgb))).g < 1);
 }
 
-TEST_CASE("what has no weight does not count, and part of a pixel counts as a part") {
+TEST_CASE("pixels without alpha do not count, and partly covered ones count in part") {
     Image image{160, 80, 4, {}};
     for (uint32_t i = 0; i < 160 * 80; ++i) {
         const bool is_emitter = i % 160 >= 40, is_edge = i % 160 == 39; // half covered, its light is half as much

@@ -23,7 +23,7 @@ TEST_CASE("a picture of means over blocks has one pixel a block, the border's ov
     CHECK(means.at(2, 1)[2] == 0.0f);
 }
 
-TEST_CASE("blocks of one pixel are the picture") {
+TEST_CASE("block means with one pixel per block equal the picture") {
     const Image image{2, 1, 4, {1, 2, 3, 4, 5, 6, 7, 8}};
     CHECK(block_means(image, 1).pixels == image.pixels);
 }

@@ -126,7 +126,7 @@ TEST_CASE("every tree is sound, whatever the triangles and the settings") {
     }
 }
 
-TEST_CASE("the flags that are not the builder's are kept") {
+TEST_CASE("flags that the builder does not own are kept") {
     std::vector<BvhTriangle> triangles = random_triangles(100, 0.1f, 1);
     for (BvhTriangle& t : triangles) t.flags = (t.primitive << 1) | kLastInLeaf; // left over from another tree
     const Bvh bvh = build_bvh(triangles);
@@ -149,7 +149,7 @@ TEST_CASE("the tree does not depend on the number of threads") {
     CHECK(!find_fault(one));
 }
 
-TEST_CASE("cutting by cost is worth it: fewer boxes are met than with equal counts") {
+TEST_CASE("splitting by cost visits fewer boxes than splitting by count") {
     const std::vector<BvhTriangle> triangles = triangles_of(make_torus(200, 100));
     const Bvh by_cost = build_bvh(triangles);
     const Bvh by_count = build_bvh(triangles, {.max_leaf = 4, .max_depth = 14}); // forces equal cuts at every level
@@ -157,7 +157,7 @@ TEST_CASE("cutting by cost is worth it: fewer boxes are met than with equal coun
     CHECK(by_count.depth <= 14);
 }
 
-TEST_CASE("more than a tree can hold is refused, never cut short") {
+TEST_CASE("more triangles than a tree can hold are refused") {
     CHECK_THROWS_AS(build_bvh(random_triangles(33, 0.1f, 1), {.max_leaf = 4, .max_depth = 3}), Error);
     CHECK(build_bvh(random_triangles(32, 0.1f, 1), {.max_leaf = 4, .max_depth = 3}).depth == 3);
 }

@@ -21,7 +21,7 @@ const Instance& instance_named(const Scene& scene, const std::string& name) {
 
 } // namespace
 
-TEST_CASE("the Cornell box is part of the program, whole") {
+TEST_CASE("the built-in Cornell box is complete") {
     const auto bytes = builtin_scene("cornell-box");
     REQUIRE(bytes);
     const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
@@ -68,7 +68,7 @@ TEST_CASE("in the Cornell box the red wall is on the camera's left and the green
     CHECK(dot(forward, centre("short block")) > 0);
 }
 
-TEST_CASE("scenes of narrow light are part of the program with their materials") {
+TEST_CASE("the scenes with narrow light are built in with their materials") {
     for (const char* name : {"blind", "caustic", "cove", "door", "uplight"}) {
         CAPTURE(name);
         REQUIRE(builtin_materials(name));

@@ -152,7 +152,7 @@ TEST_CASE("coincident triangles, however many, neither stall a builder nor make 
     }
 }
 
-TEST_CASE("the flags that are not a builder's are kept, and its own set anew") {
+TEST_CASE("a builder keeps flags of other owners and resets its own") {
     std::vector<BvhTriangle> triangles = make_soup(500, 0);
     for (BvhTriangle& t : triangles) t.flags = (t.primitive << 1) | kLastInLeaf; // left over from another tree
     for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
@@ -328,7 +328,7 @@ TEST_CASE("each builder's tree is as good as its kind should be, in Sponza") {
     check_costs(triangles_of(read_obj_geometry(*path)));
 }
 
-TEST_CASE("what is wrong with a tree by spatial splits is found") {
+TEST_CASE("the checker notices faults of trees with spatial splits") {
     const std::vector<BvhTriangle> mesh = nasty_meshes()[2].triangles; // slivers
     const Bvh good = build_bvh(BvhBuilder::SpatialSplits, mesh);
     REQUIRE(!find_split_fault(good, mesh));

@@ -122,7 +122,7 @@ TEST_CASE("a cached file of any other length is noticed") {
     }
 }
 
-TEST_CASE("a cached file that lies, with a right checksum, never gives a tree that leads out of its arrays") {
+TEST_CASE("a corrupt cached file with a right checksum never yields out-of-range indices") {
     const Stored stored;
     const std::vector<std::byte> good = read_file(stored.file);
     Random random(9);
@@ -152,7 +152,7 @@ TEST_CASE("a cached file that lies, with a right checksum, never gives a tree th
     CHECK(taken > 0);      // changed boxes cannot be told from others
 }
 
-TEST_CASE("what cannot be a cached tree costs a warning, never the render") {
+TEST_CASE("an invalid cached tree causes a warning, and the render goes on") {
     const std::vector<BvhTriangle> triangles = triangles_of(make_torus(128, 80));
     REQUIRE(triangles.size() >= kMinCachedTriangles);
     const Bvh built = build_bvh(triangles);
@@ -204,7 +204,7 @@ TEST_CASE("a stored tree of any builder is read as it was built, triangles that 
     }
 }
 
-TEST_CASE("a stored better tree is taken where it will do, and not where one tree alone is asked for") {
+TEST_CASE("a better cached tree is used unless one structure is named") {
     const std::vector<BvhTriangle> triangles = triangles_of(make_torus(128, 80));
     const BvhBuilder best[] = {BvhBuilder::SpatialReinsertion};
     const BvhBuilder any[] = {BvhBuilder::Binned, BvhBuilder::Reinsertion, BvhBuilder::SpatialReinsertion};
@@ -221,7 +221,7 @@ TEST_CASE("a stored better tree is taken where it will do, and not where one tre
     CHECK(messages.all().empty());
 }
 
-TEST_CASE("the cache forgets what was used longest ago when it grows too large") {
+TEST_CASE("the cache evicts the least recently used entries when it grows too large") {
     const fs::path folder = scratch_folder();
     Messages messages;
     std::vector<fs::path> files;

@@ -30,7 +30,7 @@ bool names(const Remark& remark, const std::string& text) { return remark.reason
 
 } // namespace
 
-TEST_CASE("a scene that cast or whitted would show as black is refused, with what to use instead") {
+TEST_CASE("a scene that cast or whitted would render black is refused with alternatives") {
     Scene scene;
     test::add(scene, test::floor_at(0, 1), test::white());
     test::add(scene, test::floor_at(1, 1), {{.emission = {1, 1, 1}}, "lamp"});
@@ -39,7 +39,7 @@ TEST_CASE("a scene that cast or whitted would show as black is refused, with wha
         const Remark dark = said(kind, scene);
         CHECK(dark.setting == "integrator");
         CHECK(dark.value == name);
-        CHECK(names(dark, "lamps alone"));
+        CHECK(names(dark, "only lamps"));
         CHECK((names(dark, "`integrator=distributed`") && names(dark, "`ambient=0.5`")));
         CHECK(is_fine(said(kind, scene, Rgb{0, 0, 0}))); // asked for
         CHECK(is_fine(said(kind, scene, {}, 0)));        // emission alone
@@ -48,7 +48,7 @@ TEST_CASE("a scene that cast or whitted would show as black is refused, with wha
     CHECK(is_fine(said(IntegratorKind::Path, scene)));
 
     scene.environment = Environment{};
-    CHECK(names(said(IntegratorKind::Cast, scene), "lamps and an environment alone"));
+    CHECK(names(said(IntegratorKind::Cast, scene), "only lamps and an environment"));
     CHECK(names(said(IntegratorKind::Whitted, scene), "surfaces show the environment's mean as ambient light"));
 
     scene.lights.push_back(test::point_light({0, 2, 0}, {1, 1, 1}));
@@ -70,7 +70,7 @@ TEST_CASE(
         for (const IntegratorKind kind :
              {IntegratorKind::Path, IntegratorKind::Hybrid, IntegratorKind::Light, IntegratorKind::Bidirectional,
               IntegratorKind::Distributed, IntegratorKind::IrradianceCache}) {
-            CHECK(names(said(kind, scene), "nothing in this scene gives light: " + none));
+            CHECK(names(said(kind, scene), "nothing in this scene emits light: " + none));
         }
         for (const IntegratorKind kind :
              {IntegratorKind::Cast, IntegratorKind::Whitted, IntegratorKind::Raster, IntegratorKind::Reyes}) {

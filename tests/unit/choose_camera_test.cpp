@@ -44,7 +44,7 @@ TEST_CASE("the scene's first camera is taken, or the one that is named by name o
     CHECK(test::says(error, "\n  0  first\n  1  second"));
 }
 
-TEST_CASE("an eye without a target looks at the middle of the scene, as the notice says it") {
+TEST_CASE("an eye without a target looks at the scene's centre, as the notice says") {
     Messages messages;
     const Camera camera = choose_camera({.eye = DoubleVec3{0, 0, -3}}, make_scene(), 1, messages);
     CHECK(camera.world_from_camera == look_at({0, 0, -3}, {0, 0, 0}, {0, 1, 0}));

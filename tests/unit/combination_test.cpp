@@ -81,7 +81,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a combination that makes no sense says why") {
+TEST_CASE("an invalid combination says why") {
     constexpr bool cpu = false, gpu = true;
     const TraversalOptions on;
     const auto reason = [](const Combination& c, bool on_cuda) { return why_not(c, on_cuda).value_or(""); };

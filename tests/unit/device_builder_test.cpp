@@ -67,7 +67,7 @@ TEST_CASE("trees that are built on the device cost rays little more than those b
     }
 }
 
-TEST_CASE("a builder is used again for meshes of other sizes") {
+TEST_CASE("a builder can be reused for meshes of other sizes") {
     Queue queue = Queue::make_cpu();
     const std::vector<BvhTriangle> large = make_soup(1000, 0), small = make_soup(40, 5);
     DeviceBuilder builder(queue, 1000);

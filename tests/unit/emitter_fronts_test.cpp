@@ -43,10 +43,10 @@ bool says(const Messages& messages, bool is_warning, const std::string& text) {
 
 } // namespace
 
-TEST_CASE("lamps of an OBJ file are named once, with the setting that lights their backs") {
+TEST_CASE("a notice names one-sided lamps of an OBJ file once, with the setting for both sides") {
     const Messages one = read(room(1.99f, kDown));
     REQUIRE(one.all().size() == 1);
-    CHECK(says(one, false, "1 lamp with light on the front alone: bulb;"));
+    CHECK(says(one, false, "1 lamp with light on the front only: bulb;"));
     CHECK(says(one, false, "`two_sided_lights`"));
     CHECK(says(read(room(1.99f, kDown) + "usemtl second\nf 12 11 10\n"), false,
                "2 lamps with light on the front alone: bulb, second;"));

@@ -62,7 +62,7 @@ TEST_CASE("a light that is found again at its place is the one that was drawn") 
     CHECK(sky > 100);
 }
 
-TEST_CASE("nothing arrives from nowhere, nor from a lamp that is none any more") {
+TEST_CASE("no light arrives from an invalid point or from a removed emitter") {
     const Lights lights(make_kept_emitters());
     LightSample sample;
     float measure = 0;

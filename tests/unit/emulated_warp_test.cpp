@@ -60,7 +60,7 @@ TEST_CASE("each thread of a launch runs once, with its own indices") {
     }
 }
 
-TEST_CASE("no launch, no thread") {
+TEST_CASE("a launch of no threads runs none") {
     CHECK(run_warps({.blocks = 0}, [] { FAIL("ran"); }) == "");
 }
 

@@ -73,7 +73,7 @@ TEST_CASE("the picture is the mean of the samples of each pixel, rounded once") 
     }
 }
 
-TEST_CASE("a small sample is not lost beside a million large ones") {
+TEST_CASE("a small sample is not lost among a million large ones") {
     Queue queue = Queue::make_cpu();
     Film film(queue, 1, 1, 0);
     for (int i = 0; i < 1'000'000; ++i) add_radiance(film.view(), 0, {1000.0f, -1.0f, 0x1p-40f});
@@ -164,7 +164,7 @@ TEST_CASE("a sample with a channel that is not finite or too large adds 0 to all
     CHECK(layers_of(film, 1)[0].image.pixels == std::vector<float>{0, 10, 0}); // valid channels of a layer count
 }
 
-TEST_CASE("threads that add to one pixel at once lose nothing") {
+TEST_CASE("concurrent additions to a pixel lose nothing") {
     Queue queue = Queue::make_cpu();
     Film film(queue, 1, 1, 0);
     const FilmView view = film.view();

@@ -98,7 +98,7 @@ TEST_CASE("a hemicube's pixels are the hemisphere, by the cosine") {
     }
 }
 
-TEST_CASE("what leaves a patch of a closed room arrives, whatever the room holds") {
+TEST_CASE("form factors of a closed room sum to 1, whatever it contains") {
     Scene scene = test::closed_box(test::white(0.5f));
     test::add(scene, test::sheet({0, 0.9f, 0}, {0.3f, 0, 0}, {0, 0, 0.3f}),
               test::emitter_material(0.2f, 5)); // its front down
@@ -121,7 +121,7 @@ TEST_CASE("what leaves a patch of a closed room arrives, whatever the room holds
     }
 }
 
-TEST_CASE("what a lamp covers is known from few rays") {
+TEST_CASE("few rays find the form factor of a lamp") {
     Scene scene;
     test::add(scene, test::floor_at(0, 0.05f), test::white(0.5f));
     const float half = 0.1f;

@@ -13,7 +13,7 @@
 
 using namespace pertev;
 
-TEST_CASE("points found in a tree are those that are nearest, and few nodes are visited") {
+TEST_CASE("a search in a point tree finds the nearest points and visits few nodes") {
     const FoundPoints kd = found_in_kd_tree(), octree = found_in_octree();
     CHECK(kd.points == octree.points);
     std::vector<std::pair<float, uint32_t>> by_distance;

@@ -6,7 +6,7 @@
 
 using namespace pertev;
 
-TEST_CASE("each run of # in a file's name is the frame's number") {
+TEST_CASE("each run of # in a file's name becomes the frame's number") {
     CHECK(frame_file("frame-####.png", 7) == "frame-0007.png");
     CHECK(frame_file("frame-##.png", 12345) == "frame-12345.png");
     CHECK(frame_file("a#b/c#d##.exr", 3) == "a#b/c3d03.exr");

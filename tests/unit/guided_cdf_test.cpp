@@ -135,7 +135,7 @@ TEST_CASE("ordered table: the bits behind a pair of numbers are a permutation of
     }
 }
 
-TEST_CASE("ordered table: weights that are no weights are never drawn, the least one is") {
+TEST_CASE("ordered table: invalid weights are never drawn, the smallest valid one is") {
     const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
     const std::vector<double> weights = {nan, 1, -3, 1e-300, infinite, 3, 0};
     const GuidedCdf table = build_guided_cdf(weights);

@@ -21,7 +21,7 @@ bool reaches(const std::atomic<int>& said, int count) {
 
 } // namespace
 
-TEST_CASE("a heartbeat names the work again and again while that does nothing of its own") {
+TEST_CASE("a heartbeat repeats the work's name while it makes no progress") {
     std::atomic<int> said = 0;
     std::vector<double> seconds;
     std::vector<std::string> works;

@@ -84,7 +84,7 @@ TEST_CASE("a map for no material, for one without texture coordinates, or of no 
         const HeightMapText map[] = {parse_height_map(material + "=" + name + ",1")};
         return test::bad_input_message([&] { read_height_maps(map, scene); });
     };
-    CHECK(why("door", file).find("no material of the scene is called so; there are 'floor', 'wall left'") !=
+    CHECK(why("door", file).find("no material of the scene has this name; there are 'floor', 'wall left'") !=
           std::string::npos);
     CHECK(why("floor", png).find("'floor' is on a mesh without texture coordinates") != std::string::npos);
     CHECK(why("wall left", file).find(file) != std::string::npos);

@@ -118,7 +118,7 @@ TEST_CASE("a written HDR reads back within half a unit of its shared exponent") 
     }
 }
 
-TEST_CASE("an HDR holds values that it cannot hold as the nearest that it can") {
+TEST_CASE("an HDR file stores unrepresentable values as the nearest representable ones") {
     const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
     const Image image{4, 1, 3, {nan, -1, 0, inf, 1, 1, 255.7f, 0, 0, 1e-40f, 0, 0}};
     const Image back = std::get<Image>(decode_image(encode_hdr(image), "t.hdr"));

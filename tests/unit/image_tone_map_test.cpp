@@ -168,7 +168,7 @@ TEST_CASE("exposure is in stops") {
     for (const ToneMap kind : kAll) CHECK(tone_map(grey(0.05f), kind, exposure_scale(2)) == tone_map(grey(0.2f), kind));
 }
 
-TEST_CASE("a tone-mapped picture divides out premultiplied alpha, or lies over black without it") {
+TEST_CASE("tone mapping divides out premultiplied alpha, or composites over black without alpha") {
     const Image image{1, 1, 4, {0.25f, 0.5f, 0, 0.5f}};
     CHECK(tone_map_image(image, ToneMap::Srgb).pixels == std::vector<uint8_t>{188, 255, 0, 128});
     CHECK(tone_map_image(image, ToneMap::Srgb, 0, false).pixels == std::vector<uint8_t>{137, 188, 0, 255});

@@ -61,7 +61,7 @@ TEST_CASE("an unknown extension is an error that lists the known ones, and nothi
     CHECK(std::filesystem::is_empty(folder));
 }
 
-TEST_CASE("what cannot be written is told before there is a picture, by its name") {
+TEST_CASE("unwritable files are named before rendering") {
     const std::filesystem::path folder = test::scratch_folder();
     const auto refused = [&](const char* name, uint32_t width, uint32_t height) {
         return test::thrown_error([&] { check_image_output(folder / name, width, height); });
@@ -79,7 +79,7 @@ TEST_CASE("what cannot be written is told before there is a picture, by its name
     CHECK(std::filesystem::is_empty(folder));
 }
 
-TEST_CASE("alpha is written to PNG where it is asked for") {
+TEST_CASE("alpha is written to PNG on request") {
     const std::filesystem::path folder = test::scratch_folder();
     const Image half_covered{1, 1, 4, {0.1f, 0.1f, 0.1f, 0.5f}};
     write_image(folder / "t.png", half_covered, {.transparent = true});

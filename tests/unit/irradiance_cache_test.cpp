@@ -328,7 +328,7 @@ TEST_CASE("irradiance at records is that of brute force") {
     CHECK(compared >= 3);
 }
 
-TEST_CASE("few samples of a picture find no record, and none has a record of other subpaths") {
+TEST_CASE("few lookups miss, and records lie behind mirrors and beneath layers") {
     const Scene scene = test::room_with_ball(test::of_roughness(MaterialKind::MetallicRoughness, 0),
                                              test::of_roughness(MaterialKind::MetallicRoughness, 0.4f), false);
     const CacheRun run(scene, test::room_camera(), 48, {.accuracy = 0.4f, .hemisphere_rays = 64}, 4);

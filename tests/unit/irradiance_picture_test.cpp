@@ -56,7 +56,7 @@ TEST_CASE("under a point light a floor has I cos(t) / r^2, whatever it is made o
     }
 }
 
-TEST_CASE("a place in a picture of irradiance is what the light meter says of it") {
+TEST_CASE("a pixel of an irradiance picture equals the light meter's value") {
     const Scene scene = test::make_mixed_scene();
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

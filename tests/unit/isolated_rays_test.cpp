@@ -8,7 +8,7 @@
 
 using namespace pertev;
 
-TEST_CASE("a mix of rays has the rate of its kinds one after the other") {
+TEST_CASE("a mix of rays has the rate of its kinds traced in sequence") {
     const IsolatedRates rates = {.camera = 4, .bounce = 2, .shadow = 8};
     CHECK(rates.of_mix({.camera = 4, .bounce = 4, .shadow = 8}) == 4.0); // 16 rays in 1 + 2 + 1 seconds
     CHECK(rates.of_mix({.camera = 4, .bounce = 0, .shadow = 0}) == 4.0);

@@ -108,7 +108,7 @@ TEST_CASE("a wrong combination is named first and has no figures anywhere") {
     CHECK(m.table("runs").at(0, "wrong") == true);
 }
 
-TEST_CASE("notes have what was asked for and is not there, and what was not run, grouped by reason") {
+TEST_CASE("notes list missing results and skipped combinations, grouped by reason") {
     LabReport report = small_report();
     report.notes = {"shadow: <none>"};
     report.combinations.push_back({.name = "first", .refused = "other"});

@@ -84,7 +84,7 @@ std::size_t lpe_caret(const std::string& message) { return message.size() - mess
 
 } // namespace
 
-TEST_CASE("the automaton takes the words that a regular expression of the standard library takes") {
+TEST_CASE("the automaton accepts the words that std::regex accepts") {
     const std::vector<std::string> texts = {
         "LE",         "L(D|S)*E",      "LDE",     "L(S|D)*D+DE", "LS+DE",         "L.*E",
         "L.{0}E",     "L.{2,3}E",      "L.{2,}E", "L[DS]?G*E",   "L[^S]+E",       "(LD|LS)(G|D)*E",
@@ -102,7 +102,7 @@ TEST_CASE("the automaton takes the words that a regular expression of the standa
     }
 }
 
-TEST_CASE("an automaton of any number of expressions takes for each the words that are its own") {
+TEST_CASE("an automaton of many expressions accepts each expression's words") {
     std::vector<std::string> texts;
     for (const char* first : {"", "D", "G", "S", "[^S]"}) {
         for (const char* last : {"", "D", "G", "S", "[^S]"}) {
@@ -134,7 +134,7 @@ TEST_CASE("an automaton of any number of expressions takes for each the words th
     }
 }
 
-TEST_CASE("the automaton has no state more than it needs") {
+TEST_CASE("the automaton is minimal") {
     CHECK(automaton_of({"L.*E"}).state_count() == 2); // that, and the one that takes nothing
     CHECK(automaton_of({"L(D|G|S)*E", "L[DGS]*E"}).state_count() == 2);
     CHECK(automaton_of({"LS+DE"}).state_count() == 4);            // E, DE, SDE
@@ -199,13 +199,13 @@ TEST_CASE("a bad expression points at its character") {
     points_at("LLE", 0, "scatterings alone");
 }
 
-TEST_CASE("letters of a name count as they are seen") {
+TEST_CASE("characters of a name are counted as displayed") {
     const std::string message = lpe_refusal("n=L<'\xc3\xa4\xc3\xb6'>XE"); // two letters of two bytes each
     CHECK(message.find("character 8") != std::string::npos);
     CHECK(lpe_caret(message) == 7);
 }
 
-TEST_CASE("what is no NAME=EXPRESSION is refused") {
+TEST_CASE("texts that are not NAME=EXPRESSION are refused") {
     for (const std::string text : {"LDE", "=LDE", "a b=LDE", "a.b=LDE", "\xc3\xa4=LDE"}) {
         CHECK(lpe_refusal(text).find("expected NAME=EXPRESSION") != std::string::npos);
     }
@@ -220,7 +220,7 @@ TEST_CASE("expressions that grow without end are refused") {
     parse_light_path("x=LD" + std::string(4000, '*') + "E"); // nested as deeply as possible
 }
 
-TEST_CASE("expressions that are too much together are refused, where each by itself is none too many") {
+TEST_CASE("expressions that are too large together are refused") {
     const auto repeated = [](std::size_t count, auto text_of) {
         std::vector<std::string> texts;
         for (std::size_t i = 0; i < count; ++i) texts.push_back(text_of(i));
@@ -235,7 +235,7 @@ TEST_CASE("expressions that are too much together are refused, where each by its
     CHECK(is_over(repeated(12, counting), "16384 states"));
 }
 
-TEST_CASE("an automaton that takes too long is refused; where fewer states take too long, it says the same with more") {
+TEST_CASE("an automaton that takes too long to build is refused") {
     const std::vector<LightPathExpression> expressions = {parse_light_path("x=LD{30}(SS|SD|SG)E")};
     const LightPathTags tags = {{std::vector<bool>()}, {std::vector<bool>()}};
     const auto with_steps = [&](uint64_t steps) { return make_automaton(expressions, tags, steps); };

@@ -72,7 +72,7 @@ using TheseAre = std::vector<bool>;
 
 } // namespace
 
-TEST_CASE("a surface is called as its object, its mesh, its material and the nodes above it") {
+TEST_CASE("a surface's names are those of its object, mesh, material and parent nodes") {
     CHECK(surfaces_of_filter("x=LD<'wall'>E") == TheseAre{true, false, false});
     CHECK(surfaces_of_filter("x=LD<'panel'>E") == TheseAre{true, false, true});
     CHECK(surfaces_of_filter("x=LD<'white'>E") == TheseAre{true, false, true});
@@ -85,7 +85,7 @@ TEST_CASE("a surface is called as its object, its mesh, its material and the nod
     CHECK(surfaces_of_filter("x=L.E") == TheseAre{true, true, true});
 }
 
-TEST_CASE("a light is called as itself and the nodes above it, and the environment by its word") {
+TEST_CASE("a light's names are its own and its parent nodes', and the environment has a word") {
     CHECK(lights_of_filter("x=L<'bulb'>E") == TheseAre{false, true, false, false});
     CHECK(lights_of_filter("x=L<'lamp'>E") == TheseAre{true, false, false, false});
     CHECK(lights_of_filter("x=L<'glow'>E") == TheseAre{true, false, false, false});
@@ -95,14 +95,14 @@ TEST_CASE("a light is called as itself and the nodes above it, and the environme
     CHECK(lights_of_filter("x=LE") == TheseAre{true, true, true, true});
 }
 
-TEST_CASE("a name that nothing has is refused at its letter, with names that there are") {
+TEST_CASE("an unknown name is refused at its character, with a list of names") {
     const auto message = [](const char* text) {
         return test::bad_input_message([&] { put_layers({"a=LE", text}, make_named_scene()); });
     };
     CHECK(message("b=LD<'wal'>E").find("`lpe=b`: character 5: no object, mesh, material or node") == 0);
     CHECK(message("b=LD<'wal'>E").find("\n      ^") != std::string::npos);
     CHECK(message("b=LD<'wall' 'x*'>E").find("character 12") != std::string::npos);
-    CHECK(message("b=L<'wall'>E").find("no light of the scene is called so; there are 'bulb', 'disc'") !=
+    CHECK(message("b=L<'wall'>E").find("no light of the scene has this name; there are 'bulb', 'disc'") !=
           std::string::npos); // a wall gives no light
     CHECK(message("a=LDE").find("two expressions have this name") != std::string::npos);
 }
@@ -123,7 +123,7 @@ TEST_CASE("a render takes any number of layers") {
     }
 }
 
-TEST_CASE("two layers of one name are told with what each is, wherever among many they stand") {
+TEST_CASE("an error for two layers of one name shows both expressions") {
     std::vector<LightPathExpression> expressions;
     for (int i = 0; i < 100; ++i) expressions.push_back(parse_light_path(fmt::format("n{}=LE", i)));
     check_layers(expressions);

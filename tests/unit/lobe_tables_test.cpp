@@ -6,7 +6,7 @@
 
 using namespace pertev;
 
-TEST_CASE("The build makes the tables of lobes that every picture so far was made with") {
+TEST_CASE("the build reproduces the recorded tables of lobes") {
     Hasher hasher;
     const auto add = [&](int count, auto table) {
         for (int i = 0; i < count; ++i) hasher.add_value(table(i));

@@ -70,7 +70,7 @@ TEST_CASE("a traversal over a set of rays gives the hits and the work of each ra
     }
 }
 
-TEST_CASE("no rays: no hits, no work, no time to speak of") {
+TEST_CASE("an empty ray set has no hits, no work and no time") {
     Queue queue = Queue::make_cpu();
     const RaySet none{"none"};
     RaysOnDevice rays(queue, none);

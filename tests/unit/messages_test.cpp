@@ -9,7 +9,7 @@
 
 using namespace pertev;
 
-TEST_CASE("what is left out is a warning, what is made up a notice, and each has a list") {
+TEST_CASE("left-out parts cause warnings, defaults cause notices, and both are listed") {
     Messages messages;
     messages.warn("repaired");
     messages.leave_out("a texture");

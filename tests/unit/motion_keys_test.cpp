@@ -73,7 +73,7 @@ TEST_CASE("a motion leads a body to where it is at any time, and back") {
     }
 }
 
-TEST_CASE("what stands still has no keys, and what is no rigid motion is left out") {
+TEST_CASE("still objects have no keys, and motions that are not rigid are left out") {
     const PlacedBox box = skewed_box();
     const FittedMotions still =
         fit_motions({&box, 1}, [&](double) { return std::vector{std::optional(box.world_from_local)}; });
@@ -100,7 +100,7 @@ TEST_CASE("what stands still has no keys, and what is no rigid motion is left ou
     CHECK(gone.motions.front().keys.empty());
 }
 
-TEST_CASE("what is back in its place at even times is seen to move between them") {
+TEST_CASE("motion between equal poses at even times is found") {
     const PlacedBox box = skewed_box();
     const auto segments_of = [&](const std::function<Transform(double)>& place_at, std::span<const double> looks = {}) {
         const FittedMotions fitted = fit_motions(

@@ -41,7 +41,7 @@ float pixels_a_metre(const CameraView& view) { return 0.5f * 64 / (4 * view.half
 
 } // namespace
 
-TEST_CASE("what moves to the right and up has a motion of so many pixels to the right and up") {
+TEST_CASE("an object moving right and up has that motion in pixels") {
     Messages messages;
     Queue queue = test::requested_queue();
     const Camera camera = camera_of_ball();
@@ -135,7 +135,7 @@ TEST_CASE("a picture without a frame before it has no motion, nor has what was b
     CHECK(largest(session.motion()) < 1e-4f);
 }
 
-TEST_CASE("motion vectors take the memory that is said beforehand, and have the same bytes on every device") {
+TEST_CASE("memory of motion vectors equals its prediction, and their bytes are equal on every device") {
     Messages messages;
     Queue cpu = Queue::make_cpu();
     const Scene scene = test::make_mixed_scene();

@@ -41,7 +41,7 @@ TEST_CASE("a number too near 0 for a float is 0 and one too large is infinite, h
     CHECK(parse_whole_float("0e-999") == 0.0f);
 }
 
-TEST_CASE("a whole number in text has nothing before it and nothing behind it") {
+TEST_CASE("a whole number in text has nothing before or after it") {
     CHECK(parse_whole_float("-1.5") == -1.5f);
     for (const char* text : {"", " 1", "1 ", "+1", "1e-400x", "1,2", "e5", "."}) {
         CAPTURE(text);

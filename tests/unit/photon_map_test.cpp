@@ -416,7 +416,7 @@ TEST_CASE("targets are one sphere round a ball, and several where mirrors lie ap
     }
 }
 
-TEST_CASE("a scene without a light for photons, and more photons than there is room for, are refused in a line") {
+TEST_CASE("scenes without lights and too many photons are refused") {
     Scene scene;
     test::add(scene, test::floor_at(0, 1), test::white());
     RenderSettings settings;

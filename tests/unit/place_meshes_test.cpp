@@ -43,7 +43,7 @@ TEST_CASE("an instance is baked when it alone uses its mesh, or when its space i
     CHECK(placement.copied_triangles == 10);
 }
 
-TEST_CASE("baked copies out of all proportion to the scene are refused, and the instance is named") {
+TEST_CASE("baked copies that far exceed the scene's size are refused by instance name") {
     constexpr uint32_t triangles = 1u << 18, most = kFreeBakedTriangles / triangles + kMaxBakedExpansion;
     CHECK(place_meshes(scene_of(triangles, most)).copies == most);
     const auto error = test::thrown_error([] { place_meshes(scene_of(triangles, most + 1)); });

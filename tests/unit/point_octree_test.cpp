@@ -78,7 +78,7 @@ TEST_CASE("a few large spheres do not make the search for small ones slow") {
     CHECK(nodes < 100 * 300);
 }
 
-TEST_CASE("no sphere, no result") {
+TEST_CASE("an octree without spheres finds nothing") {
     int seen = 0;
     visit_covering(PointOctreeView{}, {}, [&](const NearPoint&) { ++seen; });
     visit_within(PointOctreeView{}, {}, kInfinity, [&](const NearPoint&) { ++seen; });

@@ -79,7 +79,7 @@ using Numbers = std::vector<uint32_t>;
 
 } // namespace
 
-TEST_CASE("what stands in a node goes with it, and only that is told") {
+TEST_CASE("contents of a node move with it, and only they are reported as moved") {
     PosedScene posed = pose(make_scene());
     const SceneUpdate update = posed.set_time(1.5);
     CHECK(posed.scene().instances[1].world_from_local.translation == Vec3{1.5f, 0, 0});
@@ -93,7 +93,7 @@ TEST_CASE("what stands in a node goes with it, and only that is told") {
     CHECK(posed.scene().instances[1].world_from_local.translation == Vec3{0, 0, 0});
 }
 
-TEST_CASE("a time that is no number is refused") {
+TEST_CASE("a time that is not finite is refused") {
     PosedScene posed = pose(make_scene());
     for (const double time : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         CHECK_THROWS_AS(posed.set_time(time), Error);
@@ -109,7 +109,7 @@ TEST_CASE("a place within a node is kept as the node moves") {
     CHECK(posed.scene().instances[1].world_from_local.translation == Vec3{2, 5, 0});
 }
 
-TEST_CASE("of two animations of one part the later one counts") {
+TEST_CASE("the later of two animations of one part applies") {
     Scene scene = make_scene();
     scene.animations.push_back(
         {.name = "", .origin = "", .channels = {channel(0, AnimatedPart::Translation, {0, 2}, {0, 0, 0, 0, 0, 6})}});
@@ -133,7 +133,7 @@ TEST_CASE("a scale of 0 hides an instance at that time, and nothing becomes NaN"
     CHECK(bounds_of(posed.scene()).lo.y == 0); // hidden objects have no bounds
 }
 
-TEST_CASE("what a scale of 0 hides at rest is there when it moves, and left out when it never does") {
+TEST_CASE("an instance hidden by a scale of 0 at rest is kept only if it moves") {
     Scene scene = make_scene();
     std::get<NodePose>(scene.nodes[1].pose).scale = {0, 0, 0};
     scene.instances[1].world_from_local = make_scale({0, 0, 0});
@@ -169,7 +169,7 @@ TEST_CASE("a scene of which all is hidden at rest can be looked at") {
     CHECK(!is_singular(choose_camera(choice, posed.scene(), 1, messages).world_from_camera));
 }
 
-TEST_CASE("what flies too far is refused, and told later on") {
+TEST_CASE("positions beyond the limit are refused, at rest and at later times") {
     Scene scene = make_scene();
     scene.animations[0].channels[0].values[3] = 1e13f;
     PosedScene posed = pose(std::move(scene));

@@ -181,7 +181,7 @@ Scene scene_of_all_light() {
 
 } // namespace
 
-TEST_CASE("a solution is shown under the light alone that it was solved for") {
+TEST_CASE("a solution is rendered only with the light it was solved for") {
     const std::filesystem::path path = test::scratch_folder() / "light";
     const Scene scene = scene_of_all_light();
     write_solution(path, solution_of(scene));
@@ -252,7 +252,7 @@ TEST_CASE("a solution's file of the version before is read, with a warning that 
     CHECK(why_refused(path, scene).find("no radiosity solution") != std::string::npos);
 }
 
-TEST_CASE("a solution that was ended says what it holds, in its file too, and is shown with a warning") {
+TEST_CASE("an interrupted solution records what it holds and is rendered with a warning") {
     const std::filesystem::path path = test::scratch_folder() / "ended";
     Messages messages;
     /// Ended at the `heard`th time that it tells of `during`.
@@ -359,7 +359,7 @@ TEST_CASE("a solution's bytes do not depend on threads, and follow its settings"
     }
 }
 
-TEST_CASE("a scene that cannot be solved is refused in a line") {
+TEST_CASE("a scene that cannot be solved is refused") {
     const auto why = [](const Scene& scene, RadiositySettings settings) {
         const auto error = test::thrown_error([&] { solution_of(scene, settings); });
         return error ? std::string(error->what()) : std::string("no error");
@@ -380,7 +380,7 @@ TEST_CASE("a scene that cannot be solved is refused in a line") {
     CHECK(error->code() == ErrorCode::Interrupted);
 }
 
-TEST_CASE("solving hears within moments that it is to end, however long a row takes") {
+TEST_CASE("solving stops promptly when asked, however long a row takes") {
     Messages messages;
     const Scene scene = lit_box();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -415,7 +415,7 @@ TEST_CASE("solving hears within moments that it is to end, however long a row ta
     CHECK(seconds_to_end(many_rows, "dividing patches") < test::allowed_seconds(1));
 }
 
-TEST_CASE("the memory of a solution is said beforehand, and a byte less is refused") {
+TEST_CASE("memory of a solution equals its prediction, and a limit one byte below is refused") {
     Messages messages;
     const Scene scene = lit_box();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

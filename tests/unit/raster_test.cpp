@@ -262,7 +262,7 @@ TEST_CASE("samples of a pixel lie in its filter, evenly, the first in the middle
     CHECK(covered == doctest::Approx(0.3).epsilon(0.02));
 }
 
-TEST_CASE("raster refuses a lens and a scene that it would show as black, and says its memory beforehand") {
+TEST_CASE("raster refuses lenses and scenes that it would render black, and predicts its memory") {
     Scene scene = test::make_furnace_scene(0.5f);
     Camera camera;
     camera.aperture_radius = 0.1f;

@@ -99,7 +99,7 @@ TEST_CASE("a box that holds a hit is entered, however small, and however often t
     CHECK(missed == 0);
 }
 
-TEST_CASE("what lies behind a segment's origin, or beyond its end, is not entered") {
+TEST_CASE("boxes behind a segment's origin or beyond its end are not entered") {
     const Ray ray = {{0, 0.25f, -0.5f}, 0, {-2, 0, 0}, kInfinity};
     const auto at = [](float from, float to) { return Bounds3{{-2 * to, -1, -1}, {-2 * from, 1, 1}}; };
     RayOctantBoxes boxes = make_ray_octant_boxes<ExactTests>(ray, 100, 10);

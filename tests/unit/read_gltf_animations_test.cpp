@@ -99,7 +99,7 @@ TEST_CASE("channels are read with their key frames") {
     CHECK_NOTHROW(validate_nodes(scene, "file"));
 }
 
-TEST_CASE("numbers that mean nothing leave their channel out with a warning that points at it") {
+TEST_CASE("channels with invalid numbers are left out with a warning that names them") {
     const auto left_out = [](const std::string& samplers, const std::string& channels, const std::string& why) {
         Messages messages;
         const Scene scene = test::read_gltf_text(file(samplers, channels), messages);
@@ -140,7 +140,7 @@ TEST_CASE("a channel that the format does not allow is left out with its pointer
     check(sampler(1, 2, R"(,"interpolation":"SMOOTH")"), channel(0, "scale"), of + "/interpolation: \"SMOOTH\"");
 }
 
-TEST_CASE("validate_nodes refuses what no reader may leave") {
+TEST_CASE("validate_nodes refuses graphs that readers must not produce") {
     const auto refused = [](auto&& spoil, const std::string& message) {
         Messages messages;
         Scene scene = test::read_gltf_text(file(sampler(1, 2), channel(0, "translation")), messages);

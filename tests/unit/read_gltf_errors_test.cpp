@@ -73,7 +73,7 @@ TEST_CASE("a scene that requires an unknown extension is read without it") {
     CHECK(messages.left_out().size() == 1);
 }
 
-TEST_CASE("what is not glTF 2 is refused, and what does not say so is taken as glTF 2") {
+TEST_CASE("files that are not glTF 2 are refused, and files without a version are read as glTF 2") {
     CHECK(test::gltf_fault("{]").starts_with("model.gltf: not valid JSON: "));
     CHECK(test::gltf_fault("") == "model.gltf: the file is empty; expected a glTF 2.0 document");
     CHECK(test::gltf_fault("[]").starts_with("model.gltf: /: "));
@@ -117,7 +117,7 @@ TEST_CASE("JSON that is not valid is an error with the line, the column and what
     }
 }
 
-TEST_CASE("a damaged GLB container is told with the byte where it stops making sense") {
+TEST_CASE("an error for a damaged GLB container names the first faulty byte") {
     test::GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     const std::vector<std::byte> good = builder.glb(R"("nodes":[])");
@@ -183,7 +183,7 @@ TEST_CASE("a triangle with an index past the vertices is left out with its place
               .starts_with("model.gltf: /meshes/0/primitives/0/indices: "));
 }
 
-TEST_CASE("what uses a buffer that is missing, short, badly encoded or elsewhere is left out") {
+TEST_CASE("users of a missing, short, badly encoded or outside buffer are left out") {
     const auto read = [](const std::string& members) { return test::gltf_fault(with_buffer(members)); };
     CHECK(read(R"("byteLength":36,"uri":"data:;base64,AAAA")").starts_with("model.gltf: /bufferViews/0: "));
     CHECK(read(R"("byteLength":36,"uri":"data:;base64,A*AA")").starts_with("model.gltf: /buffers/0/uri: "));
@@ -220,7 +220,7 @@ TEST_CASE("a buffer file that many buffers name is read once") {
     CHECK(read_gltf(folder / "model.gltf", FileAccess(folder / "model.gltf", {}), {}, messages).meshes.empty());
 }
 
-TEST_CASE("base64 and percent encoding are undone, and names of files are taken as they are meant") {
+TEST_CASE("base64 and percent encoding are decoded, also in file names") {
     const auto decoded = [](const std::string& text, const std::string& start = "data:text/plain;base64,") {
         std::string out;
         const auto bytes = gltf::decode_data_uri(start + text);

@@ -86,7 +86,7 @@ TEST_CASE("a member that is null is one that is not there") {
     CHECK(messages.all().empty());
 }
 
-TEST_CASE("an element that is null counts as an object without members, and nothing else is lost") {
+TEST_CASE("a null element is read as an empty object") {
     Messages messages;
     const Scene scene = test::read_gltf_text(
         triangle_with(R"("nodes":[null,{"mesh":0,"children":[null,0]}],"animations":[{"channels":[null]},null])"),
@@ -229,7 +229,7 @@ TEST_CASE("triangles that stray beyond all bounds are left out, and the others s
     CHECK(length(bounds_of(scene).size()) < 2);
 }
 
-TEST_CASE("what lies out of all bounds is left out, and the rest is shown") {
+TEST_CASE("parts beyond all bounds are left out, and the rest is shown") {
     Messages messages;
     Scene scene = test::read_gltf_text(
         triangle_with(R"("cameras":[{"type":"perspective","perspective":{"yfov":1}}],"nodes":[{"mesh":0},)"

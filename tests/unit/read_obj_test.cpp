@@ -264,7 +264,7 @@ TEST_CASE("mtl: a line with a number that is missing, is none or is not finite i
     }
 }
 
-TEST_CASE("mtl: what is not read is a warning with the first line") {
+TEST_CASE("mtl: unread lines cause one warning that names the first") {
     const Loaded l = load_text("mtllib a.mtl\n" + kTriangle + "usemtl m\nf 1 2 3\n",
                                "Kd 1 0 0\nnewmtl m\nfoo 3\nmap_Normal x.png\nKd spectral x.rfl\nmap_Ks t.png\n"
                                "map_Ks u.png\nNs 10 11\nPc 0.5\nPs 0\nKa 1 1 1\nsharpness 60\nmap_Ka t.png\n");

@@ -304,7 +304,7 @@ float enlarged(const Guide& right, uint32_t fine_object = 7) {
 
 } // namespace
 
-TEST_CASE("a pixel takes enlarged light from coarse pixels of its object, normal and plane") {
+TEST_CASE("upsampling takes light from coarse pixels of the same object, normal and plane") {
     CHECK(enlarged({{0, 0, 1}, 1, 5, 7}) > 1.2f); // all is one surface
     CHECK(enlarged({{0, 0, 1}, 1, 5, 8}) == doctest::Approx(1));
     CHECK(enlarged({kTurned, 1, 5, 7}) < 1.01f);

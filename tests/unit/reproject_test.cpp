@@ -16,7 +16,7 @@ Camera camera_at(Vec3 eye, Projection projection = Projection::Perspective) {
 
 } // namespace
 
-TEST_CASE("a point is seen at the pixel whose ray goes through it, and found there again") {
+TEST_CASE("reprojecting a pixel's point returns the pixel") {
     for (const Projection projection : {Projection::Perspective, Projection::Orthographic}) {
         const CameraView view = make_camera_view(camera_at({1, 2, 3}, projection), 640, 360);
         for (const Vec2 pixel : {Vec2{320, 180}, Vec2{0.5f, 0.5f}, Vec2{600.25f, 100.75f}}) {
@@ -45,7 +45,7 @@ TEST_CASE("a virtual point at no distance behind the surface moves as the surfac
     CHECK(abs(far.pixel.x - pixel.x) < 0.02f * abs(same.pixel.x - pixel.x) + 0.01f);
 }
 
-TEST_CASE("what has moved is looked for where it was") {
+TEST_CASE("reprojection follows moved objects") {
     const Vec3 positions[] = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
     const uint32_t indices[] = {0, 1, 2};
     const MeshView mesh = {.positions = positions,
@@ -74,7 +74,7 @@ TEST_CASE("what has moved is looked for where it was") {
     CHECK(still.pixel.x == doctest::Approx(centre.x));
 }
 
-TEST_CASE("guides are packed without losing what filters ask of them") {
+TEST_CASE("packed guides keep the precision that filters need") {
     const Vec3 normals[] = {{0, 0, 1}, {-1, 0, 0}, normalize(Vec3{1, 2, -3}), {0, 0, 0}};
     for (const Vec3 n : normals) {
         for (const float alpha : {0.0f, 0.002f, 0.3f, 1.0f}) {
@@ -88,7 +88,7 @@ TEST_CASE("guides are packed without losing what filters ask of them") {
     CHECK(length(normal_of(pack({{0, 0, 0}, 1, 0, kNoHit}))) == 0);
 }
 
-TEST_CASE("colours come back from the form in which pictures are kept") {
+TEST_CASE("displayed colours convert back to light within rounding") {
     for (const Rgb light :
          {Rgb{0, 0, 0}, Rgb{1e-4f, 2e-4f, 0}, Rgb{1, 0.5f, 0.25f}, Rgb{0, 0, 300}, Rgb{4e4f, 3e4f, 1e4f}}) {
         const Rgb back = light_of_shown(shown_color(light));
@@ -99,7 +99,7 @@ TEST_CASE("colours come back from the form in which pictures are kept") {
     }
 }
 
-TEST_CASE("taps take what shows the same object at this depth with this normal, and nothing else") {
+TEST_CASE("taps accept only the same object at a similar depth and normal") {
     constexpr uint32_t kWidth = 4, kHeight = 3;
     std::vector<Float4> guide(kWidth * kHeight, pack({{0, 0, 1}, 1, 2, 7}));
     std::vector<Float4> values(kWidth * kHeight);

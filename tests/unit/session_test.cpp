@@ -193,7 +193,7 @@ TEST_CASE("1000 frames in which instances of a large mesh and a lamp move copy l
     CHECK(queue.allocation_count() == allocations);
 }
 
-TEST_CASE("a session without a tracer says so and does not look at it") {
+TEST_CASE("a session without a tracer refuses and never accesses one") {
     Queue queue = test::requested_queue();
     Scene scene = test::make_mixed_scene();
     const test::TriangleMesh sphere = test::make_sphere(7, {0, 0, 0}, 1.0f); // too many for brute force
@@ -223,7 +223,7 @@ TEST_CASE("nothing of a session is left on the device when it ends") {
     CHECK(queue.allocated_bytes() == 0);
 }
 
-TEST_CASE("the bytes that are predicted are those that a session takes") {
+TEST_CASE("memory of a session equals its prediction") {
     Queue queue = test::requested_queue();
     const Prepared furnace(test::make_furnace_scene(0.5f));
     RenderSettings settings = queued_settings();
@@ -236,7 +236,7 @@ TEST_CASE("the bytes that are predicted are those that a session takes") {
     CHECK(queue.allocated_bytes() <= predicted + 4096); // a pixel filter's table, the scene's view
 }
 
-TEST_CASE("a call's time is over at a whole sample, and the next call has its own") {
+TEST_CASE("a time limit ends a call at a whole sample and applies to each call") {
     Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
@@ -247,7 +247,7 @@ TEST_CASE("a call's time is over at a whole sample, and the next call has its ow
     CHECK(session.history().samples == 2);
 }
 
-TEST_CASE("what does not change the picture lets the film be; what does begins it anew") {
+TEST_CASE("only changes that affect the picture restart the film") {
     Queue queue = test::requested_queue();
     const Prepared furnace(test::make_furnace_scene(0.5f));
     RenderSettings settings = queued_settings();
@@ -417,7 +417,7 @@ TEST_CASE("the share of hidden backs follows scene, camera and size") {
     CHECK(session.stats().hidden_back_share == fresh(furnace, camera_at(-3)));
 }
 
-TEST_CASE("a look aside gives what a session of its own gives, and leaves the samples as they are") {
+TEST_CASE("a picture rendered aside equals a new session's and leaves the film unchanged") {
     Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings aside = queued_settings();

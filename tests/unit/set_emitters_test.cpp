@@ -124,7 +124,7 @@ TEST_CASE("what a lamp cannot have is refused") {
     CHECK(emitter_refusal("sun=800lm").find("directional light, which has lx") != std::string::npos);
     CHECK(emitter_refusal("bulb=800lx").find("point light, which has W, lm or cd") != std::string::npos);
     CHECK(emitter_refusal("small=8lx").find("lx are of directional lights") != std::string::npos);
-    CHECK(emitter_refusal("blub=800lm").find("no lamp of the scene is called so; there are 'bulb'") !=
+    CHECK(emitter_refusal("blub=800lm").find("no lamp of the scene has this name; there are 'bulb'") !=
           std::string::npos);
     for (const char* text :
          {"bulb", "=8lm", "bulb=8", "bulb=lm", "bulb=-8lm", "bulb=8lmx", "bulb=nanlm", "bulb=1e300W"}) {

@@ -48,7 +48,7 @@ TEST_CASE("each setting has a name of its own, a sentence, and rules that name s
     CHECK(find_setting("max-depth") == nullptr);
 }
 
-TEST_CASE("a setting's value in words leads back to the value") {
+TEST_CASE("a setting's text parses back to its value") {
     for (const Setting& setting : all_settings()) {
         INFO(setting.name);
         PictureOptions options;
@@ -63,7 +63,7 @@ TEST_CASE("a setting's value in words leads back to the value") {
     }
 }
 
-TEST_CASE("values that are none are refused, and those too large for every scene are over a limit") {
+TEST_CASE("invalid values are refused, and too large ones exceed a limit") {
     CHECK(code_of("spp", "0") == ErrorCode::BadInput);
     CHECK(code_of("spp", "1.5") == ErrorCode::BadInput);
     CHECK(code_of("fov", "180") == ErrorCode::BadInput);
@@ -80,7 +80,7 @@ TEST_CASE("values that are none are refused, and those too large for every scene
     CHECK(!code_of("seed", "4294967295"));
 }
 
-TEST_CASE("settings that do not go together are found") {
+TEST_CASE("conflicting settings are found") {
     PictureOptions options;
     CHECK(!find_conflict(options, kRender));
     set(options, "photons", {"4"});
@@ -104,7 +104,7 @@ TEST_CASE("settings that do not go together are found") {
     CHECK(conflict->kind == SettingConflict::Kind::Excludes);
 }
 
-TEST_CASE("settings that are written as JSON are read back") {
+TEST_CASE("settings survive writing to JSON and reading back") {
     const std::filesystem::path file = std::filesystem::temp_directory_path() / "pertev-settings-test.json";
     PictureOptions options;
     options.scene.scene = "cornell-box";
@@ -172,7 +172,7 @@ TEST_CASE("a picture's file records each setting that the table says, where the 
     CHECK(!has("pertev.photons"));
     CHECK(!has("pertev.denoise")); // which is the default
 }
-TEST_CASE("what a scene's file suggests holds where nothing was given that does not go with it") {
+TEST_CASE("a scene file's suggestions hold unless a given setting excludes them") {
     Scene scene;
     scene.suggested = {{"spp", "64"},       {"size", "320x240"},     {"integrator", "photon_map"},
                        {"photons", "1000"}, {"seed", "7"},           {"sampler", "none such"},

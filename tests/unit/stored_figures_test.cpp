@@ -99,7 +99,7 @@ TEST_CASE("other rays, scenes and pictures have no ratios") {
     CHECK(!has_any(ratios_of(changed(job, [](JobRun& run) { run.triangles = 38; }))));
 }
 
-TEST_CASE("what is measured must look as it did to others") {
+TEST_CASE("compared scenes must match the published views") {
     const auto with_share = [](const char* scene, double more) {
         return ratio_of(changed(rays_run(scene, 2, 1e9), [&](RaysRun& run) { run.hit_share += more; })).value;
     };

@@ -14,7 +14,7 @@
 
 using namespace pertev;
 
-TEST_CASE("a filter's density is that by which the camera's rays are drawn") {
+TEST_CASE("the pixel filter's density is that of the camera's rays") {
     Queue queue = Queue::make_cpu();
     for (const PixelFilter kind :
          {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian, PixelFilter::BlackmanHarris}) {
@@ -38,7 +38,7 @@ TEST_CASE("a filter's density is that by which the camera's rays are drawn") {
     }
 }
 
-TEST_CASE("a vertex is seen where the camera's ray to it comes from") {
+TEST_CASE("a vertex projects to the pixel whose camera ray reaches it") {
     test::Random random(7);
     for (const Projection projection : {Projection::Perspective, Projection::Orthographic}) {
         for (const float aperture : {0.0f, 0.3f}) {
@@ -92,7 +92,7 @@ TEST_CASE("a floor under a spot light has the radiance of the closed form") {
           doctest::Approx(kFloor).epsilon(0.02));
 }
 
-TEST_CASE("a light without size behind glass lights the floor, but for path tracing, which cannot find it") {
+TEST_CASE("a point light behind glass lights the floor in all but path tracing") {
     Scene scene = test::floor_under_spot();
     const Material glass = {{.kind = MaterialKind::Dielectric, .base_color = {1, 1, 1}, .ior = 1.5f}, "glass"};
     test::add(scene, test::floor_at(0.6f, 2), glass);
@@ -106,7 +106,7 @@ TEST_CASE("a light without size behind glass lights the floor, but for path trac
     CHECK(seen_below(scene, IntegratorKind::Bidirectional, 4096) == doctest::Approx(expected).epsilon(0.03));
 }
 
-TEST_CASE("particles do not show what is seen in a mirror; subpaths from both ends do") {
+TEST_CASE("light tracing misses mirror images, bidirectional path tracing does not") {
     Scene scene;
     test::add(scene, test::floor_at(0, 4), test::mirror());
     test::add(scene, test::sheet({0, 2, 0}, {4, 0, 0}, {0, 0, 4}),

@@ -125,7 +125,7 @@ TEST_CASE("what the thesis lacks is named in its notes and in the terminal, with
     CHECK(m.table("lacking").at(1, "what") == "figure-3.6: out of memory");
 }
 
-TEST_CASE("pictures of the thesis stand in groups by figure, with how they were made") {
+TEST_CASE("the thesis's pictures are grouped by figure, with how they were made") {
     ThesisReport thesis = full_thesis("CPU");
     ThesisPicture rendered = {.name = "figure-3.8",
                               .place = "Figure 3.8",
@@ -152,7 +152,7 @@ TEST_CASE("pictures of the thesis stand in groups by figure, with how they were 
     CHECK(!table.at(1, "width").is_there());
 }
 
-TEST_CASE("how many of A's rays differ is told") {
+TEST_CASE("the number of differing rays of A is reported") {
     const std::string text = text_of(full_thesis("NVIDIA H200"));
     CHECK(has(text, "cornell-box, A: 40 of 1000000 primary rays differ"));
     CHECK(has(text, "sibenik <hall>, A: 42 of 250000 diffuse2 rays differ"));

@@ -26,7 +26,9 @@ TEST_CASE("each --build names a structure, which all default tracers of both dev
     CHECK(!value_named<TreeBuild>("sbvh"));
 }
 
-TEST_CASE("what is built fast can be refitted") { CHECK(!why_no_refit(*builder_of(structure_of(TreeBuild::Fast)))); }
+TEST_CASE("structures of --build fast can be refitted") {
+    CHECK(!why_no_refit(*builder_of(structure_of(TreeBuild::Fast))));
+}
 
 TEST_CASE("a scene is prepared with the trees that most of its rays go through, and no others") {
     const Scene scene = test::make_mixed_scene();

@@ -40,7 +40,7 @@ TransportScene small_transport_scene() {
 
 } // namespace
 
-TEST_CASE("a band is that of Student's t with one degree of freedom fewer than there are values") {
+TEST_CASE("a confidence interval uses Student's t with n - 1 degrees of freedom") {
     const std::array<double, 4> values = {1, 2, 3, 6};
     const Estimate e = estimate_of(values);
     CHECK(e.mean == doctest::Approx(3));
@@ -50,7 +50,7 @@ TEST_CASE("a band is that of Student's t with one degree of freedom fewer than t
     CHECK_FALSE(estimate_of(std::span(values).first(1)).half_width);
 }
 
-TEST_CASE("Student's t is that of the tables, and falls to the normal distribution's") {
+TEST_CASE("Student's t matches tables and approaches the normal distribution") {
     CHECK(student_t(1) == doctest::Approx(12.7062).epsilon(1e-5));
     CHECK(student_t(9) == doctest::Approx(2.26216).epsilon(1e-4));
     CHECK(student_t(30) == doctest::Approx(2.04227).epsilon(1e-4));
@@ -59,7 +59,7 @@ TEST_CASE("Student's t is that of the tables, and falls to the normal distributi
     CHECK(student_t(1u << 30) == doctest::Approx(1.959964).epsilon(1e-6));
 }
 
-TEST_CASE("at equal time every repetition is interpolated in logarithms") {
+TEST_CASE("equal-time figures interpolate each repetition logarithmically") {
     const TransportScene scene = small_transport_scene();
     CHECK(equal_seconds(scene) == doctest::Approx(0.8));
     CHECK(equal_samples(scene) == 8);
@@ -78,14 +78,14 @@ TEST_CASE("at equal time every repetition is interpolated in logarithms") {
     CHECK(first->rel_mse.mean == doctest::Approx(2));
 }
 
-TEST_CASE("samples at equal time leave out what begins a picture") {
+TEST_CASE("samples at equal time exclude a picture's preparation") {
     const TransportRow row = transport_row("irradiance_cache", {{{1, 10.1, 1, 1}, {64, 16.4, 0.5, 0.5}}});
     const auto point = at_time(row, 10.2);
     REQUIRE(point);
     CHECK(point->samples == doctest::Approx(2));
 }
 
-TEST_CASE("what is made before samples is a time that comes once") {
+TEST_CASE("preparation time counts once") {
     // 10 s of records, then 0.1 s a sample, whose error is 1 / n: straight in the logarithm of what samples took.
     Repetition repetition;
     for (uint32_t n = 1; n <= 64; n *= 8) repetition.push_back({n, 10 + 0.1 * n, 1.0 / n, 0.5 / n, 0, 10});
@@ -96,7 +96,7 @@ TEST_CASE("what is made before samples is a time that comes once") {
     CHECK(point->seconds.mean == doctest::Approx(12.4));
 }
 
-TEST_CASE("the next samples are those that fit into what is left, and records are not made again for them") {
+TEST_CASE("the next samples fit into the remaining time, without preparing records again") {
     const TransportFigures begun = {.samples = 1, .seconds = 3, .made_seconds = 2.9};
     CHECK(next_samples(begun, 5, 1u << 16) == 2);
     CHECK(next_samples({.samples = 8, .seconds = 3.7, .made_seconds = 2.9}, 5, 1u << 16) == 16);
@@ -112,7 +112,7 @@ TEST_CASE("the next samples are those that fit into what is left, and records ar
     CHECK(next_samples({.samples = 1, .seconds = 0}, 1, 8) == 2);
 }
 
-TEST_CASE("equal samples are the most that all have a picture of") {
+TEST_CASE("equal samples are the largest number that all integrators have reached") {
     TransportScene scene = small_transport_scene();
     for (Repetition& repetition : scene.rows[0].repetitions) repetition.push_back({13, 1.3, 0.1, 0.1}); // by path alone
     CHECK(equal_samples(scene) == 8);
@@ -121,7 +121,7 @@ TEST_CASE("equal samples are the most that all have a picture of") {
     REQUIRE(at_samples(scene.rows[0], 4));
 }
 
-TEST_CASE("an error of 0 is interpolated as it is") {
+TEST_CASE("an error of 0 is interpolated linearly") {
     TransportRow row = transport_row("raster", {{{1, 1, 0, 0.5}, {2, 2, 0, 0.5}}});
     const auto point = at_time(row, 1.5);
     REQUIRE(point);
@@ -130,7 +130,7 @@ TEST_CASE("an error of 0 is interpolated as it is") {
     CHECK_FALSE(efficiency(*point));
 }
 
-TEST_CASE("of solutions the last that is there by a time counts, whole, and none by samples") {
+TEST_CASE("for solutions, the last finished one counts at a time, and none at a sample count") {
     TransportScene scene = small_transport_scene();
     TransportRow solved = transport_row("radiosity", {{{16, 0.2, 0.1, 0.05, 100}, {16, 5, 0.01, 0.02, 400}},
                                                       {{16, 0.4, 0.3, 0.05, 100}, {16, 6, 0.03, 0.02, 400}}});
@@ -194,7 +194,7 @@ TEST_CASE("efficiency is one over error times time, and its ratio to path's stan
     CHECK(by_time.at(1, "of_path").text("{:.3g}") == "0.667");
 }
 
-TEST_CASE("a repetition that an interrupt cut short counts where it has figures") {
+TEST_CASE("an interrupted repetition counts as far as it has figures") {
     TransportRow row = transport_row("path", {falling(1, 0.1), {falling(3, 0.1)[0]}});
     const std::vector<TransportPoint> points = points_of(row);
     REQUIRE(points.size() == 4);
@@ -204,7 +204,7 @@ TEST_CASE("a repetition that an interrupt cut short counts where it has figures"
     CHECK_FALSE(points[1].rel_mse.half_width);
 }
 
-TEST_CASE("seeds of repetitions differ, and the reference has none of them") {
+TEST_CASE("seeds of repetitions differ from each other and from the reference's") {
     for (const uint32_t seed : {0u, 5u, 0x7fffffffu}) {
         TransportSettings settings;
         settings.picture.path.seed = seed;
@@ -238,7 +238,7 @@ TEST_CASE("each preset is a scene of the program, and all light is what three in
     CHECK(default_reference_integrator(emitters) == "path");
 }
 
-TEST_CASE("the report on light transport has what was measured, and what was not with its reason") {
+TEST_CASE("the light transport report lists results and reasons for missing ones") {
     TransportReport report = {.device = "CPU", .width = 4, .height = 4, .max_depth = 8, .repetitions = 2};
     report.scenes.push_back(small_transport_scene());
     const std::string csv = csv_of(report), text = text_of(report);

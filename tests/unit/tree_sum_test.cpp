@@ -39,7 +39,7 @@ Sums sums_of(const std::vector<float>& terms) {
 
 } // namespace
 
-TEST_CASE("the tree of a sum depends on the count alone") {
+TEST_CASE("the tree of a sum depends only on the count") {
     CHECK(tree_of(0).empty());
     CHECK(tree_of(1) == "0");
     CHECK(tree_of(2) == "(0 1)");
@@ -56,7 +56,7 @@ TEST_CASE("the tree of a sum depends on the count alone") {
     }
 }
 
-TEST_CASE("terms of a sum are asked for once each and in order") {
+TEST_CASE("terms of a sum are requested once each and in order") {
     for (uint64_t count = 0; count < 70; ++count) {
         std::vector<uint64_t> requested;
         const uint64_t sum = tree_sum(count, [&](uint64_t i) {
@@ -69,7 +69,7 @@ TEST_CASE("terms of a sum are asked for once each and in order") {
     }
 }
 
-TEST_CASE("a sum in a tree keeps digits that one term after the other loses") {
+TEST_CASE("a tree sum is more exact than a sequential sum") {
     // From 2^24 on a float does not change by 1.
     constexpr uint64_t count = (uint64_t(1) << 25) + 1;
     float in_turn = 0;

@@ -74,7 +74,7 @@ TEST_CASE("frames of the movement share light and find it as coarsely as is set;
     }
 }
 
-TEST_CASE("a picture at rest is metered, and places are picked in it, and what irradiance caching has made stays") {
+TEST_CASE("a picture at rest is metered and picked in without losing irradiance records") {
     Watched watched;
     FrameRequest& request = watched.request;
     RenderSettings& picture = request.view.picture;
@@ -102,7 +102,7 @@ TEST_CASE("a picture at rest is metered, and places are picked in it, and what i
     CHECK((shares.front() >= 0 && shares.back() < 1));
 }
 
-TEST_CASE("another way to share light, or another resolution of it, begins to gather anew") {
+TEST_CASE("a change of ReSTIR or of the light's resolution restarts accumulation") {
     Watched watched;
     FrameRequest& request = watched.request;
     Session session = watched.session();
@@ -159,7 +159,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("another depth of the movement begins its frames anew and leaves the picture at rest as it is") {
+TEST_CASE("a change of the depth in motion restarts frames and keeps the picture at rest") {
     Watched watched;
     FrameRequest& request = watched.request;
     Session session = watched.session();
@@ -233,7 +233,7 @@ TEST_CASE("on a GPU the size keeps the rate of the screen, within bounds, and a 
     CHECK(kept(true, 1000) == doctest::Approx(240));
 }
 
-TEST_CASE("what the exposure goes by is the frame as it is shown, whatever its light was found at") {
+TEST_CASE("the exposure is metered on the displayed frame, whatever the light's resolution") {
     Watched watched;
     RenderSettings& picture = watched.request.view.picture;
     for (const uint32_t width : {24u, 100u}) { // blocks of a pixel, and of two
@@ -264,7 +264,7 @@ TEST_CASE("what the exposure goes by is the frame as it is shown, whatever its l
     }
 }
 
-TEST_CASE("rays of each kind and shading are timed apart where that is asked for, and the pictures are the same") {
+TEST_CASE("timing each kind of ray and shading does not change the picture") {
     Watched watched;
     FrameRequest& request = watched.request;
     request.budget_s = 100;

@@ -66,7 +66,7 @@ TEST_CASE("every kind of message is read with its values") {
     CHECK(parse_client_message(kGood[17])->at == 1.5f);
 }
 
-TEST_CASE("what is not exactly a message is none") {
+TEST_CASE("malformed messages are refused") {
     for (const char* text : {
              "",
              "{}",

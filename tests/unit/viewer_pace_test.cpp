@@ -46,7 +46,7 @@ constexpr const char* kHello = R"({"type":"hello","key":"a"})";
 
 } // namespace
 
-TEST_CASE("the size while moving is the largest that keeps the frame rate, on machines fast and slow") {
+TEST_CASE("the size in motion is the largest that keeps the frame rate") {
     for (const double full_s : {0.001, 0.1, 0.5, 2.0, 20.0}) {
         FramePace pace(0.12);
         for (int i = 0; i < 60; ++i) pace.took(pace.scale(), frame_time(full_s, pace.scale()));
@@ -74,7 +74,7 @@ TEST_CASE("the first frame is small on every machine, and the second as large as
     }
 }
 
-TEST_CASE("a scene that takes its time to move leaves less for the picture, and what cannot be kept is said") {
+TEST_CASE("a slowly moving scene leaves less time for the picture, and an unreachable rate is reported") {
     const auto settled = [](double full_s, double beside_s) {
         FramePace pace(0.12);
         for (int i = 0; i < 60; ++i) pace.took(pace.scale(), frame_time(full_s, pace.scale()), beside_s);
@@ -90,7 +90,7 @@ TEST_CASE("a scene that takes its time to move leaves less for the picture, and 
     CHECK(moves_slowly.scale() > 0.15f); // a speck would be no faster
 }
 
-TEST_CASE("another rate to keep is another size, up and down again") {
+TEST_CASE("a changed frame rate changes the size both ways") {
     FramePace pace(1.0 / 60);
     const auto settled = [&] {
         for (int i = 0; i < 20; ++i) pace.took(pace.scale(), frame_time(0.012, pace.scale()));
@@ -104,7 +104,7 @@ TEST_CASE("another rate to keep is another size, up and down again") {
     CHECK(settled() == 1);
 }
 
-TEST_CASE("a view that becomes dear makes pictures smaller within a few frames") {
+TEST_CASE("an expensive view makes pictures smaller within a few frames") {
     FramePace pace(0.1);
     for (int i = 0; i < 40; ++i) pace.took(pace.scale(), frame_time(0.07, pace.scale()));
     CHECK(pace.scale() == 1);
@@ -229,7 +229,7 @@ TEST_CASE("a slow link gets smaller pictures and a fast one good ones") {
     CHECK(slow.piece_bytes(0.2) < fast.piece_bytes(0.2));
 }
 
-TEST_CASE("a far link is not taken for a slow one") {
+TEST_CASE("a link with high latency is not treated as slow") {
     LinkPace pace;
     double now = 0;
     for (uint32_t i = 1; i < 300; ++i) { // 0.25 s of way, 10 MB/s
@@ -299,7 +299,7 @@ TEST_CASE("pieces of a still picture say nothing of how well moving ones come th
     CHECK(pace.quality() == quality);
 }
 
-TEST_CASE("whoever asks gets a wheel that nobody holds") {
+TEST_CASE("a free wheel goes to the first viewer that asks") {
     Wheel wheel;
     wheel.join(1, "a", 0);
     wheel.join(2, "b", 0);
@@ -399,7 +399,7 @@ TEST_CASE("where the renderer takes nothing, whoever steers is dropped before th
     CHECK(why == "too many messages wait");
 }
 
-TEST_CASE("there is room for so many clients, and those without a hello are dropped") {
+TEST_CASE("clients over the limit and those without a hello are dropped") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     for (uint32_t i = 1; i <= Audience::kMaxClients; ++i) CHECK(audience.open(i, 0));
@@ -411,7 +411,7 @@ TEST_CASE("there is room for so many clients, and those without a hello are drop
     CHECK(audience.open(99, 11));
 }
 
-TEST_CASE("what waits for a client that does not read stays small") {
+TEST_CASE("the queue of a client that does not read stays small") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     audience.open(1, 0);

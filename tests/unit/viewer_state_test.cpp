@@ -18,7 +18,7 @@
 
 using namespace pertev;
 
-TEST_CASE("every setting takes each of its choices or its bounds, gives it back, and refuses what is none") {
+TEST_CASE("every setting accepts and returns its choices and bounds, and refuses other values") {
     for (const ViewSetting& setting : view_settings()) {
         CAPTURE(setting.name);
         ViewState state;
@@ -74,7 +74,7 @@ TEST_CASE(
     CHECK(begins_anew({}, round));
 }
 
-TEST_CASE("an exposure that is fixed stays where it was found, and one that is found begins without more or less") {
+TEST_CASE("fixing the exposure keeps its value, and metering resets the stops") {
     ViewState state;
     state.finds_exposure = true;
     state.found_stops = 2;
@@ -87,7 +87,7 @@ TEST_CASE("an exposure that is fixed stays where it was found, and one that is f
     CHECK(state.display.exposure_stops == 0);
 }
 
-TEST_CASE("pictures of the movement scatter less, until somebody chooses a depth; then both have that") {
+TEST_CASE("frames in motion have a smaller depth until a depth is chosen for both") {
     ViewState state;
     CHECK(state.moving_depth == kMovingDepth);
     CHECK(state.picture.path.max_depth > kMovingDepth);
@@ -99,7 +99,7 @@ TEST_CASE("pictures of the movement scatter less, until somebody chooses a depth
     CHECK(state.picture.path.max_depth == 9);
 }
 
-TEST_CASE("structures and traversals that go together are chosen together, for all kinds of ray") {
+TEST_CASE("compatible structures and traversals are chosen together for all kinds of rays") {
     ViewState state;
     CHECK(set_view_setting(state, "structure", "octree") == "");
     CHECK(state.picture.tracers->camera.traversal == TraversalKind::Octree);
@@ -141,7 +141,7 @@ TEST_CASE("texts to the page are JSON") {
     }
 }
 
-TEST_CASE("clients are told names of files, never where they lie") {
+TEST_CASE("clients get file names, never paths") {
     CHECK(file_name("/a/b c/d.gltf") == "d.gltf");
     CHECK(file_name("d.gltf") == "d.gltf");
     CHECK(file_name("../d.gltf") == "d.gltf");

@@ -100,7 +100,7 @@ TEST_CASE("a setting that is refused, or that is so already, costs no sample") {
     CHECK(flagged.put(shape) == "hurry abandon");
 }
 
-TEST_CASE("whoever does not steer is told why nothing happens, and who steers sees the wish for a while") {
+TEST_CASE("viewers who do not steer are told so, and the one who steers sees their request") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     for (const uint32_t id : {1u, 2u}) {

@@ -67,7 +67,7 @@ void add_emission_texture(Scene& scene, uint8_t value) {
     scene.materials[1].emission_texture.image = 0;
 }
 
-TEST_CASE("a small lamp that lights next to nothing gets a sky in pictures, and in nothing else") {
+TEST_CASE("a scene with a weak lamp gets a sky in renders, but not in other verbs") {
     const Scene scene = make_body_with_emitter();
     CHECK(shares_seen(scene).lit < 0.01);
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
@@ -99,7 +99,7 @@ TEST_CASE("a light that an animation brightens is a light of the file") {
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky); // at time 0 it shows nothing
 }
 
-TEST_CASE("a lamp whose texture is black gives no light, so there is a sky") {
+TEST_CASE("a lamp with a black texture emits nothing, so the scene gets a sky") {
     Scene scene = make_lit_floor();
     add_emission_texture(scene, 0);
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);

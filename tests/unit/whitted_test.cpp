@@ -44,7 +44,7 @@ Scene slab_scene() {
 
 } // namespace
 
-TEST_CASE("a slab of glass has as many rays as are counted by hand, to each depth") {
+TEST_CASE("a slab of glass has the ray count computed by hand at each depth") {
     const Scene scene = slab_scene();
     // Each scattering of the ray within sends a ray out, and one to the other side. What has come out by depth d:
     // 1/4, then 3/4 3/4, and a quarter of the last one more each time.
@@ -71,7 +71,7 @@ TEST_CASE("rays that bring less than a thousandth are not followed") {
     CHECK(radiance_of(result) < 1);
 }
 
-TEST_CASE("between two mirrors a ray goes to and fro as often as it may") {
+TEST_CASE("between two mirrors a ray is reflected up to the depth limit") {
     Scene scene;
     test::add(scene, test::floor_at(0, 50), test::mirror());
     test::add(scene, test::sheet({0, 2, 0}, {50, 0, 0}, {0, 0, 50}), test::mirror());
@@ -108,7 +108,7 @@ TEST_CASE("a diffuse surface that is seen in a mirror asks each light once, howe
     CHECK(radiance_of(cast) == 0);
 }
 
-TEST_CASE("distributed is whitted where one light is all that there is to draw") {
+TEST_CASE("distributed equals whitted where the only choice is one light") {
     Scene scene = slab_scene();
     scene.environment.reset();
     test::add(scene, test::floor_at(-1, 50), test::white(0.8f));

@@ -97,7 +97,7 @@ const CollapseSettings kSettings[] = {{},
 
 } // namespace
 
-TEST_CASE("no collapse of a small tree costs less than the one that is chosen") {
+TEST_CASE("the chosen collapse of a small tree has minimal cost") {
     for (const uint32_t count : {3u, 7u, 11u, 17u}) {
         std::vector<BvhTriangle> triangles = make_soup(4 * count, 0);
         triangles.resize(count);

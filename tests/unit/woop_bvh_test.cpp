@@ -33,7 +33,7 @@ void check_corner(const WoopTriangle& w, Vec3 corner, double u, double v) {
 
 } // namespace
 
-TEST_CASE("a triangle's corners go to those of the unit triangle, and the height is in metres") {
+TEST_CASE("Woop's transform maps a triangle to the unit triangle with heights in metres") {
     Random random(11);
     for (int i = 0; i < 1000; ++i) {
         const Vec3 a = random.point(-1, 1), b = random.point(-1, 1), c = random.point(-1, 1);
@@ -98,7 +98,7 @@ TEST_CASE("triangles without area, too small and too large are never hit") {
     }
 }
 
-TEST_CASE("by unit triangles a traversal finds the surfaces that brute force finds, but for a few rays at edges") {
+TEST_CASE("unit-triangle traversals match brute force except for a few rays at edges") {
     for (const NastyMesh& c : nasty_meshes()) {
         if (std::string(c.name).find("soup") != 0 || c.extent != 1) continue; // no ties
         CAPTURE(std::string(c.name));

@@ -70,7 +70,7 @@ TEST_CASE("an EXR holds the picture, its layers and how it was made") {
     CHECK(text_of(file.metadata, "pertev.tone_map") == "(none)"); // it is shown nowhere
 }
 
-TEST_CASE("what files show of a denoised picture has a hash of its own, which is that of the file's channels") {
+TEST_CASE("a denoised picture's hash is that of its file's channels") {
     RenderSettings settings;
     RenderResult result = small_result(settings);
     const std::vector<std::string> paths = {test::scratch_folder() / "picture.exr"};
@@ -114,7 +114,7 @@ TEST_CASE("a file that cannot be written is named, and keeps no other from being
     CHECK(!std::filesystem::exists(paths[0]));
 }
 
-TEST_CASE("what a camera's metadata says places that camera again") {
+TEST_CASE("a camera's metadata reproduces the camera") {
     CameraSource source;
     source.camera = test::mixed_scene_camera();
     source.target = to_double(Vec3{0, 0.9f, 0}); // that it was made with
@@ -130,7 +130,7 @@ TEST_CASE("what a camera's metadata says places that camera again") {
     CHECK(text_of(requested, "pertev.projection") == "orthographic");
 }
 
-TEST_CASE("a record says of scene and camera what they were opened and chosen by") {
+TEST_CASE("metadata records how scene and camera were chosen") {
     OpenOptions options;
     options.scene = "mixed";
     options.environment_radiance = Rgb{0.5f, 1, 0.25f};
@@ -166,7 +166,7 @@ TEST_CASE("a record says of scene and camera what they were opened and chosen by
     CHECK(source_of(choice, {}).fov_deg == 40);
 }
 
-TEST_CASE("ids come with the names of what the picture shows, as JSON, and of nothing else") {
+TEST_CASE("ids come with the names of only the visible objects, as JSON") {
     Scene scene;
     for (const char* name : {"floor", "a \"lamp\"", "unseen"}) {
         scene.instances.emplace_back().name = name;

@@ -20,7 +20,7 @@ export const kKeys = [
   { keys: ["Space"], text: "time runs, or stands" },
   { keys: ["T"], text: "at rest: the reference, or real time" },
   { keys: ["[", "]"], text: "exposure down, up" },
-  { keys: ["0", "…", "9"], text: "scatterings, at most, at rest and moving" },
+  { keys: ["0", "…", "9"], text: "max depth, at rest and in motion" },
   { keys: ["C"], text: "copy the camera as flags of pertev render" },
   { keys: ["F12"], text: "save PNG and EXR" },
   { keys: ["Tab"], text: "panel" },

@@ -55,9 +55,9 @@ public:
                 for (const NameFilter::Name& name : expression.filters[i].names) {
                     const auto has = [&](const Names& names) { return has_name(names, name.pattern); };
                     if (std::ranges::any_of(things.names, has)) continue;
-                    throw Error(ErrorCode::BadInput,
-                                point_at(expression, name.place,
-                                         fmt::format("no {} is called so; {}", things.kind, some_names(things.names))));
+                    throw Error(ErrorCode::BadInput, point_at(expression, name.place,
+                                                              fmt::format("no {} has this name; {}", things.kind,
+                                                                          some_names(things.names))));
                 }
             }
         }

@@ -185,7 +185,7 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
     Scene scene = read_scene_and_emitters(options.scene, read_options(options), messages);
     if (options.animation.empty()) say_which_clip(scene, options.scene, messages);
     if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
-        messages.warn({"two_sided_lights", "", "no surface of the scene gives light"});
+        messages.warn({"two_sided_lights", "", "no surface of the scene emits light"});
     }
     if (options.show_back_faces) show_back_faces(scene, messages);
     if (auto environment = environment_of(options, messages)) scene.environment = *std::move(environment);

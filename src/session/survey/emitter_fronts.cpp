@@ -69,11 +69,9 @@ void warn_of_turned_emitters(const Scene& scene, const std::vector<const Instanc
         }
         if (2 * turned <= hits.size() / 2) continue; // most of the tested triangles
         const std::string room = behind < kInfinity ? fmt::format("{:.3g} m", behind) : "most of the scene";
-        messages.warn(
-            {Place{file},
-             fmt::format("the lamp {} shines at a surface {:.3g} m before its front and has {} behind it: turn "
-                         "its faces round, or say `two_sided_lights`",
-                         shortened(emitters[i]->name), before, room)});
+        messages.warn({Place{file}, fmt::format("the lamp {} shines at a surface {:.3g} m before its front and has {} "
+                                                "behind it: flip its faces, or use `two_sided_lights`",
+                                                shortened(emitters[i]->name), before, room)});
     }
 }
 
@@ -89,11 +87,10 @@ void say_emitter_fronts(const Scene& scene, const std::string& file, Messages& m
     }
     if (emitters.empty()) return;
     if (emitters.size() > kMaxNames) names += fmt::format(" and {} more", emitters.size() - kMaxNames);
-    messages.note(
-        {Place{file},
-         fmt::format("{} with light on the front alone: {}; the front is where normals point or, without any, "
-                     "from where corners run counter-clockwise (`two_sided_lights`: both faces)",
-                     counted(emitters.size(), "lamp"), names)});
+    messages.note({Place{file},
+                   fmt::format("{} with light on the front only: {}; the front is where normals point or, without any, "
+                               "from where corners run counter-clockwise (`two_sided_lights`: both faces)",
+                               counted(emitters.size(), "lamp"), names)});
     warn_of_turned_emitters(scene, emitters, file, messages);
 }
 
