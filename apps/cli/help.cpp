@@ -38,7 +38,7 @@ std::string wrapped(const std::string& text, std::size_t width, std::size_t inde
 
 /// "-o,--output FILE"
 std::string names_of(const CLI::Option& option) {
-    std::string name = option.get_name(option.get_positional(), true);
+    std::string name = shown_names(option);
     const bool is_flag = option.get_items_expected_max() == 0;
     if (!is_flag && !option.get_type_name().empty()) name += ' ' + option.get_type_name();
     return name;
@@ -97,6 +97,11 @@ std::set<std::string> groups_with_more(const CLI::App& verb) {
 }
 
 } // namespace
+
+std::string shown_names(const CLI::Option& option) {
+    if (option.get_positional() || option.get_snames().empty()) return option.get_name(option.get_positional());
+    return "-" + option.get_snames().front() + (option.get_lnames().empty() ? "" : "," + option.get_name());
+}
 
 std::string Help::make_help(const CLI::App* verb, std::string, CLI::AppFormatMode) const {
     const std::vector<const CLI::App*> verbs = verb->get_subcommands([](const CLI::App*) { return true; });

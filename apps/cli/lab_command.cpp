@@ -197,7 +197,7 @@ void add_lab_command(CLI::App& app, int& status) {
         ->type_name("NAME,...")
         ->delimiter(',')
         ->check(one_of(names_of<StructureKind>()));
-    verb.add_option("--walks", flags->traversals, "some of the traversals (all but brute-force)")
+    verb.add_option("--traversals,--walks", flags->traversals, "some of the traversals (all but brute-force)")
         ->type_name("NAME,...")
         ->delimiter(',')
         ->check(one_of(names_of<TraversalKind>()));
@@ -239,7 +239,7 @@ void add_lab_command(CLI::App& app, int& status) {
     CLI::Option* transport =
         verb.add_flag("--transport", flags->transport,
                       "compare integrators instead of traversals: error over time\nagainst a reference");
-    for (const char* flag : {"--structures", "--walks", "--rta", "--order", "--tests", "--persistent", "--rays",
+    for (const char* flag : {"--structures", "--traversals", "--rta", "--order", "--tests", "--persistent", "--rays",
                              "--count", "--no-heat-maps"}) {
         thesis->excludes(verb.get_option(flag)); // it is what the thesis compared
         transport->excludes(verb.get_option(flag));

@@ -25,6 +25,11 @@ std::string described(const Setting& setting, bool has_own_default) {
     return text;
 }
 
+/// "--traversal,--walk": help and documents show the first alone.
+std::string flag_names(const Setting& setting) {
+    return flag_of(setting.name) + (*setting.old_name != '\0' ? "," + flag_of(setting.old_name) : "");
+}
+
 /// "--solver southwell" for solver=southwell.
 std::string words_of(std::string condition) {
     const std::size_t equals = std::min(condition.find('='), condition.size());
@@ -64,7 +69,7 @@ void SettingFlags::add(CLI::App& verb, uint32_t verbs, const PictureOptions& opt
         Flag& flag = flags_.emplace_back(Flag{.setting = &setting});
         const std::vector<std::string> now = texts_of(options, setting);
         const bool has_own_default = now != texts_of(defaults, setting);
-        const std::string name = flag_of(setting.name), text = described(setting, has_own_default);
+        const std::string name = flag_names(setting), text = described(setting, has_own_default);
         if (is_switch(setting)) {
             flag.option = verb.add_flag(name, flag.is_on, text);
         } else if (is_list(setting)) {

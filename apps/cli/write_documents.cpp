@@ -37,7 +37,7 @@ std::vector<const CLI::Option*> all_flags_of(const CLI::App& verb) {
 std::vector<std::string> long_names(const CLI::App& verb) {
     std::vector<std::string> names;
     for (const CLI::Option* flag : all_flags_of(verb)) {
-        for (const std::string& name : flag->get_lnames()) names.push_back("--" + name);
+        if (!flag->get_lnames().empty()) names.push_back("--" + flag->get_lnames().front());
     }
     return names;
 }
@@ -187,8 +187,8 @@ std::string man_page(const CLI::App& app) {
                             in_man(verb.app->get_description()));
         for (const CLI::Option* option : verb.app->get_options([](const CLI::Option*) { return true; })) {
             page += fmt::format(
-                ".TP\n\\fB{}\\fR \\fI{}\\fR\n{}{}\n", in_man(option->get_name(option->get_positional(), true)),
-                in_man(option->get_type_name()), in_man(option->get_description()),
+                ".TP\n\\fB{}\\fR \\fI{}\\fR\n{}{}\n", in_man(shown_names(*option)), in_man(option->get_type_name()),
+                in_man(option->get_description()),
                 option->get_default_str().empty() ? "" : in_man(fmt::format(" ({})", option->get_default_str())));
         }
     }

@@ -249,9 +249,9 @@ std::vector<ViewSetting> make_settings() {
         "The acceleration structure. It changes only the speed", names_of<StructureKind>(),
         [](const ViewState& s) { return name_of(shown_combination(s).structure); }, set_structure);
     choice(
-        "walk", "Walk", "Rays (the picture stays the same)", "The traversal algorithm. It changes only the speed",
-        names_of<TraversalKind>(), [](const ViewState& s) { return name_of(shown_combination(s).traversal); },
-        set_traversal);
+        "traversal", "Traversal", "Rays (the picture stays the same)",
+        "The traversal algorithm. It changes only the speed", names_of<TraversalKind>(),
+        [](const ViewState& s) { return name_of(shown_combination(s).traversal); }, set_traversal);
     choice(
         "rta", "Redundant traversal avoidance", "Rays (the picture stays the same)",
         "Rays skip nodes behind the nearest hit so far. Off: they test them", {"on", "nodes", "off"},

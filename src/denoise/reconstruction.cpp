@@ -84,7 +84,7 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
     } else {
         accumulate.operator()<false>();
     }
-    launch(*queue_, "limit_history", pixels, ClampHistory{now, b, width_, height_, settings.clamp_history, has_gloss});
+    launch(*queue_, "clamp_history", pixels, ClampHistory{now, b, width_, height_, settings.clamp_history, has_gloss});
     if (settings.keep_layers) {
         if (layers_.size() != pixels) layers_ = {*queue_, pixels, "layers of the reconstruction"};
         launch(*queue_, "keep_layers", pixels,

@@ -118,17 +118,17 @@ std::vector<Setting> frame_settings() {
     std::vector<Setting> rows = {
         row("no_reconstruction", "Frames", "", FIELD(reconstruction.none), "Frames are shown without reconstruction."),
         row(
-            "no_firefly_limit", "Frames", "",
+            "no_firefly_clamping", "Frames", "",
             [](PictureOptions& o) -> SettingField { return InverseSwitch{&o.reconstruction.settings.clamp_fireflies}; },
-            "Samples far brighter than their neighbours are not clamped."),
+            "Samples far brighter than their neighbours are not clamped.", OldName{"no_firefly_limit"}),
         row(
-            "no_history_limit", "Frames", "",
+            "no_history_clamping", "Frames", "",
             [](PictureOptions& o) -> SettingField { return InverseSwitch{&o.reconstruction.settings.clamp_history}; },
-            "Long-term means are not clamped to recent frames where both disagree."),
+            "Long-term means are not clamped to recent frames where both disagree.", OldName{"no_history_limit"}),
         row(
-            "no_follow_light", "Frames", "",
+            "no_temporal_gradients", "Frames", "",
             [](PictureOptions& o) -> SettingField { return InverseSwitch{&o.reconstruction.settings.follow_light}; },
-            "Accumulated frames do not adapt to changing light in moving scenes."),
+            "Accumulated frames do not adapt to changing light in moving scenes.", OldName{"no_follow_light"}),
         row(
             "no_anti_alias", "Frames", "",
             [](PictureOptions& o) -> SettingField { return InverseSwitch{&o.reconstruction.settings.anti_alias}; },

@@ -96,8 +96,8 @@ std::vector<Setting> picture_settings() {
             "The acceleration structure, by its name in pertev lab; it overrules build. It may be given for one kind "
             "of ray: camera=, bounce= or shadow=NAME.",
             On{kTracing}, Mark::NotKept),
-        row("walk", "Tracing", "[KIND=]NAME", FIELD(tracer.traversals),
-            "The traversal algorithm, by its name in pertev lab.", On{kTracing}, Mark::NotKept),
+        row("traversal", "Tracing", "[KIND=]NAME", FIELD(tracer.traversals),
+            "The traversal algorithm, by its name in pertev lab.", On{kTracing}, Mark::NotKept, OldName{"walk"}),
         row("rta", "Tracing", "[KIND=]WHICH", FIELD(tracer.rta), "Redundant traversal avoidance: on, nodes or off.",
             On{kTracing}, Mark::NotKept),
         row("order", "Tracing", "[KIND=]WHICH", FIELD(tracer.order), "Traversal of nearer children first: on or off.",

@@ -96,6 +96,7 @@ struct Setting {
     SettingField (*field)(PictureOptions&);
     const char* sentence;       // describes the setting
     const char* more = "";      // further sentences for longer help
+    const char* old_name = "";  // its name in earlier versions, which files may have; the flag takes it, hidden
     double low = 0, high = 0;   // range of numbers; high 0: the maximum of the field
     bool above = false;         // whether `low` itself is excluded
     const char* unit = "";      // unit of numbers

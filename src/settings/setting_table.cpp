@@ -16,7 +16,9 @@ const std::vector<Setting>& all_settings() {
 }
 
 const Setting* find_setting(std::string_view name) {
-    const auto found = std::ranges::find(all_settings(), name, &Setting::name);
+    const auto found = std::ranges::find_if(all_settings(), [&](const Setting& setting) {
+        return name == setting.name || (!name.empty() && name == setting.old_name);
+    });
     return found != all_settings().end() ? &*found : nullptr;
 }
 

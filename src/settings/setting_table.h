@@ -10,7 +10,7 @@
 namespace pertev {
 
 const std::vector<Setting>& all_settings();
-/// Returns null if no setting has this name.
+/// Returns null if no setting has this name or had it in an earlier version.
 const Setting* find_setting(std::string_view name);
 
 // The parts of the table.
@@ -38,6 +38,9 @@ struct Unit {
 struct Otherwise {
     const char* text;
 };
+struct OldName {
+    const char* text;
+};
 struct More {
     const char* text;
 };
@@ -62,6 +65,7 @@ inline void put(Setting& s, Range range) { s.low = range.low, s.high = range.hig
 inline void put(Setting& s, Above range) { s.low = range.low, s.high = range.high, s.above = true; }
 inline void put(Setting& s, Unit unit) { s.unit = unit.text; }
 inline void put(Setting& s, Otherwise otherwise) { s.otherwise = otherwise.text; }
+inline void put(Setting& s, OldName old) { s.old_name = old.text; }
 inline void put(Setting& s, More more) { s.more = more.text; }
 inline void put(Setting& s, Choices choices) { s.choices = std::move(choices.names); }
 inline void put(Setting& s, On on) { s.verbs = on.verbs; }

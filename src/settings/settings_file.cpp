@@ -87,8 +87,8 @@ void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<
     compare_scene(root, file, options.scene.scene, messages);
     const JsonValue settings = root.at("settings");
     for (const auto& [name, value] : settings.members()) {
-        if (std::ranges::find(overruled, name) != overruled.end()) continue;
         const Setting* const setting = find_setting(name);
+        if (setting != nullptr && std::ranges::find(overruled, setting->name) != overruled.end()) continue;
         if (setting == nullptr || !setting->is_kept || (setting->verbs & verbs) == 0) {
             messages.leave_out(fmt::format("{}: {}", text_of(value.place()),
                                            setting == nullptr ? "unknown setting" : "not a setting of this verb"));
@@ -99,7 +99,7 @@ void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<
         } catch (const Error& error) {
             throw value.error(error);
         }
-        options.given[name] = SettingOrigin::File;
+        options.given[setting->name] = SettingOrigin::File;
     }
     for (const auto& [name, value] : root.members()) {
         if (name != "version" && name != "scene" && name != "settings") {

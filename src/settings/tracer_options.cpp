@@ -68,12 +68,13 @@ std::optional<TracerChoice> tracer_choice(const TracerOptions& options, bool on_
               if (kind) c.structure = *kind, structure_named.insert(&c);
               return kind.has_value();
           });
-    apply("walk", options.traversals, choice, list_of<TraversalKind>(), [&](Combination& c, const std::string& name) {
-        const auto kind = value_named<TraversalKind>(name);
-        // Switches and the distribution of the default traversal do not apply to this one.
-        if (kind) c = {.structure = c.structure, .traversal = *kind}, traversal_named.insert(&c);
-        return kind.has_value();
-    });
+    apply("traversal", options.traversals, choice, list_of<TraversalKind>(),
+          [&](Combination& c, const std::string& name) {
+              const auto kind = value_named<TraversalKind>(name);
+              // Switches and the distribution of the default traversal do not apply to this one.
+              if (kind) c = {.structure = c.structure, .traversal = *kind}, traversal_named.insert(&c);
+              return kind.has_value();
+          });
     for (const RayKind kind : kValuesOf<RayKind>) {
         Combination& c = choice[kind];
         complete(c, structure_named.contains(&c), traversal_named.contains(&c));

@@ -29,7 +29,7 @@ std::vector<std::string> integrator_names() {
 
 std::string json_of(const ReconstructionSettings& settings, const RestirSettings& restir) {
     return fmt::format(
-        R"({{"history":{},"passes":{},"limit_fireflies":{},"limit_history":{},"follow_light":{},"anti_alias":{},"resolution_scale":{},"restir":{},"restir_history":{}}})",
+        R"({{"history":{},"passes":{},"clamp_fireflies":{},"clamp_history":{},"temporal_gradients":{},"anti_alias":{},"resolution_scale":{},"restir":{},"restir_history":{}}})",
         settings.history, settings.passes, settings.clamp_fireflies, settings.clamp_history, settings.follow_light,
         settings.anti_alias, json_number(static_cast<double>(settings.resolution_scale)),
         json_string(name_of(restir.light)), restir.history);

@@ -196,7 +196,7 @@ class FileScenes(CliTest):
         told = self.succeed("info", "second.gltf", "--file-scene", "2", "--json").events("info")[0]
         self.assertEqual((told["shows"], told["bounds_high"]), ("2", [1.5, 1, 0]))
         self.assertNotIn("file_scenes", self.info("alone-0.gltf"))
-        lab = ["lab", "second.gltf", "--structures", "binned", "--walks", "if-if", "--runs", "1", "--device", "cpu", "--size",
+        lab = ["lab", "second.gltf", "--structures", "binned", "--traversals", "if-if", "--runs", "1", "--device", "cpu", "--size",
                "16x12", "--rays", "primary", "--json"]
         shares = [rows_of(self.succeed(*lab, *words).events("lab")[0], "sets")[0]["hit_share"] for words in [[], ["--file-scene", "one"]]]
         self.assertLess(*shares)

@@ -97,7 +97,7 @@ class WhatIsWritten(LabTest):
                                 ("--tests fast,exact --rta off,nodes,on", "rta-near"),
                                 ("--rays record --count 3000", "rta-near")]:
             with self.subTest(flags=flags):
-                report = self.report("cornell-box", "--structures", "binned", "--walks", "if-if", *flags.split(), "-o",
+                report = self.report("cornell-box", "--structures", "binned", "--traversals", "if-if", *flags.split(), "-o",
                                      "out")
                 self.assertFalse([note for note in report["notes"] if "no heat maps" in note])
                 self.assertEqual(sorted(name for name in os.listdir(self.path("out")) if name.endswith(".png")),
@@ -114,7 +114,7 @@ class WhatIsWritten(LabTest):
         for name in mine:
             write(self.path("out/" + name), "mine")
         os.mkdir(self.path("out/nodes-sbvh-if-if-rta-near.png"))
-        self.report("cornell-box", "--structures", "binned", "--walks", "wide8", "-o", "out")
+        self.report("cornell-box", "--structures", "binned", "--traversals", "wide8", "-o", "out")
         self.assertEqual(sorted(os.listdir(self.path("out"))),
                          sorted([*mine, "nodes-sbvh-if-if-rta-near.png", "nodes-binned-wide8-rta-near.png",
                                  "triangles-binned-wide8-rta-near.png", "report.csv", "report.html", "report.json"]))

@@ -17,7 +17,7 @@ BOX = "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "".join(
     "f " + " ".join(str(corner + 1) for corner in side) + "\n" for side in SIDES)
 
 FRAME_SETS = ["primary", "shadow", "diffuse1", "diffuse2"]
-SMALL = ["--structures", "binned", "--walks", "if-if,wide8"]
+SMALL = ["--structures", "binned", "--traversals", "if-if,wide8"]
 
 
 def rows_of(measurement, name):

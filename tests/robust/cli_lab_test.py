@@ -30,7 +30,7 @@ def gltf_of_nested_boxes():
 
 class WhatIsRefused(LabTest):
     def test_a_bad_flag_or_value_ends_with_2_and_shows_what_would_be_right(self):
-        wanted = {"--structures sah": "binned", "--structures binned,sah": "octree", "--walks x": "while-while",
+        wanted = {"--structures sah": "binned", "--structures binned,sah": "octree", "--traversals x": "while-while",
                   "--rays x": "diffuse", "--rta x": "both", "--order x": "both", "--tests x": "exact",
                   "--persistent x": "both", "--runs 0": "whole number from 1", "--runs 1.5": "whole number from 1",
                   "--count 0": "whole number from 1", "--threads 0": "whole number from 1", "--device gpu": "cpu",
@@ -64,13 +64,13 @@ class WhatIsRefused(LabTest):
         self.refuse_unmeasured(2, "--thesis", "sponza", says=["PERTEV_SCENES", "crytek-sponza/sponza.obj"])
 
     def test_where_nothing_asked_for_can_be_measured_it_ends_with_2_and_the_reasons(self):
-        for line, reason in [("--structures octree --walks while-while", "octree has eight cells"),
-                             ("--structures binned --walks kd", "kd-sah"), ("--structures kd-sah --walks if-if", "kd"),
-                             ("--structures sbvh --walks octree", "octree"),
+        for line, reason in [("--structures octree --traversals while-while", "octree has eight cells"),
+                             ("--structures binned --traversals kd", "kd-sah"), ("--structures kd-sah --traversals if-if", "kd"),
+                             ("--structures sbvh --traversals octree", "octree"),
                              ("--rta off --order off --tests fast", "fast and woop tests"),
-                             ("--structures binned --walks if-if --tests woop", "Aila and Laine"),
-                             ("--structures binned --walks if-if --rta nodes", "compressed walk"),
-                             ("--structures binned --walks skip-links --order off", "no order of children")]:
+                             ("--structures binned --traversals if-if --tests woop", "Aila and Laine"),
+                             ("--structures binned --traversals if-if --rta nodes", "compressed traversal"),
+                             ("--structures binned --traversals skip-links --order off", "no order of children")]:
             with self.subTest(line=line):
                 self.refuse_unmeasured(2, "box.obj", *INSIDE, *line.split(), "-o", "out", says=["none", reason])
 
@@ -130,7 +130,7 @@ class WhatIsRefused(LabTest):
         self.assertNotRegex(outcome.stdout, r"(?m)^binned (if-if|wide8) .*\d\.\d", "measured as something else")
 
     def test_the_thesis_takes_no_choice_of_combinations_or_rays(self):
-        for flag in ["--structures binned", "--walks packet", "--rta on", "--order off", "--tests fast",
+        for flag in ["--structures binned", "--traversals packet", "--rta on", "--order off", "--tests fast",
                      "--rays primary", "--rta both", "--no-heat-maps"]:
             with self.subTest(flag=flag):
                 self.refuse_unmeasured(2, "--thesis", "box.obj", *flag.split(), says=["--thesis", flag.split()[0]])
@@ -143,7 +143,7 @@ class WhatIsMeasured(LabTest):
         structures, rates = outcome.stdout.split("million rays a second")
         for name in self.names_of("--structures"):
             self.assertRegex(structures, rf"(?m)^{name} +\d+ +\d+ +[\d.e-]+ ")
-        for name in self.names_of("--walks"):
+        for name in self.names_of("--traversals"):
             if name != "brute-force":  # only when named
                 self.assertRegex(rates, rf"(?m)^[a-z-]+ {name} (no-)?rta.* \d+\.\d")
         self.assertNotIn("brute-force", rates)
@@ -176,7 +176,7 @@ class WhatIsMeasured(LabTest):
         self.assertEqual(work[0], work[1])
 
     def test_in_a_closed_box_every_ray_hits_and_brute_force_tests_every_triangle(self):
-        report = self.report("box.obj", *INSIDE, "--structures", "binned", "--walks", "brute-force,if-if", "--rta",
+        report = self.report("box.obj", *INSIDE, "--structures", "binned", "--traversals", "brute-force,if-if", "--rta",
                              "on")
         self.check_hits(report)
         self.assertEqual([(rays["name"], rays["rays"], rays["hit_share"]) for rays in report["sets"]],
@@ -203,10 +203,10 @@ class WhatIsMeasured(LabTest):
 
     def test_every_walk_runs_in_a_scene_of_shared_meshes(self):
         write(self.path("boxes.gltf"), gltf_of_nested_boxes())
-        walks = self.names_of("--walks")
+        walks = self.names_of("--traversals")
         self.assertIn("brute-force", walks)
         # Between the boxes: the inner one or else the outer one is hit.
-        report = self.report("boxes.gltf", "--eye", "0.3,0.2,2.5", "--target", "0,0,0", "--walks", ",".join(walks),
+        report = self.report("boxes.gltf", "--eye", "0.3,0.2,2.5", "--target", "0,0,0", "--traversals", ",".join(walks),
                              "--structures", "binned,sbvh,kd-sah,octree")
         self.assertEqual((report["instances"], report["triangles"]), (2, 12))  # the mesh counts once
         self.check_hits(report, ["without nodes there is no redundant traversal", "split planes", "cells", "planes"])
@@ -215,10 +215,10 @@ class WhatIsMeasured(LabTest):
         self.assertEqual({of["walk"] for of in report["combinations"] if of["runs"]}, set(walks))
 
     def test_pairs_that_make_no_sense_are_listed_with_the_reason_beside_what_was_measured(self):
-        pair = ["box.obj", *INSIDE, "--structures", "octree,binned", "--walks", "while-while,kd"]
+        pair = ["box.obj", *INSIDE, "--structures", "octree,binned", "--traversals", "while-while,kd"]
         outcome = self.succeed(*self.lab(*pair))
         self.assertRegex(outcome.stderr, r"(?m)^octree while-while .*: .*octree has eight cells")
-        self.assertRegex(outcome.stderr, r"(?m)^binned kd .*: the kd walk goes over .*kd-sah")
+        self.assertRegex(outcome.stderr, r"(?m)^binned kd .*: the kd traversal goes over .*kd-sah")
         report = self.report(*pair)
         for of in report["combinations"]:
             self.assertEqual(of["runs"] == [], of["refused"] is not None)
@@ -226,8 +226,8 @@ class WhatIsMeasured(LabTest):
                          {"binned while-while rta near", "binned while-while no-rta near"})
 
     def test_every_combination_has_a_name_of_its_own_refused_ones_included(self):
-        report = self.report("box.obj", *INSIDE, "--structures", "binned,octree", "--walks",
-                             ",".join(self.names_of("--walks")), "--order", "both", "--tests", "exact,fast,woop")
+        report = self.report("box.obj", *INSIDE, "--structures", "binned,octree", "--traversals",
+                             ",".join(self.names_of("--traversals")), "--order", "both", "--tests", "exact,fast,woop")
         names = [of["name"] for of in report["combinations"]]
         self.assertEqual(sorted(set(names)), sorted(names))
         reasons = {of["name"]: of["refused"] for of in report["combinations"]}
@@ -246,7 +246,7 @@ class WhatIsMeasured(LabTest):
 
     def test_one_triangle_has_a_cost_in_every_tree_and_an_array_has_none(self):
         write(self.path("one.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-        report = self.report("one.obj", "--structures", "binned,kd-sah,octree", "--walks",
+        report = self.report("one.obj", "--structures", "binned,kd-sah,octree", "--traversals",
                              "brute-force,if-if,skip-links,wide4,kd,octree")
         for structure in report["structures"]:
             known = structure["name"] != "binned triangles"
@@ -263,10 +263,10 @@ class WhatIsMeasured(LabTest):
                     self.assertAlmostEqual(one["hit_share"], other["hit_share"], delta=0.02)
 
     def test_what_is_named_twice_is_measured_once(self):
-        once = self.report("box.obj", *INSIDE, "--structures", "binned,octree", "--walks", "if-if,octree")
-        for twice in [["--structures", "binned,octree,binned", "--walks", "if-if,octree"],
-                      ["--structures", "binned,octree", "--structures", "binned", "--walks", "if-if,octree"],
-                      ["--structures", "binned,octree", "--walks", "if-if,octree,if-if"]]:
+        once = self.report("box.obj", *INSIDE, "--structures", "binned,octree", "--traversals", "if-if,octree")
+        for twice in [["--structures", "binned,octree,binned", "--traversals", "if-if,octree"],
+                      ["--structures", "binned,octree", "--structures", "binned", "--traversals", "if-if,octree"],
+                      ["--structures", "binned,octree", "--traversals", "if-if,octree,if-if"]]:
             report = self.report("box.obj", *INSIDE, *twice)
             for key in ["structures", "combinations"]:
                 self.assertEqual([of["name"] for of in report[key]], [of["name"] for of in once[key]], twice)

@@ -29,7 +29,7 @@ class LeftOut(CliTest):
         scene = self.model(extensionsUsed=["EXT_new"])
         lines = [["measure", scene, "--at", "0,0,-1", "--normal", "0,0,1", "--spp", "1", "--device", "cpu"],
                  ["solve", "radiosity", scene, "-o", "x.rad", "--patch-rays", "16"],
-                 ["lab", scene, "--structures", "binned", "--walks", "if-if", "--runs", "1", "--device", "cpu", "--size", "16x12"],
+                 ["lab", scene, "--structures", "binned", "--traversals", "if-if", "--runs", "1", "--device", "cpu", "--size", "16x12"],
                  ["bench", "frames", scene, "--frames", "1", "--size", "16x12", "--device", "cpu"],
                  ["bench", "sequence", scene, "--turntable", "2", "--size", "16x12", "--device", "cpu"]]
         for line in lines:

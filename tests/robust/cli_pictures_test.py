@@ -138,7 +138,7 @@ class WhatHalfACameraSees(CliTest):
 
     def test_lab_aims_an_eye_alone_too(self):
         write(self.path("sheet.obj"), SHEET)
-        said = self.succeed("lab", "sheet.obj", "--eye", "3,2.5,4", "--structures", "binned", "--walks", "if-if", "--runs",
+        said = self.succeed("lab", "sheet.obj", "--eye", "3,2.5,4", "--structures", "binned", "--traversals", "if-if", "--runs",
                             "1", "--device", "cpu", "--size", "16x12", "--json")
         self.assertEqual(len([event for event in said.events("notice") if "--target 0,1,0)" in event["text"]]), 1)
 

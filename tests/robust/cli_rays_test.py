@@ -11,7 +11,7 @@ class RaysOnTheRecord(CliTest):
     def test_a_bad_flag_or_value_ends_with_2_and_names_the_flag(self):
         for flag in ["--count 0", "--count -1", "--count 1.5", "--count 4294967297", "--count x", "--runs 0", "--fov 0",
                      "--fov nan", "--eye 1,2", "--target x", "--device gpu", "--threads 0", "--size 10x10", "--build x",
-                     "--walk x", "--foo"]:
+                     "--traversal x", "--foo"]:
             with self.subTest(flag=flag):
                 self.refuse(2, "bench", "rays", "--scene", "cornell-box", *flag.split(), says=[flag.split()[0]])
 
@@ -61,7 +61,7 @@ class RaysOnTheRecord(CliTest):
         self.assertLess(along["nodes"], 1.1 * beside["nodes"])
 
     def test_rays_are_traced_as_the_flags_say(self):
-        for flags, tracer in [("--build fast", "binned wide8-simd"), ("--walk skip-links", "sbvh-reinsertion skip-links"),
+        for flags, tracer in [("--build fast", "binned wide8-simd"), ("--traversal skip-links", "sbvh-reinsertion skip-links"),
                               ("--structure octree", "octree octree")]:
             with self.subTest(flags=flags):
                 sets = self.rays("--scene", "cornell-box", "--count", "500", "--check", *flags.split())

@@ -34,7 +34,7 @@ class RealTime(CliTest):
         return self.refuse(2, "render", "m.gltf", "-o", f"{folder}/f-##.png", *LINE, *arguments, says=says)
 
     def test_frames_are_those_of_bench_sequence_to_the_byte(self):
-        for number, flags in enumerate([[], ["--restir", "gi", "--no-follow-light"],
+        for number, flags in enumerate([[], ["--restir", "gi", "--no-temporal-gradients"],
                                         ["--resolution-scale", "0.5", "--passes", "2"], ["--integrator", "hybrid"]]):
             for scene, motion in [("m.gltf", ["--frames", "0-3", "--fps", "4"]), ("cornell-box", ["--turntable", "90", "--frames", "0-3"])]:
                 with self.subTest(scene=scene, flags=flags):
@@ -109,8 +109,8 @@ class RealTime(CliTest):
         motion = ["--fps", "4", "--frames", "0-1"]
         self.render("x", *motion)
         for flags in (["--passes", "4"], ["--history", "8"], ["--restir", "di"], ["--restir-history", "3"],
-                      ["--resolution-scale", "0.5"], ["--no-anti-alias"], ["--no-firefly-limit"], ["--no-history-limit"],
-                      ["--no-follow-light"], ["--no-reconstruction"]):
+                      ["--resolution-scale", "0.5"], ["--no-anti-alias"], ["--no-firefly-clamping"], ["--no-history-clamping"],
+                      ["--no-temporal-gradients"], ["--no-reconstruction"]):
             self.refuse_to_render("x", *motion, "--continue", *flags, says=[flags[0], "--continue"])
         self.refuse(2, "render", "m.gltf", "-o", "x/f-##.png", *SMALL, "--spp", "1", *motion, "--continue",
                     says=['made with --real-time "true"'])

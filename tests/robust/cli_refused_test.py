@@ -20,7 +20,7 @@ class WhatIsRefused(CliTest):
                      "--integrator x", "--integrator whitted --ambient x", "--integrator whitted --ambient 1,2", "--integrator cast --ambient -1", "--integrator cast --ambient nan", "--projection x", "--aov x", "--aov albedo", "--size 10", "--size 0x10",
                      "--size x", "--size 10x", "--size 10x10x10", "--size -1x10", "--size nanxnan", "--device gpu",
                      "--device cuda:x", "--eye 1,2", "--eye 1,2,nan", "--target 1,2,3,4", "--up x,y,z",
-                     "--structure x", "--walk x", "--walk moon=compressed", "--walk shadow=x", "--rta x", "--order x",
+                     "--structure x", "--traversal x", "--traversal moon=compressed", "--traversal shadow=x", "--rta x", "--order x",
                      "--distribution x", "--build x", "--build sbvh", "--environment -1,0,0", "--environment 1,2", "--environment no.hdr", "--allow-path nowhere",
                      "--unit inch", "--unit 0", "--unit nan", "--up-axis w", "--up-axis -z"]:
             with self.subTest(flag=flag):

@@ -18,12 +18,12 @@ FLAGS = {
               "--view-height --aperture --focus --environment --environment-rotation --environment-scale "
               "--two-sided-lights --show-back-faces --size --tone-map --exposure --transparent --aov --spp --time-limit --denoise "
               "--integrator --max-depth --ambient --shading --wireframe --seed --sampler --filter --filter-radius --clamp --device --threads "
-              "--no-bvh-cache --build --structure --walk --rta --order --distribution --time --frames --fps --camera-path "
+              "--no-bvh-cache --build --structure --traversal --rta --order --distribution --time --frames --fps --camera-path "
               "--turntable --continue --lpe --lamp --efficacy --false-color --false-color-range --f-number --shutter-time --iso "
               "--shutter --shading-rate --displacement --photons --gather --radius --caustic-radius --nearest "
               "--accuracy --hemisphere-rays --show-records --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube "
               "--solver --tolerance --steps --link-error --max-memory --solution --flat-patches --real-time --restir --restir-history --resolution-scale --history --passes --no-anti-alias "
-              "--no-firefly-limit --no-follow-light --no-history-limit --no-reconstruction --animation --file-scene --ground --settings",
+              "--no-firefly-clamping --no-temporal-gradients --no-history-clamping --no-reconstruction --animation --file-scene --ground --settings",
     "measure": "--at --normal --spp --max-depth --seed --lamp --efficacy --time --allow-path --up-axis --unit --environment --environment-rotation "
                "--environment-scale --two-sided-lights --device --threads --no-bvh-cache --animation --file-scene --strict --quiet -q --json",
     "solve radiosity": "--output -o --patch-size --subdivisions --contrast --form-factors --patch-rays --hemicube --solver "
@@ -31,9 +31,9 @@ FLAGS = {
                        "--environment-scale --two-sided-lights --threads --no-bvh-cache --animation --file-scene --strict --quiet -q --json",
     "info": "--file-scene --allow-path --up-axis --unit --settings --quiet -q --json",
     "compare": "--blocks --quiet -q --json",
-    "bench": "--scene --size --spp --device --threads --build --structure --walk --rta --order --distribution --report --quiet -q --json",
+    "bench": "--scene --size --spp --device --threads --build --structure --traversal --rta --order --distribution --report --quiet -q --json",
     "bench build": "--scene --runs --compare --device --threads --report --quiet -q --json",
-    "bench rays": "--scene --eye --target --fov --count --runs --check --device --threads --axes --build --structure --walk --rta --order --distribution --report --quiet -q --json",
+    "bench rays": "--scene --eye --target --fov --count --runs --check --device --threads --axes --build --structure --traversal --rta --order --distribution --report --quiet -q --json",
 }
 
 

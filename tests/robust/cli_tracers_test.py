@@ -13,23 +13,23 @@ class HowRaysAreTraced(CliTest):
 
     def test_every_way_gives_one_picture(self):
         wanted = self.hash_of()
-        for line in ["--structure sbvh --walk restart-trail --rta off", "--walk brute-force", "--structure kd-sah",
-                     "--walk octree", "--structure ploc --walk compressed --rta nodes",
-                     "--walk while-while --order off", "--walk shadow=kd --structure bounce=insertion",
-                     "--walk camera=packet --walk bounce=short-stack --walk shadow=skip-links", "--build fast",
+        for line in ["--structure sbvh --traversal restart-trail --rta off", "--traversal brute-force", "--structure kd-sah",
+                     "--traversal octree", "--structure ploc --traversal compressed --rta nodes",
+                     "--traversal while-while --order off", "--traversal shadow=kd --structure bounce=insertion",
+                     "--traversal camera=packet --traversal bounce=short-stack --traversal shadow=skip-links", "--build fast",
                      "--build balanced", "--build best", "--build best --structure ploc",
                      "--build fast --structure shadow=sbvh-reinsertion"]:
             with self.subTest(line=line):
                 self.assertEqual(self.hash_of(*line.split()), wanted)
 
     def test_what_cannot_be_says_why(self):
-        for line, why in [("--structure kd-sah --walk if-if", "the walk for it is kd"),
-                          ("--structure octree --walk wide8", "the walk for it is octree"),
-                          ("--walk skip-links --order off", "there is no order of children"),
-                          ("--walk if-if --rta nodes", "for the compressed walk"),
-                          ("--walk compressed --distribution dynamic-fetch", "threads of a CPU"),
-                          ("--walk camera=wide9", "expected one of if-if"),
-                          ("--walk eye=kd", "camera, bounce and shadow")]:
+        for line, why in [("--structure kd-sah --traversal if-if", "the traversal for it is kd"),
+                          ("--structure octree --traversal wide8", "the traversal for it is octree"),
+                          ("--traversal skip-links --order off", "there is no order of children"),
+                          ("--traversal if-if --rta nodes", "for the compressed traversal"),
+                          ("--traversal compressed --distribution dynamic-fetch", "threads of a CPU"),
+                          ("--traversal camera=wide9", "expected one of if-if"),
+                          ("--traversal eye=kd", "camera, bounce and shadow")]:
             with self.subTest(line=line):
                 self.refuse(2, "render", "cornell-box", "-o", "x.png", "--device", "cpu", *line.split(), says=[why])
 
@@ -39,9 +39,9 @@ class HowRaysAreTraced(CliTest):
         faces = "".join(f"f {a} {a + side + 1} {a + side + 2} {a + 1}\n"
                         for a in (z * (side + 1) + x + 1 for z in range(side) for x in range(side)))
         write(self.path("field.obj"), vertices + faces)
-        self.refuse(3, "render", "field.obj", "-o", "x.png", *SMALL, "--walk", "brute-force", says=["80000 triangles"])
+        self.refuse(3, "render", "field.obj", "-o", "x.png", *SMALL, "--traversal", "brute-force", says=["80000 triangles"])
         write(self.path("floor.obj"), FLOOR)
-        self.assertEqual(self.hash_of("--walk", "brute-force", scene="floor.obj"), self.hash_of(scene="floor.obj"))
+        self.assertEqual(self.hash_of("--traversal", "brute-force", scene="floor.obj"), self.hash_of(scene="floor.obj"))
 
     def test_the_last_line_has_the_measures_of_frames(self):
         done = self.succeed("render", "cornell-box", "-o", "x.exr", *SMALL, "--json").events("done")[0]

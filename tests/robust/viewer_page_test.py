@@ -244,9 +244,9 @@ class Page(unittest.TestCase):
         self.set_to("mode", "reference")
         for _ in range(3):
             page.key("BracketLeft", "[")
-        page.value("const f = document.querySelector('#setting-walk'); f.value = 'while-while';"
+        page.value("const f = document.querySelector('#setting-traversal'); f.value = 'while-while';"
                    "f.dispatchEvent(new Event('change'))")
-        self.set_to("walk", "while-while")
+        self.set_to("traversal", "while-while")
 
     def test_a_number_is_typed_and_taken_by_enter_and_keys_then_steer(self):
         page = self.browser

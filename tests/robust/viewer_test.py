@@ -154,7 +154,7 @@ class Fuzzed(WithViewer):
                     '{"type":"play","n":4,"on":true,"loops":false,"speed":2}', '{"type":"time","n":5,"at":1}',
                     '{"type":"key","n":6,"at":2}', '{"type":"unkey","n":7,"index":0}', '{"type":"follow","n":8}',
                     '{"type":"ack","frame":1,"ms":1}',
-                    '{"type":"set","n":2,"name":"walk","value":"packet"}', '{"type":"hand","to":1}', '{"type":"meter","n":3}',
+                    '{"type":"set","n":2,"name":"traversal","value":"packet"}', '{"type":"hand","to":1}', '{"type":"meter","n":3}',
                     '{"type":"look","n":9,"dx":0.1,"dy":-0.1}', '{"type":"pan","n":10,"dx":0.1,"dy":0.1}',
                     '{"type":"zoom","n":11,"steps":1}', '{"type":"speed","n":12,"steps":-1}', '{"type":"home","n":13}',
                     '{"type":"camera","n":14,"index":0}', '{"type":"rate","hz":60}', '{"type":"ask"}',
@@ -212,7 +212,7 @@ class Pictures(CliTest):
             self.assertEqual(flags["hash"], self.rendered(*words)[0])
             self.assertNotEqual(flags["hash"], self.rendered()[0])
             # And no structure or walk changes it.
-            for name, value in [("structure", "octree"), ("walk", "while-while"), ("rta", "off"), ("structure", "sbvh")]:
+            for name, value in [("structure", "octree"), ("traversal", "while-while"), ("rta", "off"), ("structure", "sbvh")]:
                 client.set(name, value)
                 state = client.done(lambda s, n=name, v=value: s["values"][n] == v)
                 self.assertEqual(state["hash"], flags["hash"], (name, value))

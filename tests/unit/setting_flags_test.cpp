@@ -24,6 +24,26 @@ TEST_CASE("flags overrule what options hold, and a switch that is turned off is 
     CHECK(!options.is_given("seed"));
 }
 
+TEST_CASE("a renamed flag is also taken by its old name, which help and completion hide") {
+    for (const char* line :
+         {"--traversal shadow=wide8 --no-history-clamping", "--walk shadow=wide8 --no-history-limit"}) {
+        PictureOptions options;
+        CLI::App app("A program", "program");
+        SettingFlags flags;
+        flags.add(app, kRender, options);
+        app.parse(line);
+        Messages messages;
+        flags.read(options, messages);
+        CHECK(options.tracer.traversals == std::vector<std::string>{"shadow=wide8"});
+        CHECK(!options.reconstruction.settings.clamp_history);
+        CHECK(options.is_given("traversal"));
+        const std::string help = Help("all").make_help(&app, "", CLI::AppFormatMode::Normal);
+        CHECK(help.find("--traversal") != std::string::npos);
+        CHECK(help.find("--walk") == std::string::npos);
+        CHECK(completion(app, "bash").find("--walk") == std::string::npos);
+    }
+}
+
 TEST_CASE("the word behind --help names a group of flags") {
     std::vector<std::string> words = {"render", "--help", "Camera"};
     CHECK(take_help_group(words) == "camera");

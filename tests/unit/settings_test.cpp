@@ -36,6 +36,7 @@ TEST_CASE("each setting has a name of its own, a sentence, and rules that name s
     for (const Setting& setting : all_settings()) {
         INFO(setting.name);
         CHECK(names.insert(setting.name).second);
+        if (*setting.old_name != '\0') CHECK(names.insert(setting.old_name).second);
         const std::string sentence = setting.sentence;
         CHECK(sentence.size() > 10);
         CHECK((sentence.ends_with('.') || sentence.ends_with(").")));
@@ -127,6 +128,18 @@ TEST_CASE("settings survive writing to JSON and reading back") {
     CHECK(settings_json(read, scene_hash("cornell-box")) == json);
     CHECK(read.given.at("spp") == SettingOrigin::File);
 
+    SUBCASE("names of earlier versions are read, and written by their present names") {
+        test::write_text(file, R"({"version":1,"settings":{"no_history_limit":true,"no_follow_light":true}})");
+        PictureOptions old;
+        const std::vector<std::string> overruled = {"no_temporal_gradients"};
+        read_settings(file, kRender, overruled, old, messages);
+        CHECK(messages.all().empty());
+        CHECK(!old.reconstruction.settings.clamp_history);
+        CHECK(old.reconstruction.settings.follow_light);
+        CHECK(old.given.size() == 1);
+        CHECK(old.is_given("no_history_clamping"));
+        CHECK(settings_json(old, "").find("\"no_history_clamping\":true") != std::string::npos);
+    }
     SUBCASE("another scene is told") {
         read.scene.scene = "many-lights";
         read_settings(file, kRender, {}, read, messages);

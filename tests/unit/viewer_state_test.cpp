@@ -68,7 +68,7 @@ TEST_CASE(
         const std::string name = setting.name;
         CHECK(is_shown_otherwise(before, after) == (name == "exposure" || name == "tone_map"));
     }
-    CHECK(names == "layer integrator max_depth mode fov focus structure walk rta ");
+    CHECK(names == "layer integrator max_depth mode fov focus structure traversal rta ");
     ViewState round; // the lens of this view is a pinhole
     CHECK(set_view_setting(round, "aperture", 0.1) == "");
     CHECK(begins_anew({}, round));
@@ -104,7 +104,7 @@ TEST_CASE("compatible structures and traversals are chosen together for all kind
     CHECK(set_view_setting(state, "structure", "octree") == "");
     CHECK(state.picture.tracers->camera.traversal == TraversalKind::Octree);
     CHECK(state.picture.tracers->shadow == state.picture.tracers->camera);
-    CHECK(set_view_setting(state, "walk", "while-while") == "");
+    CHECK(set_view_setting(state, "traversal", "while-while") == "");
     CHECK(builder_of(state.picture.tracers->camera.structure).has_value());
     CHECK(set_view_setting(state, "structure", "sbvh") == "");
     CHECK(state.picture.tracers->bounce.traversal == TraversalKind::WhileWhile);
