@@ -344,7 +344,7 @@ MUTATIONS = TRANSPORT_MUTATIONS + [
              ["unit/shading_frame"]),
     Mutation("a frame with the vertices of the one before",
              [edit("src/render/update_scene.cpp", "parts |= kPartGeometry;", "parts |= kPartTrees;")],
-             ["consistency/moving_scene", "consistency/update_scene"]),
+             ["consistency/update_scene"]),
     Mutation("what is hidden gives light",
              [edit("src/shading/build_light_set.cpp", "if (instance.is_hidden || !scene.materials", "if (!scene.materials")],
              ["consistency/moving_scene"]),

@@ -133,3 +133,15 @@ TEST_CASE("few rays find the form factor of a lamp") {
     const double known = 4.0 * 0.01 / (std::numbers::pi * 4);
     CHECK(patched.factor(rows, 0, 0, 1) == doctest::Approx(known).epsilon(0.02));
 }
+
+TEST_CASE("light that both kinds of rays find counts once") {
+    Scene scene;
+    test::add(scene, test::floor_at(0, 0.02f), test::white(0.5f));
+    test::add(scene, test::sheet({0, 1, 0}, {1, 0, 0}, {0, 0, 1}), test::emitter_material(0, 1)); // its front down
+    const test::PatchedScene patched(std::move(scene), 10);
+    const auto rows = patched.rows({.rays = 4096});
+    // From a point to a parallel square of twice its distance (Howell, B-4): each finds half of the light.
+    const double root = std::sqrt(0.5), known = 4 * root * std::atan(root) / std::numbers::pi;
+    CHECK(known == doctest::Approx(0.55413).epsilon(1e-4));
+    CHECK(patched.factor(rows, 0, 0, 1) == doctest::Approx(known).epsilon(0.01));
+}

@@ -147,8 +147,9 @@ TEST_CASE("the swept box holds every place that a body takes") {
         CHECK(swept_bounds(with_another, 0, rest) == swept);
         bool holds_all = true;
         for (int i = 0; i < 4000; ++i) {
-            const Vec3 p = {random.within(rest.lo.x, rest.hi.x), random.within(rest.lo.y, rest.hi.y),
-                            random.within(rest.lo.z, rest.hi.z)};
+            const int corner = i % 8; // the corners reach farthest
+            const Vec3 p = {corner & 1 ? rest.hi.x : rest.lo.x, corner & 2 ? rest.hi.y : rest.lo.y,
+                            corner & 4 ? rest.hi.z : rest.lo.z};
             const Vec3 at = keys.view().at(0, random.within(0, 1)).move(p);
             Bounds3 with = swept;
             with.extend(at);
