@@ -22,7 +22,6 @@ FOLDERS = ["src", "apps", "tests", "tools", "bench"]
 C_SUFFIXES = {".h", ".cpp", ".cu", ".inl", ".js"}
 FRAGMENTS = re.compile(r"(?:of|what|those|the same|likewise|as|beside)\b", re.IGNORECASE)
 LONGEST_SUBJECT = 72
-OLDER_SUBJECTS = {"22e5fac4", "365e3296"}  # a little longer, merged before the limit was noticed
 
 # Strings are matched so that a "//" in one begins no comment; a ' between digits separates them.
 TOKEN = re.compile(
@@ -88,7 +87,7 @@ def subject_faults(root):
     following = f"{added[-1]}..HEAD"
     for commit in git(root, "log", "--ancestry-path", "--no-merges", "--format=%h %s", following).splitlines():
         name, subject = commit.split(" ", 1)
-        if len(subject) > LONGEST_SUBJECT and name[:8] not in OLDER_SUBJECTS:
+        if len(subject) > LONGEST_SUBJECT:
             yield f"commit {name}: the subject has {len(subject)} characters, over {LONGEST_SUBJECT}: {subject}"
 
 
