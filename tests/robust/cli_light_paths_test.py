@@ -61,7 +61,7 @@ class Layers(CliTest):
         self.refuse(4, "render", "cornell-box", "-o", "x.exr", "--size", "32768x32768", *flags[2:],
                     says=["the render takes", " has ", "100 layers of --lpe"])  # more than any machine has: 4.8 TiB
         for verb in ("view cornell-box --max-memory 5", "bench noise cornell-box --max-memory 5"):
-            self.refuse(2, *verb.split(), says=["--max-memory: of --integrator radiosity"])
+            self.refuse(2, *verb.split(), says=["--max-memory", "--integrator radiosity"])
 
     def test_what_is_wrong_is_told_before_anything_is_rendered(self):
         def refuse(status, *flags, says):

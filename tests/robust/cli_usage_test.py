@@ -49,7 +49,7 @@ class Flags(CliTest):
         self.refuse(2, "rendr", "cornell-box", says=["rendr: not understood (did you mean render?)", "a verb is required"])
         self.refuse(2, "rendr", "cornell-box", "-o", "x.png", says=["pertev: rendr: not understood (did you mean render?); a"])
         self.refuse(2, "bench", "ray", says=["ray: not understood (did you mean rays?)"])
-        self.refuse(2, "render", "cornell-box", "-o", "a.png", "b.exr", says=["b.exr: not understood", "-o of its own"])
+        self.refuse(2, "render", "cornell-box", "-o", "a.png", "b.exr", says=["b.exr: not understood", "its own -o"])
         self.refuse(2, "info", "cornell-box", "x.png", says=["x.png: not understood\n"])
         self.refuse(2, "render", "cornell-box", "-o", "x.png", "--eyes", "-.5,0,1", says=["--eyes", "--eye?)\n"])
 
@@ -104,7 +104,7 @@ class Flags(CliTest):
 
     def test_a_number_in_a_name_without_frames_is_told(self):
         outcome = self.succeed("render", "cornell-box", "-o", "a-###.png", *SMALL)
-        self.assertIn("-o a-###.png: # stands for a frame's number with --frames", outcome.stderr)
+        self.assertIn("-o a-###.png: # stands for a frame's number only with --frames", outcome.stderr)
         self.assertEqual(self.files(), ["a-###.png"])
         for name, flags in [("a.png", []), ("b-#.png", ["--frames", "0-0"]), ("c-#.png", ["--turntable", "1"])]:
             self.assertNotIn("# stands", self.succeed("render", "cornell-box", "-o", name, *SMALL, *flags).stderr)
@@ -154,7 +154,7 @@ class Strictness(CliTest):
         for scene in ["gone", "broken", "nowhere"]:
             self.succeed("render", scene + ".obj", "-o", scene + ".png", *look)
         self.succeed("render", "plain.obj", "-o", "plain.png", "--strict", *look)
-        self.assertRegex(self.succeed("render", "--help").stdout, r"(?s)--strict +The verb fails where anything .*left\s+out")
+        self.assertRegex(self.succeed("render", "--help").stdout, r"(?s)--strict +Errors instead of warnings.*left\s+out")
 
     def test_strict_counts_a_gltf_files_pictures_too(self):
         write(self.path("m.gltf"), """{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],

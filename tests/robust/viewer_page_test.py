@@ -276,7 +276,7 @@ class Page(unittest.TestCase):
         for restir in ("gi", "off"):
             self.choose("restir", restir)
             self.moved(lambda: page.drag("left", 40, 0))
-        for layer, says in [("motion", "pixels a frame"), ("deviation", "deviation of the signals")]:
+        for layer, says in [("motion", "pixels a frame"), ("deviation", "standard deviation")]:
             self.choose("layer", layer)
             page.drag("left", 40, 0)
             page.until(f"document.querySelector('#readings').innerText.includes('{says}') && document.body.dataset.samples > 1")
@@ -305,7 +305,7 @@ class Page(unittest.TestCase):
         page.until("!document.querySelector('#time').hidden && document.body.dataset.plays == 'true'")
         page.key("Space", " ")
         page.until("document.body.dataset.plays == 'false' && document.body.dataset.phase == 'done'")
-        done = self.eye.done(lambda s: not s["clock"]["on"] and s["clock"]["end"] > 0)
+        done = self.eye.done(lambda s: not s["clock"]["on"] and s["clock"]["end"] > 0 and s["hash"])
         rendered = render("cornell-box", "--camera-path", file, "--time", done["clock"]["at"], "--max-depth",
                           done["values"]["max_depth"], size=SIZE, spp=2)
         self.assertEqual(done["hash"], rendered)

@@ -49,7 +49,7 @@ TEST_CASE("a notice names one-sided lamps of an OBJ file once, with the setting 
     CHECK(says(one, false, "1 lamp with light on the front only: bulb;"));
     CHECK(says(one, false, "`two_sided_lights`"));
     CHECK(says(read(room(1.99f, kDown) + "usemtl second\nf 12 11 10\n"), false,
-               "2 lamps with light on the front alone: bulb, second;"));
+               "2 lamps with light on the front only: bulb, second;"));
     CHECK(read(room(1.99f, kDown), true).all().empty());
     CHECK(read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").all().empty());
 }

@@ -102,7 +102,7 @@ TEST_CASE("path's error falls as one over its samples, and the reference's noise
           row_named(scene, "path").repetitions.back().back().rel_mse);
     CHECK(row_named(scene, "path").bytes > 16 * 16 * 3 * 16); // a film at least
     CHECK(row_named(scene, "cast").repetitions.empty());
-    CHECK(row_named(scene, "cast").refused.find("lamps alone") != std::string::npos);
+    CHECK_FALSE(row_named(scene, "cast").refused.empty());
     CHECK(scene.pictures.size() == 3);
 }
 

@@ -32,6 +32,7 @@ TEST_CASE("a renamed flag is also taken by its old name, which help and completi
         SettingFlags flags;
         flags.add(app, kRender, options);
         app.parse(line);
+        options.real_time = true;
         Messages messages;
         flags.read(options, messages);
         CHECK(options.tracer.traversals == std::vector<std::string>{"shadow=wide8"});
