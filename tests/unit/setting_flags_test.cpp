@@ -25,14 +25,13 @@ TEST_CASE("flags overrule what options hold, and a switch that is turned off is 
 }
 
 TEST_CASE("a renamed flag is also taken by its old name, which help and completion hide") {
-    for (const char* line :
-         {"--traversal shadow=wide8 --no-history-clamping", "--walk shadow=wide8 --no-history-limit"}) {
+    for (const char* line : {"--real-time --traversal shadow=wide8 --no-history-clamping",
+                             "--real-time --walk shadow=wide8 --no-history-limit"}) {
         PictureOptions options;
         CLI::App app("A program", "program");
         SettingFlags flags;
         flags.add(app, kRender, options);
         app.parse(line);
-        options.real_time = true;
         Messages messages;
         flags.read(options, messages);
         CHECK(options.tracer.traversals == std::vector<std::string>{"shadow=wide8"});
