@@ -25,8 +25,8 @@ TEST_CASE("flags overrule what options hold, and a switch that is turned off is 
 }
 
 TEST_CASE("a renamed flag is also taken by its old name, which help and completion hide") {
-    for (const char* line : {"--real-time --traversal shadow=wide8 --no-history-clamping",
-                             "--real-time --walk shadow=wide8 --no-history-limit"}) {
+    for (const char* line : {"--frames 0-1 --real-time --traversal shadow=wide8 --no-history-clamping",
+                             "--frames 0-1 --real-time --walk shadow=wide8 --no-history-limit"}) {
         PictureOptions options;
         CLI::App app("A program", "program");
         SettingFlags flags;
