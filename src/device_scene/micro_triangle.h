@@ -26,7 +26,7 @@ HD constexpr uint32_t words_per_triangle(uint32_t level) { return micro_triangle
 /// Micromaps of the triangles of one mesh with one material.
 struct OpacityMicromapView {
     const uint32_t* states; // [triangles * words_per_triangle(level)]; null if there are none
-    uint32_t level;         // [kLeastMicroLevel, kMostMicroLevel]
+    uint32_t level;         // [kMinMicroLevel, kMaxMicroLevel]
 };
 
 /// Maximum distance, in barycentrics, by which rounding may move a position outside its triangle.

@@ -129,7 +129,7 @@ struct PlacedTriangle {
 /// from there (6): 2 of |P| and 10 of the edges. In an instance the traversal transforms the origin by L =
 /// local_from_world, t: including the rounding of L itself that is 5 |M| (|L||P| + |t|), M = world_from_local. Its
 /// vertices here have an error of 4 |M||a| + 4 |T|, which is at most 8 |M| (|L||P| + |t|) and 4 |M||L| of the edges.
-/// As |M||L| is at least 1, a factor of 16 covers everything.
+/// |M||L| is at least 1, so a factor of 16 covers everything.
 HD inline Vec3 hit_error(const InstanceView& instance, Vec3 position, Vec3 ab, Vec3 ac) {
     const Vec3 edges = abs(ab) + abs(ac);
     if (instance.is_baked != 0) return 0x1p-23f * abs(position) + 0x1.4p-21f * edges;

@@ -92,7 +92,7 @@ public:
     using Room = typename Job::Room;
     using Counts = typename Job::Counts;
 
-    /// The memory of a wavefront is kMostBytes at most.
+    /// The memory of a wavefront is kMaxBytes at most.
     TwoSchedules(Queue& queue, const Settings& settings, bool in_loop, uint32_t batch)
         : Base(queue, settings, in_loop, batch), seen_(queue) {}
 
@@ -105,7 +105,7 @@ protected:
         Job job = {};
         return lay_out(job, nullptr, room);
     }
-    /// Returns the room of as many samples as fit into `bytes`, at most `most` and at least kLeastCount. room_of(n) is
+    /// Returns the room of as many samples as fit into `bytes`, at most `most` and at least kMinCount. room_of(n) is
     /// the room of n samples.
     template <class RoomOf>
     static Room room_within(std::size_t bytes, uint64_t most, const RoomOf& room_of) {

@@ -34,7 +34,7 @@ struct FoundPoints {
 
 inline constexpr uint32_t kPointsRequested = 12;
 
-/// Finds the kPointsAsked nearest points. The circle passes through the farthest of them.
+/// Finds the kPointsRequested nearest points. The circle passes through the farthest of them.
 FoundPoints found_in_kd_tree();
 /// Finds all points within the circle of found_in_kd_tree(), which are the same points.
 FoundPoints found_in_octree();

@@ -24,7 +24,7 @@ inline constexpr uint32_t kMaxRepetitions = 1024;
 struct TransportSettings {
     std::string camera;                   // describe_camera's text in the front end's words, for the report
     std::vector<std::string> integrators; // names (settings/value_names.h)
-    uint32_t repetitions = 4;             // [1, kMostRepetitions]
+    uint32_t repetitions = 4;             // [1, kMaxRepetitions]
     double seconds = 10;                  // rendering time of each integrator over all repetitions
     uint32_t max_samples = 1u << 16;      // largest number of samples per pixel in a repetition
     uint32_t max_solutions = 16;          // largest number of radiosity solutions in a repetition
@@ -36,7 +36,7 @@ struct TransportSettings {
 };
 
 /// The seed of a repetition. The seeds of the reference's halves differ from all of these, for at most
-/// kMostRepetitions.
+/// kMaxRepetitions.
 inline uint32_t repetition_seed(const TransportSettings& settings, uint32_t repetition) {
     return settings.picture.path.seed + repetition;
 }

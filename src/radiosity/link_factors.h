@@ -19,7 +19,7 @@ public:
         : scene_(scene), nodes_(nodes), seed_(seed) {}
 
     void clear();
-    /// Requests the factor of `link` with `rays` rays, at most kMostRaysOfLink.
+    /// Requests the factor of `link` with `rays` rays, at most kMaxRaysOfLink.
     void queue(const Link& link, uint32_t rays);
     /// Traces the rays of all requests.
     void trace();

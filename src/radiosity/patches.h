@@ -53,10 +53,10 @@ inline uint32_t face_of(const SceneView& scene, uint32_t instance, uint32_t prim
 /// Maximum number of patches that make_patches makes: both sides of each triangle, whatever their material.
 uint64_t count_patches(const SceneView& scene, float patch_size);
 
-/// Throws Error(OverLimit) for more than kMostPatches.
+/// Throws Error(OverLimit) for more than kMaxPatches.
 void check_patch_count(uint64_t patches, float patch_size);
 
-/// `scene` is in host memory and numbers its triangles. Throws Error(OverLimit) for more than kMostPatches;
+/// `scene` is in host memory and numbers its triangles. Throws Error(OverLimit) for more than kMaxPatches;
 /// Error(BadInput) if none reflects, because there is nothing to solve; Error(Interrupted) if `watch` is over.
 PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watch = nullptr);
 

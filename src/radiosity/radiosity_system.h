@@ -54,7 +54,7 @@ struct SolvedSystem {
     /// For Southwell: [patches] the part of each patch's radiosity, W/m2, that no patch has received yet. The ambient
     /// light represents it and its reflections. Empty if all has been sent.
     std::vector<Rgb> unsent;
-    bool reached_limit = false; // stopped by kMostSweeps, with more left than the tolerance
+    bool reached_limit = false; // stopped by kMaxSweeps, with more left than the tolerance
 };
 
 /// Maximum number of sweeps over all patches; for Southwell, which sends from one at a time, the maximum per patch.
@@ -73,7 +73,7 @@ using KeepSolving = std::function<bool(double left)>;
 SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance, uint64_t steps,
                                 const KeepSolving& keep_going = {});
 SolvedSystem solve_by_gauss_seidel(const RadiositySystem& system, double tolerance, const KeepSolving& keep_going = {});
-/// Throws Error(OverLimit) for more than kMostMatrixPatches.
+/// Throws Error(OverLimit) for more than kMaxMatrixPatches.
 void check_matrix_size(std::size_t patches);
 /// Throws as check_matrix_size(). If the elimination is interrupted, the solution is direct light only, with 0 steps.
 SolvedSystem solve_by_matrix(const RadiositySystem& system, const KeepSolving& keep_going = {});

@@ -12,7 +12,7 @@ namespace pertev {
 inline constexpr uint32_t kNoPixel = 0xffffffffu;
 inline constexpr uint32_t kMaxNeighbours = 3;
 
-/// Up to kMostNeighbours pixels, followed by kNoPixel.
+/// Up to kMaxNeighbours pixels, followed by kNoPixel.
 struct alignas(16) Neighbours {
     uint32_t pixels[kMaxNeighbours] = {kNoPixel, kNoPixel, kNoPixel};
     uint32_t unused = 0;

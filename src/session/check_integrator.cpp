@@ -57,7 +57,7 @@ bool has_own_ambient(const RenderSettings& settings, const Scene& scene) {
            scene.environment && gives_light(*scene.environment);
 }
 
-/// A phrase such as "this scene has lamps alone".
+/// A phrase such as "this scene has only lamps".
 std::string lights_of(const Scene& scene) {
     const bool has_environment = scene.environment && gives_light(*scene.environment);
     const std::string others =

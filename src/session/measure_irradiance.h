@@ -41,7 +41,7 @@ struct MeterPlace {
 Camera meter_camera(const Scene& scene, const MeterPlace& place);
 
 /// Measures irradiance. Of `settings` it uses path settings, samples (paths through each pixel) and tracers. The seed
-/// is at most kMostMeterSeed. Light with up to settings.path.max_depth scatterings counts. Culled backs do not block
+/// is at most kMaxMeterSeed. Light with up to settings.path.max_depth scatterings counts. Culled backs do not block
 /// rays; to include them, make materials double sided first. `keep_going` gets the share that is done, in [0, 1]; if
 /// it returns false, Error(Interrupted) is thrown. Throws as Session.
 Irradiance measure_irradiance(Queue& queue, const PreparedScene& scene, const MeterPlace& place,

@@ -38,7 +38,7 @@ HD inline float sine_between(Vec3 a, Vec3 b) { return length(cross(a, b)); }
 /// Tilt for the functions below, from the sine of the angle between interpolated and geometric normal: `here` at the
 /// point, `at_corners` interpolated from the triangle's three vertices. The latter hardly varies over a regular mesh,
 /// so triangles are not visible; the former is smaller except where the mesh curls. The result is 0 or in
-/// [kLeastTilt, kLargestTilt].
+/// [kMinTilt, kLargestTilt].
 HD inline float terminator_tilt(float here, float at_corners) {
     const float sine = max(here, at_corners);
     const float tilt = min(min(sine, kLargestTilt), kHopelessTilt - sine);

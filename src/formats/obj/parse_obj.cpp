@@ -359,7 +359,7 @@ private:
         data_.box = move_positions(data_.box, exact, data_.positions, [&] { return bounds_of_faces(); });
     }
 
-    /// Joins the parts of each group. Returns false if there are more than kMostObjGroups.
+    /// Joins the parts of each group. Returns false if there are more than kMaxObjGroups.
     bool join_groups(bool by_material_alone) {
         ObjGroupNumbers numbers;
         groups_.clear();

@@ -42,7 +42,7 @@ struct PathRequest {
 class PathIntegrator final : public IntegratorBase<PathRequest> {
 public:
     /// `batch` is the maximum number of paths in flight of all wavefronts, each rounded up to 32; fewer if their
-    /// queues would exceed kMostQueueBytes.
+    /// queues would exceed kMaxQueueBytes.
     PathIntegrator(Queue& queue, const PathRequest& settings, bool in_loop, uint32_t batch);
 
     static constexpr std::size_t kMaxQueueBytes = 600'000'000;

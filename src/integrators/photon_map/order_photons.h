@@ -2,7 +2,7 @@
 
 // Turns stored photons into maps: sorts them by (path, scatterings), independently of device and threads, and makes
 // the buckets of the hash grid. Where photons crowd, as in the focus of a caustic, lookups would take long for more
-// photons than they need. Therefore at most kMostKept photons of a bucket stay, with the power of all. That makes dim
+// photons than they need. Therefore at most kMaxKept photons of a bucket stay, with the power of all. That makes dim
 // light in the same bucket noisier.
 //
 // Source: Suykens, Willems, "Density Control for Photon Maps", EGWR 2000, which distributes the power of a removed

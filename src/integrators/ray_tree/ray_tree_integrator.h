@@ -2,7 +2,7 @@
 
 // An integrator whose samples are ray trees (tree_memory.h). `Algorithm` defines one in a few lines
 // (integrators/cast/cast.h is the shortest):
-//   kMostBranches   maximum number of continuation rays per vertex
+//   kMaxBranches   maximum number of continuation rays per vertex
 //   kHasShutter     whether its rays have a time
 //   shadow_rays     number of shadow rays that a vertex may need
 //   sample_direct_light   writes one of them

@@ -15,7 +15,7 @@ namespace pertev {
 namespace {
 
 constexpr uint64_t kMaxSamplesAtOnce = uint64_t(1) << 23; // samples of all pixels, but at least one of each
-constexpr double kMaxPiecesOfTriangle = 64;               // added to kMostWorkOfPixel
+constexpr double kMaxPiecesOfTriangle = 64;               // added to kMaxWorkOfPixel
 constexpr uint32_t kRoundsWithOneLook = 8;                // rounds between updates of the farthest depths
 constexpr uint32_t kStack = 1u << 19, kMaxUnderWay = 1u << 16;
 
