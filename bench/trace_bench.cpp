@@ -1,27 +1,161 @@
-// trace_bench: the traversal that pictures on a CPU take, in the trees that they take, beside Embree's in the same run,
-// on one thread. Kinds of rays are those of the record (docs/ray_sets.md) and "sun", first shadow rays to one far
-// light.
+// trace_bench: compares the CPU traversal of pictures with Embree on one thread, in one run. The ray sets are those of
+// the record (docs/ray_sets.md) and "sun", shadow rays from the same points to one far light. Rays come in chunks, and
+// all tracers take each chunk in turn, so that other work on the machine slows all of them alike.
+
+#if PERTEV_EMBREE == 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+#include <time.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
-#include "bench/embree_peer.h"
-#include "bench/ray_contest.h"
+#include "lab/measurement.h"
 #include "lab/ray_sets.h"
 #include "lab/record_scenes.h"
 #include "render/prepare_scene.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
+#include "trace/wide/trace_many.h"
 #include "trace/wide/traverse_wide.h"
 
 using namespace pertev;
-using namespace pertev::bench;
 
 namespace {
+
+constexpr std::size_t kChunk = 1 << 16; // long enough for a tracer to bring its tree back into the cache
+constexpr TraversalOptions kClosest = {}, kAny = {.near_first = false}; // pictures' (device_scene/find_hits.h)
+
+/// CPU time of this thread.
+template <class F>
+double seconds_of(const F& f) {
+    const auto now_s = [] {
+        timespec t;
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+        return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+    };
+    const double start = now_s();
+    f();
+    return now_s() - start;
+}
+
+/// Traces a chunk and returns the seconds that it took.
+using Trace = std::function<double(std::span<const Ray>)>;
+
+Hit trace_one(const HostTrees& trees, const Ray& ray, bool any_hit) {
+    Hit hit;
+    if (any_hit) {
+        hit.instance = trace_any<Wide8SimdTraversal<kAny>>(trees, ray, AcceptAll{}) ? 0 : kNoHit;
+    } else {
+        trace_closest<Wide8SimdTraversal<kClosest>>(trees, ray, AcceptAll{}, hit);
+    }
+    return hit;
+}
+
+Trace single(const HostTrees& trees, bool any_hit) {
+    return [&trees, any_hit](std::span<const Ray> rays) {
+        std::vector<Hit> hits(rays.size());
+        return seconds_of([&] {
+            for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = trace_one(trees, rays[i], any_hit);
+        });
+    };
+}
+
+/// Pictures have bounces in flight and other rays in packets.
+Trace as_pictures(const HostTrees& trees, bool any_hit, RayOrder order) {
+    return [&trees, any_hit, order](std::span<const Ray> rays) {
+        std::vector<Hit> hits(rays.size());
+        const auto found = std::make_unique<bool[]>(rays.size());
+        const auto count = static_cast<uint32_t>(rays.size());
+        const auto ray_of = [&](uint32_t i) { return rays[i]; };
+        const auto accept_of = [](uint32_t) { return AcceptAll{}; };
+        return seconds_of([&] {
+            if (any_hit) {
+                trace_any_many<kAny>(trees, count, order, ray_of, accept_of, found.get());
+            } else {
+                trace_closest_many<kClosest>(trees, count, order, ray_of, accept_of, hits.data());
+            }
+        });
+    };
+}
+
+/// One mesh in a tree of high quality.
+class Embree {
+public:
+    Embree(const Mesh& mesh, bool robust) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+        RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+        std::ranges::copy(mesh.positions, static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX,
+                                                                                     0, RTC_FORMAT_FLOAT3, sizeof(Vec3),
+                                                                                     mesh.positions.size())));
+        std::ranges::copy(mesh.indices, static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
+                                            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
+                                            mesh.indices.size() / 3)));
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene_, geometry);
+        rtcReleaseGeometry(geometry);
+        rtcSetSceneFlags(scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+        rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
+        rtcCommitScene(scene_);
+    }
+    ~Embree() {
+        rtcReleaseScene(scene_);
+        rtcReleaseDevice(device_);
+    }
+    Embree(const Embree&) = delete;
+    Embree& operator=(const Embree&) = delete;
+
+    /// `stream`: rays per call, of which Embree 4 takes only 1.
+    Trace trace(bool any_hit, bool is_coherent, unsigned stream) const {
+        return [=, this](std::span<const Ray> rays) {
+            std::vector<RTCRayHit> list;
+            for (const Ray& r : rays) {
+                RTCRayHit& to = list.emplace_back();
+                to.ray = {r.origin.x, r.origin.y, r.origin.z, r.t_min, r.direction.x, r.direction.y, r.direction.z, 0,
+                          r.t_max,    ~0u,        0,          0};
+                to.hit.geomID = to.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+            }
+            return seconds_of([&] { trace_all(list, any_hit, is_coherent, stream); });
+        };
+    }
+
+private:
+    void trace_all(std::vector<RTCRayHit>& list, bool any_hit, bool is_coherent, unsigned stream) const {
+#if PERTEV_EMBREE == 4
+        static_cast<void>(stream);
+        RTCIntersectArguments closest;
+        RTCOccludedArguments any;
+        rtcInitIntersectArguments(&closest);
+        rtcInitOccludedArguments(&any);
+        closest.flags = any.flags = is_coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+        for (RTCRayHit& r : list) any_hit ? rtcOccluded1(scene_, &r.ray, &any) : rtcIntersect1(scene_, &r, &closest);
+#else
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        context.flags = is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+        for (std::size_t i = 0; i < list.size(); i += stream) {
+            const auto count = static_cast<unsigned>(std::min<std::size_t>(stream, list.size() - i));
+            if (stream == 1) {
+                any_hit ? rtcOccluded1(scene_, &context, &list[i].ray) : rtcIntersect1(scene_, &context, &list[i]);
+            } else if (any_hit) {
+                rtcOccluded1M(scene_, &context, &list[i].ray, count, sizeof(RTCRayHit));
+            } else {
+                rtcIntersect1M(scene_, &context, &list[i], count, sizeof(RTCRayHit));
+            }
+        }
+#endif
+    }
+
+    RTCDevice device_;
+    RTCScene scene_;
+};
 
 struct Flags {
     std::string scene = "sponza", folder, build = std::string(name_of(kDefaultBuild));
@@ -30,112 +164,86 @@ struct Flags {
     bool json = false;
 };
 
-struct Work {
-    double nodes = 0, triangles = 0; // a ray
-};
+/// Seconds that a tracer took for each chunk of each round.
+using Times = std::vector<double>;
 
-constexpr TraversalOptions kClosest = {}, kAny = {.near_first = false}; // the options of pictures
-                                                                        // (device_scene/find_hits.h)
+/// The median of the chunks' ratios: how many times as fast `ours` is.
+double ratio(const Times& ours, const Times& theirs) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < ours.size(); ++i) ratios.push_back(theirs[i] / ours[i]);
+    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+    std::ranges::nth_element(ratios, middle);
+    return *middle;
+}
 
-Work count_work(const HostTrees& trees, const RaySet& set) {
-    uint64_t nodes = 0, triangles = 0;
-    const TraversalCounter counter{&nodes, &triangles};
-    for (const Ray& ray : set.rays) {
-        Hit hit;
-        if (set.any_hit) {
-            trace_any<Wide8SimdTraversal<kAny>>(trees, ray, AcceptAll{}, counter);
-        } else {
-            trace_closest<Wide8SimdTraversal<kClosest>>(trees, ray, AcceptAll{}, hit, counter);
+Fields measure(const HostTrees& trees, const Embree& robust, const Embree& fast, const RaySet& set, int rounds) {
+    const bool is_coherent = set.name == "primary" || set.name == "sun", any = set.any_hit;
+    const bool is_bounce = !any && set.name != "primary";
+    const Trace tracers[] = {single(trees, any),
+                             as_pictures(trees, any, is_bounce ? RayOrder::Scattered : RayOrder::Together),
+                             robust.trace(any, is_coherent, 1), fast.trace(any, is_coherent, 1),
+                             robust.trace(any, is_coherent, 256)}; // 64 to 4096 are equally fast within 5 %
+    Times times[std::size(tracers)];
+    for (int round = 0; round < rounds; ++round) {
+        for (std::size_t first = 0; first < set.rays.size(); first += kChunk) {
+            const auto chunk = std::span(set.rays).subspan(first, std::min(kChunk, set.rays.size() - first));
+            for (std::size_t i = 0; i < std::size(tracers); ++i) times[i].push_back(tracers[i](chunk));
         }
     }
-    const double n = static_cast<double>(set.rays.size());
-    return {static_cast<double>(nodes) / n, static_cast<double>(triangles) / n};
+    const auto mrays = [&](const Times& of) {
+        double seconds = 0;
+        for (const double chunk : of) seconds += chunk;
+        return static_cast<double>(set.rays.size()) * rounds / seconds * 1e-6;
+    };
+    const auto hits =
+        std::ranges::count_if(set.rays, [&](const Ray& ray) { return trace_one(trees, ray, any).instance != kNoHit; });
+    const auto& [one, many, robust_times, fast_times, streams] = times;
+    return {{"rays", "rays", set.name},
+            {"hit_share", "hits", static_cast<double>(hits) / static_cast<double>(set.rays.size()), "", "{:.3f}"},
+            {"one_ray_at_a_time_mrays_s", "one ray at a time", mrays(one), "Mrays/s", "{:.2f}"},
+            {"to_robust", "to robust", ratio(one, robust_times), "", "{:.2f}"},
+            {"to_fast", "to fast", ratio(one, fast_times), "", "{:.2f}"},
+            {"as_pictures_do_mrays_s", "as pictures do", mrays(many), "Mrays/s", "{:.2f}"},
+            {"to_robust_2", "to robust", ratio(many, robust_times), "", "{:.2f}"},
+            {"to_fast_2", "to fast", ratio(many, fast_times), "", "{:.2f}"},
+            {"to_robust_streams", "to robust streams", ratio(many, streams), "", "{:.2f}"}};
 }
 
-void measure(const HostTrees& trees, const EmbreePeers& peers, const RaySet& set, const Flags& flags) {
-    const bool coherent = set.name == "primary" || set.name == "sun";
-    const Contest contest(make_contestants(trees, peers, set.any_hit, coherent), set.rays, flags.rounds);
-    // Like pictures: bounces in flight, other rays in packets if they are coherent.
-    const bool is_bounce = !set.any_hit && set.name != "primary";
-    const std::string many = name_of(is_bounce ? OurWay::Scattered : OurWay::Together), one = name_of(OurWay::Single);
-    const std::string robust = embree_name("robust", EmbreeWay::Single), fast = embree_name("fast", EmbreeWay::Single);
-    const std::string batched = contest.strongest("robust"), fast_batched = contest.strongest("fast");
-    const std::string stream = embree_name("robust", EmbreeWay::Stream);
-    const bool has_streams = std::ranges::find(kBatchedWays, EmbreeWay::Stream) != std::end(kBatchedWays);
-    const double to_streams = has_streams ? contest.ratio(many, stream) : 0; // Embree 4 has none
-    const Work work = count_work(trees, set);
-    const double share = static_cast<double>(contest.hits(many)) / static_cast<double>(set.rays.size());
-    if (flags.json) {
-        std::printf(
-            R"({"kind":"%s","any_hit":%s,"rays":%zu,"hit_share":%.4f,"mrays_per_s":%.3f,"ratio_to_embree":%.3f,)"
-            R"("ratio_to_embree_fast":%.3f,"ratio_to_embree_streams":%.3f,"ratio_to_embree_batched":%.3f,)"
-            R"("ratio_to_embree_fast_batched":%.3f,"single_mrays_per_s":%.3f,"single_ratio_to_embree":%.3f,)"
-            R"("single_ratio_to_embree_fast":%.3f,"batched":"%s","fast_batched":"%s","nodes":%.2f,"triangles":%.2f})"
-            "\n",
-            set.name.c_str(), set.any_hit ? "true" : "false", set.rays.size(), share, contest.mrays_per_s(many),
-            contest.ratio(many, robust), contest.ratio(many, fast), to_streams, contest.ratio(many, batched),
-            contest.ratio(many, fast_batched), contest.mrays_per_s(one), contest.ratio(one, robust),
-            contest.ratio(one, fast), batched.c_str(), fast_batched.c_str(), work.nodes, work.triangles);
-    } else {
-        std::printf("%-9s %6.3f | %6.2f %5.2f %5.2f | %6.2f %5.2f %5.2f %5.2f %5.2f %5.2f | %6.2f %6.2f %6.2f %6.2f | "
-                    "%5.1f %5.1f | %s, %s\n",
-                    set.name.c_str(), share, contest.mrays_per_s(one), contest.ratio(one, robust),
-                    contest.ratio(one, fast), contest.mrays_per_s(many), contest.ratio(many, robust),
-                    contest.ratio(many, fast), to_streams, contest.ratio(many, batched),
-                    contest.ratio(many, fast_batched), contest.mrays_per_s(robust), contest.mrays_per_s(fast),
-                    contest.mrays_per_s(batched), contest.mrays_per_s(fast_batched), work.nodes, work.triangles,
-                    batched.c_str(), fast_batched.c_str());
-    }
-    std::fflush(stdout);
-}
-
-/// First shadow rays to a sun: from the same points as those of the record.
+/// Shadow rays to a sun, from the same points as those of the record.
 RaySet make_sun(const RaySet& shadow) {
     RaySet sun = {"sun", true, shadow.rays};
     for (Ray& ray : sun.rays) {
         ray.direction = normalize(Vec3{0.25f, 1.0f, 0.1f});
-        ray.t_max = kInfinity; // the end of the rays of pictures
+        ray.t_max = kInfinity;
     }
     return sun;
 }
 
-int run_bench(const Flags& flags) {
+void run_bench(const Flags& flags) {
     Messages messages;
     const RecordScene* const record = find_named(the_record().scenes, flags.scene);
-    if (record == nullptr) throw Error(ErrorCode::BadInput, "trace_bench: no such scene: " + flags.scene);
-    const Scene scene = make_record_scene(*record, flags.folder, messages);
     const std::optional<TreeBuild> build = value_named<TreeBuild>(flags.build);
-    if (!build) throw Error(ErrorCode::BadInput, "trace_bench: no such build: " + flags.build);
+    if (record == nullptr || !build) throw Error(ErrorCode::BadInput, "trace_bench: no such scene, or no such build");
+    const Scene scene = make_record_scene(*record, flags.folder, messages);
     const TracerChoice tracers = default_tracers(false, *build);
     const PreparedScene prepared = prepare_scene(scene, {.tracers = tracers, .keep_coordinates = true}, messages);
     const auto structure = prepared.structures->get(tracers.bounce);
     const HostTrees& trees = std::get<HostTrees>(structure->trees());
-    const EmbreePeer robust(scene.meshes.front(), true), fast(scene.meshes.front(), false);
-
+    const Embree robust(scene.meshes.front(), true), fast(scene.meshes.front(), false);
     const FrameSize frame = record_frame(flags.rays);
     const auto trace = [&](std::span<const Ray> rays, std::span<RayHit> hits) {
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            Hit hit;
-            trace_closest<Wide8SimdTraversal<kClosest>>(trees, rays[i], AcceptAll{}, hit);
+            const Hit hit = trace_one(trees, rays[i], false);
             hits[i] = {hit.t, hit.instance, hit.primitive};
         }
     };
     std::vector<RaySet> sets =
         make_record_ray_sets({scene, record_camera(*record), frame.width, frame.height, trace}, flags.rays);
     sets.insert(sets.begin() + 2, make_sun(sets[1]));
-    if (!flags.json) {
-        std::printf(
-            "%s, %s tree: %zu triangles, %llu nodes, %llu triangles in leaves, built in %.2f s\n"
-            "kind, share of hits | one ray at a time: Mrays/s, to robust, to fast | as pictures do: Mrays/s, to "
-            "robust, to fast, to robust streams (0: it has none), to robust batched, to fast batched | Embree's "
-            "Mrays/s: robust, fast, robust batched, fast batched | our nodes, triangles of a ray by itself | how "
-            "Embree batches best\n",
-            flags.scene.c_str(), flags.build.c_str(), scene.meshes.front().indices.size() / 3,
-            static_cast<unsigned long long>(structure->figures().nodes),
-            static_cast<unsigned long long>(structure->figures().triangles), prepared.build_seconds);
-    }
-    for (const RaySet& set : sets) measure(trees, {robust, fast}, set, flags);
-    return 0;
+    Measurement measured = start_measurement(Queue::make_cpu(), "One CPU thread against Embree");
+    measured.tables = {{flags.scene, flags.scene + ", " + flags.build + " tree"}};
+    for (const RaySet& set : sets) measured.tables[0].add(measure(trees, robust, fast, set, flags.rounds));
+    std::puts(flags.json ? json_of(measured).c_str() : text_of(measured.tables[0]).c_str());
 }
 
 } // namespace
@@ -145,15 +253,16 @@ int main(int argc, char** argv) {
     const char* const folder = std::getenv("PERTEV_SCENES");
     if (folder != nullptr) flags.folder = folder;
     CLI::App app("trace_bench: rays of one thread beside Embree's");
-    app.add_option("scene", flags.scene, "of the record: sponza, bunny or forest");
-    app.add_option("--scenes", flags.folder, "folder of the public scenes; else PERTEV_SCENES");
-    app.add_option("--build", flags.build, "of the tree: fast, balanced or best");
-    app.add_option("--rays", flags.rays, "of each kind");
-    app.add_option("--rounds", flags.rounds, "how often each chunk of rays is traced by everyone");
-    app.add_flag("--json", flags.json, "one object a kind of ray");
+    app.add_option("scene", flags.scene, "a scene of the record: sponza, bunny or forest");
+    app.add_option("--scenes", flags.folder, "folder of the public scenes (PERTEV_SCENES)");
+    app.add_option("--build", flags.build, "quality of the tree: fast, balanced or best");
+    app.add_option("--rays", flags.rays, "number of rays per set");
+    app.add_option("--rounds", flags.rounds, "number of rounds over all chunks");
+    app.add_flag("--json", flags.json, "print the measurement as JSON");
     CLI11_PARSE(app, argc, argv);
     try {
-        return run_bench(flags);
+        run_bench(flags);
+        return 0;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return 1;

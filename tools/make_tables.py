@@ -3,7 +3,6 @@
 
     tools/make_tables.py           rewrites the tables between the markers
     tools/make_tables.py --check   fails where a document differs from its JSON, or a JSON file from the format
-    tools/make_tables.py --page OUT.html   puts all files of bench/results/ on the laboratory's page, which opens offline
     tools/make_tables.py --self-test
 
 A document has `<!-- table: results/FILE.json NAME -->` ... `<!-- end -->`. After the name may stand `columns=KEY,KEY` and
@@ -118,16 +117,6 @@ def strays(text, read):
                     yield f"{figure} does not stand in {match[1]}"
 
 
-def make_page():
-    """The page that `pertev lab` writes (src/lab/report_page.h), with every file of bench/results/."""
-    data = "".join('<script type="application/json" class="measurement">' + path.read_text(encoding="utf-8").replace("<", "\\u003c")
-                   + "</script>\n" for path in sorted((ROOT / "bench/results").glob("*.json")))
-    page = (ROOT / "src/lab/page/report.html").read_text(encoding="utf-8")
-    for name in ["report.css", "views.json", "report.js"]:
-        page = page.replace("{{" + name + "}}", (ROOT / "src/lab/page" / name).read_text(encoding="utf-8"))
-    return page.replace("{{data}}", data)
-
-
 def self_test():
     good = {"format": "pertev-measurement", "version": 1, "program": "pertev abc", "date": None,
             "command": "x", "processor": "P", "threads": 2, "device": None, "driver": None, "title": "T",
@@ -142,7 +131,6 @@ def self_test():
     assert "| scene | rays, Mrays/s | seconds, s |" in text and "| Sponza | 1.10 |  |" in text and "3e-5" in text, text
     chosen = render("results/x.json", good, "a", "columns=k,r where=k:two_words")
     assert "1.10" not in chosen and "| two words | 2 |" in chosen, chosen
-    assert make_page().count('class="measurement"') > 50 and "{{" not in make_page().partition("<script>")[0]
     row = "| what | 1.10 | Other 3: 3e-5 | 2 | [x](../bench/results/x.json) |"
     assert not list(strays(row.replace("3e-5", "2"), lambda _: good)) and list(strays(row.replace("1.10", "1.1"), lambda _: good))
     document = "before\n<!-- table: results/x.json a -->\nold 1.2\n<!-- end -->\nafter\n"
@@ -154,9 +142,6 @@ def self_test():
 def main(arguments):
     if arguments == ["--self-test"]:
         self_test()
-        return 0
-    if len(arguments) == 2 and arguments[0] == "--page":
-        pathlib.Path(arguments[1]).write_text(make_page(), encoding="utf-8")
         return 0
     check = arguments == ["--check"]
     if arguments and not check:

@@ -1,5 +1,5 @@
 // Meshes and their tangents at each corner by the npm package mikktspace 1.1.1, with glTF's
-// handedness. tools/compare_tangents.py --store writes this file.
+// handedness.
 {.name = "a square",
  .positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
  .normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}},

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -14,7 +13,6 @@
 #include <doctest/doctest.h>
 
 #include "base/key_numbers.h"
-#include "base/read_file.h"
 #include "tests/support/random.h"
 
 using namespace pertev;
@@ -61,15 +59,6 @@ int corners_off(const std::vector<Vec4>& tangents, const std::vector<Vec4>& expe
     return off;
 }
 
-template <class T>
-std::vector<T> take(const std::vector<std::byte>& bytes, std::size_t& at, std::size_t count) {
-    std::vector<T> values(count);
-    REQUIRE(at + count * sizeof(T) <= bytes.size());
-    std::memcpy(values.data(), bytes.data() + at, count * sizeof(T));
-    at += count * sizeof(T);
-    return values;
-}
-
 TEST_CASE("tangents of stored meshes are MikkTSpace's, and the same corners share them") {
     for (const Case& stored : kStored) {
         CAPTURE(stored.name);
@@ -78,38 +67,6 @@ TEST_CASE("tangents of stored meshes are MikkTSpace's, and the same corners shar
         CHECK(corners_off(tangents, stored.tangents) == 0);
         CHECK(numbers_of(stored, tangents) == numbers_of(stored, stored.tangents));
     }
-}
-
-TEST_CASE("tangents of the meshes that PERTEV_TANGENT_MESHES names are MikkTSpace's") {
-    const char* path = std::getenv("PERTEV_TANGENT_MESHES"); // tools/compare_tangents.py
-    if (path == nullptr) return;
-    const std::vector<std::byte> bytes = read_file(path);
-    std::size_t at = 0;
-    int meshes = 0, corners = 0, welded_otherwise = 0, off = 0;
-    float most = 0;
-    for (; at < bytes.size(); ++meshes) {
-        const std::vector<uint32_t> counts = take<uint32_t>(bytes, at, 2);
-        Case read;
-        read.positions = take<Vec3>(bytes, at, counts[0]);
-        read.normals = take<Vec3>(bytes, at, counts[0]);
-        read.uv = take<Vec2>(bytes, at, counts[0]);
-        read.indices = take<uint32_t>(bytes, at, counts[1]);
-        read.tangents = take<Vec4>(bytes, at, counts[1]);
-        const std::vector<Vec4> tangents = tangents_of(read.mesh());
-        const bool is_other = numbers_of(read, tangents) != numbers_of(read, read.tangents);
-        const int off_here = corners_off(tangents, read.tangents);
-        if (is_other || off_here > 0) MESSAGE("mesh ", meshes, ": ", off_here, " off, welded otherwise: ", is_other);
-        for (std::size_t i = 0; i < tangents.size(); ++i) {
-            most = std::max(most, distance(tangents[i], read.tangents[i]));
-        }
-        welded_otherwise += is_other;
-        off += off_here;
-        corners += static_cast<int>(tangents.size());
-    }
-    MESSAGE(meshes, " meshes, ", corners, " corners: ", welded_otherwise, " meshes welded otherwise, ", off,
-            " corners off by more than 1e-5, the most is ", most);
-    CHECK(welded_otherwise == 0);
-    CHECK(off == 0);
 }
 
 TEST_CASE("tangents do not depend on which vertices the file shares") {
