@@ -77,7 +77,7 @@ def run_job(job, part, given, places, flags):
         samples.mkdir()
         subprocess.run([*command, "-q", "--write-samples", samples], check=True)
         subprocess.run([sys.executable, OWN / "tools/denoise_by_oidn.py", samples, *shlex.split(given.oidn)], check=True)
-        command += ["--reference", "512", "--peer", str(samples), "--strips", given.out]
+        command += ["--reference", "512", "--peer", str(samples)]
     subprocess.run([*command, *([] if "-o" in command else ["-q", "--report", report])], check=True)
     if part.get("peer"):
         shutil.rmtree(samples)

@@ -358,7 +358,7 @@ MUTATIONS = TRANSPORT_MUTATIONS + [
              [edit("src/lab/thesis_pictures.cpp", "if (!panel.has_ambient) solution->ambient = {};", "")],
              ["unit/thesis_pictures"]),
     Mutation("ratios to an H200's figures on any card",
-             [edit("src/lab/stored_figures.cpp", "run.device != the_record().device || run.scene == nullptr", "run.scene == nullptr")],
+             [edit("src/lab/stored_figures.cpp", "device == the_record().device && scene != nullptr &&", "scene != nullptr &&")],
              ["unit/stored_figures"]),
     Mutation("a drawing of fewer points than are within the circle",
              [edit("src/lab/found_points.cpp", "within = {result.radius_squared, keep}", "within = {0.8f * result.radius_squared, keep}")],

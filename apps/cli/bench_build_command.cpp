@@ -53,10 +53,12 @@ void add_build(const std::string& scene, std::string_view tree, const std::strin
                    {"depth", "depth", depth},
                    {"sah_cost", "cost", static_cast<double>(cost), "", "{:.3f}"},
                    {"ratio_to_sbvh", "of sbvh", if_timed(ratio), "", "{:.3f}"}});
-    for (const Ratio& other :
-         ratios_of(BuildRun{device, find_named(the_record().scenes, scene), triangles, times.median})) {
-        fields.push_back(field_of(other));
-    }
+    const RecordScene* const record = find_named(the_record().scenes, scene);
+    const bool is_known = is_on_record(device, record, triangles);
+    fields.push_back(ratio_field("ratio_to_optix_fast_trace", "to trace", is_known,
+                                 is_known ? record->optix_fast_trace_s / times.median : 0));
+    fields.push_back(ratio_field("ratio_to_optix_fast_build", "to build", is_known,
+                                 is_known ? record->optix_fast_build_s / times.median : 0));
     report.add(
         "build", fields,
         fmt::format("from triangles on the device to compressed nodes and triangles there; others on the CPU; cost of "
@@ -128,18 +130,15 @@ int bench_build(BuildFlags& flags) {
 } // namespace
 
 void add_bench_build_command(CLI::App& bench, int& status) {
-    CLI::App& verb = *bench.add_subcommand("build", "Trees that are built on the device");
     const auto flags = std::make_shared<BuildFlags>();
+    CLI::App& verb = add_bench_verb(bench, "build", "Trees that are built on the device",
+                                    [flags, &status] { status = bench_build(*flags); });
     add_record_scenes(verb, flags->scenes);
     add_whole(verb, "--runs", flags->runs, "number of timed builds (3 on the CPU, 25 in CUDA)", 1, 10000);
     verb.add_flag("--compare", flags->compare,
                   "also build sbvh, sbvh-reinsertion, reinsertion, binned and\nploc on the CPU");
     flags->settings.add(verb, kBenchBuild, *flags);
     add_bench_report_flags(verb, flags->report);
-    verb.callback([&verb, flags, &status] {
-        refuse_flags_before(verb);
-        status = bench_build(*flags);
-    });
 }
 
 } // namespace pertev

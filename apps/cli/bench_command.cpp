@@ -31,18 +31,8 @@ struct SceneFigures {
     std::string scene, device;
     double load_s = 0, build_s = 0, cached_s = 0, first_pixel_s = 0, render_s = 0;
     double camera_mrays = 0, bounce_mrays = 0, shadow_mrays = 0, msamples = 0;
-    double tree_bytes_per_triangle = 0;
     uint64_t triangles = 0;
 };
-
-std::size_t tree_bytes(const PreparedScene& prepared) {
-    const auto bytes = [](const Bvh& bvh) {
-        return bvh.nodes.size() * sizeof(BvhNode) + bvh.triangles.size() * sizeof(BvhTriangle);
-    };
-    std::size_t sum = prepared.tlas.nodes.size() * sizeof(BvhNode);
-    for (const auto& bvh : prepared.trees.parts) sum += bytes(*bvh);
-    return sum;
-}
 
 /// A cache folder of its own, gone afterwards.
 class ScratchCache {
@@ -81,8 +71,6 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     figures.cached_s = cached.build_seconds;
     figures.build_s = prepare_scene(scene, uncached, messages).build_seconds;
     figures.triangles = prepared.triangles;
-    figures.tree_bytes_per_triangle =
-        static_cast<double>(tree_bytes(prepared)) / static_cast<double>(std::max<uint64_t>(prepared.triangles, 1));
 
     const Camera camera = choose_camera(CameraChoice{}, scene, aspect_of(settings.width, settings.height), messages);
     {
@@ -120,8 +108,7 @@ Fields fields_of(const SceneFigures& f) {
             {"samples_per_second", "samples/s", f.msamples * 1e6, "", "{:.4g}"},
             {"camera_rays_per_second", "camera rays/s", f.camera_mrays * 1e6, "", "{:.4g}"},
             {"bounce_rays_per_second", "bounce rays/s", f.bounce_mrays * 1e6, "", "{:.4g}"},
-            {"shadow_rays_per_second", "shadow rays/s", f.shadow_mrays * 1e6, "", "{:.4g}"},
-            {"tree_bytes_per_triangle", "B/tri", f.tree_bytes_per_triangle, "", "{:.1f}"}};
+            {"shadow_rays_per_second", "shadow rays/s", f.shadow_mrays * 1e6, "", "{:.4g}"}};
 }
 
 /// Sponza and Sibenik of the test scenes, where PERTEV_SCENES says they are.

@@ -1,8 +1,6 @@
 // pertev bench frames: how long a frame in real time takes while the camera moves, with reconstruction and tone
 // mapping, and how much of that the reconstruction is.
 
-#include <optional>
-
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -12,12 +10,8 @@
 #include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_flags.h"
 #include "base/error.h"
-#include "base/limits.h"
 #include "device/device_timer.h"
-#include "image/flip.h"
-#include "image/metrics.h"
 #include "image/picture_hash.h"
-#include "image/write_png.h"
 #include "math/portable_math.h"
 #include "session/session.h"
 #include "settings/parse_values.h"
@@ -29,8 +23,6 @@ struct FramesFlags {
     RenderFlags render;
     uint32_t frames = 60;
     bool still = false;
-    std::string write;
-    uint32_t reference = 0;
 };
 
 /// A traversal: forward by a thousandth of the scene a frame, looking to the left and to the right.
@@ -68,10 +60,6 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
         }
         timer.stop();
         reporter.progress((frame + 1.0) / flags.frames, fmt::format("frame {} of {}", frame + 1, flags.frames));
-        if (!flags.write.empty()) {
-            write_png(std::filesystem::path(flags.write) / fmt::format("frame-{:04}.png", frame),
-                      reconstructs ? session.frame().displayed() : session.displayed());
-        }
         if (frame < 2 && flags.frames > 2) continue; // memory is taken, nothing is warm
         whole.push_back(timer.seconds());
         reconstruction.push_back(reconstructs ? session.frame().seconds() : 0);
@@ -88,35 +76,6 @@ FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, f
 /// Returns the picture of the last frame.
 Image last_picture(Session& session) {
     return makes_frames(session.settings().integrator) ? session.frame().picture() : session.picture();
-}
-
-/// How like the last frame is to a picture of many samples of the same view; means over channels and pixels.
-struct Likeness {
-    double flip = 0, flip_of_sample = 0;       // HDR-FLIP of the frame, and of a sample alone
-    double rel_mse = 0, rel_mse_of_sample = 0; // relative_error's
-    double mean = 0, reference_mean = 0;
-};
-
-/// The frames begin anew after it.
-Likeness compare_last(Session& session, uint32_t samples, Reporter& reporter) {
-    const Image last = last_picture(session);
-    session.cut(); // frames without reconstruction have left their sample in the film
-    session.render(1);
-    const Image noisy = session.picture();
-    session.cut();
-    reporter.set_work("rendering the reference");
-    session.render(samples, [&](const RenderProgress& now) {
-        reporter.progress(static_cast<double>(now.samples_done) / now.samples, "reference");
-        return !interrupted();
-    });
-    throw_if_interrupted();
-    const Image reference = session.picture();
-    return {hdr_flip(last, reference).mean,
-            hdr_flip(noisy, reference).mean,
-            relative_error(last, reference).rel_mse,
-            relative_error(noisy, reference).rel_mse,
-            mean_of(last),
-            mean_of(reference)};
 }
 
 int bench_frames(FramesFlags& flags) {
@@ -138,11 +97,8 @@ int bench_frames(FramesFlags& flags) {
     const FrameFigures figures =
         measure(session, *queue, flags, length(bounds_of(scene).size()), exposure, tone_map, reporter);
     const std::string hash = picture_hash(last_picture(session)).hex();
-    std::optional<Likeness> likeness;
-    if (flags.reference > 0) likeness = compare_last(session, flags.reference, reporter);
     reporter.end_progress();
     const double rays_a_second = millions_a_second(figures.rays.total(), figures.seconds);
-    const auto part = [&](double Likeness::*of) { return likeness ? ResultCell(*likeness.*of) : ResultCell(); };
     report.add_alone("frames",
                      {{"scene", "scene", flags.render.scene.scene},
                       {"device", "device", queue->device_name()},
@@ -160,12 +116,6 @@ int bench_frames(FramesFlags& flags) {
                       {"reconstruction_seconds", "of it reconstruction", figures.reconstruction.median, "s", "{:.6f}"},
                       {"copy_seconds", "of it copying to the host", figures.copy.median, "s", "{:.6f}"},
                       {"mrays_per_s", "Mrays/s", rays_a_second, "", "{:.1f}"},
-                      {"hdr_flip", "HDR-FLIP of the last frame", part(&Likeness::flip), "", "{:.4f}"},
-                      {"hdr_flip_of_sample", "of its sample alone", part(&Likeness::flip_of_sample), "", "{:.4f}"},
-                      {"rel_mse", "relMSE of the last frame", part(&Likeness::rel_mse), "", "{:.4f}"},
-                      {"rel_mse_of_sample", "of its sample alone", part(&Likeness::rel_mse_of_sample), "", "{:.4f}"},
-                      {"mean", "mean", part(&Likeness::mean), "", "{:.5f}"},
-                      {"reference_mean", "mean of the reference", part(&Likeness::reference_mean), "", "{:.5f}"},
                       {"picture", "last frame", hash}});
     report.write();
     return 0;
@@ -174,25 +124,17 @@ int bench_frames(FramesFlags& flags) {
 } // namespace
 
 void add_bench_frames_command(CLI::App& bench, int& status) {
-    CLI::App& verb = *bench.add_subcommand("frames", "Frames in real time, each of one sample a pixel, reconstructed");
     const auto flags = std::make_shared<FramesFlags>();
+    CLI::App& verb = add_bench_verb(bench, "frames", "Frames in real time, each of one sample a pixel, reconstructed",
+                                    [flags, &status] { status = bench_frames(*flags); });
     flags->render.size = PictureSize{1920, 1080};
     flags->render.render.path.max_depth = 4;
     add_scene_name(verb, flags->render.scene);
     add_whole(verb, "--frames", flags->frames, "number of frames; the first two are not timed", 1, 100000)
         ->capture_default_str();
     verb.add_flag("--still", flags->still, "keep the camera still");
-    verb.add_option("--reference", flags->reference,
-                    "compare the last frame and its first sample with a picture of\nthis many samples, by HDR-FLIP")
-        ->type_name("SPP")
-        ->check(whole_between(1, kMaxSamplesPerPixel));
-    verb.add_option("--write", flags->write, "write each frame as a PNG file into this folder")->type_name("FOLDER");
     add_bench_report_flags(verb, flags->render.report);
     flags->render.settings.add(verb, kBenchFrames, flags->render);
-    verb.callback([&verb, flags, &status] {
-        refuse_flags_before(verb);
-        status = bench_frames(*flags);
-    });
 }
 
 } // namespace pertev

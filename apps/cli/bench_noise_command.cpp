@@ -130,8 +130,9 @@ int bench_noise(NoiseFlags& flags) {
 } // namespace
 
 void add_bench_noise_command(CLI::App& bench, int& status) {
-    CLI::App& verb = *bench.add_subcommand("noise", "The variance of a picture, beside that of independent samples");
     const auto flags = std::make_shared<NoiseFlags>();
+    CLI::App& verb = add_bench_verb(bench, "noise", "The variance of a picture, beside that of independent samples",
+                                    [flags, &status] { status = bench_noise(*flags); });
     flags->render.size = PictureSize{640, 360};
     add_scene_name(verb, flags->render.scene);
     add_whole(verb, "--seeds", flags->seeds, "number of pictures of each sampler", 2, 1024)->capture_default_str();
@@ -143,10 +144,6 @@ void add_bench_noise_command(CLI::App& bench, int& status) {
         ->capture_default_str();
     add_bench_report_flags(verb, flags->render.report);
     flags->render.settings.add(verb, kBenchNoise, flags->render);
-    verb.callback([&verb, flags, &status] {
-        refuse_flags_before(verb);
-        status = bench_noise(*flags);
-    });
 }
 
 } // namespace pertev

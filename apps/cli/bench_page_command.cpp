@@ -43,17 +43,14 @@ int make_page(const PageFlags& flags) {
 } // namespace
 
 void add_bench_page_command(CLI::App& bench, int& status) {
-    CLI::App& verb = *bench.add_subcommand("page", "A page that draws measurements: tables, plots, pictures");
     const auto flags = std::make_shared<PageFlags>();
+    CLI::App& verb = add_bench_verb(bench, "page", "A page that draws measurements: tables, plots, pictures",
+                                    [flags, &status] { status = make_page(*flags); });
     verb.add_option("measurements", flags->files, "JSON files of bench --report, of lab -o, or bench/results")
         ->type_name("FILE...")
         ->required();
     verb.add_option("-o,--output", flags->output, "the page")->type_name("PAGE.html")->required();
     add_report_flags(verb, flags->report);
-    verb.callback([&verb, flags, &status] {
-        refuse_flags_before(verb);
-        status = make_page(*flags);
-    });
 }
 
 } // namespace pertev

@@ -6,6 +6,7 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/write_file_atomically.h"
 #include "formats/builtin_scenes.h"
 #include "formats/read_scene.h"
@@ -55,6 +56,27 @@ Scene read_record_scene(const std::string& name, Messages& messages) {
     ReadOptions options;
     options.geometry_only = true;
     return read_scene(name, options, messages);
+}
+
+Scene read_lab_scene(const SceneOptions& options, Messages& messages) {
+    const std::string& name = options.scene;
+    if (const RecordScene* record = find_named(the_record().scenes, name)) {
+        refuse(!options.file_scene.empty(),
+               fmt::format("--file-scene: {} has no scenes of its own to choose from", name));
+        return make_record_scene(*record, public_scenes_folder(), messages);
+    }
+    std::error_code no_such_name; // a name may be too long for a file
+    if (!builtin_scene(name) && !std::filesystem::exists(name, no_such_name)) {
+        std::vector<std::string_view> known = builtin_scene_names();
+        for (const RecordScene& record : the_record().scenes) known.emplace_back(record.name);
+        throw Error(ErrorCode::BadInput, fmt::format("{}: neither a file nor a scene of this name; there are {}", name,
+                                                     fmt::join(known, ", ")));
+    }
+    return read_any_scene(options, messages);
+}
+
+std::string lab_scene_title(const std::string& scene) {
+    return utf8_text(std::filesystem::path(scene).stem().string());
 }
 
 double mean_of(const Image& image) {
@@ -148,11 +170,12 @@ void BenchReport::keep(const char* name, const Fields& fields) { table_of(name).
 
 void BenchReport::write() const {
     if (file_.empty()) return;
-    const std::string extension = std::filesystem::path(file_).extension().string(), json = json_of(measurement_);
+    const std::string extension = std::filesystem::path(file_).extension().string();
+    const std::string json = json_of(measurement_, "", extension == ".html");
     std::string text = extension == ".html" ? report_page({&json, 1}) : json + '\n';
     if (extension == ".csv") {
         text.clear();
-        for (const ResultTable& table : measurement_.tables) text += csv_of(table);
+        for (const ResultTable& table : measurement_.tables) text += csv_of(measurement_, table.name);
     }
     reporter_.write_output(file_, [&] { write_file_atomically(file_, std::as_bytes(std::span(text))); });
 }
@@ -182,12 +205,18 @@ void render_anew(Session& session, uint32_t samples) {
     throw_if_interrupted();
 }
 
-void refuse_flags_before(const CLI::App& verb) {
-    for (const CLI::Option* flag : verb.get_parent()->get_options()) {
-        if (flag->count() == 0) continue;
-        throw Error(ErrorCode::BadInput, fmt::format("{}: stands before {}; flags of `bench {}` stand behind that name",
-                                                     flag->get_name(), verb.get_name(), verb.get_name()));
-    }
+CLI::App& add_bench_verb(CLI::App& bench, const char* name, const char* help, std::function<void()> run) {
+    CLI::App& verb = *bench.add_subcommand(name, help);
+    verb.callback([&bench, &verb, run = std::move(run)] {
+        for (const CLI::Option* flag : bench.get_options()) {
+            if (flag->count() == 0) continue;
+            throw Error(ErrorCode::BadInput,
+                        fmt::format("{}: stands before {}; flags of `bench {}` stand behind that name",
+                                    flag->get_name(), verb.get_name(), verb.get_name()));
+        }
+        run();
+    });
+    return verb;
 }
 
 } // namespace pertev

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -45,6 +46,11 @@ void add_record_scenes(CLI::App& verb, std::vector<std::string>& names);
 std::vector<std::string> check_record_scenes(std::vector<std::string> names);
 /// Reads a scene of the record by its name, else the geometry of a built-in scene or a file.
 Scene read_record_scene(const std::string& name, Messages& messages);
+/// Reads a scene of the record by its name, else a scene with its light as `pertev render` does. Throws Error, with the
+/// known names if there is neither a file nor a scene of this name.
+Scene read_lab_scene(const SceneOptions& options, Messages& messages);
+/// The scene's title in reports: its file's name without folder and extension, in UTF-8 whatever its bytes are.
+std::string lab_scene_title(const std::string& scene);
 
 /// Returns the mean over all channels and pixels.
 double mean_of(const Image& image);
@@ -93,6 +99,8 @@ public:
     void add_alone(const char* event, const Fields& fields);
     /// A row that nobody is told: it stands in the file alone.
     void keep(const char* name, const Fields& fields);
+    /// A picture for the page.
+    void add_picture(ResultPicture picture) { measurement_.pictures.push_back(std::move(picture)); }
     /// Writes the file, where one is wanted.
     void write() const;
 
@@ -113,8 +121,9 @@ Camera moved(const Camera& camera, float yaw, Vec3 step);
 /// The session's picture from its first sample on. Throws Error(Interrupted) where it is asked to end before.
 void render_anew(Session& session, uint32_t samples);
 
-/// Throws Error(BadInput) for a flag of `bench` itself before the name of this verb of it, which would not see it.
-void refuse_flags_before(const CLI::App& verb);
+/// Adds a verb of `bench` that calls `run` with its flags. A flag of `bench` itself before the verb's name, which the
+/// verb would not see, is refused.
+CLI::App& add_bench_verb(CLI::App& bench, const char* name, const char* help, std::function<void()> run);
 
 /// `bench rays`, a verb of `bench`.
 void add_bench_rays_command(CLI::App& bench, int& status);

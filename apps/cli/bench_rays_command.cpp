@@ -49,8 +49,9 @@ struct SetFigures {
     uint64_t triangles = 0;              // triangles of the scene
 
     double rays_per_second() const { return times.median > 0 ? static_cast<double>(rays) / times.median : 0.0; }
-    Ratio ratio() const {
-        return ratio_of(RaysRun{device, record, number, triangles, rays, hit_share, rays_per_second()});
+    bool is_known() const { return is_on_record(device, record, triangles, number, rays, hit_share); }
+    double ratio() const {
+        return record != nullptr ? rays_per_second() / record->sets[number].best_rays_per_second : 0;
     }
 };
 
@@ -122,7 +123,7 @@ Fields fields_of(const SetFigures& f, bool is_checked) {
                                                        {"best_rays_per_second", "", r.best_rays_per_second}}))
                         : ResultCell()},
                    {"best_mrays", "best", recorded(has ? r.best_rays_per_second * 1e-6 : 0), "", "{:.0f}"},
-                   field_of(f.ratio()),
+                   ratio_field("ratio_to_best", "ratio", f.is_known(), f.ratio()),
                    {"recorded_hit_share", "its hits", recorded(r.hit_share), "", "{:.3f}"},
                    {"recorded_nodes", "its nodes", recorded(r.nodes), "", "{:.1f}"},
                    {"recorded_triangles", "its tri", recorded(r.triangles), "", "{:.1f}"},
@@ -179,7 +180,7 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
                         "right the best\npublic tracer on one {}, the ratio to it where ours is on one too, and what "
                         "the record says of the same rays\n",
                         the_record().device));
-        if (const auto ratio = figures.ratio().value) ratios.push_back(*ratio);
+        if (figures.is_known()) ratios.push_back(figures.ratio());
         sets[i].rays = {}; // a quarter of a gigabyte on the record
     }
     print_summary(name, ratios, reporter);
@@ -208,8 +209,9 @@ int bench_rays(RaysFlags& flags) {
 } // namespace
 
 void add_bench_rays_command(CLI::App& bench, int& status) {
-    CLI::App& verb = *bench.add_subcommand("rays", "Sets of rays that other tracers can be timed on");
     const auto flags = std::make_shared<RaysFlags>();
+    CLI::App& verb = add_bench_verb(bench, "rays", "Sets of rays that other tracers can be timed on",
+                                    [flags, &status] { status = bench_rays(*flags); });
     add_record_scenes(verb, flags->scenes);
     add_whole(verb, "--count", flags->count, "rays per set; the record's is four frames of 1920x1080", 1, 1u << 30)
         ->capture_default_str();
@@ -219,10 +221,6 @@ void add_bench_rays_command(CLI::App& bench, int& status) {
     flags->tracer.default_build = TreeBuild::Best; // no tree's making is timed
     flags->settings.add(verb, kBenchRays, *flags);
     add_bench_report_flags(verb, flags->report);
-    verb.callback([&verb, flags, &status] {
-        refuse_flags_before(verb);
-        status = bench_rays(*flags);
-    });
 }
 
 } // namespace pertev

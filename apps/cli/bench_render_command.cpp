@@ -17,7 +17,6 @@
 #include "device/device_timer.h"
 #include "image/picture_hash.h"
 #include "image/write_image.h"
-#include "integrators/path/path_integrator.h"
 #include "lab/isolated_rays.h"
 #include "lab/record_scenes.h"
 #include "lab/stored_figures.h"
@@ -42,27 +41,6 @@ RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
     if (flags.picture.samples > 0) settings.samples = flags.picture.samples;
     settings.path.seed = flags.seed;
     return settings;
-}
-
-struct JobBytes {
-    std::size_t of_queues = 0;           // queues of paths in flight
-    std::optional<double> of_structures; // on a GPU, a triangle; on a CPU trees are not copied
-};
-
-JobBytes bytes_of(const RenderSettings& settings, const PreparedScene& prepared, const Queue& queue) {
-    JobBytes bytes;
-    const TracerChoice tracers = tracers_of(settings, queue.is_cuda());
-    bytes.of_queues = predicted_bytes(settings,
-                                      {.width = settings.width,
-                                       .height = settings.height,
-                                       .samples = settings.samples,
-                                       .traverses_on_host = can_traverse_on_host(tracers, queue.is_cuda())},
-                                      queue.is_cuda());
-    if (queue.is_cuda() && prepared.triangles > 0) {
-        bytes.of_structures =
-            static_cast<double>(prepared.structures->device_bytes(tracers)) / static_cast<double>(prepared.triangles);
-    }
-    return bytes;
 }
 
 /// Seconds that one sample of every pixel takes after the camera has moved, from the call that moves it until the film
@@ -137,10 +115,9 @@ int bench_job(JobFlags& flags) {
             isolated_rates(*queue, job, scene, tracers_of(settings, queue->is_cuda()), reporter);
         if (const double mix = rates.of_mix(result.rays); mix > 0) of_isolated = rays_per_second / mix;
     }
-    const JobBytes bytes = bytes_of(settings, prepared, *queue);
-    const std::size_t path_bytes = PathIntegrator::bytes_of_path({});
     const std::string device = queue->device_name();
-    Fields fields = {
+    const bool is_known = is_on_record(device, job, settings, prepared.triangles, mean);
+    const Fields fields = {
         {"job", "job", job.name},
         {"device", "device", device},
         {"width", "width", settings.width},
@@ -154,18 +131,15 @@ int bench_job(JobFlags& flags) {
         {"rays_per_second", "rays a second", rays_per_second, "", "{:.4g}"},
         {"rays_per_sample", "rays a sample", static_cast<double>(result.rays.total()) / samples, "", "{:.2f}"},
         {"ratio_to_isolated_rays", "of the same rays by themselves", of_isolated, "", "{:.3f}"},
-        {"queue_bytes", "queues of paths", bytes.of_queues, "bytes"},
-        {"bytes_per_path", "a path", path_bytes, "bytes"},
-        {"structure_bytes_per_triangle", "trees with triangles", bytes.of_structures, "bytes a triangle", "{:.1f}"},
         {"moved_samples_per_second", "samples a second after a move", moved_per_second, "", "{:.4g}"},
         {"mean", "mean", mean, "", "{:.5f}"},
         {"invalid_samples", "invalid samples", result.invalid_samples},
-        {"hash", "picture", hash}};
-    const std::vector<Ratio> ratios = ratios_of(JobRun{device, &job, settings.width, settings.height, settings.samples,
-                                                       prepared.triangles, mean, samples_per_second});
-    for (const Ratio& ratio : ratios) fields.push_back(field_of(ratio));
+        {"hash", "picture", hash},
+        ratio_field("ratio_to_mitsuba", "times Mitsuba 3", is_known, samples_per_second / job.mitsuba),
+        ratio_field("ratio_to_cycles", "times Cycles", is_known, samples_per_second / job.cycles),
+        ratio_field("ratio_to_pbrt", "times pbrt-v4", is_known, samples_per_second / job.pbrt)};
     report.add_alone("job", fields);
-    if (!ratios.front().value) reporter.answer(why_no_ratios(job));
+    if (!is_known) reporter.answer(why_no_ratios(job));
     report.write();
     return 0;
 }
@@ -173,8 +147,9 @@ int bench_job(JobFlags& flags) {
 } // namespace
 
 void add_bench_render_command(CLI::App& bench, int& status) {
-    CLI::App& verb = *bench.add_subcommand("render", "One job that other renderers were timed on");
     const auto flags = std::make_shared<JobFlags>();
+    CLI::App& verb = add_bench_verb(bench, "render", "One job that other renderers were timed on",
+                                    [flags, &status] { status = bench_job(*flags); });
     flags->picture.tracer.default_build = TreeBuild::Best; // only the render is timed
     std::vector<std::string> names;
     for (const RecordJob& job : the_record().jobs) names.emplace_back(job.name);
@@ -198,10 +173,6 @@ void add_bench_render_command(CLI::App& bench, int& status) {
                   "also trace the sets of `bench rays` in isolation and report\nthe job's rate relative to theirs");
     verb.add_option("-o,--output", flags->output, "keep the picture")->type_name("FILE");
     add_picture_flags(verb, flags->picture, "the job's", "the job's");
-    verb.callback([&verb, flags, &status] {
-        refuse_flags_before(verb);
-        status = bench_job(*flags);
-    });
 }
 
 } // namespace pertev

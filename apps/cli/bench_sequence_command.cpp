@@ -18,7 +18,6 @@
 #include "image/flip.h"
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
-#include "image/write_png.h"
 #include "session/opening/strictness.h"
 #include "settings/parse_values.h"
 
@@ -28,7 +27,7 @@ namespace {
 struct SequenceFlags {
     RenderFlags render;
     uint32_t reference = 0;
-    std::string write, write_samples, peer, strips;
+    std::string write_samples, peer;
 };
 
 /// Scores of one way of making frames, over a sequence.
@@ -87,27 +86,10 @@ Image mean_of_both(const Image& a, const Image& b) {
     return mean;
 }
 
-/// The middle quarter by half of each picture, side by side.
-Rgba8Image strip_of(const std::vector<Rgba8Image>& pictures) {
-    const uint32_t width = pictures[0].width / 4, height = pictures[0].height / 2;
-    const auto count = static_cast<uint32_t>(pictures.size());
-    Rgba8Image strip{width * count, height, std::vector<uint8_t>(std::size_t(width) * count * height * 4)};
-    for (uint32_t k = 0; k < count; ++k) {
-        const Rgba8Image& shown = pictures[k];
-        for (uint32_t y = 0; y < height; ++y) {
-            const auto from =
-                shown.pixels.begin() +
-                static_cast<std::ptrdiff_t>((std::size_t(y + height / 2) * shown.width + width * 3 / 2) * 4);
-            std::copy(from, from + static_cast<std::ptrdiff_t>(width * 4),
-                      strip.pixels.begin() +
-                          static_cast<std::ptrdiff_t>((std::size_t(y) * strip.width + k * width) * 4));
-        }
-    }
-    return strip;
-}
+constexpr const char* kWays[] = {"samples", "frames", "peer"};
 
 Scores measure(RenderSetup& ready, Session& session, PictureRecord& record, const SequenceFlags& flags, float exposure,
-               ToneMap tone_map, Reporter& reporter) {
+               ToneMap tone_map, BenchReport& report, Reporter& reporter) {
     const ReconstructionSettings settings = reconstruction_settings(flags.render.reconstruction);
     const RestirSettings restir = flags.render.reconstruction.sharing;
     Scores scores;
@@ -122,9 +104,6 @@ Scores measure(RenderSetup& ready, Session& session, PictureRecord& record, cons
         session.render_frame(FrameRange::sample_of(frame), settings, restir);
         const Image ours = session.frame().picture();
         const auto shown = [&](const Image& picture) { return tone_map_image(picture, tone_map, exposure); };
-        if (!flags.write.empty()) {
-            write_png(std::filesystem::path(flags.write) / fmt::format("frame-{:04}.png", number), shown(ours));
-        }
         const RenderResult sample = sample_of(session, ready.settings, number, 1, kAovAlbedo | kAovNormal);
         if (!flags.write_samples.empty()) {
             write_pfm(file_of(flags.write_samples, number, ""), sample.picture);
@@ -138,21 +117,25 @@ Scores measure(RenderSetup& ready, Session& session, PictureRecord& record, cons
                     reference = mean_of_both(first, second);
         std::optional<Image> peer;
         if (scores.peer) peer = read_pfm(file_of(flags.peer, number, "-denoised"), ours.width, ours.height);
-        // Side by side in the strip: samples, frame, peer, reference.
-        std::vector<Rgba8Image> strip = {shown(sample.picture), shown(ours)};
-        if (peer) strip.push_back(shown(*peer));
-        strip.push_back(shown(reference));
         std::vector<const Image*> pictures = {&sample.picture, &ours};
         if (peer) pictures.push_back(&*peer);
         const std::vector<FlipResult> flips = hdr_flips(pictures, reference);
-        scores.sample.add(flips[0].mean, strip[0], strip.back());
-        scores.ours.add(flips[1].mean, strip[1], strip.back());
-        if (peer) scores.peer->add(flips[2].mean, strip[2], strip.back());
-        scores.half.add(0, shown(first), strip.back());
-        if (number == 0) scores.noise = hdr_flip(first, second).mean;
-        if (!flags.strips.empty() && number % 15 == 14) {
-            write_png(std::filesystem::path(flags.strips) / fmt::format("strip-{:04}.png", number), strip_of(strip));
+        const Rgba8Image shown_reference = shown(reference);
+        Score* const of[] = {&scores.sample, &scores.ours, scores.peer ? &*scores.peer : nullptr};
+        for (std::size_t i = 0; i < pictures.size(); ++i) {
+            of[i]->add(flips[i].mean, shown(*pictures[i]), shown_reference);
+            if (number % 15 == 14) {
+                report.add_picture({.group = fmt::format("Frame {}", frame),
+                                    .title = kWays[i],
+                                    .caption = fmt::format("HDR-FLIP {:.4f}", flips[i].mean),
+                                    .image = shown(*pictures[i])});
+            }
         }
+        if (number % 15 == 14) {
+            report.add_picture({fmt::format("Frame {}", frame), "reference", "", shown_reference});
+        }
+        scores.half.add(0, shown(first), shown_reference);
+        if (number == 0) scores.noise = hdr_flip(first, second).mean;
     }
     return scores;
 }
@@ -170,8 +153,8 @@ int bench_sequence(SequenceFlags& flags) {
     if (!frame_range(flags.render)) {
         throw Error(ErrorCode::BadInput, "bench sequence: the frames are missing; add --frames A-B or --turntable N");
     }
-    if (flags.reference == 0 && (!flags.peer.empty() || !flags.strips.empty())) {
-        throw Error(ErrorCode::BadInput, "--peer, --strips: the reference is missing; add --reference SPP");
+    if (flags.reference == 0 && !flags.peer.empty()) {
+        throw Error(ErrorCode::BadInput, "--peer: the reference is missing; add --reference SPP");
     }
     check_motion_flags(flags.render);
     check_radiosity_flags(flags.render.radiosity, flags.render.render, flags.render.limits_memory);
@@ -185,7 +168,7 @@ int bench_sequence(SequenceFlags& flags) {
     const float exposure = session.meter(tone_map);
     session.cut();
     reporter.set_work("rendering");
-    const Scores scores = measure(*ready, session, record, flags, exposure, tone_map, reporter);
+    const Scores scores = measure(*ready, session, record, flags, exposure, tone_map, report, reporter);
     reporter.end_progress();
     const auto score = [](const Score& of) { return ResultCell::raw(json_of("", fields_of(of))); };
     report.add_alone("sequence_errors",
@@ -211,9 +194,9 @@ int bench_sequence(SequenceFlags& flags) {
             report.keep("scores", fields);
             table.add(fields);
         };
-        add("frames", scores.ours);
-        if (scores.peer) add("peer", *scores.peer);
-        add("samples", scores.sample);
+        add(kWays[1], scores.ours);
+        if (scores.peer) add(kWays[2], *scores.peer);
+        add(kWays[0], scores.sample);
         reporter.answer(text_of(table));
     }
     report.write();
@@ -223,9 +206,10 @@ int bench_sequence(SequenceFlags& flags) {
 } // namespace
 
 void add_bench_sequence_command(CLI::App& bench, int& status) {
-    CLI::App& verb = *bench.add_subcommand(
-        "sequence", "Frames of a moving picture against pictures of many samples, and another denoiser's frames");
     const auto flags = std::make_shared<SequenceFlags>();
+    CLI::App& verb = add_bench_verb(
+        bench, "sequence", "Frames of a moving picture against pictures of many samples, and another denoiser's frames",
+        [flags, &status] { status = bench_sequence(*flags); });
     flags->render.size = PictureSize{1280, 720};
     flags->render.render.path.max_depth = 4;
     add_scene_name(verb, flags->render.scene);
@@ -234,7 +218,6 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
                     "between frames is the flicker")
         ->type_name("SPP")
         ->check(whole_between(2, kMaxSamplesPerPixel));
-    verb.add_option("--write", flags->write, "write each frame as a PNG file into this folder")->type_name("FOLDER");
     verb.add_option("--write-samples", flags->write_samples,
                     "write each frame's samples, albedo and normals as PFM into this\nfolder, for another denoiser")
         ->type_name("FOLDER");
@@ -242,16 +225,8 @@ void add_bench_sequence_command(CLI::App& bench, int& status) {
             "--peer", flags->peer,
             "compare another denoiser's output for these frames, in\nframe-0000-denoised.pfm and so on in this folder")
         ->type_name("FOLDER");
-    verb.add_option(
-            "--strips", flags->strips,
-            "write samples, frame, peer and reference of each fifteenth\nframe side by side as PNG into this folder")
-        ->type_name("FOLDER");
     add_bench_report_flags(verb, flags->render.report);
     flags->render.settings.add(verb, kBenchSequence, flags->render);
-    verb.callback([&verb, flags, &status] {
-        refuse_flags_before(verb);
-        status = bench_sequence(*flags);
-    });
 }
 
 } // namespace pertev

@@ -6,12 +6,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/bench_parts.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/flag_phrases.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/lab_files.h"
-#include "apps/cli/lab_scene.h"
 #include "apps/cli/reporter.h"
 #include "apps/cli/scene_options.h"
 #include "apps/cli/setting_flags.h"
@@ -176,7 +176,10 @@ int run(LabFlags& flags) {
     }
     say_refusals(flags, report, reporter);
     reporter.answer(text_of(report));
-    if (!flags.output.empty()) write_lab_files(flags.output, report, head, reporter);
+    if (!flags.output.empty()) {
+        write_measurement(flags.output, "report", measurement_of(report, head), "runs");
+        reporter.say(fmt::format("written: {}", (std::filesystem::path(flags.output) / "report.html").string()));
+    }
     fail_if_wrong(report);
     return report.interrupted ? exit_status(ErrorCode::Interrupted) : 0;
 }
@@ -232,7 +235,7 @@ void add_lab_command(CLI::App& app, int& status) {
     add_whole(verb, "--count", flags->count, "rays per set of the record (8294400)", 1, 1u << 30);
     add_whole(verb, "--runs", flags->runs, "number of timed runs; the result is the median", 1, 10000)
         ->capture_default_str();
-    verb.add_flag("--no-heat-maps", flags->no_heat_maps, "write no heat maps of traversal tests per pixel");
+    verb.add_flag("--no-heat-maps", flags->no_heat_maps, "draw no heat maps of traversal tests per pixel");
     CLI::Option* thesis = verb.add_flag("--thesis", flags->thesis,
                                         "chapter 6 of the thesis anew: the Cornell box and Sibenik (SCENE,\nor found "
                                         "under PERTEV_SCENES), depths 1-8; with -o pictures of\nchapters 2 to 4 too");
@@ -247,10 +250,10 @@ void add_lab_command(CLI::App& app, int& status) {
     for (const char* flag : {"--thesis", "--depths", "--runs"}) transport->excludes(verb.get_option(flag));
     add_transport_flags(verb, transport, flags->of_transport);
     CLI::Option* output =
-        verb.add_option("-o,--output", flags->output,
-                        "write report.html, .csv, .json and heat maps here; with --thesis\nthesis.html and .json, its "
-                        "pictures, "
-                        "thesis-1 and -2.csv and\n.json; with --transport transport.html, .csv, .json and EXR files")
+        verb.add_option(
+                "-o,--output", flags->output,
+                "write report.html, .csv and .json here; with --thesis thesis.html\nand .json, its pictures and "
+                "thesis-1 and -2.csv; with --transport\ntransport.html, .csv, .json and EXR files")
             ->type_name("DIR");
     flags->settings.add(verb, kLab, *flags);
     for (CLI::Option* many : {thesis, transport}) many->excludes(verb.get_option("--strict")); // their scenes are known

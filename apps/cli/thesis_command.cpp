@@ -3,16 +3,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <new>
 #include <optional>
-#include <set>
 
 #include <fmt/format.h>
 
+#include "apps/cli/bench_parts.h"
 #include "apps/cli/flag_phrases.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/lab_files.h"
-#include "apps/cli/lab_scene.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "image/auto_exposure.h"
@@ -27,7 +25,6 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kThesisScenes = 2;
 constexpr uint32_t kPictureSamples = 32, kPictureSamplesCuda = 512;
 
 /// None where it is not there.
@@ -90,8 +87,7 @@ void add_pictures(Queue& queue, const MeasuredScene& scene, const LabSettings& s
     }
 }
 
-/// Makes parts of the report. What keeps one from being made is told in the report and thrown in the end: the others
-/// are there then.
+/// Makes parts of the report one by one. An error in one is told in the report, and the others are made nevertheless.
 class Attempts {
 public:
     explicit Attempts(ThesisReport& thesis) : thesis_(thesis) {}
@@ -100,29 +96,22 @@ public:
     void attempt(const std::string& what, const Make& make) {
         try {
             make();
-        } catch (const std::bad_alloc&) {
-            lack(what, Error(ErrorCode::OutOfMemory, "out of memory"));
         } catch (const Error& error) {
-            if (error.code() != ErrorCode::Interrupted) lack(what, error);
+            if (error.code() == ErrorCode::Interrupted) return;
+            thesis_.lacking.push_back(fmt::format("{}: {}", what, phrase(error.remark())));
+            if (!first_ || error.code() == ErrorCode::DeviceFault) first_ = error;
         }
     }
 
-    /// False once Ctrl-C was pressed or the device is dead.
-    bool may_go_on() const { return !interrupted() && !is_dead_; }
+    /// False after Ctrl-C, or if the device is dead.
+    bool may_go_on() const { return !interrupted() && !(first_ && first_->code() == ErrorCode::DeviceFault); }
     void throw_first() const {
         if (first_) throw Error(*first_);
     }
 
 private:
-    void lack(const std::string& what, const Error& error) {
-        thesis_.lacking.push_back(fmt::format("{}: {}", what, phrase(error.remark())));
-        is_dead_ = is_dead_ || error.code() == ErrorCode::DeviceFault;
-        if (!first_) first_ = error;
-    }
-
     ThesisReport& thesis_;
     std::optional<Error> first_;
-    bool is_dead_ = false;
 };
 
 void write_file(const std::filesystem::path& folder, const ThesisPicture& picture) {
@@ -147,7 +136,7 @@ void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, const st
         attempts.attempt(names[i], [&] {
             ThesisPicture made = pictures.make(names[i], [&](const char* doing, double share) {
                 const double all = (static_cast<double>(i) + share) / static_cast<double>(names.size());
-                return show({all, fmt::format("{}: {}", names[i], doing), share, watch.seconds(), nullptr, nullptr});
+                return show({all, fmt::format("{}: {}", names[i], doing), share, watch.seconds()});
             });
             made.command = phrase(made.command);
             write_file(folder, made);
@@ -157,33 +146,15 @@ void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, const st
     reporter.end_progress();
 }
 
-/// All but the pictures by chapter, which are written. Files of an earlier run that this one does not have are removed.
+/// Writes all but the pictures by chapter, which are already there.
 void write_files(const std::filesystem::path& folder, const ThesisReport& thesis, const Measurement& head) {
-    std::set<std::string> stale;
-    for (const std::string& file : thesis_picture_files()) stale.insert(file);
-    for (const ThesisPicture& picture : thesis.pictures) stale.erase(picture.file());
-    for (std::size_t i = 0; i < kThesisScenes; ++i) {
-        for (const char* light : {"local", "global"}) stale.insert(fmt::format("figure-6.{}-{}.png", 7 + i, light));
-        // Numbered: names of scenes may be equal, or too long for a file's.
-        const std::string name = fmt::format("thesis-{}", i + 1);
-        if (i < thesis.scenes.size()) {
-            write_text(folder / (name + ".csv"), csv_of(thesis.scenes[i]));
-            write_text(folder / (name + ".json"), json_of(measurement_of(thesis.scenes[i], head)) + '\n');
-        } else {
-            stale.insert({name + ".csv", name + ".json"});
-        }
+    for (std::size_t i = 0; i < thesis.scenes.size(); ++i) {
+        // Numbered, because names of scenes may be equal, or too long for a file.
+        write_text(folder / fmt::format("thesis-{}.csv", i + 1),
+                   csv_of(measurement_of(thesis.scenes[i], head), "runs"));
     }
-    for (const ResultPicture& picture : thesis.local_and_global) {
-        write_png(folder / picture.file, picture.image);
-        stale.erase(picture.file);
-    }
-    if (thesis.pictures.empty()) {
-        stale.insert("thesis-pictures.csv");
-    } else {
-        write_text(folder / "thesis-pictures.csv", csv_of(table_of(thesis.pictures)));
-    }
-    write_measurement(folder, "thesis", measurement_of(thesis, head));
-    remove_files(folder, stale);
+    for (const ResultPicture& picture : thesis.local_and_global) write_png(folder / picture.file, picture.image);
+    write_measurement(folder, "thesis", measurement_of(thesis, head), "frames");
 }
 
 } // namespace
@@ -197,14 +168,6 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
     const Measurement head = start_measurement(queue, "");
     ThesisReport thesis;
     Attempts attempts(thesis);
-    bool is_written = false; // the report, as it is by now
-    const auto write_report = [&](const std::string& what) {
-        is_written = false;
-        attempts.attempt(what, [&] {
-            write_files(output, thesis, head);
-            is_written = true;
-        });
-    };
     // All are read before the first is measured. The camera's flags are the second's.
     std::vector<MeasuredScene> scenes = {load({}, "cornell-box", settings, has_pictures, reporter.messages())};
     if (const auto second = options.scene.empty() ? find_sibenik() : std::optional(options.scene)) {
@@ -237,11 +200,11 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
             attempts.attempt("pictures of " + scene.name,
                              [&] { add_pictures(queue, scene, settings, reporter.messages(), figure, thesis); });
         }
-        write_report("files of " + scene.name);
+        write_files(output, thesis, head);
     }
     if (has_pictures && attempts.may_go_on()) {
         add_pictures_by_chapter(queue, settings, output, reporter, attempts, thesis);
-        write_report("files of the report");
+        write_files(output, thesis, head);
     }
     const bool cut_short = interrupted();
     Measurement made = measurement_of(thesis, head);
@@ -252,7 +215,7 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
         return exit_status(ErrorCode::Interrupted);
     }
     reporter.answer(text_of(thesis));
-    if (is_written) {
+    if (has_pictures) {
         reporter.say(fmt::format("written: {}", (std::filesystem::path(output) / "thesis.html").string()));
     }
     for (const LabReport& report : thesis.scenes) fail_if_wrong(report);

@@ -6,15 +6,13 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "apps/cli/bench_parts.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/flag_phrases.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/lab_files.h"
-#include "apps/cli/lab_scene.h"
 #include "base/error.h"
-#include "base/parallel_for.h"
 #include "base/read_file.h"
-#include "base/version.h"
 #include "image/image_format.h"
 #include "image/read_image.h"
 #include "image/write_exr.h"
@@ -122,11 +120,6 @@ void write_pictures(const std::filesystem::path& folder, std::size_t number, Tra
     }
 }
 
-void write_files(const std::filesystem::path& folder, const TransportReport& report, const Measurement& head) {
-    write_text(folder / "transport.csv", csv_of(report));
-    write_measurement(folder, "transport", measurement_of(report, head));
-}
-
 } // namespace
 
 int run_transport_command(Queue& queue, const SceneOptions& scene, const TransportFlags& flags, const std::string& size,
@@ -143,8 +136,6 @@ int run_transport_command(Queue& queue, const SceneOptions& scene, const Transpo
     listen_for_interrupt();
 
     TransportReport report = {.device = queue.device_name(),
-                              .commit = fmt::format("{} {}", version(), git_commit()),
-                              .threads = static_cast<uint32_t>(thread_count()),
                               .width = settings.picture.width,
                               .height = settings.picture.height,
                               .max_depth = settings.picture.path.max_depth,
@@ -176,7 +167,9 @@ int run_transport_command(Queue& queue, const SceneOptions& scene, const Transpo
         report.interrupted = measured.interrupted;
         if (has_findings(measured)) write_pictures(output, i, measured);
         if (has_findings(measured) || !measured.interrupted) report.scenes.push_back(std::move(measured));
-        if (!output.empty() && has_findings(report)) write_files(output, report, head);
+        if (!output.empty() && has_findings(report)) {
+            write_measurement(output, "transport", measurement_of(report, head), "repetitions");
+        }
     }
     reporter.end_progress();
     reporter.event(json_of(measurement_of(report, head), "transport"));

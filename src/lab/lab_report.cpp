@@ -52,17 +52,4 @@ int largest_depth(const LabReport& report) {
     return depth;
 }
 
-std::optional<double> price_of_exactness(const LabReport& report, const CombinationFigures& combination, uint32_t set) {
-    if (!combination.combination.options.is_exact()) return std::nullopt;
-    Combination fast = combination.combination;
-    fast.options.tests = TestKind::Fast;
-    const std::string name = name_of(fast);
-    const auto at = std::ranges::find_if(
-        report.combinations, [&](const CombinationFigures& c) { return c.name == name && !c.runs.empty(); });
-    if (at == report.combinations.end()) return std::nullopt;
-    const RunFigures *exact_run = find_run(combination, set), *fast_run = find_run(*at, set);
-    if (exact_run == nullptr || fast_run == nullptr || !(fast_run->median_s > 0)) return std::nullopt;
-    return exact_run->median_s / fast_run->median_s;
-}
-
 } // namespace pertev

@@ -63,9 +63,8 @@ inline constexpr std::size_t kHeatMapsKept = 10;
 inline constexpr const char* kCameraSet = "primary";
 
 struct LabReport {
-    std::string scene, device, commit;
-    uint32_t threads = 0; // CPU threads
-    std::string camera;   // describe_camera's text in the front end's words
+    std::string scene, device;
+    std::string camera; // describe_camera's text in the front end's words
     uint64_t triangles = 0, instances = 0;
     uint32_t width = 0, height = 0;
     int first_depth = 1; // shortest path depth of the frames to show
@@ -74,9 +73,8 @@ struct LabReport {
     std::vector<SetFigures> sets;
     std::vector<StructureFigures> structures;
     std::vector<CombinationFigures> combinations;
-    std::vector<std::string> notes;          // requested results that are missing, with the reason
-    std::vector<std::string> heat_map_names; // combinations of all heat maps that were made
-    std::vector<HeatMap> heat_maps;          // heat maps of the fastest combinations, the fastest first
+    std::vector<std::string> notes; // requested results that are missing, with the reason
+    std::vector<HeatMap> heat_maps; // heat maps of the fastest combinations, the fastest first
 };
 
 /// Million rays per second of a run that takes this many seconds; 0 if `seconds` is 0.
@@ -106,9 +104,5 @@ std::optional<double> frame_seconds(const LabReport& report, const CombinationFi
 uint64_t frame_rays(const LabReport& report, int depth);
 /// The largest depth that the report has sets for.
 int largest_depth(const LabReport& report);
-
-/// The price of exact tests: this combination's time divided by the time of its variant with fast tests, on the
-/// same set. Absent if either was not measured, or if this combination does not use exact tests.
-std::optional<double> price_of_exactness(const LabReport& report, const CombinationFigures& combination, uint32_t set);
 
 } // namespace pertev

@@ -1,13 +1,12 @@
 #include "lab/lab_tables.h"
 
 #include <algorithm>
+#include <functional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "base/byte_units.h"
 #include "lab/heat_map.h"
-#include "lab/text_table.h"
 
 namespace pertev {
 namespace {
@@ -48,19 +47,6 @@ const StructureFigures* structure_of(const LabReport& report, const CombinationF
     return s.failed.empty() ? &s : nullptr;
 }
 
-Fields report_fields(const LabReport& r) {
-    return {{"scene", "scene", r.scene},
-            {"device", "device", r.device},
-            {"commit", "", r.commit},
-            {"threads", "", r.threads},
-            {"scene_triangles", "triangles", r.triangles},
-            {"width", "width", r.width},
-            {"height", "height", r.height},
-            {"runs", "runs", r.runs},
-            {"warm_ups", "", r.warm_ups},
-            {"interrupted", "", r.interrupted}};
-}
-
 Fields structure_fields(const LabReport& report, const StructureFigures* s) {
     const auto of = [s](auto member) { return s != nullptr ? ResultCell(s->*member) : ResultCell(); };
     return {{"nodes", "nodes", of(&StructureFigures::nodes)},
@@ -68,8 +54,7 @@ Fields structure_fields(const LabReport& report, const StructureFigures* s) {
             {"build_seconds", "build", of(&StructureFigures::build_s), "s", "{:.3f}"},
             {"sah_cost", "SAH cost", of(&StructureFigures::sah_cost), "", "{:.2f}"},
             {"depth", "depth", of(&StructureFigures::depth)},
-            {"bytes", "", of(&StructureFigures::bytes)},
-            {"mebibytes", "memory", s != nullptr ? ResultCell(mebibytes(s->bytes)) : ResultCell(), "MiB", "{:.1f}"},
+            {"bytes", "bytes", of(&StructureFigures::bytes)},
             {"bytes_per_triangle", "",
              s != nullptr ? ResultCell(static_cast<double>(s->bytes) /
                                        static_cast<double>(std::max<uint64_t>(report.triangles, 1)))
@@ -128,9 +113,7 @@ Fields run_fields(const LabReport& report, const CombinationFigures& c, const Ru
         {"node_sectors", "sectors, nodes", of(&RunFigures::node_sectors), "", "{:.1f}"},
         {"triangle_sectors", "sectors, triangles", of(&RunFigures::triangle_sectors), "", "{:.1f}"},
         {"different_rays", "rays that differ", of(&RunFigures::different)},
-        {"is_copy", "is copy", of(&RunFigures::is_copy)},
-        {"price_of_exactness", "price of exactness",
-         run != nullptr ? ResultCell(price_of_exactness(report, c, run->set)) : ResultCell(), "", "{:.3f}"}};
+        {"is_copy", "is copy", of(&RunFigures::is_copy)}};
     fields.insert(fields.end(), measured.begin(), measured.end());
     return fields;
 }
@@ -167,44 +150,20 @@ ResultTable runs_of(const LabReport& report) {
     return table;
 }
 
-std::string wrong_lines(const LabReport& report) {
-    std::string lines;
+/// Combinations that are wrong, missing results, and what was not run, with the reasons.
+std::vector<std::string> notes_of(const LabReport& report) {
+    std::vector<std::string> notes;
     for (const CombinationFigures& c : report.combinations) {
-        const bool says_so = c.refused.starts_with("WRONG: ");
-        if (c.wrong) lines += fmt::format("WRONG {}: {}\n", c.name, says_so ? c.refused.substr(7) : c.refused);
+        if (c.wrong) notes.push_back(fmt::format("WRONG {}: {}", c.name, c.refused));
     }
-    return lines;
-}
-
-/// Combinations with figures, the fastest first. Completely measured ones come before interrupted ones.
-std::vector<const CombinationFigures*> in_order(const LabReport& report) {
-    std::vector<const CombinationFigures*> order;
-    for (const CombinationFigures& c : report.combinations) {
-        if (!c.runs.empty() && !c.wrong) order.push_back(&c);
+    for (const StructureFigures& s : report.structures) {
+        if (!s.failed.empty()) notes.push_back(fmt::format("{}: {}", s.name, s.failed));
     }
-    const auto key = [&](const CombinationFigures* c) {
-        double seconds = 0;
-        for (const RunFigures& run : c->runs) seconds += run.median_s;
-        return std::pair(report.sets.size() - c->runs.size(), seconds);
-    };
-    std::ranges::stable_sort(order, {}, key);
-    return order;
-}
-
-/// Returns "12.34 [11.90, 12.51] (10.1 + 2.3)", or the part of it that was measured.
-std::string speed_of(const LabReport& report, const RunFigures& run) {
-    std::string text;
-    if (run.median_s > 0) {
-        text = fixed_text(mrays(report, run), 2);
-        if (report.runs > 1) {
-            text += fmt::format(" [{}, {}]", fixed_text(mrays(report, run, run.largest_s), 2),
-                                fixed_text(mrays(report, run, run.min_s), 2));
-        }
+    notes.insert(notes.end(), report.notes.begin(), report.notes.end());
+    for (const Refusal& refusal : refusals_by_reason(report.combinations)) {
+        notes.push_back(fmt::format("Not run: {}: {}", refusal.reason, fmt::join(refusal.names, ", ")));
     }
-    if (run.nodes && run.triangles) {
-        text += fmt::format("{}({:.1f} + {:.1f})", text.empty() ? "" : " ", *run.nodes, *run.triangles);
-    }
-    return text.empty() ? "right" : text; // its hits match the proven traversal, and nothing else was measured
+    return notes;
 }
 
 } // namespace
@@ -213,20 +172,19 @@ Measurement measurement_of(const LabReport& report, Measurement m) {
     m.title = "Traversal laboratory: " + report.scene;
     m.interrupted = report.interrupted;
     ResultTable scene = {"scene", "Scene"};
-    Fields fields = report_fields(report);
-    fields.insert(fields.end(), {{"instances", "instances", report.instances},
-                                 {"camera", "camera", report.camera},
-                                 {"first_depth", "first depth", report.first_depth},
-                                 {"last_depth", "last depth", largest_depth(report)}});
-    scene.add(fields);
+    scene.add({{"scene", "scene", report.scene},
+               {"scene_triangles", "triangles", report.triangles},
+               {"instances", "instances", report.instances},
+               {"camera", "camera", report.camera},
+               {"width", "width", report.width},
+               {"height", "height", report.height},
+               {"first_depth", "first depth", report.first_depth},
+               {"last_depth", "last depth", largest_depth(report)},
+               {"runs", "runs", report.runs},
+               {"warm_ups", "for warming up", report.warm_ups},
+               {"interrupted", "interrupted", report.interrupted}});
     m.tables = {scene, sets_of(report), structures_of(report), runs_of(report)};
-    for (const CombinationFigures& c : report.combinations) {
-        if (c.wrong) m.notes.push_back(fmt::format("WRONG {}: {}", c.name, c.refused));
-    }
-    m.notes.insert(m.notes.end(), report.notes.begin(), report.notes.end());
-    for (const Refusal& refusal : refusals_by_reason(report.combinations)) {
-        m.notes.push_back(fmt::format("Not run: {}: {}", refusal.reason, fmt::join(refusal.names, ", ")));
-    }
+    m.notes = notes_of(report);
     m.kind = "lab";
     uint32_t most[2] = {1, 1}; // all pictures share one scale, so they can be compared
     for (const HeatMap& map : report.heat_maps) {
@@ -241,63 +199,19 @@ Measurement measurement_of(const LabReport& report, Measurement m) {
         add("nodes", map.nodes, most[0]);
         add("triangles", map.triangles, most[1]);
     }
-    if (report.heat_maps.size() < report.heat_map_names.size()) {
-        m.notes.push_back(
-            fmt::format("Heat maps are of the {} combinations that were fastest at camera rays, of {}; all "
-                        "are PNG files beside this report, each on a scale of its own.",
-                        report.heat_maps.size(), report.heat_map_names.size()));
-    }
     return m;
 }
 
-std::string csv_of(const LabReport& report) { return csv_of(runs_of(report), report_fields(report)); }
-
 std::string text_of(const LabReport& report) {
-    std::string text = wrong_lines(report);
-    if (!text.empty()) text += '\n';
-    ResultTable structures = structures_of(report);
-    std::string failed;
-    for (const StructureFigures& s : report.structures) {
-        if (!s.failed.empty()) failed += fmt::format("{}: {}\n", s.name, s.failed);
-    }
-    std::erase_if(structures.rows, [](const std::vector<ResultCell>& row) { return row[1].is_there(); });
-    if (!structures.rows.empty()) text += text_of(structures);
-    text += failed;
-    const std::vector<const CombinationFigures*> order = in_order(report);
-    std::vector<std::vector<std::string>> speeds = {{"combination"}}, frames = {{"combination"}};
-    for (const SetFigures& set : report.sets) speeds[0].push_back(set.name);
-    for (int depth = report.first_depth; depth <= largest_depth(report); ++depth) {
-        frames[0].push_back(fmt::format("depth {}", depth));
-    }
-    ResultTable warps;
-    for (const CombinationFigures* c : order) {
-        speeds.push_back({c->name});
-        for (uint32_t set = 0; set < report.sets.size(); ++set) {
-            const RunFigures* run = find_run(*c, set);
-            speeds.back().push_back(run != nullptr ? speed_of(report, *run) : "");
-        }
-        if (frame_seconds(report, *c, report.first_depth)) frames.push_back({c->name});
-        for (int depth = report.first_depth; frames.back()[0] == c->name && depth <= largest_depth(report); ++depth) {
-            const std::optional<double> seconds = frame_seconds(report, *c, depth);
-            frames.back().push_back(seconds ? fixed_text(1 / *seconds, 2) : "");
-        }
-        for (const RunFigures& run : c->runs) {
-            if (c->registers || run.node_lanes || run.node_sectors) warps.add(run_fields(report, *c, &run));
-        }
-    }
-    if (!order.empty()) {
-        text += fmt::format("\nmillion rays a second on {} [slowest, fastest run] (nodes + triangles tested a ray)\n{}",
-                            report.device, align_columns(speeds));
-    }
-    if (frames.size() > 1) text += "\nframes a second by depth of paths\n" + align_columns(frames);
-    if (!warps.rows.empty()) {
-        text += "\nlive lanes of 32 and 32-byte sectors per load; registers and the occupancy that they allow\n" +
-                text_of(warps, {"combination", "set", "node_lanes", "triangle_lanes", "node_sectors",
-                                "triangle_sectors", "registers", "occupancy"});
-    }
-    if (!report.notes.empty()) text += '\n';
-    for (const std::string& note : report.notes) text += note + '\n';
-    if (report.interrupted) text += "\ninterrupted: this is what had been measured\n";
+    const ResultTable runs = runs_of(report);
+    ResultTable rates = pivot(runs, "combination", "set", "mrays");
+    std::ranges::stable_sort(rates.rows, std::greater{}, [](const auto& row) { return row[1].number().value_or(0); });
+    std::string text = text_of(structures_of(report));
+    text += fmt::format("\nmillion rays a second on {}\n{}", report.device, text_of(rates));
+    const ResultTable frames = pivot(runs, "combination", "frame_depth", "frames_per_second");
+    if (!frames.rows.empty()) text += "\nframes a second by depth of paths\n" + text_of(frames) + '\n';
+    for (const std::string& note : notes_of(report)) text += note + '\n';
+    if (report.interrupted) text += "interrupted: this is what had been measured\n";
     return text;
 }
 

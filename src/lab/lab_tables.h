@@ -14,11 +14,8 @@ namespace pertev {
 /// `head` says which machine and command.
 Measurement measurement_of(const LabReport& report, Measurement head = {});
 
-/// The table "runs", with what all rows have in common.
-std::string csv_of(const LabReport& report);
-
-/// Returns text for a terminal: wrong combinations, structures, million rays per second by combination and set (fastest
-/// first), frames per second by depth, and warp statistics of a GPU.
+/// Returns text for a terminal: structures, million rays per second by combination and set (fastest first), frames per
+/// second by depth, and notes.
 std::string text_of(const LabReport& report);
 
 } // namespace pertev

@@ -14,10 +14,34 @@
 #include "base/parallel_for.h"
 #include "base/version.h"
 #include "image/write_png.h"
-#include "lab/text_table.h"
 
 namespace pertev {
 namespace {
+
+std::size_t characters(const std::string& text) {
+    return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+/// A line for each row. The first column is aligned left, the others right; each is as wide as its longest cell (in
+/// UTF-8 characters), with two blanks between columns.
+std::string align_columns(const std::vector<std::vector<std::string>>& rows) {
+    std::vector<std::size_t> widths;
+    for (const auto& row : rows) {
+        widths.resize(std::max(widths.size(), row.size()));
+        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], characters(row[i]));
+    }
+    std::string text;
+    for (const auto& row : rows) {
+        std::string line;
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            const std::string pad(widths[i] - characters(row[i]), ' ');
+            line += i == 0 ? row[i] + pad : "  " + pad + row[i];
+        }
+        line.erase(line.find_last_not_of(' ') + 1); // npos + 1 is 0, so a line of blanks becomes empty
+        text += line + '\n';
+    }
+    return text;
+}
 
 template <class All, class Text>
 std::string json_list(const All& all, const Text& text) {
@@ -108,6 +132,11 @@ std::string ResultCell::json() const {
     return "null";
 }
 
+std::optional<double> ResultCell::number() const {
+    const auto* number = std::get_if<double>(&value_);
+    return number != nullptr ? std::optional(*number) : std::nullopt;
+}
+
 std::string ResultCell::csv() const {
     if (const auto* truth = std::get_if<bool>(&value_)) return *truth ? "1" : "0";
     const auto* said = std::get_if<std::string>(&value_);
@@ -139,10 +168,15 @@ void ResultTable::add(const Fields& fields) {
     for (const ResultField& f : fields) row.push_back(f.value);
 }
 
+const ResultTable::Column& ResultTable::column(std::string_view key) const {
+    const auto found = std::ranges::find(columns, key, &Column::key);
+    PERTEV_CHECK(found != columns.end());
+    return *found;
+}
+
 const ResultCell& ResultTable::at(std::size_t row, std::string_view key) const {
-    const auto column = std::ranges::find(columns, key, &Column::key);
-    PERTEV_CHECK(column != columns.end() && row < rows.size());
-    return rows[row][static_cast<std::size_t>(column - columns.begin())];
+    PERTEV_CHECK(row < rows.size());
+    return rows[row][static_cast<std::size_t>(&column(key) - columns.data())];
 }
 
 const ResultTable& Measurement::table(std::string_view name) const {
@@ -183,33 +217,52 @@ std::string json_of(std::string_view event, const Fields& fields) {
     return '{' + members + '}';
 }
 
-std::string csv_of(const ResultTable& table, const Fields& common) {
-    std::vector<std::string> head, common_cells;
-    for (const ResultField& f : common) head.emplace_back(f.key), common_cells.push_back(f.value.csv());
+std::string csv_of(const Measurement& m, std::string_view name) {
+    const ResultTable& table = m.table(name);
+    std::vector<std::string> head = {"program", "date", "processor", "threads", "device"}, common;
+    for (const ResultCell& cell : {ResultCell(m.program), ResultCell(m.date), ResultCell(m.processor),
+                                   ResultCell(m.threads), ResultCell(m.device.empty() ? "CPU" : m.device)}) {
+        common.push_back(cell.csv());
+    }
+    const auto scene = std::ranges::find(m.tables, "scene", &ResultTable::name);
+    if (scene != m.tables.end()) {
+        for (const ResultTable::Column& column : scene->columns) head.push_back(column.key);
+        for (const ResultCell& cell : scene->rows.front()) common.push_back(cell.csv());
+    }
     for (const ResultTable::Column& column : table.columns) head.push_back(column.key);
     std::string csv = fmt::format("{}\n", fmt::join(head, ","));
     for (const std::vector<ResultCell>& row : table.rows) {
-        std::vector<std::string> cells = common_cells;
+        std::vector<std::string> cells = common;
         for (const ResultCell& cell : row) cells.push_back(cell.csv());
         csv += fmt::format("{}\n", fmt::join(cells, ","));
     }
     return csv;
 }
 
-std::string text_of(const ResultTable& table, const std::vector<std::string_view>& keys) {
-    std::vector<std::size_t> shown;
-    for (std::size_t i = 0; keys.empty() && i < table.columns.size(); ++i) {
-        if (!table.columns[i].title.empty()) shown.push_back(i);
+ResultTable pivot(const ResultTable& table, std::string_view row, std::string_view across, std::string_view y) {
+    ResultTable made = {table.name, table.title, {table.column(row)}};
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+        if (!table.at(i, across).is_there() || !table.at(i, y).is_there()) continue;
+        const std::string title = table.at(i, across).text("");
+        const auto column =
+            std::ranges::find(made.columns.begin() + 1, made.columns.end(), title, &ResultTable::Column::key);
+        const auto at = static_cast<std::size_t>(column - made.columns.begin());
+        if (at == made.columns.size()) made.columns.push_back({title, title, "", table.column(y).format});
+        auto found = std::ranges::find(made.rows, table.at(i, row), [](const auto& cells) { return cells.front(); });
+        if (found == made.rows.end()) found = made.rows.insert(found, {table.at(i, row)});
+        found->resize(std::max(found->size(), at + 1));
+        (*found)[at] = table.at(i, y);
     }
-    for (const std::string_view key : keys) {
-        const auto column = std::ranges::find(table.columns, key, &ResultTable::Column::key);
-        if (column != table.columns.end()) shown.push_back(static_cast<std::size_t>(column - table.columns.begin()));
-    }
+    for (std::vector<ResultCell>& cells : made.rows) cells.resize(made.columns.size());
+    return made;
+}
+
+std::string text_of(const ResultTable& table) {
     std::vector<std::vector<std::string>> lines(1 + table.rows.size());
-    for (const std::size_t i : shown) {
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
         const ResultTable::Column& column = table.columns[i];
-        const std::string& title = column.title.empty() ? column.key : column.title;
-        lines[0].push_back(column.unit.empty() ? title : title + ' ' + column.unit);
+        if (column.title.empty()) continue;
+        lines[0].push_back(column.unit.empty() ? column.title : column.title + ' ' + column.unit);
         for (std::size_t row = 0; row < table.rows.size(); ++row) {
             lines[row + 1].push_back(table.rows[row][i].text(column.format));
         }

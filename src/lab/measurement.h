@@ -45,6 +45,7 @@ public:
         return cell;
     }
 
+    std::optional<double> number() const;
     bool is_there() const { return !std::holds_alternative<std::monostate>(value_); }
     bool operator==(const ResultCell&) const = default;
     std::string json() const;
@@ -88,7 +89,8 @@ struct ResultTable {
 
     /// Appends a row. The first row makes the columns; all have the same.
     void add(const Fields& fields);
-    /// Throws Error(DeviceFault) if there is no such column.
+    /// Throw Error(DeviceFault) if there is no such column.
+    const Column& column(std::string_view key) const;
     const ResultCell& at(std::size_t row, std::string_view key) const;
 };
 
@@ -122,10 +124,14 @@ Measurement start_measurement(const Queue& queue, std::string title);
 std::string json_of(const Measurement& measurement, std::string_view event = "", bool has_images = false);
 /// A row as an object of its own; without an event it says none.
 std::string json_of(std::string_view event, const Fields& fields);
-/// With a header line; `common` stands in front of each row.
-std::string csv_of(const ResultTable& table, const Fields& common = {});
-/// Columns with a title, aligned; with `keys` those of them alone, in that order.
-std::string text_of(const ResultTable& table, const std::vector<std::string_view>& keys = {});
+/// A table of the measurement with a header line. In front of each row stand program, date, processor, threads and
+/// device, and the row of the table "scene" if there is such a table.
+std::string csv_of(const Measurement& measurement, std::string_view table);
+/// The values of column `y`, with a row for each value of column `row` and a column for each value of column `across`,
+/// in the order in which they appear. Rows without the latter are left out.
+ResultTable pivot(const ResultTable& table, std::string_view row, std::string_view across, std::string_view y);
+/// Returns the columns with a title, aligned.
+std::string text_of(const ResultTable& table);
 /// Returns one row alone, in columns as wide as its title or 8 characters (the first 16), so that rows can be
 /// printed as they come; `row` is the head's if it is none.
 std::string line_of(const ResultTable& table, std::optional<std::size_t> row);

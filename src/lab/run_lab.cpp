@@ -12,9 +12,7 @@
 
 #include "base/byte_units.h"
 #include "base/error.h"
-#include "base/parallel_for.h"
 #include "base/stopwatch.h"
-#include "base/version.h"
 #include "device/device_timer.h"
 #include "device_scene/place_meshes.h"
 #include "lab/in_pieces.h"
@@ -51,8 +49,6 @@ public:
           triangles_{{scene, place_meshes(scene)}, {}} {
         report_ = {.scene = settings.scene,
                    .device = queue.device_name(),
-                   .commit = fmt::format("{} {}", version(), git_commit()),
-                   .threads = static_cast<uint32_t>(thread_count()),
                    .camera = settings.camera,
                    .triangles = triangles_.parts.count(),
                    .instances = scene.instances.size(),
@@ -90,7 +86,7 @@ public:
 private:
     LabProgress progress_now(std::string doing, double share_of_that = 0) const {
         const double share = std::min(1.0, work_done_ / std::max(work_, 1.0));
-        return {share, std::move(doing), share_of_that, watch_.seconds(), nullptr, nullptr};
+        return {share, std::move(doing), share_of_that, watch_.seconds()};
     }
     void progress(const std::string& doing, double share_of_that = 0) {
         if (keep_going_ && !keep_going_(progress_now(doing, share_of_that))) throw Stopped{};
@@ -286,7 +282,6 @@ private:
 
     void measure(CombinationFigures& c, const Tracer& tracer) {
         measuring_ = &c;
-        heat_map_.reset();
         for (uint32_t k = 0; k < sets_.size(); ++k) {
             const TracedSet& set = sets_[k];
             const std::string doing = fmt::format("{}: {}", c.name, set.figures.name);
@@ -306,7 +301,6 @@ private:
             }
             work_done_ += 1 / static_cast<double>(sets_.size());
         }
-        if (heat_map_) keep_heat_map(c);
     }
 
     /// Any-hit traversals with and without RTA are identical, as there is no nearest hit to use. Returns the figures
@@ -382,7 +376,7 @@ private:
             const std::vector<RayWork> work = on_device.download();
             const WorkSummary summary = summarize_work(work);
             run.nodes = summary.nodes, run.triangles = summary.triangles;
-            if (wants_heat_map(c, set)) make_heat_map(c, set, run, work);
+            if (wants_heat_map(c, set)) add_heat_map(c, set, run, work);
         }
         const auto lanes = tracer.count_lanes(set.figures.any_hit, all_candidates(set.rays.data()), count_of(set));
         if (lanes) take_lanes(*lanes, run);
@@ -407,30 +401,21 @@ private:
                std::ranges::none_of(mapped_, is_same);
     }
 
-    void make_heat_map(const CombinationFigures& c, const TracedSet& set, const RunFigures& run,
-                       const std::vector<RayWork>& work) {
-        heat_map_ = HeatMap{.name = c.name, .width = settings_.width, .height = settings_.height};
-        heat_map_->rays_per_second = static_cast<double>(set.rays.size()) / run.median_s;
-        heat_map_->nodes.resize(pixels()), heat_map_->triangles.resize(pixels());
+    /// Adds the heat map while it belongs to the fastest.
+    void add_heat_map(const CombinationFigures& c, const TracedSet& set, const RunFigures& run,
+                      const std::vector<RayWork>& work) {
+        mapped_.push_back(c.combination);
+        HeatMap map = {.name = c.name, .width = settings_.width, .height = settings_.height};
+        map.rays_per_second = static_cast<double>(set.rays.size()) / run.median_s;
+        map.nodes.resize(pixels()), map.triangles.resize(pixels());
         for (uint32_t i = 0; i < pixels(); ++i) { // rays are in tile order; only the first frame is drawn
             const uint32_t pixel = tiled_pixel(i, settings_.width, settings_.height);
-            heat_map_->nodes[pixel] = work[i].nodes, heat_map_->triangles[pixel] = work[i].triangles;
+            map.nodes[pixel] = work[i].nodes, map.triangles[pixel] = work[i].triangles;
         }
-    }
-
-    /// Hands the heat map to the caller to write, and keeps it in the report while it belongs to the fastest.
-    void keep_heat_map(const CombinationFigures& c) {
-        mapped_.push_back(c.combination);
-        report_.heat_map_names.push_back(c.name);
-        LabProgress now = progress_now(c.name);
-        now.heat_map = &*heat_map_;
-        const bool goes_on = !keep_going_ || keep_going_(now);
         auto& kept = report_.heat_maps;
-        const auto at =
-            std::ranges::upper_bound(kept, heat_map_->rays_per_second, std::greater{}, &HeatMap::rays_per_second);
-        kept.insert(at, std::move(*heat_map_));
+        kept.insert(std::ranges::upper_bound(kept, map.rays_per_second, std::greater{}, &HeatMap::rays_per_second),
+                    std::move(map));
         kept.resize(std::min(kept.size(), kHeatMapsKept));
-        if (!goes_on) throw Stopped{};
     }
 
     Queue& queue_;
@@ -444,7 +429,6 @@ private:
     LabReport report_;
     Stopwatch watch_;
     CombinationFigures* measuring_ = nullptr;
-    std::optional<HeatMap> heat_map_; // heat map of the combination being measured
     std::vector<Combination> mapped_; // combinations that have a heat map
     double work_ = 0, work_done_ = 0; // number of combinations, and how many are finished
 };

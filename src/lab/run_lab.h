@@ -45,7 +45,6 @@ struct LabProgress {
     double share_of_that = 0;          // finished share of the current work if it is long and done in pieces
     double seconds = 0;                // since the start
     const LabReport* so_far = nullptr; // set after each structure: results so far, for the caller to save
-    const HeatMap* heat_map = nullptr; // a new heat map for the caller to save; the report keeps only a few
 };
 
 /// Stops early, with `interrupted` set, when keep_going returns false; a running build or timed run is finished

@@ -144,7 +144,7 @@ private:
         const double turn_s = turns_ > 0 ? turns_s_ / turns_ : share_s();
         const double left_s = left_of_that_s + turns_left_ * turn_s;
         share_ = std::max(share_, left_s > 0 ? now_s / (now_s + left_s) : share_);
-        const LabProgress now = {share_, doing, share_of_that, now_s, nullptr, nullptr};
+        const LabProgress now = {share_, doing, share_of_that, now_s};
         if (keep_going_ && !keep_going_(now)) throw TransportStopped{};
     }
 

@@ -8,58 +8,28 @@
 #include "math/portable_exp_log.h"
 
 namespace pertev {
-namespace {
 
-constexpr double kMeanError = 2e-3;      // relative error of a picture's mean
-constexpr double kShareError = 1e-3;     // error of the share of hits: the record has three digits
-constexpr double kShareErrorAnew = 5e-2; // where the scene is made anew from a description
-
-bool is_the_record(const RaysRun& run) {
-    if (run.device != the_record().device || run.scene == nullptr) return false;
-    const double share_error = !run.scene->file.empty() ? kShareError : kShareErrorAnew;
-    return run.triangles == run.scene->triangles && run.rays == kRecordRays &&
-           std::abs(run.hit_share - run.scene->sets[run.set].hit_share) <= share_error;
+bool is_on_record(std::string_view device, const RecordScene* scene, uint64_t triangles) {
+    return device == the_record().device && scene != nullptr && triangles == scene->triangles;
 }
 
-bool is_the_record(const BuildRun& run) {
-    return run.device == the_record().device && run.scene != nullptr && run.triangles == run.scene->triangles;
+bool is_on_record(std::string_view device, const RecordScene* scene, uint64_t triangles, std::size_t set, uint64_t rays,
+                  double hit_share) {
+    if (!is_on_record(device, scene, triangles) || rays != kRecordRays) return false;
+    const double error = scene->file.empty() ? 5e-2 : 1e-3;
+    return std::abs(hit_share - scene->sets[set].hit_share) <= error;
 }
 
-bool is_the_record(const JobRun& run) {
-    const RecordJob& job = *run.job;
-    return run.device == the_record().device && run.width == job.width && run.height == job.height &&
-           run.samples == job.samples && run.triangles == job.triangles &&
-           std::abs(run.mean - job.mean) <= kMeanError * job.mean;
+bool is_on_record(std::string_view device, const RecordJob& job, const RenderSettings& settings, uint64_t triangles,
+                  double mean) {
+    return device == the_record().device && settings.width == job.width && settings.height == job.height &&
+           settings.samples == job.samples && triangles == job.triangles &&
+           std::abs(mean - job.mean) <= 2e-3 * job.mean;
 }
 
-} // namespace
-
-Ratio ratio_of(const RaysRun& run) {
-    Ratio ratio = {"ratio_to_best", "ratio", {}};
-    if (is_the_record(run)) ratio.value = run.rays_per_second / run.scene->sets[run.set].best_rays_per_second;
-    return ratio;
+ResultField ratio_field(const char* key, const char* title, bool is_on_record, double ratio) {
+    return {key, title, is_on_record ? ResultCell(ratio) : ResultCell(), "", "{:.2f}"};
 }
-
-std::vector<Ratio> ratios_of(const BuildRun& run) {
-    const bool is_there = is_the_record(run);
-    const auto ratio = [&](double RecordScene::*seconds) {
-        return is_there ? std::optional(run.scene->*seconds / run.seconds) : std::nullopt;
-    };
-    return {{"ratio_to_optix_fast_trace", "to trace", ratio(&RecordScene::optix_fast_trace_s)},
-            {"ratio_to_optix_fast_build", "to build", ratio(&RecordScene::optix_fast_build_s)}};
-}
-
-std::vector<Ratio> ratios_of(const JobRun& run) {
-    const bool is_there = is_the_record(run);
-    const auto ratio = [&](double RecordJob::*rate) {
-        return is_there ? std::optional(run.samples_per_second / run.job->*rate) : std::nullopt;
-    };
-    return {{"ratio_to_mitsuba", "times Mitsuba 3", ratio(&RecordJob::mitsuba)},
-            {"ratio_to_cycles", "times Cycles", ratio(&RecordJob::cycles)},
-            {"ratio_to_pbrt", "times pbrt-v4", ratio(&RecordJob::pbrt)}};
-}
-
-ResultField field_of(const Ratio& ratio) { return {ratio.key, ratio.title, ratio.value, "", "{:.2f}"}; }
 
 std::string why_no_ratios(const RecordJob& job) {
     return fmt::format(

@@ -1,8 +1,8 @@
 #pragma once
 
-// Ratios to stored figures (bench/figures.json): what public tracers, builders and renderers reached on one NVIDIA H200
-// at what `pertev bench rays`, `build` and `render` measure, and our rates over theirs: above 1 ours is faster. There
-// is a ratio only where device, scene and job are those of the figure:
+// Comparison with stored figures (bench/figures.json): what public tracers, builders and renderers reached on one
+// NVIDIA H200 at what `pertev bench rays`, `build` and `render` measure. A run is on the record only if device, scene
+// and job are those of the figure:
 // - the device has the card's very name: "NVIDIA H200 NVL" is another card, and a slice of one has a name of its own;
 // - a set of rays is of a scene of the record (by its name, its camera and its triangles), has all of the record's
 //   8,294,400 rays, and they hit as often: to the record's third digit in scenes of a file, to 0.05 in the forest,
@@ -10,56 +10,27 @@
 // - a build is of a scene of the record, by its name and its triangles;
 // - a render job has its own name, size, samples and triangles, and the picture's mean is theirs to 0.2 %.
 
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "lab/measurement.h"
 #include "lab/record_scenes.h"
 
 namespace pertev {
 
-struct Ratio {
-    const char *key, *title;
-    std::optional<double> value; // nothing: device, scene or job are not the figure's
-};
+/// Whether a build of this many triangles is on the record. `scene` is null for a scene that is not.
+bool is_on_record(std::string_view device, const RecordScene* scene, uint64_t triangles);
+/// Whether rays of set number `set`, seen by the scene's own camera, are on the record.
+bool is_on_record(std::string_view device, const RecordScene* scene, uint64_t triangles, std::size_t set, uint64_t rays,
+                  double hit_share);
+/// Whether a picture of this mean over all pixels and channels is on the record.
+bool is_on_record(std::string_view device, const RecordJob& job, const RenderSettings& settings, uint64_t triangles,
+                  double mean);
 
-// A run has its result and the facts that decide whether a figure is of the same thing.
-
-struct RaysRun {
-    std::string_view device;
-    const RecordScene* scene = nullptr; // seen by its own camera; null: none of the record
-    std::size_t set = 0;                // index into RecordScene::sets
-    uint64_t triangles = 0, rays = 0;
-    double hit_share = 0, rays_per_second = 0;
-};
-
-struct BuildRun {
-    std::string_view device;
-    const RecordScene* scene = nullptr;
-    uint64_t triangles = 0;
-    double seconds = 0;
-};
-
-struct JobRun {
-    std::string_view device;
-    const RecordJob* job = nullptr;
-    uint32_t width = 0, height = 0, samples = 0; // samples per pixel
-    uint64_t triangles = 0;
-    double mean = 0, samples_per_second = 0; // mean over all pixels
-};
-
-/// To the best public tracer.
-Ratio ratio_of(const RaysRun& run);
-/// To OptiX's builds for fast tracing (not compacted) and for fast building.
-std::vector<Ratio> ratios_of(const BuildRun& run);
-/// To Mitsuba 3, Cycles and pbrt-v4.
-std::vector<Ratio> ratios_of(const JobRun& run);
-
-ResultField field_of(const Ratio& ratio);
-/// A line for people: what the figures of this job are of.
+/// How many times as fast as the stored figure a run on the record is; else nothing.
+ResultField ratio_field(const char* key, const char* title, bool is_on_record, double ratio);
+/// A line for people that says what the figures of this job belong to.
 std::string why_no_ratios(const RecordJob& job);
 
 /// Summary of at least one ratio.

@@ -38,9 +38,9 @@ struct ThesisReport {
     std::vector<std::string> lacking;            // parts that could not be made, with the reason, one line each
 };
 
-/// Tables 6.3 to 6.6, the data of figures 6.9 to 6.11, "frames" (a row for each scene, variant and depth, from which
-/// the page draws these figures), "pictures" of chapters 2 to 4, "variants" and "scenes". Notes say what has no
-/// figures and why, and how many rays A loses.
+/// Tables "frames" (a row for each scene, variant and depth, of which the page draws tables 6.3 to 6.6 and figures 6.9
+/// to 6.11), "pictures" of chapters 2 to 4, "variants" and "scenes". Notes say what has no figures and why, and how
+/// many rays A loses.
 Measurement measurement_of(const ThesisReport& thesis, Measurement head = {});
 std::string text_of(const ThesisReport& thesis);
 

@@ -136,20 +136,6 @@ std::optional<TransportPoint> at_time(const TransportRow& row, double seconds) {
     return point;
 }
 
-std::optional<TransportPoint> at_samples(const TransportRow& row, uint32_t samples) {
-    if (row.is_solved) return std::nullopt;
-    std::vector<TransportFigures> all;
-    for (const Repetition& repetition : row.repetitions) {
-        const auto at = std::ranges::find(repetition, samples, &TransportFigures::samples);
-        if (at == repetition.end()) return std::nullopt;
-        all.push_back(*at);
-    }
-    if (all.empty()) return std::nullopt;
-    TransportPoint point = mean_of(all);
-    point.samples = samples;
-    return point;
-}
-
 double equal_seconds(const TransportScene& scene) {
     double least = 0;
     for (const bool are_solved : {false, true}) {
@@ -159,21 +145,6 @@ double equal_seconds(const TransportScene& scene) {
         });
     }
     return least;
-}
-
-uint32_t equal_samples(const TransportScene& scene) {
-    uint32_t most = 0;
-    for (const TransportRow& row : scene.rows) {
-        if (row.is_solved || row.repetitions.empty()) continue;
-        for (const TransportFigures& one : row.repetitions.front()) {
-            const bool have_all = std::ranges::all_of(scene.rows, [&](const TransportRow& other) {
-                return other.is_solved || other.repetitions.empty() || at_samples(other, one.samples);
-            });
-            if (have_all) most = std::max(most, one.samples);
-        }
-        break; // a count that all rows have is among this row's, so other rows add none
-    }
-    return most;
 }
 
 std::optional<double> efficiency(const TransportPoint& point) {

@@ -68,8 +68,7 @@ struct TransportScene {
 };
 
 struct TransportReport {
-    std::string device, commit;
-    uint32_t threads = 0; // CPU threads
+    std::string device;
     uint32_t width = 0, height = 0, max_depth = 0, repetitions = 0, seed = 0;
     double seconds = 0; // rendering time of each integrator in each scene
     std::vector<TransportScene> scenes;
@@ -103,14 +102,10 @@ std::vector<TransportPoint> points_of(const TransportRow& row);
 /// the sampling time (values of 0 are interpolated linearly). Absent if `seconds` lies outside a repetition's figures
 /// or there are none. For solutions the last one that was ready is used.
 std::optional<TransportPoint> at_time(const TransportRow& row, double seconds);
-/// Absent if some repetition lacks this number of samples, and for solutions, which samples do not improve.
-std::optional<TransportPoint> at_samples(const TransportRow& row, uint32_t samples);
 
-/// The longest time that all repetitions of all integrators with figures have reached, and the largest number of
-/// samples for which all of them have a picture; 0 if there is none. Solutions are ignored, except for the time if
-/// there is nothing else.
+/// The longest time that all repetitions of all integrators with figures have reached; 0 if there is none. Solutions
+/// are ignored unless there is nothing else.
 double equal_seconds(const TransportScene& scene);
-uint32_t equal_samples(const TransportScene& scene);
 
 /// 1 / (relMSE seconds) from means; absent if either is 0. It is meaningless for light without noise.
 std::optional<double> efficiency(const TransportPoint& point);

@@ -73,7 +73,6 @@ ResultTable scenes_of(const TransportReport& report) {
         append(fields, {{"reference_hdr_flip_of_halves", "HDR-FLIP of its halves", s.reference.flip},
                         {"reference_lacks", "it lacks", if_said(s.reference.lacks)},
                         {"equal_seconds", "equal time", equal_seconds(s), "s"},
-                        {"equal_samples", "equal samples", equal_samples(s)},
                         {"triangles", "triangles", s.triangles},
                         {"width", "width", report.width},
                         {"height", "height", report.height},
@@ -153,14 +152,6 @@ ResultTable repetitions_of(const TransportReport& report) {
     return table;
 }
 
-Fields report_fields(const TransportReport& r) {
-    return {{"device", "", r.device},           {"commit", "", r.commit},
-            {"threads", "", r.threads},         {"width", "", r.width},
-            {"height", "", r.height},           {"max_depth", "", r.max_depth},
-            {"repetitions", "", r.repetitions}, {"seed", "", r.seed},
-            {"budget_seconds", "", r.seconds}};
-}
-
 /// "cast: point, spot and ... lights alone", for example: a line for each integrator without figures.
 std::vector<std::string> rows_without_figures(const TransportScene& scene) {
     std::vector<std::string> lines;
@@ -209,69 +200,31 @@ ResultTable equal_time_table(const TransportScene& scene) {
     return table;
 }
 
-ResultTable equal_samples_table(const TransportScene& scene) {
-    const uint32_t samples = equal_samples(scene);
-    const std::vector<TableLine> lines =
-        lines_of(scene, [&](const TransportRow& row) { return at_samples(row, samples); });
-    const std::optional<double> of_path = efficiency_of_path(lines);
-    ResultTable table = {"equal_samples", fmt::format("After {} samples of each pixel", samples)};
-    for (const TableLine& line : lines) {
-        if (!line.point && !line.row->is_solved) continue;
-        Fields fields = {{"integrator", "integrator", line.row->name}};
-        append(fields, point_fields(line, of_path));
-        const auto& p = line.point;
-        append(fields,
-               {{"seconds", "rendering", value_at(p, [](const auto& at) { return at.seconds.mean; }), "s", "{:.3g}"},
-                {"seconds_half_width", "±", value_at(p, [](const auto& at) { return at.seconds.half_width; }), "s",
-                 "{:.2g}"},
-                {"note", "", line.row->is_solved ? ResultCell("no samples: it is solved") : ResultCell()}});
-        table.add(fields);
-    }
-    return table;
-}
-
 Measurement measurement_of(const TransportReport& report, Measurement m) {
     m.kind = "transport", m.title = "Laboratory of light transport";
     m.interrupted = report.interrupted;
-    ResultTable by_time = {"equal_time", "At equal time"}, by_samples = {"equal_samples", "At equal samples"},
-                points = {"points", "Means over repetitions"};
+    ResultTable by_time = {"equal_time", "At equal time"}, points = {"points", "Means over repetitions"};
     for (const TransportScene& scene : report.scenes) {
-        if (has_findings(scene)) {
-            add_all(scene, equal_time_table(scene), by_time);
-            add_all(scene, equal_samples_table(scene), by_samples);
-        }
+        if (has_findings(scene)) add_all(scene, equal_time_table(scene), by_time);
         add_points(scene, points);
         for (const auto& lines : {rows_without_figures(scene), scene.notes}) {
             for (const std::string& line : lines) m.notes.push_back(scene.name + ": " + line);
         }
         m.pictures.insert(m.pictures.end(), scene.pictures.begin(), scene.pictures.end());
     }
-    m.tables = {scenes_of(report), by_time, by_samples, points, repetitions_of(report)};
+    m.tables = {scenes_of(report), by_time, points, repetitions_of(report)};
     return m;
 }
 
-std::string csv_of(const TransportReport& report) { return csv_of(repetitions_of(report), report_fields(report)); }
-
 std::string text_of(const TransportReport& report) {
+    const Measurement m = measurement_of(report);
     std::string text;
     for (const TransportScene& scene : report.scenes) {
-        text += fmt::format("{}{}{}, {}x{}, at most {} scatterings, on {}\nreference: {}\n", text.empty() ? "" : "\n",
-                            scene.name, scene.shows.empty() ? "" : " (" + scene.shows + ")", report.width,
-                            report.height, report.max_depth, report.device, describe_reference(scene.reference));
-        if (has_findings(scene)) {
-            const std::string of = report.repetitions == 1
-                                       ? "one repetition, so that nothing is known of its noise"
-                                       : fmt::format("mean of {} repetitions ± 95 % confidence", report.repetitions);
-            const ResultTable by_time = equal_time_table(scene), by_samples = equal_samples_table(scene);
-            text += fmt::format("\n{} ({})\n{}\n{}\n{}", by_time.title, of, text_of(by_time), by_samples.title,
-                                text_of(by_samples));
-        }
-        const std::vector<std::string> without = rows_without_figures(scene);
-        if (!without.empty() || !scene.notes.empty()) text += '\n';
-        for (const std::string& line : without) text += line + '\n';
-        for (const std::string& note : scene.notes) text += note + '\n';
+        text += fmt::format("{}, reference: {}\n", scene.name, describe_reference(scene.reference));
     }
-    if (report.interrupted) text += "\ninterrupted: this is what had been measured\n";
+    text += '\n' + text_of(m.table("equal_time")) + '\n';
+    for (const std::string& note : m.notes) text += note + '\n';
+    if (report.interrupted) text += "interrupted: this is what had been measured\n";
     return text;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The light transport report as a measurement: tables "scenes", "equal_time" and "equal_samples" (smallest error
+// The light transport report as a measurement: tables "scenes", "equal_time" (smallest error
 // first), "points" (means over repetitions) and "repetitions" (a row for each compared picture, and a row with the
 // reason for each integrator without figures).
 
@@ -13,15 +13,11 @@ namespace pertev {
 
 /// `head` names the machine and command.
 Measurement measurement_of(const TransportReport& report, Measurement head = {});
-/// The table "repetitions".
-std::string csv_of(const TransportReport& report);
-/// Returns text for a terminal: for each scene the reference, both equal-work tables, integrators without figures and
+/// Returns text for a terminal: for each scene the reference, the table at equal time, integrators without figures and
 /// why, and notes.
 std::string text_of(const TransportReport& report);
 
-/// Compares integrators at the longest time and at the largest sample count that all of a scene's integrators
-/// reached.
+/// Compares integrators at the longest time that all of a scene's integrators reached.
 ResultTable equal_time_table(const TransportScene& scene);
-ResultTable equal_samples_table(const TransportScene& scene);
 
 } // namespace pertev

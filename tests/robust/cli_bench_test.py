@@ -21,7 +21,7 @@ class Bench(CliTest):
     def test_scenes_are_measured_as_a_user_meets_them(self):
         made = self.succeed("bench", *SMALL, "--scene", "cornell-box", "--json").events("bench")
         self.assertEqual([(of["scene"], of["triangles"]) for of in made], [("cornell-box", 38)])
-        for key in ["samples_per_second", "camera_rays_per_second", "bounce_rays_per_second", "tree_bytes_per_triangle"]:
+        for key in ["samples_per_second", "camera_rays_per_second", "bounce_rays_per_second"]:
             self.assertGreater(made[0][key], 0, key)
         text = self.succeed("bench", *SMALL, "--scene", "cornell-box", "--scene", "cornell-box").stdout
         self.assertRegex(text, r"(?s)^scene +device .*\ncornell-box .*\ncornell-box .*\n$")
@@ -38,9 +38,7 @@ class Bench(CliTest):
         text = self.succeed("bench", "render", *line).stdout
         self.assertRegex(text, r"(?s)^job +S8\ndevice +CPU\n.*samples a second .*\n"
                                r"no ratios to others: .* NVIDIA H200, 1920x1080, 256 spp, 262204 triangles [^\n]*\n$")
-        self.assertEqual([made[key] for key in ("moved_samples_per_second", "ratio_to_isolated_rays",
-                                                "structure_bytes_per_triangle")], [None] * 3)
-        self.assertEqual(made["queue_bytes"], 0) # a CPU's loop has none
+        self.assertEqual([made[key] for key in ("moved_samples_per_second", "ratio_to_isolated_rays")], [None] * 2)
         held = self.succeed("bench", "render", *line, "--isolated", "--json").events("job")[0]
         self.assertGreater(held["ratio_to_isolated_rays"], 0)
         moved = self.succeed("bench", "render", *line, "--moves", "3", "--json").events("job")[0]
@@ -179,19 +177,13 @@ class Bench(CliTest):
         self.assertGreater(fine["ratio"], 1.5)
         self.assertLess(abs(fine["mean"] / fine["mean_independent"] - 1), 0.05)
 
-    def test_frames_are_the_same_again_and_like_the_picture_of_many_samples(self):
+    def test_frames_are_the_same_again_and_as_their_flags_say(self):
         line = ["bench", "frames", "cornell-box", "--device", "cpu", "--size", "48x36", "--frames", "6"]
         made = [self.succeed(*line, "--json").events("frames")[0] for _ in range(2)]
         self.assertEqual(made[0]["picture"], made[1]["picture"])
         self.assertGreater(made[0]["median_seconds"], made[0]["reconstruction_seconds"] + made[0]["copy_seconds"])
-        self.assertIsNone(made[0]["hdr_flip"])
-        with tempfile.TemporaryDirectory() as folder:
-            still = self.succeed(*line, "--still", "--reference", "64", "--write", folder, "--json").events("frames")[0]
-            self.assertEqual(sorted(os.listdir(folder)), [f"frame-{k:04}.png" for k in range(6)])
+        still = self.succeed(*line, "--still", "--json").events("frames")[0]
         self.assertNotEqual(still["picture"], made[0]["picture"])
-        self.assertLess(still["hdr_flip"], 0.7 * still["hdr_flip_of_sample"])
-        self.assertGreater(still["reference_mean"], still["mean"])  # in so small a picture the lamp is all edge
-        self.assertRegex(self.succeed(*line, "--reference", "4").stdout, r"(?m)^HDR-FLIP of the last frame +0\.\d")
         shared = [self.succeed(*line, "--restir", name, "--json").events("frames")[0] for name in ("di", "gi")]
         self.assertEqual([event["reconstruction"]["restir"] for event in [made[0], *shared]], ["off", "di", "gi"])
         self.assertEqual(len({event["picture"] for event in [made[0], *shared]}), 3)
@@ -200,7 +192,6 @@ class Bench(CliTest):
                          {"resolution_scale": 0.5, "passes": 2, "anti_alias": False})
         self.refuse(2, *line, "--restir", "all", says=["--restir", "off", "di", "gi"])
         self.refuse(2, *line, "--spp", "4", says=["--spp"])
-        self.refuse(6, *line, "--write", "/nowhere/at/all", says=["/nowhere/at/all"])
 
     def test_a_sequence_is_measured_beside_what_another_program_made_of_its_samples(self):
         line = ["bench", "sequence", "cornell-box", "--device", "cpu", "--size", "32x24", "--turntable", "90", "--frames", "0-2"]
@@ -211,7 +202,7 @@ class Bench(CliTest):
                              sorted(f"frame-{k:04}{kind}.pfm" for k in range(3) for kind in kinds))
             for k in range(3):  # a program that does nothing
                 shutil.copy(f"{folder}/frame-{k:04}.pfm", f"{folder}/frame-{k:04}-denoised.pfm")
-            done = self.succeed(*line, "--reference", "32", "--peer", folder, "--strips", folder, "--json")
+            done = self.succeed(*line, "--reference", "32", "--peer", folder, "--json")
             made = done.events("sequence_errors")[0]
             self.assertEqual(made["peer"], made["sample"])
             self.assertLess(made["ours"]["hdr_flip"], made["sample"]["hdr_flip"])

@@ -77,47 +77,31 @@ class WhatIsWritten(LabTest):
         page = self.check_html(self.path("new/out/report.html"))
         self.assertEqual(page["tables"], measurement["tables"])
         self.assertTrue(all(picture["image"].startswith("data:image/png;base64,") for picture in page["pictures"]))
-        self.assertEqual(len(page["pictures"]), 2 * 2)
-        pictures = glob.glob(self.path("new/out/*.png"))
+        titles = [f"binned {walk} rta near" for walk in ("if-if", "wide8")]
         for kind in ["nodes", "triangles"]:
-            for walk in ["if-if", "wide8"]:
-                self.assertIn(self.path(f"new/out/{kind}-binned-{walk}-rta-near.png"), pictures)
-        for picture in pictures:
-            with open(picture, "rb") as file:
-                self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
-            self.info(picture)
+            self.assertCountEqual([picture["title"] for picture in page["pictures"] if picture["group"].endswith(kind)], titles)
+        self.assertEqual(sorted(os.listdir(self.path("new/out"))), ["report.csv", "report.html", "report.json"])
 
     def test_no_heat_maps_means_no_pictures(self):
         self.report("cornell-box", *SMALL, "--no-heat-maps", "-o", "out")
-        self.assertEqual(sorted(os.listdir(self.path("out"))), ["report.csv", "report.html", "report.json"])
+        self.assertEqual(self.check_html(self.path("out/report.html"))["pictures"], [])
 
     def test_heat_maps_are_of_the_first_combination_of_each_structure_and_walk(self):
-        for flags, switches in [("--rta off", "no-rta-near"), ("--order off", "rta-unordered"),
-                                ("--tests fast --rta on", "rta-near-fast-tests"), ("--order both", "rta-near"),
-                                ("--tests fast,exact --rta off,nodes,on", "rta-near"),
-                                ("--rays record --count 3000", "rta-near")]:
+        for flags, switches in [("--rta off", "no-rta near"), ("--order off", "rta unordered"),
+                                ("--tests fast --rta on", "rta near fast-tests"), ("--order both", "rta near"),
+                                ("--tests fast,exact --rta off,nodes,on", "rta near"),
+                                ("--rays record --count 3000", "rta near")]:
             with self.subTest(flags=flags):
                 report = self.report("cornell-box", "--structures", "binned", "--traversals", "if-if", *flags.split(), "-o",
                                      "out")
                 self.assertFalse([note for note in report["notes"] if "no heat maps" in note])
-                self.assertEqual(sorted(name for name in os.listdir(self.path("out")) if name.endswith(".png")),
-                                 [f"nodes-binned-if-if-{switches}.png", f"triangles-binned-if-if-{switches}.png"])
+                self.assertEqual([picture["title"] for picture in self.check_html(self.path("out/report.html"))["pictures"]],
+                                 [f"binned if-if {switches}"] * 2)
         for flags in ["--rays shadow", "--rays record --count 500"]:
             with self.subTest(flags=flags):
                 report = self.report("cornell-box", *SMALL, *flags.split(), "-o", "none")
                 self.assertIn("no heat maps", report["notes"][0])
                 self.assertIn("no heat maps", self.check_html(self.path("none/report.html"))["notes"][0])
-
-    def test_a_report_removes_the_heat_maps_of_the_one_before_it_and_nothing_else(self):
-        self.report("cornell-box", *SMALL, "-o", "out")
-        mine = ["nodes-of-mine.png", "nodes.png", "binned.png", "notes.txt", "triangles-binned-if-if-rta-near.png.bak"]
-        for name in mine:
-            write(self.path("out/" + name), "mine")
-        os.mkdir(self.path("out/nodes-sbvh-if-if-rta-near.png"))
-        self.report("cornell-box", "--structures", "binned", "--traversals", "wide8", "-o", "out")
-        self.assertEqual(sorted(os.listdir(self.path("out"))),
-                         sorted([*mine, "nodes-sbvh-if-if-rta-near.png", "nodes-binned-wide8-rta-near.png",
-                                 "triangles-binned-wide8-rta-near.png", "report.csv", "report.html", "report.json"]))
 
     def test_a_name_of_any_bytes_is_no_trouble(self):
         odd = b"odd\xff\xc3"
@@ -165,8 +149,8 @@ class WhatIsWritten(LabTest):
                 frames = rows_of(page, "frames")  # figures 6.9 to 6.11
                 self.assertEqual({row["variant"] for row in frames}, {"SWW", "SWW-R", "Packet", "Packet-R", "A"})
                 self.assertEqual(sorted({row["depth"] for row in frames}), [1, 2])
-                self.assertEqual(rows_of(page, "table-6.6")[0]["A_seconds"],
-                                 [row["seconds"] for row in frames if row["variant"] == "A"][0])
+                self.assertEqual(len(frames), 2 * 5 * 2)  # tables 6.3 to 6.6, which the page draws of them
+                self.assertEqual(self.read_csv(self.path("out/thesis.csv"))[0]["variant"], "SWW")
                 self.assertEqual(len(glob.glob(self.path("out/figure-6.[78]-*al.png"))), 4)
                 tables = glob.glob(self.path("out/thesis-[12].csv"))
                 counts = [{row["scene_triangles"] for row in self.read_csv(table)} for table in tables]
@@ -217,22 +201,19 @@ class WhatIsWritten(LabTest):
         self.assertIn("Not made: figure-3.6: ", self.check_html(self.path("out/thesis.html"))["notes"][0])
 
     def check_thesis_pictures(self, outcome, page):
-        """That page, files, CSV and the last event have the same pictures of chapters 2 to 4; their files."""
+        """That page, files and the last event have the same pictures of chapters 2 to 4; their files."""
         pictures = rows_of(outcome.events("thesis")[-1], "pictures")
         self.assertEqual(rows_of(page, "pictures"), pictures)
-        rows = self.read_csv(self.path("out/thesis-pictures.csv"))
-        self.assertEqual([row["file"] for row in rows], [picture["file"] for picture in pictures])
         files = [picture["file"] for picture in pictures]
         for name in ["3.3", "3.4", "3.6", "3.7a", "3.7b", "3.7c", "3.7d", "3.8", "3.9a", "3.9b", "3.9c", "3.10a", "3.10b"]:
             self.assertIn(f"figure-{name}.png", files)
         written = glob.glob(self.path("out/*-[234]*.png")) + glob.glob(self.path("out/*-[234]*.svg"))
         self.assertCountEqual([os.path.basename(name) for name in written], files)
         shown = {picture["file"]: picture for picture in page["pictures"]}
-        for row, picture in zip(rows, pictures):
+        for picture in pictures:
             self.assertIn(picture["shows"], shown[picture["file"]]["caption"])
             self.assertEqual(shown[picture["file"]]["group"], f"{picture['place']}: {picture['title']}")
             self.assertIn(picture["command"] or "Made by the laboratory alone.", shown[picture["file"]]["caption"])
-            self.assertEqual((row["shows"], row["command"]), (picture["shows"], picture["command"] or ""))
             if picture["file"].endswith(".svg"):
                 ElementTree.parse(self.path("out/" + picture["file"]))
                 self.assertIsNone(picture["samples"])

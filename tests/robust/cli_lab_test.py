@@ -262,6 +262,13 @@ class WhatIsMeasured(LabTest):
                 for one, other in zip(first["sets"], again["sets"]):
                     self.assertAlmostEqual(one["hit_share"], other["hit_share"], delta=0.02)
 
+    def test_the_old_name_of_traversals_is_accepted_and_hidden(self):
+        report = self.report("box.obj", *INSIDE, "--structures", "binned", "--walks", "if-if")
+        self.assertEqual({of["walk"] for of in report["combinations"]}, {"if-if"})
+        shown = self.succeed("lab", "--help", "all").stdout
+        self.assertIn("--traversals", shown)
+        self.assertNotIn("--walks", shown)
+
     def test_what_is_named_twice_is_measured_once(self):
         once = self.report("box.obj", *INSIDE, "--structures", "binned,octree", "--traversals", "if-if,octree")
         for twice in [["--structures", "binned,octree,binned", "--traversals", "if-if,octree"],

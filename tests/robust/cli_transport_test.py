@@ -38,7 +38,7 @@ class Transport(CliTest):
                          ["transport-1-bidirectional.exr", "transport-1-path.exr", "transport-1-reference.exr",
                           "transport.csv", "transport.html", "transport.json"])
         (scene,) = rows_of(report, "scenes")
-        self.assertEqual((scene["scene"], scene["equal_samples"], scene["reference_samples"]), ("cornell", 4, 8))
+        self.assertEqual((scene["scene"], scene["reference_samples"]), ("cornell", 8))
         self.assertGreater(scene["reference_rel_mse"], 0)
         repetitions = rows_of(report, "repetitions")
         self.assertEqual(len(repetitions), 2 * 3 * 3 + 1)
@@ -46,13 +46,13 @@ class Transport(CliTest):
         self.assertIsNone(repetitions[-1]["rel_mse"])
         rows = list(csv.DictReader(self.read("new/out/transport.csv").splitlines()))
         self.assertEqual(len(rows), len(repetitions))
-        at_samples = {row["integrator"]: row for row in rows_of(report, "equal_samples")}
+        points = {(row["integrator"], row["samples"]): row for row in rows_of(report, "points")}
         for name in ("path", "bidirectional"):
             ran = [row for row in repetitions if row["integrator"] == name]
             self.assertEqual([row["samples"] for row in ran], [1, 2, 4] * 3)
             mean = sum(row["rel_mse"] for row in ran if row["samples"] == 4) / 3
-            self.assertAlmostEqual(at_samples[name]["rel_mse"] / mean, 1, 6)
-            self.assertAlmostEqual(at_samples[name]["efficiency"] * mean * at_samples[name]["seconds"], 1, 6)
+            self.assertAlmostEqual(points[name, 4]["rel_mse"] / mean, 1, 6)
+            self.assertAlmostEqual(points[name, 4]["efficiency"] * mean * points[name, 4]["seconds"], 1, 6)
             self.assertGreater(ran[0]["device_bytes"], 0)
             self.assertEqual([float(row["rel_mse"]) for row in rows if row["integrator"] == name],
                              [row["rel_mse"] for row in ran])
@@ -75,9 +75,6 @@ class Transport(CliTest):
         self.assertEqual((path[0]["is_solved"], solved[0]["is_solved"], solved[0]["refused"]), (False, True, None))
         self.assertGreater(solved[0]["host_bytes"], 0)
         self.assertEqual(path[0]["host_bytes"], 0)
-        by_samples = {row["integrator"]: row for row in rows_of(report, "equal_samples")}["radiosity"]
-        self.assertEqual((by_samples["rel_mse"], by_samples["note"]), (None, "no samples: it is solved"))
-        self.assertEqual(rows_of(report, "scenes")[0]["equal_samples"], 4)
         for number in range(3):
             patches = [row["patches"] for row in solved if row["repetition"] == number]
             self.assertEqual(patches, sorted(patches))

@@ -40,13 +40,27 @@ TEST_CASE("a cell is null in JSON and empty in CSV where there is no value, and 
 }
 
 TEST_CASE("tables become CSV and aligned text") {
-    CHECK(csv_of(two_rows()) == "name,seconds,bytes\n\"a \"\"b\"\", c\",0.25,12345678901\n,0,1\n");
-    CHECK(csv_of(two_rows(), {{"x", "", std::optional<int>()}, {"y", "", 2}}) ==
-          "x,y,name,seconds,bytes\n,2,\"a \"\"b\"\", c\",0.25,12345678901\n,2,,0,1\n");
+    Measurement m = {.program = "p", .date = "d", .processor = "a, b", .threads = 2, .tables = {two_rows()}};
+    CHECK(csv_of(m, "times") == "program,date,processor,threads,device,name,seconds,bytes\n"
+                                "p,d,\"a, b\",2,CPU,\"a \"\"b\"\", c\",0.25,12345678901\np,d,\"a, b\",2,CPU,,0,1\n");
+    m.tables.push_back({"scene", "Scene"});
+    m.tables.back().add({{"x", "", std::optional<int>()}, {"y", "", 2}});
+    CHECK(has(csv_of(m, "times"), "device,x,y,name,"));
+    CHECK(has(csv_of(m, "times"), ",CPU,,2,,0,1\n"));
     CHECK(text_of(two_rows()) == "name      time s\na \"b\", c   0.250\n-          0.000\n"); // bytes have no title
-    CHECK(text_of(two_rows(), {"bytes", "name"}) ==
-          "bytes            name\n12345678901  a \"b\", c\nyes                 -\n");
+    ResultTable signs = {"signs", "Signs"};
+    signs.add({{"a", "longer name", "x"}, {"b", "y", "±1%"}}); // ± is one character of two bytes
+    CHECK(text_of(signs) == "longer name    y\nx            ±1%\n");
     CHECK(two_rows().at(0, "seconds") == 0.25);
+}
+
+TEST_CASE("a pivoted table has a row and a column for each value, and gaps where there is none") {
+    ResultTable table = {"rates", "Rates"};
+    const auto add = [&](const char* tree, ResultCell set, double rate) {
+        table.add({{"tree", "tree", tree}, {"set", "set", set}, {"rate", "", rate, "", "{:.1f}"}});
+    };
+    add("a", "near", 1), add("b", "far", 4), add("a", "far", 2), add("c", {}, 9);
+    CHECK(text_of(pivot(table, "tree", "set", "rate")) == "tree  near  far\na      1.0  2.0\nb        -  4.0\n");
 }
 
 TEST_CASE("a measurement says machine, command and date, and has its tables by keys, titles and units") {

@@ -1,4 +1,4 @@
-// Results derived from measured errors: means and bands, equal time, equal samples, efficiency; and the report's
+// Results derived from measured errors: means and bands, equal time, efficiency; and the report's
 // texts.
 
 #include <array>
@@ -62,7 +62,6 @@ TEST_CASE("Student's t matches tables and approaches the normal distribution") {
 TEST_CASE("equal-time figures interpolate each repetition logarithmically") {
     const TransportScene scene = small_transport_scene();
     CHECK(equal_seconds(scene) == doctest::Approx(0.8));
-    CHECK(equal_samples(scene) == 8);
     // c / n is straight there: 0.8 s are 8 / 3 samples of the second, whose errors are 0.5 and 1.5 over that.
     const auto point = at_time(scene.rows[1], 0.8);
     REQUIRE(point);
@@ -112,15 +111,6 @@ TEST_CASE("the next samples fit into the remaining time, without preparing recor
     CHECK(next_samples({.samples = 1, .seconds = 0}, 1, 8) == 2);
 }
 
-TEST_CASE("equal samples are the largest number that all integrators have reached") {
-    TransportScene scene = small_transport_scene();
-    for (Repetition& repetition : scene.rows[0].repetitions) repetition.push_back({13, 1.3, 0.1, 0.1}); // by path alone
-    CHECK(equal_samples(scene) == 8);
-    scene.rows[1].repetitions[1].pop_back(); // an interrupt
-    CHECK(equal_samples(scene) == 4);
-    REQUIRE(at_samples(scene.rows[0], 4));
-}
-
 TEST_CASE("an error of 0 is interpolated linearly") {
     TransportRow row = transport_row("raster", {{{1, 1, 0, 0.5}, {2, 2, 0, 0.5}}});
     const auto point = at_time(row, 1.5);
@@ -137,7 +127,6 @@ TEST_CASE("for solutions, the last finished one counts at a time, and none at a 
     solved.is_solved = true, solved.host_bytes = 2 << 20;
     scene.rows.push_back(solved);
     CHECK(equal_seconds(scene) == doctest::Approx(0.8)); // path's, as without it
-    CHECK(equal_samples(scene) == 8);
     const auto point = at_time(scene.rows.back(), 0.8);
     REQUIRE(point);
     CHECK(point->rel_mse.mean == doctest::Approx(0.2));
@@ -146,52 +135,42 @@ TEST_CASE("for solutions, the last finished one counts at a time, and none at a 
     CHECK(point->patches == doctest::Approx(100));
     CHECK(at_time(scene.rows.back(), 100)->rel_mse.mean == doctest::Approx(0.02));
     CHECK_FALSE(at_time(scene.rows.back(), 0.3)); // the second's first takes longer
-    CHECK_FALSE(at_samples(scene.rows.back(), 16));
-    const ResultTable by_time = equal_time_table(scene), by_samples = equal_samples_table(scene);
+    const ResultTable by_time = equal_time_table(scene);
     CHECK(by_time.at(0, "integrator") == "radiosity");
     CHECK(by_time.at(0, "samples") == 16.0);
     CHECK(by_time.at(0, "patches") == 100.0);
     CHECK(by_time.at(0, "device_mebibytes") == 3.0);
     CHECK(by_time.at(0, "host_mebibytes") == 2.0);
     CHECK(!by_time.at(1, "host_mebibytes").is_there());
-    REQUIRE(by_samples.rows.size() == 3);
     TransportScene quick = scene; // which does not hold up the others
     quick.rows.back().repetitions = {{{4, 0.1, 0.1, 0.05, 100}}, {{4, 0.1, 0.1, 0.05, 100}}};
     CHECK(equal_seconds(quick) == doctest::Approx(0.8));
-    CHECK(equal_samples(quick) == 8);
     CHECK(at_time(quick.rows.back(), 0.8));
     TransportScene late = scene;
     for (Repetition& repetition : late.rows.back().repetitions) repetition.erase(repetition.begin());
     CHECK(equal_time_table(late).at(2, "first_seconds") == 5.5);
     CHECK(!equal_time_table(late).at(2, "rel_mse").is_there());
-    CHECK(by_samples.at(2, "integrator") == "radiosity");
-    CHECK(by_samples.at(2, "note") == "no samples: it is solved");
-    CHECK(!by_samples.at(2, "rel_mse").is_there());
     scene.rows.erase(scene.rows.begin(), scene.rows.end() - 1);
     CHECK(equal_seconds(scene) == doctest::Approx(5)); // there is nothing else
     TransportReport report = {.device = "CPU"};
     report.scenes.push_back(scene);
-    CHECK(test::has(csv_of(report), ",400,0\n"));
+    CHECK(test::has(csv_of(measurement_of(report), "repetitions"), ",400,0\n"));
     const ResultTable repetitions = measurement_of(report).table("repetitions");
     CHECK(repetitions.at(0, "is_solved") == true);
     CHECK(repetitions.at(0, "device_bytes") == 3145728);
     CHECK(repetitions.at(0, "host_bytes") == 2097152);
 }
 
-TEST_CASE("efficiency is one over error times time, and its ratio to path's stands in the tables") {
+TEST_CASE("efficiency is one over error times time, and its ratio to path's stands in the table") {
     const TransportScene scene = small_transport_scene();
-    const auto path = at_samples(scene.rows[0], 8);
+    const auto path = at_time(scene.rows[0], 0.8);
     REQUIRE(path);
     CHECK(*efficiency(*path) == doctest::Approx(1 / (0.25 * 0.8)));
-    CHECK_FALSE(at_samples(scene.rows[0], 3));
-    const ResultTable by_samples = equal_samples_table(scene), by_time = equal_time_table(scene);
-    REQUIRE(by_samples.rows.size() == 2);
-    CHECK(by_samples.at(0, "integrator") == "bidirectional");     // the least error first
-    CHECK(by_samples.at(0, "of_path").text("{:.3g}") == "0.667"); // half the error in thrice the time
-    CHECK(by_samples.at(1, "of_path") == 1.0);
+    const ResultTable by_time = equal_time_table(scene);
     REQUIRE(by_time.rows.size() == 2);
-    CHECK(by_time.at(0, "integrator") == "path");
-    CHECK(by_time.at(1, "of_path").text("{:.3g}") == "0.667");
+    CHECK(by_time.at(0, "integrator") == "path"); // the least error first
+    CHECK(by_time.at(0, "of_path") == 1.0);
+    CHECK(by_time.at(1, "of_path").text("{:.3g}") == "0.667"); // half the error in thrice the time
 }
 
 TEST_CASE("an interrupted repetition counts as far as it has figures") {
@@ -241,11 +220,10 @@ TEST_CASE("each preset is a scene of the program, and all light is what three in
 TEST_CASE("the light transport report lists results and reasons for missing ones") {
     TransportReport report = {.device = "CPU", .width = 4, .height = 4, .max_depth = 8, .repetitions = 2};
     report.scenes.push_back(small_transport_scene());
-    const std::string csv = csv_of(report), text = text_of(report);
     const Measurement m = measurement_of(report);
+    const std::string csv = csv_of(m, "repetitions"), text = text_of(report);
     CHECK(test::count(csv, "\n") == 1 + 2 * 8 + 1);
     CHECK(test::has(csv, "\"lamps alone, and \"\"more\"\"\""));
-    CHECK(m.table("scenes").at(0, "equal_samples") == 8);
     CHECK(m.table("scenes").at(0, "reference_rel_mse") == 0.001);
     const ResultTable& points = m.table("points");
     REQUIRE(points.rows.size() == 8);

@@ -221,13 +221,15 @@ function bars(table, view, rows, title) {
   return holder;
 }
 
-/** Values of y by two columns. */
+/** Values of y, or of several, by two columns. */
 function matrix(table, view, rows, title) {
-  const there = rows.filter((row) => isNumber(row[view.y]));
+  const ys = [view.y].flat(), there = rows.filter((row) => ys.some((y) => isNumber(row[y])));
   if (there.length === 0) return null;
-  const across = distinct(there.map((row) => row[view.column])), down = distinct(there.map((row) => row[view.row]));
-  const columns = [{ key: view.row, title: titleOf(table, view.row), unit: "" }, ...across.map((name) => ({ key: String(name), title: String(name), unit: "" }))];
-  const at = (one, other) => there.find((row) => row[view.row] === one && row[view.column] === other)?.[view.y] ?? null;
+  const down = distinct(there.map((row) => row[view.row]));
+  const across = distinct(there.map((row) => row[view.column])).flatMap((name) => ys.map((y) => [name, y]));
+  const titles = across.map(([name, y]) => (ys.length > 1 ? `${name}, ${titleOf(table, y)}` : String(name)));
+  const columns = [view.row, ...titles].map((key, i) => ({ key, title: i === 0 ? titleOf(table, key) : key, unit: "" }));
+  const at = (one, [other, y]) => there.find((row) => row[view.row] === one && row[view.column] === other)?.[y] ?? null;
   return make("div", {}, showTable({ name: "matrix", title, columns, rows: down.map((one) => [one, ...across.map((other) => at(one, other))]) }));
 }
 
@@ -299,30 +301,6 @@ function showGroup(name, pictures) {
   return make("section", {}, make("h3", {}, name), make("p", { class: "notes" }, "Point at a picture to magnify the same place in all of them; click holds it, the wheel zooms."), make("div", { class: "pictures" }, figures));
 }
 
-/** A plot of any two columns of a table, as its reader chooses. */
-function chooser(tables) {
-  const able = tables.filter((table) => table.rows.length > 1 && table.columns.filter((column, i) => table.rows.some((row) => isNumber(row[i]))).length > 1);
-  if (able.length === 0) return null;
-  const holder = make("div"), select = (options) => make("select", { change: () => draw() }, options.map((text) => make("option", {}, text)));
-  const which = make("select", { change: () => choose() }, able.map((table, i) => make("option", { value: i }, table.title || table.name)));
-  const log = make("input", { type: "checkbox", change: () => draw() });
-  let x, y, series;
-  const bar = make("div", { class: "bar" });
-  function choose() {
-    const table = able[which.value], numbers = table.columns.filter((column, i) => table.rows.some((row) => isNumber(row[i]))).map((column) => column.key);
-    [x, y, series] = [select(numbers), select(numbers), select(table.columns.map((column) => column.key))];
-    y.selectedIndex = 1;
-    bar.replaceChildren("Plot of", which, "y", y, "over x", x, "by", series, make("label", {}, log, " logarithmic"));
-    holder.replaceChildren();
-  }
-  function draw() {
-    const table = able[which.value], view = { x: x.value, y: y.value, series: series.value, log: log.checked, all: true };
-    holder.replaceChildren(lines(table, view, records(table), `${y.value} over ${x.value}`) ?? make("p", { class: "notes" }, "Nothing to draw: choose columns with different numbers."));
-  }
-  choose();
-  return make("details", {}, make("summary", {}, "Draw another plot"), bar, holder);
-}
-
 function showMeasurement(m, id, isAlone) {
   const facts = [["Device", m.device ?? "CPU"], ["Driver", m.driver], ["Processor", m.processor], ["Threads", m.threads], ["Date", m.date], ["Program", m.program]];
   const kind = VIEWS[m.kind] ?? { views: [] }, groups = distinct((m.pictures ?? []).map((picture) => picture.group));
@@ -339,7 +317,6 @@ function showMeasurement(m, id, isAlone) {
     make("div", { class: "plots" }, kind.views.map((view) => show(m, view))),
     groups.map((group) => showGroup(group, m.pictures.filter((picture) => picture.group === group))),
     tables.filter(isLarge).map(showAny),
-    chooser(tables),
     make("ul", { class: "notes" }, [...(m.notes ?? []).filter((note) => !isAlarm(note)), ...(kind.about ?? [])].map((note) => make("li", {}, note))));
 }
 
