@@ -72,7 +72,7 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorCode::BadInput, Place{name_},
+        throw Error(ErrorCode::BadInput, FileLocation{name_},
                     fmt::format("not a readable EXR (header, byte {}: {})", offset_, what));
     }
     void need(uint64_t count) const {

@@ -57,7 +57,7 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorCode::BadInput, Place{name_},
+        throw Error(ErrorCode::BadInput, FileLocation{name_},
                     fmt::format("not a readable Radiance HDR (at byte {}: {})", offset_, what));
     }
 

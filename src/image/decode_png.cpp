@@ -99,7 +99,7 @@ bool read_pixels(PngReader& reader, png_bytepp rows, std::size_t row_bytes) {
 }
 
 [[noreturn]] void fail(const PngReader& reader, const std::string& name) {
-    throw Error(ErrorCode::BadInput, Place{name},
+    throw Error(ErrorCode::BadInput, FileLocation{name},
                 fmt::format("not a readable PNG (at byte {}: {})", reader.offset,
                             reader.error[0] != '\0' ? reader.error : "out of memory"));
 }

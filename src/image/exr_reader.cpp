@@ -83,7 +83,7 @@ struct ExrReader::State {
         : name(std::move(name_of_file)), stream(bytes, name) {}
 
     [[noreturn]] void fail(const std::exception& error) const {
-        throw Error(ErrorCode::BadInput, Place{name}, fmt::format("not a readable EXR ({})", error.what()));
+        throw Error(ErrorCode::BadInput, FileLocation{name}, fmt::format("not a readable EXR ({})", error.what()));
     }
     const Imf::Header& header(std::size_t part) const { return file->header(static_cast<int>(part)); }
 };
@@ -165,7 +165,7 @@ std::vector<ExrChannel> ExrReader::read(std::size_t part, const std::vector<Chan
     Imf::FrameBuffer frame;
     for (const ChannelInfo& channel : wanted) {
         if (channel.is_subsampled)
-            throw Error(ErrorCode::BadInput, Place{state_->name},
+            throw Error(ErrorCode::BadInput, FileLocation{state_->name},
                         fmt::format("channel {} has fewer samples than pixels (luminance/chroma), which is not "
                                     "supported; save it as R, G, B",
                                     channel.name));

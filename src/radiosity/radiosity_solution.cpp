@@ -54,7 +54,7 @@ Hash128 content_hash(const RadiositySolution& solution) {
 }
 
 [[noreturn]] void refuse_file(const std::filesystem::path& path, const std::string& why) {
-    throw Error(ErrorCode::BadInput, Place{path.string()}, why);
+    throw Error(ErrorCode::BadInput, FileLocation{path.string()}, why);
 }
 
 /// Copies the next of `bytes` and leaves the rest.
@@ -237,13 +237,13 @@ RadiositySolution read_solution(const std::filesystem::path& path, const Scene& 
     check_scene(path, solution, scene);
     if (!solution.light) {
         messages.warn(
-            {Place{path.string()},
+            {FileLocation{path.string()},
              "made by an earlier version, which did not write down what light it was solved for: where lights "
              "or materials have changed since, it shows those of then (pertev solve radiosity makes a new "
              "one)"});
     }
     if (solution.extent.part != SolvedPart::All) {
-        messages.warn({Place{path.string()},
+        messages.warn({FileLocation{path.string()},
                        fmt::format("was ended while it was solved, and holds {} (pertev solve radiosity makes a whole "
                                    "one)",
                                    describe(solution.extent))});

@@ -37,22 +37,22 @@ struct Reprojection {
 };
 
 /// World-space point at `place` (NoisyFrameView).
-HD inline Vec3 point_at(const InstanceView* instances, const MeshView* meshes, Float4 place) {
-    const InstanceView& instance = instances[bits_of(place.x)];
+HD inline Vec3 point_at(const InstanceView* instances, const MeshView* meshes, Float4 hit) {
+    const InstanceView& instance = instances[bits_of(hit.x)];
     const MeshView& mesh = meshes[instance.mesh];
-    const Vec3 local = interpolate(mesh.positions, triangle_indices(mesh, bits_of(place.y)), place.z, place.w);
+    const Vec3 local = interpolate(mesh.positions, triangle_indices(mesh, bits_of(hit.y)), hit.z, hit.w);
     return transform_point(instance.world_from_local, local);
 }
 
 /// Reprojects `pixel`, whose sample hit the surface at `place`. The sample lies somewhere in the pixel; the centre is
 /// assumed to move with it.
 HD inline Reprojection reproject_surface(const FrameCameras& cameras, const SceneView& scene,
-                                         const PreviousScene& before, Vec2 centre, Float4 place) {
-    const Vec3 point = point_at(scene.instances, scene.meshes, place);
+                                         const PreviousScene& before, Vec2 centre, Float4 hit) {
+    const Vec3 point = point_at(scene.instances, scene.meshes, hit);
     const bool is_still = before.instances == scene.instances && before.meshes == scene.meshes;
     const ProjectedPoint now = project_point(cameras.now, point);
     const ProjectedPoint then =
-        project_point(cameras.before, is_still ? point : point_at(before.instances, before.meshes, place));
+        project_point(cameras.before, is_still ? point : point_at(before.instances, before.meshes, hit));
     return {centre + (then.pixel - now.pixel), then.depth};
 }
 

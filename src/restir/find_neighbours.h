@@ -23,21 +23,21 @@ struct FindBefore {
     SceneView scene;
     PreviousScene scene_before;
     FrameCameras cameras;
-    const Float4 *place, *normal;               // arrays of NoisyFrameView
-    const Float4 *place_before, *normal_before; // arrays of the previous frame
+    const Float4 *hit, *normal;               // arrays of NoisyFrameView
+    const Float4 *hit_before, *normal_before; // arrays of the previous frame
     Neighbours* to;
 
     HD void operator()(uint32_t pixel) const {
         Neighbours found;
-        const uint32_t object = bits_of(place[pixel].x), width = cameras.width, height = cameras.height;
+        const uint32_t object = bits_of(hit[pixel].x), width = cameras.width, height = cameras.height;
         if (object != kNoHit) {
             const Vec2 centre = {static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f};
-            const Reprojection at = reproject_surface(cameras, scene, scene_before, centre, place[pixel]);
+            const Reprojection at = reproject_surface(cameras, scene, scene_before, centre, hit[pixel]);
             const Vec2 p = at.pixel;
             if (p.x >= 0 && p.y >= 0 && p.x < static_cast<float>(width) && p.y < static_cast<float>(height)) {
                 const uint32_t there = static_cast<uint32_t>(to_int(p.y, 0, static_cast<int>(height) - 1)) * width +
                                        static_cast<uint32_t>(to_int(p.x, 0, static_cast<int>(width) - 1));
-                if (bits_of(place_before[there].x) == object && at.depth > 0 &&
+                if (bits_of(hit_before[there].x) == object && at.depth > 0 &&
                     is_seen_alike(normal_before[there], at.depth, vec3_of(normal[pixel]))) {
                     found.pixels[0] = there;
                 }
@@ -48,7 +48,7 @@ struct FindBefore {
 };
 
 /// Spatial neighbours: pixels of the same frame.
-struct FindBeside {
+struct FindNeighbours {
     PixelSurfaces here;
     const Float4* normal; // array of NoisyFrameView
     uint32_t neighbours;

@@ -91,8 +91,7 @@ void check_integrator(const RenderSettings& settings) {
                     fmt::format("with `integrator={}` at most {}", name, most_depth(settings.integrator)));
     }
     const PhotonMapSettings& photons = settings.photon_map;
-    if (settings.integrator == IntegratorKind::PhotonMap &&
-        !has_room_for_photons(photons.photons, settings.path.max_depth)) {
+    if (settings.integrator == IntegratorKind::PhotonMap && !photons_fit(photons.photons, settings.path.max_depth)) {
         throw Error(ErrorCode::OverLimit, "photons", fmt::format("{}", photons.photons),
                     fmt::format("with `max_depth={}` a pass may leave more than {} photons; at most {}",
                                 settings.path.max_depth, kMaxStored,

@@ -50,7 +50,7 @@ void set_light(const EmitterStrength& emitter, double lumens_per_watt, Light& li
         light.intensity = with_luminance(emitter, light.intensity, photometric / lumens_per_watt);
     };
     const LightParts parts = parts_of(light.kind);
-    const bool is_far = !parts.place;
+    const bool is_far = !parts.position;
     switch (emitter.unit) {
     case EmitterUnit::Watt:
     case EmitterUnit::Lumen:

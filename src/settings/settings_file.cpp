@@ -90,7 +90,7 @@ void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<
         const Setting* const setting = find_setting(name);
         if (setting != nullptr && std::ranges::find(overruled, setting->name) != overruled.end()) continue;
         if (setting == nullptr || !setting->is_kept || (setting->verbs & verbs) == 0) {
-            messages.leave_out(fmt::format("{}: {}", text_of(value.place()),
+            messages.leave_out(fmt::format("{}: {}", text_of(value.location()),
                                            setting == nullptr ? "unknown setting" : "not a setting of this verb"));
             continue;
         }
@@ -103,7 +103,7 @@ void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<
     }
     for (const auto& [name, value] : root.members()) {
         if (name != "version" && name != "scene" && name != "settings") {
-            messages.leave_out(fmt::format("{}: unknown name in a file of settings", text_of(value.place())));
+            messages.leave_out(fmt::format("{}: unknown name in a file of settings", text_of(value.location())));
         }
     }
 }

@@ -19,9 +19,9 @@ SceneTriangles triangles_of(const BinaryTrees& trees) {
     for (std::size_t part = 0; part < trees.parts.size(); ++part) {
         std::vector<BvhTriangle> list = trees.parts[part]->triangles;
         for (BvhTriangle& triangle : list) triangle.flags = 0;
-        const auto place = [](const BvhTriangle& t) { return std::pair(t.instance, t.primitive); };
-        std::ranges::sort(list, {}, place);
-        const auto copies = std::ranges::unique(list, {}, place);
+        const auto key_of = [](const BvhTriangle& t) { return std::pair(t.instance, t.primitive); };
+        std::ranges::sort(list, {}, key_of);
+        const auto copies = std::ranges::unique(list, {}, key_of);
         list.erase(copies.begin(), copies.end());
         if (part == 0) {
             triangles.baked = std::move(list);

@@ -179,7 +179,7 @@ TEST_CASE("memory of deforming meshes equals its prediction") {
     tree.start(deformed[0]);
     tree.finish();
     Queue dry = Queue::make_dry_run(false);
-    const DeformingCompressed said(dry, deformed[0].triangles);
+    const DeformingCompressed predicted(dry, deformed[0].triangles);
     CHECK(queue.allocated_bytes() - before == dry.allocated_bytes());
 }
 

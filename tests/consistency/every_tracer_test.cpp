@@ -7,9 +7,9 @@
 
 #include "base/error.h"
 #include "session/session.h"
+#include "tests/support/hang_guard.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
-#include "tests/support/tell_if_stuck.h"
 #include "tracer/traversal_kernels.h"
 
 using namespace pertev;
@@ -79,7 +79,7 @@ Tally check_all(const Scene& scene) {
                         tally.refused += reason->empty() ? 0 : 1;
                         continue;
                     }
-                    const test::TellIfStuck guard(name_of(c), 20);
+                    const test::HangGuard guard(name_of(c), 20);
                     settings.tracers = same_for_all(c);
                     session.set_settings(settings);
                     session.cut();

@@ -140,15 +140,15 @@ TEST_CASE("records are made once per picture and anew for another picture") {
         check_made(false);
         RenderSettings aside_settings = settings;
         aside_settings.width = 9;
-        session.look_aside(test::mixed_scene_camera(), aside_settings); // has records of its own
+        session.render_separately(test::mixed_scene_camera(), aside_settings); // has records of its own
         check_made(false);
         aside_settings.path.max_depth = 0;
-        session.look_aside(test::camera_with_lens(), aside_settings);
+        session.render_separately(test::camera_with_lens(), aside_settings);
         session.meter(ToneMap::Aces);
         check_made(false);
         check_picture(settings, test::camera_with_lens());
         session.cut();
-        session.look_aside(test::camera_with_lens(), settings);
+        session.render_separately(test::camera_with_lens(), settings);
         check_made(true);
         session.update_scene(prepared, kPartInstances);
         check_made(true);
@@ -186,7 +186,7 @@ TEST_CASE("a meter and looks aside trace no ray of the picture that goes on, and
             RenderSettings one_pixel = settings;
             one_pixel.width = one_pixel.height = one_pixel.samples = 1;
             one_pixel.path.max_depth = 0;
-            session.look_aside(test::mixed_scene_camera(), one_pixel);
+            session.render_separately(test::mixed_scene_camera(), one_pixel);
         }
         const RenderResult wanted = undisturbed.result(), result = session.result();
         CHECK(result.rays.total() == wanted.rays.total());
@@ -205,25 +205,25 @@ TEST_CASE("an overture's progress rises monotonically from 0 to 1") {
         settings.body = body;
         settings.batch = 2000; // many parts
         Session session(queue, prepared, test::camera_with_lens(), settings);
-        std::vector<RenderProgress> told;
+        std::vector<RenderProgress> reported;
         session.render(2, [&](const RenderProgress& now) {
-            told.push_back(now);
+            reported.push_back(now);
             return true;
         });
         const auto is_of_samples = [](const RenderProgress& now) { return now.samples_done > 0; };
-        const auto samples = std::ranges::find_if(told, is_of_samples);
-        REQUIRE(samples - told.begin() > 12);
+        const auto samples = std::ranges::find_if(reported, is_of_samples);
+        REQUIRE(samples - reported.begin() > 12);
         const auto all_rays = static_cast<double>(samples[-1].rays.total());
-        CHECK(told.front().made_share == 0);
+        CHECK(reported.front().made_share == 0);
         CHECK(samples[-1].made_share > 0.9);
-        for (auto now = told.begin(); now < samples; ++now) {
+        for (auto now = reported.begin(); now < samples; ++now) {
             const double share = now->made_share, done = static_cast<double>(now->rays.total()) / all_rays;
-            if (now > told.begin()) CHECK(share >= now[-1].made_share);
+            if (now > reported.begin()) CHECK(share >= now[-1].made_share);
             CHECK(pertev::abs(static_cast<float>(share - done)) < 0.35f);
             CHECK(share < 1);
             CHECK(now->made_seconds == now->seconds);
         }
-        for (auto now = samples; now < told.end(); ++now) {
+        for (auto now = samples; now < reported.end(); ++now) {
             CHECK(now->made_share == 1);
             CHECK(now->made_seconds >= samples[-1].seconds);
             CHECK(now->made_seconds <= now->seconds);
@@ -246,7 +246,7 @@ TEST_CASE("invalid values of records are reported with sample 0, whatever was re
     in_parts.render(1);
     in_parts.render(2);
     CHECK(in_parts.stats().invalid_samples == at_once.stats().invalid_samples);
-    in_parts.look_aside(test::camera_with_lens(), settings, 1); // makes records, too
+    in_parts.render_separately(test::camera_with_lens(), settings, 1); // makes records, too
     in_parts.cut();
     in_parts.render(3);
     CHECK(in_parts.stats().invalid_samples == at_once.stats().invalid_samples);

@@ -221,20 +221,22 @@ TEST_CASE("memory of layers equals its prediction in both bodies") {
         Queue queue = Queue::make_cpu();
         Session session(queue, prepared, test::mixed_scene_camera(), settings);
         session.render(settings.samples);
-        const std::size_t said = predicted_bytes(prepared, settings, false);
-        CHECK(queue.allocated_bytes() >= said);
-        CHECK(queue.allocated_bytes() <= said + 4096); // the filter's table, the scene's view
+        const std::size_t predicted = predicted_bytes(prepared, settings, false);
+        CHECK(queue.allocated_bytes() >= predicted);
+        CHECK(queue.allocated_bytes() <= predicted + 4096); // the filter's table, the scene's view
         RenderSettings without = settings;
         without.light_paths = nullptr;
         const std::size_t pixels = settings.width * settings.height, paths = pixels * settings.samples;
         const std::size_t layers = pixels * requested_layers->count() * 3 * sizeof(FixedSum);
         const std::size_t queues = body == PathBody::Wavefront ? paths * 48 : 0;
-        CHECK(said - predicted_bytes(prepared, without, false) == doctest::Approx(layers + queues).epsilon(0.01));
-        check_render_memory(said, settings, {said, true, false});
-        const auto error = test::thrown_error([&] { check_render_memory(said, settings, {said - 1, true, false}); });
+        CHECK(predicted - predicted_bytes(prepared, without, false) == doctest::Approx(layers + queues).epsilon(0.01));
+        check_render_memory(predicted, settings, {predicted, true, false});
+        const auto error = test::thrown_error([&] {
+            check_render_memory(predicted, settings, {predicted - 1, true, false});
+        });
         REQUIRE((error && error->code() == ErrorCode::OutOfMemory));
         CHECK(test::says(error, fmt::format("{} layers of `lpe`", requested_layers->count())));
-        CHECK(memory_to_render_in(queue, settings, said).bytes == said);
+        CHECK(memory_to_render_in(queue, settings, predicted).bytes == predicted);
         const std::size_t of_machine = memory_to_render_in(queue, settings, {}).bytes;
         const std::size_t channels = 4 + 3 + 1 + 3 * requested_layers->count(); // with albedo and depth
         CHECK(of_machine == machine_memory_bytes() - pixels * channels * sizeof(float));

@@ -14,7 +14,7 @@ using namespace pertev;
 
 namespace {
 
-RadiosityLook look_at_mixed_scene(float patch_size, uint32_t rays = 32) {
+RadiosityDisplay look_at_mixed_scene(float patch_size, uint32_t rays = 32) {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -25,7 +25,7 @@ RadiosityLook look_at_mixed_scene(float patch_size, uint32_t rays = 32) {
     return {std::make_shared<const RadiositySolution>(solve_radiosity(prepared, settings).solution), false};
 }
 
-RenderSettings shown(const RadiosityLook& look) {
+RenderSettings shown(const RadiosityDisplay& display) {
     RenderSettings settings;
     settings.width = 37; // odd on purpose: tiles do not fit
     settings.height = 21;
@@ -34,7 +34,7 @@ RenderSettings shown(const RadiosityLook& look) {
     settings.transparent = true;
     settings.integrator = IntegratorKind::Radiosity;
     settings.path.max_depth = 6;
-    settings.radiosity = look;
+    settings.radiosity = display;
     return settings;
 }
 
@@ -70,7 +70,7 @@ TEST_CASE("a session that switches to radiosity, another solution and back rende
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    const RadiosityLook looks[] = {look_at_mixed_scene(2), look_at_mixed_scene(1)};
+    const RadiosityDisplay looks[] = {look_at_mixed_scene(2), look_at_mixed_scene(1)};
     RenderSettings settings = shown(looks[0]);
     settings.pass_samples = 1;
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {

@@ -175,8 +175,8 @@ TEST_CASE("temporal gradients reuse the reconstruction's memory") {
         CAPTURE(height);
         const std::size_t pixels = std::size_t(width) * height, small = TemporalGradientsMemory::pixels(width, height);
         const Reconstruction frames(queue, width, height);
-        const TemporalGradientsMemory room = frames.room_for_change();
-        const auto apart = static_cast<std::size_t>(room.numbers - room.after);
+        const TemporalGradientsMemory memory = frames.gradients_memory();
+        const auto apart = static_cast<std::size_t>(memory.numbers - memory.after);
         CHECK(apart >= TemporalGradientsMemory::kPicture * small);
         CHECK(apart >= 2 * pixels); // the frame's own signals
     }

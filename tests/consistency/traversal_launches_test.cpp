@@ -14,9 +14,9 @@
 #include "device/buffer.h"
 #include "tests/support/check_traversal.h"
 #include "tests/support/instanced_scene.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/stress_meshes.h"
 #include "tests/support/traversal_launches.h"
 #include "trace/binary/while_while_traversal.h"
 
@@ -95,9 +95,9 @@ uint64_t count_wrong(const std::vector<Hit>& hits, const std::vector<Hit>& expec
 
 TEST_CASE("each way of distributing rays gives each ray its hit") {
     Queue queue = requested_queue();
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(std::string(c.name));
-        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(333, 20011)), c, 43);
+        const std::vector<Ray> rays = stress_rays(static_cast<uint32_t>(effort(333, 20011)), c, 43);
         const std::vector<Hit> expected = hits_by_brute_force(c.triangles, rays, AcceptAll{});
         const Bvh bvh = linked_bvh(c.triangles);
         const TreeOnDevice tree(queue, bvh);

@@ -59,9 +59,9 @@ uint32_t differing_in_window(const Image& window, const Image& whole) {
 } // namespace
 
 TEST_CASE("a film of a window has the bytes that the whole picture has there") {
-    for (uint32_t i = 0; i < kWindow.width * kWindowHeight; ++i) REQUIRE(kWindow.place_of(kWindow.pixel_at(i)) == i);
+    for (uint32_t i = 0; i < kWindow.width * kWindowHeight; ++i) REQUIRE(kWindow.slot_of(kWindow.pixel_at(i)) == i);
     CHECK(PixelWindow{}.pixel_at(1234) == 1234);
-    CHECK(PixelWindow{}.place_of(1234) == 1234);
+    CHECK(PixelWindow{}.slot_of(1234) == 1234);
 
     Messages messages;
     const Scene scene = test::make_mixed_scene();

@@ -172,26 +172,27 @@ TEST_CASE("a solution with an enlarged error warns and records that error") {
     settings.solver = RadiositySolver::Hierarchical;
     settings.patch_size = 0.2f, settings.subdivisions = 0;
     settings.link_error = 0.05f;
-    std::set<std::string> told;
-    const auto tell = [&](const char* what, double) { return told.insert(what), true; };
+    std::set<std::string> reported;
+    const auto report = [&](const char* what, double) { return reported.insert(what), true; };
     const uint64_t most = solve_radiosity(patched.prepared, settings, {}).stats.factors / 2;
-    const SolvedRadiosity solved = solve_radiosity(patched.prepared, settings, tell, most);
+    const SolvedRadiosity solved = solve_radiosity(patched.prepared, settings, report, most);
     REQUIRE(solved.stats.link_error >= 0.1f);
     CHECK(solved.solution.made.find(fmt::format(R"("link_error":{},)", solved.stats.link_error)) != std::string::npos);
-    CHECK(told.contains("links, pass 1"));
-    CHECK(told.contains(fmt::format("links, pass 1, anew by `link_error={}`", solved.stats.link_error)));
+    CHECK(reported.contains("links, pass 1"));
+    CHECK(reported.contains(fmt::format("links, pass 1, anew by `link_error={}`", solved.stats.link_error)));
 }
 
 TEST_CASE("solutions with a larger error or fewer steps than requested warn") {
     RadiositySettings settings;
     settings.solver = RadiositySolver::Hierarchical;
-    const auto said = [&](const SolveStats& stats) {
+    const auto remark_of = [&](const SolveStats& stats) {
         Messages messages;
         warn_of_limits(stats, settings, messages);
         return messages.all().empty() ? Remark("") : messages.all().front().remark;
     };
-    CHECK(said({.link_error = settings.link_error}).reason.empty());
-    const Remark larger = said({.link_error = 0.4f}), limit = said({.steps = 24, .left = 0.5, .reached_limit = true});
+    CHECK(remark_of({.link_error = settings.link_error}).reason.empty());
+    const Remark larger = remark_of({.link_error = 0.4f}),
+                 limit = remark_of({.steps = 24, .left = 0.5, .reached_limit = true});
     CHECK(larger.setting == "link_error");
     CHECK(larger.value == "0.1");
     CHECK(larger.reason.find("`link_error=0.4`") != std::string::npos);

@@ -17,14 +17,14 @@ using namespace pertev;
 
 namespace {
 
-RadiosityLook solved(const PreparedScene& prepared, const RadiositySettings& settings) {
+RadiosityDisplay solved(const PreparedScene& prepared, const RadiositySettings& settings) {
     return {std::make_shared<const RadiositySolution>(solve_radiosity(prepared, settings).solution), false};
 }
 
 Image shown_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,
-                    const RadiosityLook& look) {
+                    const RadiosityDisplay& display) {
     settings.integrator = IntegratorKind::Radiosity;
-    settings.radiosity = look;
+    settings.radiosity = display;
     return render_picture(queue, prepared, camera, settings).picture;
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("a sphere in a furnace receives pi of the furnace's radiance, and show
         settings.hemicube = 8;
         settings.form_factors = method;
         settings.subdivisions = 0;
-        const RadiosityLook look = solved(prepared, settings);
+        const RadiosityDisplay display = solved(prepared, settings);
         Camera camera;
         camera.world_from_camera = look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0});
         camera.fov_y = 0.1f; // within the sphere
@@ -142,7 +142,7 @@ TEST_CASE("a sphere in a furnace receives pi of the furnace's radiance, and show
         picture.width = picture.height = 8;
         picture.samples = 4;
         Queue queue = test::requested_queue();
-        const Image image = shown_picture(queue, prepared, camera, picture, look);
+        const Image image = shown_picture(queue, prepared, camera, picture, display);
         for (const float value : image.pixels) CHECK(static_cast<double>(value) == doctest::Approx(0.7).epsilon(0.01));
     }
 }

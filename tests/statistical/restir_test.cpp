@@ -111,7 +111,7 @@ struct BlockMeans {
         RenderSettings settings = session.settings();
         settings.path.max_depth = 0;
         settings.samples = samples;
-        add(session.look_aside(session.camera(), settings).picture, -1);
+        add(session.render_separately(session.camera(), settings).picture, -1);
     }
 };
 

@@ -22,8 +22,8 @@ TEST_CASE("every pixel comes once, also where tiles and bands do not fill the pi
         CAPTURE(size.width);
         CAPTURE(size.height);
         std::vector<uint32_t> times(std::size_t(size.width) * size.height);
-        for (uint32_t place = 0; place < times.size(); ++place) {
-            const uint32_t pixel = ordered_pixel(place, size.width, size.height);
+        for (uint32_t index = 0; index < times.size(); ++index) {
+            const uint32_t pixel = ordered_pixel(index, size.width, size.height);
             REQUIRE(pixel < times.size());
             ++times[pixel];
         }
@@ -35,9 +35,9 @@ TEST_CASE("32 pixels that come together are one tile") {
     for (const Size size : {Size{1920, 1080}, Size{101, 67}, Size{29, 87}}) {
         const uint32_t tiled = (size.width / 8) * (size.height / 4) * 32;
         uint32_t apart = 0;
-        for (uint32_t place = 0; place < tiled; ++place) {
-            const uint32_t first = ordered_pixel(place / 32 * 32, size.width, size.height);
-            const uint32_t pixel = ordered_pixel(place, size.width, size.height);
+        for (uint32_t index = 0; index < tiled; ++index) {
+            const uint32_t first = ordered_pixel(index / 32 * 32, size.width, size.height);
+            const uint32_t pixel = ordered_pixel(index, size.width, size.height);
             apart += first % size.width / 8 != pixel % size.width / 8 ? 1 : 0;
             apart += first / size.width / 4 != pixel / size.width / 4 ? 1 : 0;
         }
@@ -65,8 +65,8 @@ TEST_CASE("numbers beyond 32 bits keep their place") {
 
 TEST_CASE("pixels that come together lie in about a square") {
     uint32_t left = 1920, right = 0, top = 1080, bottom = 0;
-    for (uint32_t place = 500'000; place < 504'096; ++place) {
-        const uint32_t pixel = ordered_pixel(place, 1920, 1080), x = pixel % 1920, y = pixel / 1920;
+    for (uint32_t index = 500'000; index < 504'096; ++index) {
+        const uint32_t pixel = ordered_pixel(index, 1920, 1080), x = pixel % 1920, y = pixel / 1920;
         left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
     }
     CHECK(right - left < 100);

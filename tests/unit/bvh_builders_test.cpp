@@ -17,8 +17,8 @@
 #include "base/stopwatch.h"
 #include "tests/support/bvh_bytes.h"
 #include "tests/support/check_traversal.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
+#include "tests/support/stress_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -35,7 +35,7 @@ std::optional<std::string> fault_of(BvhBuilder builder, const Bvh& bvh, const st
 } // namespace
 
 TEST_CASE("every builder gives a sound tree on every nasty mesh") {
-    for (const NastyMesh& mesh : nasty_meshes()) {
+    for (const StressMesh& mesh : stress_meshes()) {
         CAPTURE(mesh.name);
         for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
             CAPTURE(name_of(builder));
@@ -52,7 +52,7 @@ TEST_CASE("every builder gives a sound tree on every nasty mesh") {
 
 TEST_CASE("no builder's tree depends on the number of threads") {
     std::vector<std::vector<BvhTriangle>> meshes;
-    for (NastyMesh& mesh : nasty_meshes()) meshes.push_back(std::move(mesh.triangles));
+    for (StressMesh& mesh : stress_meshes()) meshes.push_back(std::move(mesh.triangles));
     meshes.push_back(triangles_of(make_torus(110, 80))); // large enough for the builders to share the work
     for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
         CAPTURE(name_of(builder));
@@ -70,9 +70,9 @@ TEST_CASE("no builder's tree depends on the number of threads") {
 }
 
 TEST_CASE("traversals find in the tree of any builder what testing every triangle finds, bit for bit") {
-    for (const NastyMesh& mesh : nasty_meshes()) {
+    for (const StressMesh& mesh : stress_meshes()) {
         CAPTURE(mesh.name);
-        const std::vector<Ray> rays = nasty_rays(1000, mesh, 29);
+        const std::vector<Ray> rays = stress_rays(1000, mesh, 29);
         const std::vector<Hit> all = hits_by_brute_force(mesh.triangles, rays, AcceptAll{});
         const std::vector<Hit> some = hits_by_brute_force(mesh.triangles, rays, AcceptSome{});
         for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
@@ -86,7 +86,7 @@ TEST_CASE("traversals find in the tree of any builder what testing every triangl
 
 TEST_CASE("no builder's tree is deeper than traversals go, however long the line") {
     std::vector<BvhTriangle> line;
-    for (NastyMesh& mesh : nasty_meshes(static_cast<uint32_t>(effort(20'000, 1'000'000)))) {
+    for (StressMesh& mesh : stress_meshes(static_cast<uint32_t>(effort(20'000, 1'000'000)))) {
         if (std::string_view(mesh.name) == "a line") line = std::move(mesh.triangles);
     }
     REQUIRE(!line.empty());
@@ -164,7 +164,7 @@ TEST_CASE("a builder keeps flags of other owners and resets its own") {
 }
 
 TEST_CASE("spatial splits keep to their bound on references, and without any allowance cut nothing") {
-    for (const NastyMesh& mesh : nasty_meshes()) {
+    for (const StressMesh& mesh : stress_meshes()) {
         CAPTURE(mesh.name);
         std::size_t most = 0;
         for (const float growth : {0.0f, 0.1f, 1.0f, 8.0f}) {
@@ -271,9 +271,9 @@ TEST_CASE("the parts of a triangle cut in two hold every point of it, those on t
 }
 
 TEST_CASE("reinsertion makes any builder's tree better, and leaves it sound") {
-    for (const NastyMesh& mesh : nasty_meshes()) {
+    for (const StressMesh& mesh : stress_meshes()) {
         CAPTURE(mesh.name);
-        const std::vector<Ray> rays = nasty_rays(500, mesh, 37);
+        const std::vector<Ray> rays = stress_rays(500, mesh, 37);
         const std::vector<Hit> all = hits_by_brute_force(mesh.triangles, rays, AcceptAll{});
         for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
             CAPTURE(name_of(builder));
@@ -329,7 +329,7 @@ TEST_CASE("each builder's tree is as good as its kind should be, in Sponza") {
 }
 
 TEST_CASE("the checker notices faults of trees with spatial splits") {
-    const std::vector<BvhTriangle> mesh = nasty_meshes()[2].triangles; // slivers
+    const std::vector<BvhTriangle> mesh = stress_meshes()[2].triangles; // slivers
     const Bvh good = build_bvh(BvhBuilder::SpatialSplits, mesh);
     REQUIRE(!find_split_fault(good, mesh));
     REQUIRE(good.triangles.size() > mesh.size());

@@ -146,9 +146,9 @@ TEST_CASE("a Radiance HDR's line PRIMARIES counts like an EXR's chromaticities, 
     CHECK(messages.all().empty());
     for (const char* line : {"PRIMARIES=0.64 0.33 x\n", "PRIMARIES=\n", "PRIMARIES=0.6 0.3 0.6 0.3 0.1 0 0.3 0.3\n"}) {
         CAPTURE(line);
-        Messages said;
-        CHECK(read(line, said).pixels == std::vector<float>{0.5f, 1, 0.25f});
-        CHECK(said.all().size() == (std::string(line) == "PRIMARIES=\n" ? 0 : 1));
+        Messages messages;
+        CHECK(read(line, messages).pixels == std::vector<float>{0.5f, 1, 0.25f});
+        CHECK(messages.all().size() == (std::string(line) == "PRIMARIES=\n" ? 0 : 1));
     }
 }
 

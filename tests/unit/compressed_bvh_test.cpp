@@ -13,7 +13,7 @@
 #include "base/limits.h"
 #include "tests/support/check_traversal.h"
 #include "tests/support/meshes.h"
-#include "tests/support/nasty_meshes.h"
+#include "tests/support/stress_meshes.h"
 #include "trace/intersect/compressed_boxes.h"
 #include "trace/wide/compressed_traversal.h"
 
@@ -93,7 +93,7 @@ TEST_CASE("decoded boxes hold the exact ones, by less than a quantum too much, a
 }
 
 TEST_CASE("compressed trees of all nasty meshes, huge and tiny, are sound and lose no triangle") {
-    for (const NastyMesh& mesh : nasty_meshes()) {
+    for (const StressMesh& mesh : stress_meshes()) {
         CAPTURE(mesh.name);
         for (const int build_leaf : {1, 4, 40}) {
             const Bvh bvh = build_bvh(mesh.triangles, {.max_leaf = build_leaf, .leaf_cost = 0.1f});
@@ -118,8 +118,8 @@ TEST_CASE("compressed trees of all nasty meshes, huge and tiny, are sound and lo
 TEST_CASE("meshes whose grids are at the ends of their range give the hits of testing every triangle") {
     for (const int scale : {-90, -81, -70, 39}) {
         CAPTURE(scale);
-        NastyMesh mesh = {"scaled soup", make_soup(400, 0), {}, 1};
-        std::vector<Ray> rays = nasty_rays(1500, mesh, 3);
+        StressMesh mesh = {"scaled soup", make_soup(400, 0), {}, 1};
+        std::vector<Ray> rays = stress_rays(1500, mesh, 3);
         const auto shrink = [&](Vec3 p) { return Vec3{scaled(p.x, scale), scaled(p.y, scale), scaled(p.z, scale)}; };
         for (BvhTriangle& t : mesh.triangles) t.a = shrink(t.a), t.b = shrink(t.b), t.c = shrink(t.c);
         for (Ray& ray : rays) { // directions as they are

@@ -25,12 +25,12 @@ uint32_t seeds() { return static_cast<uint32_t>(effort(100, 5000)); }
 /// Result of run_warps for a kernel of one warp, which must be equal for each schedule.
 template <class Kernel>
 std::set<std::string> headlines(const Kernel& kernel) {
-    std::set<std::string> said;
+    std::set<std::string> faults;
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
         const std::string fault = run_warps({.seed = seed, .max_steps = 10'000}, kernel);
-        said.insert(fault.substr(0, fault.find('\n')));
+        faults.insert(fault.substr(0, fault.find('\n')));
     }
-    return said;
+    return faults;
 }
 
 /// Whether each run's fault holds all of these words.

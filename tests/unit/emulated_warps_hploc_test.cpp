@@ -14,7 +14,7 @@ using namespace pertev::test;
 
 TEST_CASE("warps make the bytes that single threads make") {
     Queue queue = Queue::make_cpu();
-    for (const NastyMesh& mesh : builder_meshes()) {
+    for (const StressMesh& mesh : builder_meshes()) {
         const auto n = static_cast<uint32_t>(mesh.triangles.size());
         if (n == 0 || n > 1000) continue;
         CAPTURE(mesh.name);

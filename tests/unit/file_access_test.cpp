@@ -24,7 +24,7 @@ struct Folders {
     }
 };
 
-Place at(const fs::path& file) { return {file.string()}; }
+FileLocation at(const fs::path& file) { return {file.string()}; }
 
 } // namespace
 
@@ -160,7 +160,7 @@ TEST_CASE("a file outside is replaced by one of that name below, with a warning,
     REQUIRE(messages.all().size() == 2);
     CHECK(messages.all()[0].text.find("\"/no such home/artist\", outside") != std::string::npos);
     const auto error = test::thrown_error([&] {
-        (void)access.find(Place{f.file.string(), 7}, "../scene2/u.png", messages);
+        (void)access.find(FileLocation{f.file.string(), 7}, "../scene2/u.png", messages);
     });
     CHECK(test::says(error, "a.obj:7: refers to"));
     CHECK(test::says(error, "`allow_path=" + f.other.string() + "`"));

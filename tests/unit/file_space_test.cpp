@@ -89,7 +89,7 @@ TEST_CASE("files that tell their unit and their axis keep both, with a warning")
     const Bounds3 box = bounds_of(read_scene_and_emitters("cornell-box", options, messages));
     REQUIRE(messages.all().size() == 1);
     CHECK(messages.all()[0].is_warning);
-    CHECK(messages.all()[0].remark.place == Place{"cornell-box"});
+    CHECK(messages.all()[0].remark.location == FileLocation{"cornell-box"});
     Messages none;
     CHECK(box == bounds_of(read_scene_and_emitters("cornell-box", {}, none)));
     CHECK(none.all().empty());

@@ -210,7 +210,7 @@ TEST_CASE("frames whose pixels were taken apart, on either device, are put toget
         const auto take = [&](const NoisyFrame& frame, uint32_t pixel) {
             test::Random random(pixel);
             const NoisyFrameView& view = frame.view();
-            for (Float4* array : {view.emission, view.place, view.normal, view.albedo, view.gloss}) {
+            for (Float4* array : {view.emission, view.hit, view.normal, view.albedo, view.gloss}) {
                 array[pixel] = {random.within(0, 1), random.within(0, 1), random.within(0, 1), random.within(0, 1)};
             }
             const float red = pixel % 7 == 0 ? kInfinity : random.within(0, 1);

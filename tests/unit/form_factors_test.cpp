@@ -83,9 +83,9 @@ TEST_CASE("a hemicube's pixels are the hemisphere, by the cosine") {
             CHECK(std::abs(dot(face.forward, face.up)) < 1e-6f);
             CHECK(dot(cross(face.right, face.up), face.right) < 1e-6f);
             for (uint32_t i = 0; i < face.width * face.height; ++i) {
-                const auto x = static_cast<float>(place_of_pixel(i % face.width, face.width, -1, 2));
+                const auto x = static_cast<float>(pixel_coordinate(i % face.width, face.width, -1, 2));
                 const auto y =
-                    static_cast<float>(place_of_pixel(i / face.width, face.height, face.lowest, 1 - face.lowest));
+                    static_cast<float>(pixel_coordinate(i / face.width, face.height, face.lowest, 1 - face.lowest));
                 const Vec3 direction = normalize(face.forward + x * face.right + y * face.up);
                 const float cosine = dot(direction, frame.normal);
                 CHECK(cosine > 0);

@@ -50,10 +50,10 @@ struct OneTriangle {
     OneTriangle(const OneTriangle&) = delete;
     OneTriangle& operator=(const OneTriangle&) = delete;
 
-    PlacedTriangle at(float u, float v) const {
+    WorldTriangle at(float u, float v) const {
         Hit hit;
         hit.u = u, hit.v = v, hit.primitive = 0;
-        return place_triangle(instance, mesh, hit);
+        return world_triangle(instance, mesh, hit);
     }
 };
 
@@ -64,7 +64,7 @@ DoubleVec3 point_at(const Vec3 (&corners)[3], double u, double v) {
 }
 
 /// Whether it is no sliver and large beside its error: neither cuts short how far a point is kept off its edges.
-bool has_room(const PlacedTriangle& placed) {
+bool has_room(const WorldTriangle& placed) {
     const double size = static_cast<double>(max_component(max(abs(placed.ab), abs(placed.ac))));
     const double width = length(cross(to_double(placed.ab), to_double(placed.ac))) / size;
     return width > 0.07 * size && width > 300 * static_cast<double>(max_component(placed.error));
@@ -87,7 +87,7 @@ TEST_CASE(
         for (int i = 0; i < 200'000; ++i) {
             const OneTriangle one(random, is_baked);
             const float u = random.within(0.25f, 0.4f), v = random.within(0.25f, 0.4f); // no edge is near
-            const PlacedTriangle placed = one.at(u, v);
+            const WorldTriangle placed = one.at(u, v);
             if (!has_room(placed)) continue;
             ++tried;
             const Transform& m = one.instance.world_from_local;
@@ -119,7 +119,7 @@ TEST_CASE("a position is kept off all edges by more than its error, and is moved
         const float along = random.unit();
         const float u = where == 0 ? 0.0f : where == 1 ? along : 1.0f - along;
         const float v = where == 1 ? 0.0f : along;
-        const PlacedTriangle placed = one.at(u, v);
+        const WorldTriangle placed = one.at(u, v);
         const double error = static_cast<double>(max_component(placed.error));
         const Vec3 corners[3] = {placed.a, placed.a + placed.ab, placed.a + placed.ac};
         farthest =

@@ -209,7 +209,7 @@ TEST_CASE("spacing eight times as many records takes about eight times as long, 
 TEST_CASE("light between records is their weighted mean, and none beyond their reach") {
     const auto record_at = [](Vec3 at, float light) {
         IrradianceRecord record = {};
-        record.place = {at, {0, 0, 1}, 0, kBareDiffuse};
+        record.point = {at, {0, 0, 1}, 0, kBareDiffuse};
         record.light = {light, light, light};
         return record;
     };
@@ -305,9 +305,9 @@ TEST_CASE("irradiance at records is that of brute force") {
     Queue queue = Queue::make_cpu();
     int compared = 0;
     for (std::size_t i = 0; i < records.size(); i += records.size() / 12) {
-        const CachePlace& place = records[i].place;
-        const Vec3 at = place.position + run.prepared.centre;
-        if (std::abs(place.normal.y - 1) > 1e-4f || at.y > 0.01f) continue; // only the floor, whose albedo is known
+        const CachePoint& point = records[i].point;
+        const Vec3 at = point.position + run.prepared.centre;
+        if (std::abs(point.normal.y - 1) > 1e-4f || at.y > 0.01f) continue; // only the floor, whose albedo is known
         RenderSettings settings; // light that is scattered at least twice, by path tracing, looked at from close by
         settings.width = settings.height = 1;
         settings.filter = PixelFilter::Box;
@@ -336,13 +336,13 @@ TEST_CASE("few lookups miss, and records lie behind mirrors and beneath layers")
     CHECK(run.integrator.record_count() == records.size());
     CHECK(records.size() < 48 * 48 / 4);
     CHECK(run.integrator.missed_lookups() < 48 * 48 * 4 / 50);
-    CHECK(std::ranges::any_of(records, [](const IrradianceRecord& r) { return r.place.scatterings == 1; }));
-    CHECK(std::ranges::any_of(records, [](const IrradianceRecord& r) { return r.place.material != kBareDiffuse; }));
+    CHECK(std::ranges::any_of(records, [](const IrradianceRecord& r) { return r.point.scatterings == 1; }));
+    CHECK(std::ranges::any_of(records, [](const IrradianceRecord& r) { return r.point.material != kBareDiffuse; }));
     for (const IrradianceRecord& record : records) {
         CHECK(record.radius > 0);
         CHECK(record.light.r >= 0);
         CHECK(is_finite(record.by_move[0]));
-        CHECK(length(record.place.normal) == doctest::Approx(1).epsilon(1e-4));
+        CHECK(length(record.point.normal) == doctest::Approx(1).epsilon(1e-4));
     }
 }
 
@@ -382,7 +382,7 @@ TEST_CASE("marks are drawn where records are seen, and nowhere else") {
     std::vector<double> nearest(std::size_t(kSize) * kSize, 1e9); // record, pixels
     std::vector<bool> has_record(nearest.size());
     for (const IrradianceRecord& record : plain.integrator.records()) {
-        const ProjectedPoint seen = project_point(plain.picture.camera.view, record.place.position);
+        const ProjectedPoint seen = project_point(plain.picture.camera.view, record.point.position);
         has_record[static_cast<std::size_t>(seen.pixel.y) * kSize + static_cast<std::size_t>(seen.pixel.x)] = true;
         for (std::size_t i = 0; i < nearest.size(); ++i) {
             const double x = static_cast<double>(i % kSize) + 0.5 - static_cast<double>(seen.pixel.x);
@@ -432,10 +432,10 @@ TEST_CASE(
         uint64_t rays = 0;
         double before = 0;
         const auto check = [&](bool is_known) {
-            const double told = progress.share(rays), done = static_cast<double>(rays) / static_cast<double>(all);
-            CHECK(told >= before);
-            before = told;
-            if (is_known) CHECK(told == doctest::Approx(done).epsilon(0.1));
+            const double reported = progress.share(rays), done = static_cast<double>(rays) / static_cast<double>(all);
+            CHECK(reported >= before);
+            before = reported;
+            if (is_known) CHECK(reported == doctest::Approx(done).epsilon(0.1));
         };
         for (uint32_t round = 0; round < kOvertureRounds; ++round) {
             const bool is_known = round > 2; // how it falls is

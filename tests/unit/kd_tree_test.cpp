@@ -11,8 +11,8 @@
 #include "accel/kd_tree/check_kd_tree.h"
 #include "accel/triangle_points.h"
 #include "base/parallel_for.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
+#include "tests/support/stress_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -35,7 +35,7 @@ bool same(const KdTree& a, const KdTree& b) {
 } // namespace
 
 TEST_CASE("kd-trees over nasty meshes are sound and keep to their bounds") {
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(c.name);
         for (const KdTreeSettings& settings : kSettings) {
             CAPTURE(settings.max_references);
@@ -160,7 +160,7 @@ TEST_CASE("the checker notices a kd-tree that is broken") {
 }
 
 TEST_CASE("a kd-tree of a million triangles in a line keeps to its bounds") {
-    const auto line = nasty_meshes(static_cast<uint32_t>(effort(20000, 1'000'000)))[6];
+    const auto line = stress_meshes(static_cast<uint32_t>(effort(20000, 1'000'000)))[6];
     REQUIRE(line.name == std::string("a line"));
     for (const KdSplit split : {KdSplit::SpatialMedian, KdSplit::Sah}) {
         const KdTree tree = build_kd_tree(line.triangles, {.split = split});

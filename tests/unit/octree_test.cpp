@@ -9,8 +9,8 @@
 #include "accel/octree/build_octree.h"
 #include "accel/octree/check_octree.h"
 #include "base/parallel_for.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
+#include "tests/support/stress_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -27,7 +27,7 @@ const OctreeSettings kSettings[] = {{},
 } // namespace
 
 TEST_CASE("octrees over nasty meshes are sound and keep to their bounds") {
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(c.name);
         for (const OctreeSettings& settings : kSettings) {
             CAPTURE(settings.max_references);
@@ -131,7 +131,7 @@ TEST_CASE("the checker notices an octree that is broken") {
 }
 
 TEST_CASE("an octree of a million triangles in a line keeps to its bounds") {
-    const auto line = nasty_meshes(static_cast<uint32_t>(effort(20000, 1'000'000)))[6];
+    const auto line = stress_meshes(static_cast<uint32_t>(effort(20000, 1'000'000)))[6];
     REQUIRE(line.name == std::string("a line"));
     const Octree tree = build_octree(line.triangles);
     const auto fault = find_fault(tree);

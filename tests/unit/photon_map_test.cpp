@@ -17,10 +17,10 @@
 #include "session/check_integrator.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/meshes.h"
-#include "tests/support/nasty_points.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/room_with_ball.h"
+#include "tests/support/stress_points.h"
 #include "tests/support/thrown_error.h"
 
 using namespace pertev;
@@ -113,7 +113,7 @@ struct PhotonRun {
             {{.max_depth = max_depth}, {.photons = photons, .radius = radius, .nearest = nearest, .gather = gather}},
             in_loop, 1u << 20);
         integrator.begin(picture, tracer, 1);
-        integrator.tell_energy(&energy);
+        integrator.record_energy_in(&energy);
         Film film(queue, 8, 8, 0);
         integrator.render(3, 1, film.view());
         counts = integrator.photons();
@@ -127,7 +127,7 @@ struct PhotonRun {
 private:
     void add(const PhotonMapView& map) {
         for (uint32_t i = 0; i < map.count; ++i) {
-            if (map.photons.places[i].w == 0) {
+            if (map.photons.positions[i].w == 0) {
                 ++left_out;
                 continue;
             }
@@ -422,13 +422,13 @@ TEST_CASE("scenes without lights and too many photons are refused") {
     RenderSettings settings;
     settings.integrator = IntegratorKind::PhotonMap;
     Messages messages;
-    const auto said = [&] { return test::bad_input_message([&] { check_light(settings, scene, messages); }); };
-    CHECK(said().starts_with("`integrator=photon_map`: "));
+    const auto message = [&] { return test::bad_input_message([&] { check_light(settings, scene, messages); }); };
+    CHECK(message().starts_with("`integrator=photon_map`: "));
     scene.lights.push_back(test::point_light({0, 2, 0}, {1, 1, 1}));
-    CHECK(said() == "no error");
+    CHECK(message() == "no error");
     scene.lights.clear();
     settings.path.max_depth = 0; // only emission
-    CHECK(said() == "no error");
+    CHECK(message() == "no error");
 
     settings.path.max_depth = 64;
     settings.photon_map.photons = kMaxPhotons;

@@ -233,7 +233,7 @@ TEST_CASE("a skin's vertices go where its joints take them, normals and tangents
     scene.animations[0].channels = {channel(0, AnimatedPart::Rotation, {0, 1}, {0, 0, 0, 1, 0, root, 0, root})};
     shape_mesh(shape, {},
                joint_transforms(scene.skins[0],
-                                world_from_nodes(places_of(scene.nodes, parents_first(scene.nodes)), {0, 0, 0})),
+                                world_from_nodes(transforms_of(scene.nodes, parents_first(scene.nodes)), {0, 0, 0})),
                mesh);
     CHECK(close(mesh.positions[0], {-1, 0, 0}));
     PosedScene posed = pose(std::move(scene));

@@ -74,7 +74,7 @@ TEST_CASE("queues of paths have at most their bytes, and nearly those, whatever 
         const PathParts parts = {.has_times = (bits & 1) != 0,
                                  .has_layers = (bits & 2) != 0,
                                  .splits_light = (bits & 4) != 0,
-                                 .tells_bounce = (bits & 8) != 0};
+                                 .records_bounce = (bits & 8) != 0};
         for (const bool on_cuda : {false, true}) {
             const auto bytes = [&](uint32_t width, uint32_t height, uint32_t batch) {
                 Queue queue = Queue::make_dry_run(on_cuda);
@@ -85,7 +85,7 @@ TEST_CASE("queues of paths have at most their bytes, and nearly those, whatever 
                               .height = height,
                               .has_times = parts.has_times,
                               .splits_light = parts.splits_light,
-                              .tells_bounce = parts.tells_bounce});
+                              .records_bounce = parts.records_bounce});
                 return queue.peak_bytes();
             };
             CHECK(bytes(1 << 16, 1 << 16, 1u << 31) <= kMost);

@@ -60,7 +60,7 @@ TEST_CASE("patches cover their triangles, no edge is longer than asked for, and 
     double area = 0;
     for (const Patch& patch : patched.tree.patches) {
         if (patch.side() == 0 && patch.instance < 6) area += static_cast<double>(patch.area);
-        const PlacedTriangle triangle = place_on(patched.solved.view(), patch, patch.corners.middle());
+        const WorldTriangle triangle = place_on(patched.solved.view(), patch, patch.corners.middle());
         for (int k = 0; k < 3; ++k) {
             const Vec2 a = patch.corners.at[k], b = patch.corners.at[(k + 1) % 3];
             CHECK(length(triangle.at(a.x, a.y) - triangle.at(b.x, b.y)) <= 0.8f);
@@ -68,19 +68,19 @@ TEST_CASE("patches cover their triangles, no edge is longer than asked for, and 
     }
     CHECK(area == doctest::Approx(24).epsilon(1e-5));
     for (uint32_t i = 0; i < 40; i += 7) patched.tree.split(patched.solved.view(), i);
-    std::size_t looked_up = 0;
+    std::size_t lookups = 0;
     for (uint32_t i = 0; i < patched.tree.patches.size(); ++i) {
         const Patch& patch = patched.tree.patches[i];
         for (const Vec2 b : {Vec2{0.2f, 0.3f}, Vec2{0.6f, 0.3f}, Vec2{0.1f, 0.8f}}) {
-            const Vec2 at = patch.corners.place(b);
+            const Vec2 at = patch.corners.uv_at(b);
             Vec3 weights = {1.0f - at.x - at.y, at.x, at.y};
             CHECK(patched.tree.view().find(patch.face, weights) == (kIsPatch | i));
             CHECK(weights.y == doctest::Approx(b.x).epsilon(1e-4));
             CHECK(weights.z == doctest::Approx(b.y).epsilon(1e-4));
-            ++looked_up;
+            ++lookups;
         }
     }
-    CHECK(looked_up == 3 * patched.tree.patches.size());
+    CHECK(lookups == 3 * patched.tree.patches.size());
 }
 
 TEST_CASE("light that is shown has no gap where a patch meets smaller ones") {
@@ -268,13 +268,13 @@ TEST_CASE("an interrupted solution records what it holds and is rendered with a 
             prepared, settings, [&](const char* what, double) { return what != during || ++count < heard; });
         CHECK(solved.stats.was_interrupted);
         write_solution(path, solved.solution);
-        Messages said;
-        const RadiositySolution back = read_solution(path, scene, said);
+        Messages messages;
+        const RadiositySolution back = read_solution(path, scene, messages);
         CHECK(back.hash() == solved.solution.hash());
         CHECK(back.extent == solved.solution.extent);
-        REQUIRE(said.all().size() == 1);
-        CHECK(said.all()[0].is_warning);
-        CHECK(said.all()[0].text.find("was ended while it was solved, and holds " + describe(back.extent)) !=
+        REQUIRE(messages.all().size() == 1);
+        CHECK(messages.all()[0].is_warning);
+        CHECK(messages.all()[0].text.find("was ended while it was solved, and holds " + describe(back.extent)) !=
               std::string::npos);
         return back;
     };

@@ -33,17 +33,17 @@ Pinhole pinhole(const Camera& camera, uint32_t width, uint32_t height) {
 }
 
 /// How often each pixel's sample is drawn by triangles of `mesh`.
-std::vector<int> times_drawn(const Mesh& mesh, const Pinhole& camera, SamplePlace place) {
+std::vector<int> times_drawn(const Mesh& mesh, const Pinhole& camera, SamplePosition position) {
     std::vector<int> times(camera.width * camera.height);
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
         PinholePoint corners[3];
         for (std::size_t k = 0; k < 3; ++k) corners[k] = camera.see(to_double(mesh.positions[mesh.indices[i + k]]));
         ProjectedTriangle t;
         if (!project_triangle(camera, corners, t)) continue;
-        const PixelSpan rows = rows_of(t, place, camera.height);
+        const PixelSpan rows = rows_of(t, position, camera.height);
         for (int32_t y = rows.first; y <= rows.last; ++y) {
             for (int k = 1; k + 1 < t.count; ++k) {
-                const PixelSpan span = span_of(t, k, y, place, camera.width);
+                const PixelSpan span = span_of(t, k, y, position, camera.width);
                 for (int32_t x = span.first; x <= span.last; ++x) {
                     ++times[static_cast<std::size_t>(y) * camera.width + static_cast<std::size_t>(x)];
                 }
@@ -102,7 +102,7 @@ TEST_CASE("triangles that share edges draw each sample once") {
         for (const Camera& camera : {camera_at({0, 0, 3}, {0, 0, 0}), camera_at({0.3f, 0.2f, 0.4f}, {0.5f, 0.7f, 0}),
                                      camera_at({0.1f, 0.2f, 0.05f}, {0.1f, 1, 0}, {0, 0, 1})}) {
             const Pinhole seen = pinhole(camera, 211, 173);
-            const SamplePlace middle = {kSubpixels / 2, kSubpixels / 2};
+            const SamplePosition middle = {kSubpixels / 2, kSubpixels / 2};
             const std::vector<int> times = times_drawn(grid, seen, middle);
             const std::vector<int> outline = times_drawn(test::sheet({0, 0, 0}, {2, 0, 0}, {0, 2, 0}), seen, middle);
             CHECK(times == outline);
@@ -171,7 +171,7 @@ TEST_CASE("light is evaluated in pixels, at corners or once a triangle, and is t
     camera.projection = Projection::Orthographic;
     camera.ortho_height = 2;
     const auto middle = [&](RasterShading shading) {
-        settings.look.shading = shading;
+        settings.display.shading = shading;
         return pixel_of(test::render(queue, scene, camera, settings).picture, 32, 32);
     };
     // albedo / pi I cos / d^2 + albedo ambient: at the middle, at the corners (d^2 = 3) and at a triangle's middle.
@@ -225,7 +225,7 @@ TEST_CASE("edges are Bresenham's lines, the nearer one first") {
     test::add(scene, triangle, {{.base_color = {0, 1, 0}}, "green"});
     Queue queue = test::requested_queue();
     RenderSettings settings = raster_settings(16, 16);
-    settings.look.is_wireframe = true;
+    settings.display.is_wireframe = true;
     settings.ambient = Rgb{0, 0, 0};
     Camera camera = camera_at({0, 0, 2}, {0, 0, 0});
     camera.projection = Projection::Orthographic;
@@ -289,7 +289,7 @@ TEST_CASE("rasterised pictures do not depend on threads or passes, and layers ar
     settings.aovs = kAovAlbedo | kAovNormal | kAovIds;
     for (const bool wireframe : {false, true}) {
         for (const RasterShading shading : {RasterShading::Flat, RasterShading::Gouraud, RasterShading::Phong}) {
-            settings.look = {shading, wireframe};
+            settings.display = {shading, wireframe};
             settings.pass_samples = 0;
             Queue queue = Queue::make_cpu();
             const RenderResult one = test::render(queue, scene, test::mixed_scene_camera(), settings);

@@ -95,7 +95,7 @@ TEST_CASE("a place near an edge is moved in, any other is kept to the bit") {
         if (u + v > 1) u = 1 - u, v = 1 - v;
         if (i % 3 == 0) u = i % 2 == 0 ? 0.0f : least * random.unit();
         if (i % 5 == 0) v = 1 - u; // the third weight is 0, or a unit off
-        const PlaceOnTriangle place = keep_off_edges(u, v, least);
+        const PointOnTriangle place = keep_off_edges(u, v, least);
         const float w = 1 - place.u - place.v;
         CHECK(min(w, min(place.u, place.v)) >= least / 1.5f - 0x1p-22f);
         CHECK(abs(place.u - u) <= 2 * least + 0x1p-22f);

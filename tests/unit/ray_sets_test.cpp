@@ -67,7 +67,7 @@ Camera looking(Vec3 eye, Vec3 target, float fov_y) {
 }
 
 /// A sphere of radius 1 in an open box; about half of what leaves it is lost.
-Scene make_room() {
+Scene allocate() {
     const TriangleMesh ball = make_sphere(3, {0, 0, 0}, 1);
     Mesh mesh;
     mesh.positions = ball.positions;
@@ -144,7 +144,7 @@ TEST_CASE("the frame of the record is that of its count, and smaller ones are wh
 }
 
 TEST_CASE("primary rays come frame after frame, tile after tile, each inside its pixel") {
-    Traced traced(make_room());
+    Traced traced(allocate());
     const uint32_t width = 64, height = 36, pixels = width * height;
     const std::vector<Ray> rays = make_record_ray_sets(traced.job(width, height), 4 * pixels)[0].rays;
     REQUIRE(rays.size() == 4 * pixels);
@@ -174,7 +174,7 @@ TEST_CASE("primary rays come frame after frame, tile after tile, each inside its
 }
 
 TEST_CASE("a count that is no whole frame is the start of one") {
-    Traced traced(make_room());
+    Traced traced(allocate());
     const auto whole = make_record_ray_sets(traced.job(64, 36), 4 * 64 * 36);
     const auto part = make_record_ray_sets(traced.job(64, 36), 1001);
     for (std::size_t k = 0; k < part.size(); ++k) CHECK(part[k].rays.size() == 1001);
@@ -182,7 +182,7 @@ TEST_CASE("a count that is no whole frame is the start of one") {
 }
 
 TEST_CASE("secondary rays start at the hits before them, in their order, and go where their numbers say") {
-    Traced traced(make_room());
+    Traced traced(allocate());
     const uint32_t count = 4 * 64 * 36;
     const auto sets = make_record_ray_sets(traced.job(64, 36), count);
     REQUIRE(sets.size() == 5);
@@ -234,7 +234,7 @@ TEST_CASE("secondary rays start at the hits before them, in their order, and go 
 }
 
 TEST_CASE("second parents continue a set with other numbers") {
-    Traced traced(make_room());
+    Traced traced(allocate());
     const uint32_t count = 4 * 64 * 36;
     const auto sets = make_record_ray_sets(traced.job(64, 36), count);
     const std::vector<RayHit> hits = traced.hits(sets[2]);
@@ -251,7 +251,7 @@ TEST_CASE("second parents continue a set with other numbers") {
 }
 
 TEST_CASE("ray sets are the same for any number of threads") {
-    Traced traced(make_room());
+    Traced traced(allocate());
     const uint32_t count = 40000; // more than two of the chunks that are counted at once
     std::vector<RaySet> alone;
     {
@@ -266,7 +266,7 @@ TEST_CASE("ray sets are the same for any number of threads") {
 
 TEST_CASE("ray sets, hits and work are the same on the GPU") {
     // On the CPU twice where no GPU was asked for.
-    Traced here(make_room()), there(make_room(), requested_queue());
+    Traced here(allocate()), there(allocate(), requested_queue());
     const uint32_t count = cuda_requested() ? 1000000 : 20000;
     const auto sets = make_record_ray_sets(here.job(256, 144), count);
     CHECK(same_bits(sets, make_record_ray_sets(there.job(256, 144), count)));
@@ -286,7 +286,7 @@ TEST_CASE("ray sets, hits and work are the same on the GPU") {
 }
 
 TEST_CASE("in a frame each bounce starts at the hits of the one before and at nothing else") {
-    Traced traced(make_room());
+    Traced traced(allocate());
     const auto sets = make_frame_ray_sets(traced.job(100, 60), 8);
     REQUIRE(sets.size() == 10);
     CHECK(sets[0].rays.size() == 6000);

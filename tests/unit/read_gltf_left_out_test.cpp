@@ -39,7 +39,7 @@ Light emitter(const std::string& members) {
 }
 
 /// Messages of reading and validating; the Error's text comes last.
-std::vector<std::string> told_of(const std::string& json) {
+std::vector<std::string> left_out_of(const std::string& json) {
     Messages messages;
     std::vector<std::string> texts;
     std::string error;
@@ -161,13 +161,13 @@ TEST_CASE("a version that is a number, and extensions that are no object, cost n
 }
 
 TEST_CASE("an extension that is not supported is told once where the file does not list it either") {
-    const std::vector<std::string> told = told_of(triangle().json(
+    const std::vector<std::string> left_out = left_out_of(triangle().json(
         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0,"extras":)"
         R"({"extensions":{"EXT_private":{}}}},{"extensions":{"EXT_none":null}}],"materials":[{"extensions":)"
         R"({"KHR_materials_clearcoat":{"clearcoatFactor":1},"KHR_materials_ior":{}}},{"extensions":)"
         R"({"KHR_materials_clearcoat":{}}}])"));
-    REQUIRE(told.size() == 1);
-    CHECK(told[0].find("model.gltf: /materials/0/extensions/KHR_materials_clearcoat: ") != std::string::npos);
+    REQUIRE(left_out.size() == 1);
+    CHECK(left_out[0].find("model.gltf: /materials/0/extensions/KHR_materials_clearcoat: ") != std::string::npos);
 }
 
 TEST_CASE("a node keeps what of its transform can be read") {
@@ -290,19 +290,19 @@ TEST_CASE("a part that is compressed alone is left out with the command that con
     const std::string compressed =
         R"({"attributes":{"POSITION":0},"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{}}}})";
     const std::string command = "gltf-transform/cli copy \"model.gltf\" \"model-converted.gltf\"";
-    const std::vector<std::string> told =
-        told_of(R"({"asset":{"version":"2.0"},)" + draco + R"("meshes":[{"primitives":[)" + compressed +
-                R"(]}],"nodes":[{"mesh":0}]})");
-    REQUIRE(told.size() == 2);
-    CHECK(told[0].find("model.gltf: /meshes/0/primitives/0: a part compressed by KHR_draco_mesh_compression") !=
+    const std::vector<std::string> left_out =
+        left_out_of(R"({"asset":{"version":"2.0"},)" + draco + R"("meshes":[{"primitives":[)" + compressed +
+                    R"(]}],"nodes":[{"mesh":0}]})");
+    REQUIRE(left_out.size() == 2);
+    CHECK(left_out[0].find("model.gltf: /meshes/0/primitives/0: a part compressed by KHR_draco_mesh_compression") !=
           std::string::npos);
-    CHECK(told[0].find(command) != std::string::npos);
-    CHECK(told[1].starts_with("error: "));
-    CHECK(told[1].find(command) != std::string::npos);
+    CHECK(left_out[0].find(command) != std::string::npos);
+    CHECK(left_out[1].starts_with("error: "));
+    CHECK(left_out[1].find(command) != std::string::npos);
 
     // It is not needed next to uncompressed data.
-    CHECK(told_of(triangle().json(R"("extensionsUsed":["KHR_draco_mesh_compression"],"meshes":[{"primitives":[)" +
-                                  compressed + R"(]}],"nodes":[{"mesh":0}])"))
+    CHECK(left_out_of(triangle().json(R"("extensionsUsed":["KHR_draco_mesh_compression"],"meshes":[{"primitives":[)" +
+                                      compressed + R"(]}],"nodes":[{"mesh":0}])"))
               .empty());
 }
 
@@ -310,25 +310,25 @@ TEST_CASE("a texture with a picture of another kind alone is left out with the c
     for (const auto& [extension, command] :
          {std::pair("KHR_texture_basisu", "cli ktxdecompress "), std::pair("EXT_texture_webp", "cli png ")}) {
         CAPTURE(extension);
-        const std::vector<std::string> told = told_of(triangle().json(
+        const std::vector<std::string> left_out = left_out_of(triangle().json(
             R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0}],"materials":[)"
             R"({"emissiveTexture":{"index":0}}],"textures":[{"extensions":{")" +
             std::string(extension) + R"(":{"source":0}}}],"images":[{"uri":"a.ktx2"}])"));
-        REQUIRE(told.size() == 1);
-        CHECK(told[0].find("/textures/0") != std::string::npos);
-        CHECK(told[0].find(command) != std::string::npos);
+        REQUIRE(left_out.size() == 1);
+        CHECK(left_out[0].find("/textures/0") != std::string::npos);
+        CHECK(left_out[0].find(command) != std::string::npos);
     }
 }
 
 TEST_CASE("a picture of a kind that is not decoded is left out with the command, wherever it stands") {
     const std::string webp = "UklGRiQAAABXRUJQVlA4IAAAAAA=", ktx = "q0tUWCAyMLsNChoKAAAAAA==";
     for (const auto& [bytes, command] : {std::pair(webp, "cli png "), {ktx, "cli ktxdecompress "}}) {
-        const std::vector<std::string> told = told_of(triangle().json(
+        const std::vector<std::string> left_out = left_out_of(triangle().json(
             R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0}],"materials":[)"
             R"({"emissiveTexture":{"index":0}}],"textures":[{"source":0}],"images":[{"uri":"data:;base64,)" +
             bytes + "\"}]"));
-        REQUIRE(told.size() == 1);
-        CHECK(told[0].find(command) != std::string::npos);
+        REQUIRE(left_out.size() == 1);
+        CHECK(left_out[0].find(command) != std::string::npos);
     }
 }
 

@@ -249,14 +249,14 @@ TEST_CASE("what is placed knows where the file describes it") {
 }
 
 TEST_CASE("a file that shows no mesh says what it has instead") {
-    const auto told = [](const std::string& text) { return test::read_gltf_text(text).no_instances; };
-    CHECK(told(with_triangle(R"("nodes":[{"mesh":0}])")).empty());
-    CHECK(told(with_triangle(R"("nodes":[{},{}])")) ==
+    const auto reason_of = [](const std::string& text) { return test::read_gltf_text(text).no_instances; };
+    CHECK(reason_of(with_triangle(R"("nodes":[{"mesh":0}])")).empty());
+    CHECK(reason_of(with_triangle(R"("nodes":[{},{}])")) ==
           "/nodes: the scene has 2 nodes, and none shows a mesh (of 1); expected a \"mesh\" in one of them");
-    CHECK(told(with_triangle(R"("scenes":[{"nodes":[1]}],"nodes":[{"mesh":0},{}])"))
+    CHECK(reason_of(with_triangle(R"("scenes":[{"nodes":[1]}],"nodes":[{"mesh":0},{}])"))
               .starts_with("/nodes: the scene has 1 node,"));
-    CHECK(told(only_nodes(R"("nodes":[{}])")).starts_with("/meshes: there are none"));
-    CHECK(told(only_nodes(R"("meshes":[{"primitives":[{"attributes":{}}]}],"nodes":[{"mesh":0}])"))
+    CHECK(reason_of(only_nodes(R"("nodes":[{}])")).starts_with("/meshes: there are none"));
+    CHECK(reason_of(only_nodes(R"("meshes":[{"primitives":[{"attributes":{}}]}],"nodes":[{"mesh":0}])"))
               .starts_with("/meshes: none that a node of the scene shows has a triangle"));
 }
 

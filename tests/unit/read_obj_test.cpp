@@ -19,7 +19,7 @@ struct Loaded {
     Scene scene;
     Messages messages;
 
-    bool said(const std::string& text) const {
+    bool reports(const std::string& text) const {
         return std::any_of(messages.all().begin(), messages.all().end(),
                            [&](const Message& message) { return message.text.find(text) != std::string::npos; });
     }
@@ -141,7 +141,7 @@ TEST_CASE("numbers that are not there or cannot be read become NaN, with a warni
     CHECK(!is_finite(p[1]));
     CHECK(!is_finite(p[2]));
     CHECK(!is_finite(p[3]));
-    CHECK(l.said("a.obj:3: 2 lines with a number"));
+    CHECK(l.reports("a.obj:3: 2 lines with a number"));
 }
 
 TEST_CASE("a face with a vertex that does not exist is left out with its line, and the others are read") {
@@ -164,7 +164,7 @@ TEST_CASE("an index may lead to a vertex further down, one of a texture coordina
     const Loaded l = load_text("f 1/7 2/7 3/7\n" + kTriangle);
     CHECK(l.scene.meshes[0].triangle_count() == 1);
     CHECK(l.scene.meshes[0].uv[0].empty());
-    CHECK(l.said("a.obj:1: 3 face corners"));
+    CHECK(l.reports("a.obj:1: 3 face corners"));
 }
 
 TEST_CASE("lines, points, curves and garbage are left out, each kind with one warning") {
@@ -257,8 +257,8 @@ TEST_CASE("mtl: a line with a number that is missing, is none or is not finite i
         const Loaded l = load_text("mtllib a.mtl\n" + kTriangle + "usemtl m\nf 1 2 3\n",
                                    "newmtl m\n# a comment\n" + line + "\nKe 1 2 3\n");
         REQUIRE(l.messages.left_out().size() == 1);
-        CHECK(l.said("a.mtl:3: "));
-        CHECK(l.said("the line is left out"));
+        CHECK(l.reports("a.mtl:3: "));
+        CHECK(l.reports("the line is left out"));
         CHECK(l.material("m").base_color == grey(0.5f));
         CHECK(l.material("m").emission == Rgb{1, 2, 3});
     }
@@ -268,11 +268,11 @@ TEST_CASE("mtl: unread lines cause one warning that names the first") {
     const Loaded l = load_text("mtllib a.mtl\n" + kTriangle + "usemtl m\nf 1 2 3\n",
                                "Kd 1 0 0\nnewmtl m\nfoo 3\nmap_Normal x.png\nKd spectral x.rfl\nmap_Ks t.png\n"
                                "map_Ks u.png\nNs 10 11\nPc 0.5\nPs 0\nKa 1 1 1\nsharpness 60\nmap_Ka t.png\n");
-    CHECK(l.said("a.mtl:1: 3 lines that are not understood (Kd is the first) are left out"));
-    CHECK(l.said("a.mtl:5: 1 line of Kd spectral is left out"));
-    CHECK(l.said("a.mtl:6: 2 lines of map_Ks are left out"));
-    CHECK(l.said("a.mtl:8: 1 line with more than the key takes"));
-    CHECK(l.said("a.mtl:9: 1 line of Pc is left out"));
+    CHECK(l.reports("a.mtl:1: 3 lines that are not understood (Kd is the first) are left out"));
+    CHECK(l.reports("a.mtl:5: 1 line of Kd spectral is left out"));
+    CHECK(l.reports("a.mtl:6: 2 lines of map_Ks are left out"));
+    CHECK(l.reports("a.mtl:8: 1 line with more than the key takes"));
+    CHECK(l.reports("a.mtl:9: 1 line of Pc is left out"));
     CHECK(l.messages.all().size() == 5);
     CHECK(l.material("m").base_color == grey(0.5f));
 }
@@ -334,7 +334,7 @@ TEST_CASE("mtl: a texture on faces without texture coordinates is a warning") {
     CHECK(good.material("m").base_color_texture.has_image());
     CHECK(good.material("m").base_color == grey(1)); // no Kd: the map alone
     const Loaded bad = load(test::write_text(folder / "b.obj", start + textured + bare + plain));
-    CHECK(bad.said("b.obj: 1 material with a texture, but on faces without texture coordinates (m is the first)"));
+    CHECK(bad.reports("b.obj: 1 material with a texture, but on faces without texture coordinates (m is the first)"));
 }
 
 TEST_CASE("mtl: textures with options, spaces, backslashes and alpha") {
@@ -382,14 +382,14 @@ TEST_CASE("mtl: textures with options, spaces, backslashes and alpha") {
     CHECK(offset.base_color_texture.m02 == 0.25f);
     CHECK(offset.base_color_texture.wrap_s == Wrap::ClampToEdge);
     CHECK(!offset.normal_texture.has_image());
-    CHECK(l.said("height map"));
+    CHECK(l.reports("height map"));
 
     CHECK(l.material("uri").base_color_texture.image == leaf.base_color_texture.image);
     CHECK(!l.material("missing").base_color_texture.has_image());
-    CHECK(l.said("there is no texture none.png"));
+    CHECK(l.reports("there is no texture none.png"));
     CHECK(!l.material("broken").base_color_texture.has_image());
     CHECK(l.material("broken").normal_texture.image == faded.normal_texture.image);
-    CHECK(l.said("broken.png"));
+    CHECK(l.reports("broken.png"));
 }
 
 TEST_CASE("obj: meshes and materials know the lines that describe them") {
@@ -403,8 +403,8 @@ TEST_CASE("obj: meshes and materials know the lines that describe them") {
 TEST_CASE("mtl: a missing file and a missing material are grey with a warning; geometry only is grey without") {
     const Loaded missing = load_text("mtllib none.mtl other.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
     CHECK(missing.scene.materials[0].base_color == grey(0.5f));
-    CHECK(missing.said("there is no material file none.mtl"));
-    CHECK(missing.said("(x is the first)"));
+    CHECK(missing.reports("there is no material file none.mtl"));
+    CHECK(missing.reports("(x is the first)"));
 
     const fs::path folder = test::scratch_folder();
     test::write_text(folder / "a.mtl", "newmtl x\nKd 1 0 0\nmap_Kd none.png\n");
@@ -438,13 +438,13 @@ TEST_CASE("mtl: several files, read beside the geometry or behind it, say all th
         CHECK(all[1].text.find("no material file gone.mtl") != std::string::npos);
         CHECK(all[1].is_left_out);
 
-        Messages said;
+        Messages messages;
         const fs::path bad =
             test::write_text(folder / "bad.obj", before + "mtllib gone.mtl\nmtllib bad.mtl\n" + kTriangle);
-        read_obj(bad, FileAccess(bad, {}), {}, said);
-        REQUIRE(said.left_out().size() == 2);
-        CHECK(said.left_out()[0].find("gone.mtl") != std::string::npos);
-        CHECK(said.left_out()[1].find("bad.mtl:2") != std::string::npos);
+        read_obj(bad, FileAccess(bad, {}), {}, messages);
+        REQUIRE(messages.left_out().size() == 2);
+        CHECK(messages.left_out()[0].find("gone.mtl") != std::string::npos);
+        CHECK(messages.left_out()[1].find("bad.mtl:2") != std::string::npos);
     }
     const Loaded at_once = load_with("mtllib a.mtl\n" + kTriangle + faces);
     set_thread_count(1);
@@ -461,16 +461,16 @@ TEST_CASE("mtl: a texture or material file outside the scene's folder is left ou
     const fs::path path =
         test::write_text(folder / "in" / "a.obj", "mtllib ../out.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
     const Loaded without = load(path);
-    CHECK(without.said("`allow_path="));
-    CHECK(without.said("a.obj:1: refers to \"../out.mtl\""));
+    CHECK(without.reports("`allow_path="));
+    CHECK(without.reports("a.obj:1: refers to \"../out.mtl\""));
     CHECK(without.messages.left_out().size() == 2); // the file, and the material
     CHECK(load(path, {.allowed_paths = {folder}}).scene.materials[0].base_color == Rgb{1, 0, 0});
 
     test::write_text(folder / "in" / "b.mtl", "newmtl x\nmap_Kd /etc/passwd\n");
     const fs::path b = test::write_text(folder / "in" / "b.obj", "mtllib b.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
     const Loaded outside = load(b);
-    CHECK(outside.said("`allow_path="));
-    CHECK(outside.said("b.mtl:2: refers to"));
+    CHECK(outside.reports("`allow_path="));
+    CHECK(outside.reports("b.mtl:2: refers to"));
     CHECK(outside.messages.left_out().size() == 1);
     CHECK(outside.scene.images.empty());
 }

@@ -15,7 +15,7 @@ struct Loaded {
     Scene scene;
     Messages messages;
 
-    bool said(const std::string& text) const {
+    bool reports(const std::string& text) const {
         for (const Message& message : messages.all()) {
             if (message.text.find(text) != std::string::npos) return true;
         }
@@ -116,21 +116,21 @@ TEST_CASE("ply: texnumber gives faces one of several textures, and -1 none") {
     CHECK(l.mesh(0).colors.empty()); // the texture tells
     CHECK(l.mesh(2).colors.size() == 3);
     CHECK(l.mesh(2).positions.size() == 3);
-    CHECK(l.said("vertex colours beside a texture are left out"));
+    CHECK(l.reports("vertex colours beside a texture are left out"));
 }
 
 TEST_CASE("ply: what of textures cannot be used is said") {
     const std::string face = "element face 1\n" + kList;
     const Loaded without_uv = load(kStart + kRed + kVertices + face + "end_header\n" + kSquare + "4 0 1 2 3\n");
-    CHECK(without_uv.said("a.ply:3: 1 texture left out"));
+    CHECK(without_uv.reports("a.ply:3: 1 texture left out"));
     CHECK(without_uv.scene.materials[0].base_color == grey(0.5f));
     const Loaded missing = load(kStart + "comment TextureFile gone.png\n" + kVertices + kVertexUv + face +
                                 "end_header\n" + kSquareUv + "4 0 1 2 3\n");
-    CHECK(missing.said("there is no texture gone.png"));
+    CHECK(missing.reports("there is no texture gone.png"));
     CHECK(missing.scene.materials[0].base_color == grey(0.5f));
     const Loaded wild = load(kStart + kRed + kVertices + kVertexUv + face + "property uchar texnumber\nend_header\n" +
                              kSquareUv + "4 0 1 2 3 7\n");
-    CHECK(wild.said("1 face of a texture that is not in the header"));
+    CHECK(wild.reports("1 face of a texture that is not in the header"));
     CHECK(wild.texel(0) == std::array<int, 3>{0, 0, 0});
     const Loaded plain = load(kStart + kVertices + kVertexUv + face + "end_header\n" + kSquareUv + "4 0 1 2 3\n");
     CHECK(plain.messages.all().empty());
@@ -146,7 +146,7 @@ TEST_CASE("ply: more numbers on a line than the header says are left out, with o
     CHECK(l.mesh(0).indices == std::vector<uint32_t>{0, 1, 2, 0, 2, 3});
     CHECK(l.mesh(0).positions[1] == Vec3{1, 0, 0});
     REQUIRE(l.messages.all().size() == 1);
-    CHECK(l.said("a.ply:10: 3 lines with more numbers"));
+    CHECK(l.reports("a.ply:10: 3 lines with more numbers"));
     // Elements that share lines have none of their own.
     const Loaded packed = load(head + "0 0 0 1 0 0 1 1 0\n0 1 0 3 0 1 2 3 0 2 3\n");
     CHECK(packed.mesh(0).indices == std::vector<uint32_t>{0, 1, 2, 0, 2, 3});
@@ -160,7 +160,7 @@ TEST_CASE("ply: the line of Blender 2.4 and old Assimp without the word comment 
     const std::string rest = kVertices + "element face 1\n" + kList + "end_header\n" + kSquare + "4 0 1 2 3\n";
     const Loaded l = load(kStart + "Created by Blender3D 241 - www.blender.org, source file: bust.blend\n" + rest);
     CHECK(l.mesh(0).triangle_count() == 2);
-    CHECK(l.said("a.ply:3: a header line that is not understood"));
+    CHECK(l.reports("a.ply:3: a header line that is not understood"));
     const std::string binary = "ply\nformat binary_little_endian 1.0\n" + kVertices + "Created by nobody\n";
     CHECK_THROWS_AS(load(binary + "element face 1\n" + kList + "end_header\n" + std::string(65, '\0')),
                     Error); // a property?

@@ -284,7 +284,7 @@ float enlarged(const Guide& right, uint32_t fine_object = 7) {
         place(kStagePixels, Float4{float_of(fine_object), 0, 0, 0}), normal(kStagePixels, Float4{0, 0, 1, 5}),
         white(kStagePixels, Float4{1, 1, 1, 1}), picture(kStagePixels), met(kStagePixels, Float4{0, 0, 0, 1});
     NoisyFrameView features;
-    features.light = light.data(), features.emission = met.data(), features.place = place.data();
+    features.light = light.data(), features.emission = met.data(), features.hit = place.data();
     features.normal = normal.data(), features.albedo = white.data(), features.gloss = black.data();
     const UpsamplePicture stage = {
         features,
@@ -319,10 +319,10 @@ TEST_CASE("a change of light is known where both pictures show the same surface,
     other_place[1].x = float_of(8);
     other_normal[2].w = 9;
     NoisyFrameView after;
-    after.light = light.data(), after.emission = met.data(), after.place = place.data();
+    after.light = light.data(), after.emission = met.data(), after.hit = place.data();
     after.normal = normal.data(), after.albedo = white.data(), after.gloss = black.data();
     NoisyFrameView before = after;
-    before.place = other_place.data(), before.normal = other_normal.data();
+    before.hit = other_place.data(), before.normal = other_normal.data();
     const CompareLight compare = {before, after, guide.data(), was.data(), is.data()};
     for (uint32_t i = 0; i < 4; ++i) compare(i);
     CHECK(object_of(guide[0]) == 7);

@@ -39,13 +39,13 @@ std::vector<BvhTriangle> deformed(std::vector<BvhTriangle> triangles) {
 } // namespace
 
 TEST_CASE("a refitted tree is sound and finds what testing every triangle finds, by each builder, on nasty meshes") {
-    for (const NastyMesh& nasty : nasty_meshes()) {
-        CAPTURE(nasty.name);
-        const std::vector<BvhTriangle> before = numbered(nasty.triangles), after = deformed(before);
-        NastyMesh mesh = nasty;
+    for (const StressMesh& stress : stress_meshes()) {
+        CAPTURE(stress.name);
+        const std::vector<BvhTriangle> before = numbered(stress.triangles), after = deformed(before);
+        StressMesh mesh = stress;
         mesh.triangles = after;
-        mesh.centre = {nasty.centre.y + 0.25f * nasty.centre.z, -nasty.centre.x, 0.5f * nasty.centre.z};
-        const std::vector<Ray> rays = nasty_rays(500, mesh, 41);
+        mesh.centre = {stress.centre.y + 0.25f * stress.centre.z, -stress.centre.x, 0.5f * stress.centre.z};
+        const std::vector<Ray> rays = stress_rays(500, mesh, 41);
         const std::vector<Hit> hits = hits_by_brute_force(after, rays, AcceptAll{});
         for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
             CAPTURE(std::string(name_of(builder)));

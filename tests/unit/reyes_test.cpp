@@ -139,7 +139,7 @@ Diced dice(const HostMesh& host, const Camera& camera, uint32_t width, uint32_t 
         ++diced.count;
         diced.ways.insert({piece.triangle, piece.way});
         for (int k = 0; k < 3; ++k) {
-            const PinholePoint &a = p[k].place, &b = p[(k + 1) % 3].place;
+            const PinholePoint &a = p[k].position, &b = p[(k + 1) % 3].position;
             const double dx = pass.camera.column_of(a.x / a.w) - pass.camera.column_of(b.x / b.w);
             const double dy = pass.camera.row_of(a.y / a.w) - pass.camera.row_of(b.y / b.w);
             diced.longest = std::max(diced.longest, std::sqrt(dx * dx + dy * dy));
@@ -348,17 +348,17 @@ TEST_CASE("of many samples that go at once the first few come first, and then as
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     const RenderSettings settings = reyes_settings(24, 16);
     Session session(queue, prepared, test::mixed_scene_camera(), settings);
-    std::vector<uint32_t> told;
+    std::vector<uint32_t> reported;
     const auto keep = [&](const RenderProgress& now) {
-        if (told.empty() || now.samples_done > told.back()) told.push_back(now.samples_done);
+        if (reported.empty() || now.samples_done > reported.back()) reported.push_back(now.samples_done);
         return now.samples_done < 32;
     };
     const uint32_t added = session.render(8388607, keep);
-    REQUIRE(told.size() >= 2);
-    CHECK(added == told.back());
-    const std::size_t first = told.front() == 0 ? 1 : 0; // it was asked within the pass
-    CHECK(told.at(first) == 16);
-    CHECK(told.at(first + 1) >= 32);
+    REQUIRE(reported.size() >= 2);
+    CHECK(added == reported.back());
+    const std::size_t first = reported.front() == 0 ? 1 : 0; // it was asked within the pass
+    CHECK(reported.at(first) == 16);
+    CHECK(reported.at(first + 1) >= 32);
 }
 
 TEST_CASE("heights that fold surfaces over each other without end are refused, and no sample is left half done") {

@@ -176,10 +176,10 @@ TEST_CASE("irradiance caching makes its records once, in the time that is told, 
     picture.integrator = IntegratorKind::IrradianceCache;
     picture.width = picture.height = 64;
     Session session(small.queue, prepared, small.camera, picture);
-    int told = 0;
-    warm_up(session, [&] { ++told; });
+    int reported = 0;
+    warm_up(session, [&] { ++reported; });
     CHECK(session.history().samples == 0);
-    CHECK(told == 2); // at its start, and a moment later
+    CHECK(reported == 2); // at its start, and a moment later
     // No record has been made yet. The number of calls depends on the clock, but is at least two per round.
     const Making first = render_one(session);
     CHECK(first.times_requested >= 2 * static_cast<int>(kOvertureRounds));

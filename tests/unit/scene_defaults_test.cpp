@@ -73,19 +73,19 @@ void check_shows_all(const Scene& scene, const Camera& camera, float aspect) {
 TEST_CASE("rays find the nearest triangle and its side, also through a mirrored instance") {
     Scene scene;
     add_box(scene, {-1, -1, -1}, {1, 1, 1}, kAll, false);
-    const LookRay ray = {{-5, 0.2f, 0.3f}, {1, 0, 0}};
-    LookHit hit = cast_rays(scene, {&ray, 1})[0];
+    const SurveyRay ray = {{-5, 0.2f, 0.3f}, {1, 0, 0}};
+    SurveyHit hit = cast_rays(scene, {&ray, 1})[0];
     CHECK(hit.distance == doctest::Approx(4));
     CHECK(hit.is_front);
     scene.instances[0].world_from_local = compose(make_translation({2, 0, 0}), make_scale({-1, 2, 1}));
     hit = cast_rays(scene, {&ray, 1})[0];
     CHECK(hit.distance == doctest::Approx(6));
     CHECK(hit.is_front);
-    const LookRay inside = {{2, 0, 0}, {0, 1, 0}};
+    const SurveyRay inside = {{2, 0, 0}, {0, 1, 0}};
     hit = cast_rays(scene, {&inside, 1})[0];
     CHECK(hit.distance == doctest::Approx(2));
     CHECK(!hit.is_front);
-    const LookRay away = {{-5, 0, 0}, {-1, 0, 0}};
+    const SurveyRay away = {{-5, 0, 0}, {-1, 0, 0}};
     CHECK(!cast_rays(scene, {&away, 1})[0].is_hit());
 }
 
@@ -105,8 +105,8 @@ TEST_CASE("of a sheet's two sides at one distance rays see the front, whichever 
             scene.meshes.push_back(std::move(mesh));
             scene.materials.emplace_back();
             scene.instances.push_back({.name = "sheet", .mesh = 0, .material = 0, .world_from_local = {}});
-            const LookRay ray = {{0, 0, 5}, {0, 0, -1}};
-            const LookHit hit = cast_rays(scene, {&ray, 1})[0];
+            const SurveyRay ray = {{0, 0, 5}, {0, 0, -1}};
+            const SurveyHit hit = cast_rays(scene, {&ray, 1})[0];
             CHECK(hit.distance == 5);
             CHECK(hit.is_front);
         }
@@ -146,7 +146,7 @@ TEST_CASE("a square that hides its back is seen from its front, wherever that po
         const Camera camera = make_default_camera(scene, 1, messages);
         check_shows_all(scene, camera, 1);
         CHECK(dot(normalize(eye_of(camera)), front) > 0.25f); // not at a grazing angle
-        const LookRay ray = {eye_of(camera), forward_of(camera)};
+        const SurveyRay ray = {eye_of(camera), forward_of(camera)};
         CHECK(cast_rays(scene, {&ray, 1}, Backs::Shown)[0].is_hit());
         scene.materials[0].double_sided = true; // now the front of glTF's models counts
         CHECK(forward_of(make_default_camera(scene, 1, messages)).z < -0.6f);

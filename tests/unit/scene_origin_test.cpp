@@ -82,7 +82,7 @@ std::string far_gltf(const std::string& nodes, const std::string& more = "") {
 }
 
 /// The camera that the flags of this camera's metadata make.
-Camera told_again(const CameraSource& source, const Scene& scene) {
+Camera reopened(const CameraSource& source, const Scene& scene) {
     CameraChoice choice;
     for (const auto& [key, value] : camera_metadata(source)) {
         const std::string* text = std::get_if<std::string>(&value);
@@ -253,9 +253,9 @@ TEST_CASE("what moves below a far node moves as at the origin") {
         const Scene& now = posed.scene();
         CHECK(off(now, placed(now, 0, 0), {kEast + 0.5 * time_s, kNorth, 0}) < 1e-6);
         CHECK(off(now, now.cameras[0].world_from_camera.translation, {kEast + 0.5 * time_s, kNorth, 0}) < 1e-6);
-        const auto places = posed.places_at(time_s + 0.125);
-        REQUIRE(places.instances[0]);
-        CHECK(off(now, places.instances[0]->translation, {kEast + 0.5 * std::min(1.0, time_s + 0.125), kNorth, 0}) <
+        const auto placements = posed.placements_at(time_s + 0.125);
+        REQUIRE(placements.instances[0]);
+        CHECK(off(now, placements.instances[0]->translation, {kEast + 0.5 * std::min(1.0, time_s + 0.125), kNorth, 0}) <
               1e-6);
     }
 }
@@ -284,10 +284,10 @@ TEST_CASE("the metadata of a camera far from the origin says it again to the bit
     const Camera requested = choose_camera(flags, scene, 1, messages);
     CHECK(off(scene, requested.world_from_camera.translation, eye) < 1e-6);
     const CameraSource source = source_of(flags, requested, scene.origin_in_file);
-    CHECK(told_again(source, scene).world_from_camera == requested.world_from_camera);
+    CHECK(reopened(source, scene).world_from_camera == requested.world_from_camera);
 
     const Camera made_up = choose_camera({}, scene, 1, messages);
-    const Camera again = told_again(source_of(CameraChoice{}, made_up, scene.origin_in_file), scene);
+    const Camera again = reopened(source_of(CameraChoice{}, made_up, scene.origin_in_file), scene);
     CHECK(again.world_from_camera.translation == made_up.world_from_camera.translation);
     CHECK(length(column(again.world_from_camera, 2) - column(made_up.world_from_camera, 2)) < 1e-6f);
 

@@ -263,24 +263,24 @@ TEST_CASE("only changes that affect the picture restart the film") {
     CHECK(session.history().samples == 2);
     CHECK(session.history().cuts == 0);
 
-    const auto begins_anew = [&](const auto& change) {
+    const auto restarts = [&](const auto& change) {
         session.render(1);
         change(settings);
         session.set_settings(settings);
         CHECK(session.history().samples == 0);
         for (const float value : session.picture().pixels) CHECK(value == 0); // without samples
     };
-    begins_anew([](RenderSettings& s) { s.width = 25; });
-    begins_anew([](RenderSettings& s) { s.height = 5; });
-    begins_anew([](RenderSettings& s) { s.filter = PixelFilter::Box; });
-    begins_anew([](RenderSettings& s) { s.filter_radius = 3; });
-    begins_anew([](RenderSettings& s) { s.aovs = kAovDepth; });
-    begins_anew([](RenderSettings& s) { s.transparent = true; });
-    begins_anew([](RenderSettings& s) { s.path.max_depth = 2; });
-    begins_anew([](RenderSettings& s) { s.path.seed = 2; });
-    begins_anew([](RenderSettings& s) { s.path.sampler = SamplerKind::Independent; });
-    begins_anew([](RenderSettings& s) { s.path.clamp = 1; });
-    begins_anew([](RenderSettings& s) { s.path.roulette_depth = 1; });
+    restarts([](RenderSettings& s) { s.width = 25; });
+    restarts([](RenderSettings& s) { s.height = 5; });
+    restarts([](RenderSettings& s) { s.filter = PixelFilter::Box; });
+    restarts([](RenderSettings& s) { s.filter_radius = 3; });
+    restarts([](RenderSettings& s) { s.aovs = kAovDepth; });
+    restarts([](RenderSettings& s) { s.transparent = true; });
+    restarts([](RenderSettings& s) { s.path.max_depth = 2; });
+    restarts([](RenderSettings& s) { s.path.seed = 2; });
+    restarts([](RenderSettings& s) { s.path.sampler = SamplerKind::Independent; });
+    restarts([](RenderSettings& s) { s.path.clamp = 1; });
+    restarts([](RenderSettings& s) { s.path.roulette_depth = 1; });
     CHECK(session.history().cuts == 11);
 }
 
@@ -427,7 +427,7 @@ TEST_CASE("a picture rendered aside equals a new session's and leaves the film u
     Session session(queue, mixed.prepared, camera_at(0), queued_settings());
     session.render(3);
     const auto hash = picture_hash(session.picture());
-    const RenderResult seen = session.look_aside(camera_at(1), aside);
+    const RenderResult seen = session.render_separately(camera_at(1), aside);
     CHECK(picture_hash(seen.picture) == picture_hash(fresh.picture()));
     CHECK(seen.ids.size() == 20);
     CHECK(seen.layers.size() == 1);

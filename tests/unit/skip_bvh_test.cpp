@@ -8,14 +8,14 @@
 #include <string>
 
 #include "accel/builders/build_bvh.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/split_bvh.h"
+#include "tests/support/stress_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
 
 TEST_CASE("a list with skip links is sound for every mesh") {
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(std::string(c.name));
         const Bvh bvh = build_bvh(c.triangles);
         const SkipBvh skip = make_skip_bvh(bvh);

@@ -86,7 +86,7 @@ TEST_CASE("a picture at rest is metered and picked in without losing irradiance 
     request.view.finds_exposure = true;
     request.budget_s = 1e-9;    // a pass at a time
     std::vector<double> shares; // progress of the records
-    request.tell_made = [&](double share) { shares.push_back(share); };
+    request.on_progress = [&](double share) { shares.push_back(share); };
     Session session = watched.session();
     SessionFrames frames(session, watched.scene, 0.1);
     std::optional<ShownFrame> rests;

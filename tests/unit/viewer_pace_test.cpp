@@ -249,19 +249,19 @@ TEST_CASE("the first who comes steers, hands over, and finds the wheel again aft
     CHECK(wheel.steers(1));
     CHECK_FALSE(wheel.hand(2, 2));
     CHECK_FALSE(wheel.hand(1, 9));
-    wheel.ask(2);
-    CHECK(wheel.seats()[1].asks);
+    wheel.request_wheel(2);
+    CHECK(wheel.seats()[1].wants_wheel);
     CHECK(wheel.hand(1, 2));
     CHECK(wheel.steers(2));
-    CHECK_FALSE(wheel.seats()[1].asks);
+    CHECK_FALSE(wheel.seats()[1].wants_wheel);
     wheel.leave(2, 10);
     CHECK(wheel.holder() == 0); // it waits
     wheel.join(3, "b", 12);
     CHECK(wheel.steers(3));
     wheel.leave(3, 20);
-    wheel.look(25);
+    wheel.tick(25);
     CHECK(wheel.holder() == 0);
-    wheel.look(31);
+    wheel.tick(31);
     CHECK(wheel.steers(1));
     wheel.leave(1, 40);
     CHECK_FALSE(wheel.steers(0));
@@ -304,7 +304,7 @@ TEST_CASE("a free wheel goes to the first viewer that asks") {
     wheel.join(1, "a", 0);
     wheel.join(2, "b", 0);
     wheel.leave(1, 1);
-    wheel.ask(2);
+    wheel.request_wheel(2);
     CHECK(wheel.steers(2));
 }
 
@@ -315,7 +315,7 @@ TEST_CASE("a client is sent nothing before its hello, then the welcome first, an
     audience.publish(small_frame(), 0);
     CHECK(next(audience).client == 0);
     CHECK_FALSE(audience.is_anyone_there());
-    CHECK(audience.said(1, kHello, 0).empty());
+    CHECK(audience.received(1, kHello, 0).empty());
     CHECK(audience.is_anyone_there());
     CHECK(next(audience).text == "welcome");
     const SendJob picture = next(audience); // no second text before the first has gone
@@ -327,7 +327,7 @@ TEST_CASE("a client is sent nothing before its hello, then the welcome first, an
     for (int i = 0; i < 5; ++i) audience.publish(small_frame(), 0);
     CHECK(next(audience).client == 0); // two are under way
     CHECK_FALSE(audience.is_behind(0.2));
-    CHECK(audience.said(1, R"({"type":"ack","frame":)" + std::to_string(first) + R"(,"ms":1})", 0.1).empty());
+    CHECK(audience.received(1, R"({"type":"ack","frame":)" + std::to_string(first) + R"(,"ms":1})", 0.1).empty());
     CHECK(audience.is_behind(0.2));
     CHECK(next(audience).picture->number == 7); // the newest, none of those before
 }
@@ -336,10 +336,10 @@ TEST_CASE("the last picture goes without loss, in pieces, until a newer one is t
     Inbox inbox;
     Audience audience(inbox, "welcome");
     audience.open(1, 0);
-    audience.said(1, kHello, 0);
+    audience.received(1, kHello, 0);
     audience.publish(small_frame(true), 0);
     const auto acknowledge = [&](uint32_t frame) {
-        audience.said(1, R"({"type":"ack","frame":)" + std::to_string(frame) + R"(,"ms":1})", 0.1);
+        audience.received(1, R"({"type":"ack","frame":)" + std::to_string(frame) + R"(,"ms":1})", 0.1);
     };
     SendJob job = next_picture(audience);
     CHECK_FALSE(job.is_piece);
@@ -364,18 +364,18 @@ TEST_CASE("messages reach the renderer from whoever steers alone, and floods and
     Audience audience(inbox, "welcome");
     audience.open(1, 0);
     audience.open(2, 0);
-    CHECK_FALSE(audience.said(2, R"({"type":"home","n":1})", 0).empty()); // no hello
-    audience.said(1, kHello, 0);
-    audience.said(2, R"({"type":"hello","key":"b"})", 0);
-    CHECK_FALSE(audience.said(2, kHello, 0).empty());
+    CHECK_FALSE(audience.received(2, R"({"type":"home","n":1})", 0).empty()); // no hello
+    audience.received(1, kHello, 0);
+    audience.received(2, R"({"type":"hello","key":"b"})", 0);
+    CHECK_FALSE(audience.received(2, kHello, 0).empty());
     inbox.take(std::chrono::milliseconds(0));
-    CHECK(audience.said(2, R"({"type":"home","n":1})", 0).empty());
+    CHECK(audience.received(2, R"({"type":"home","n":1})", 0).empty());
     CHECK(inbox.take(std::chrono::milliseconds(0)).empty());
-    CHECK(audience.said(1, R"({"type":"home","n":1})", 0).empty());
+    CHECK(audience.received(1, R"({"type":"home","n":1})", 0).empty());
     CHECK(inbox.take(std::chrono::milliseconds(0)).size() == 1);
-    CHECK_FALSE(audience.said(1, "nonsense", 0).empty());
+    CHECK_FALSE(audience.received(1, "nonsense", 0).empty());
     std::string why;
-    for (int i = 0; i < 2000 && why.empty(); ++i) why = audience.said(1, R"({"type":"home","n":1})", 0.1);
+    for (int i = 0; i < 2000 && why.empty(); ++i) why = audience.received(1, R"({"type":"home","n":1})", 0.1);
     CHECK(why == "too many messages");
     CHECK(inbox.take(std::chrono::milliseconds(0)).size() <= 1000);
 }
@@ -384,18 +384,18 @@ TEST_CASE("a client whose message comes while the viewer ends is not told that i
     Inbox inbox;
     Audience audience(inbox, "welcome");
     audience.open(1, 0);
-    audience.said(1, kHello, 0);
+    audience.received(1, kHello, 0);
     inbox.close();
-    CHECK(audience.said(1, R"({"type":"home","n":1})", 0).empty());
+    CHECK(audience.received(1, R"({"type":"home","n":1})", 0).empty());
 }
 
 TEST_CASE("where the renderer takes nothing, whoever steers is dropped before the messages fill the memory") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     audience.open(1, 0);
-    audience.said(1, kHello, 0);
+    audience.received(1, kHello, 0);
     std::string why;
-    for (int i = 0; i < 10000 && why.empty(); ++i) why = audience.said(1, R"({"type":"home","n":1})", i);
+    for (int i = 0; i < 10000 && why.empty(); ++i) why = audience.received(1, R"({"type":"home","n":1})", i);
     CHECK(why == "too many messages wait");
 }
 
@@ -404,9 +404,9 @@ TEST_CASE("clients over the limit and those without a hello are dropped") {
     Audience audience(inbox, "welcome");
     for (uint32_t i = 1; i <= Audience::kMaxClients; ++i) CHECK(audience.open(i, 0));
     CHECK_FALSE(audience.open(99, 0));
-    audience.said(3, kHello, 0);
-    CHECK(audience.look(5).empty());
-    CHECK(audience.look(11).size() == Audience::kMaxClients - 1);
+    audience.received(3, kHello, 0);
+    CHECK(audience.tick(5).empty());
+    CHECK(audience.tick(11).size() == Audience::kMaxClients - 1);
     audience.close(1, 11);
     CHECK(audience.open(99, 11));
 }
@@ -415,11 +415,11 @@ TEST_CASE("the queue of a client that does not read stays small") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     audience.open(1, 0);
-    audience.said(1, kHello, 0);
+    audience.received(1, kHello, 0);
     CHECK(next(audience).text == "welcome"); // never acknowledged as sent
     for (int i = 0; i < 1000; ++i) {
-        audience.tell(0, "note " + std::to_string(i));
-        audience.tell_state("state");
+        audience.notify(0, "note " + std::to_string(i));
+        audience.report_state("state");
     }
     CHECK(next(audience).client == 0);
     audience.text_was_sent(1);

@@ -63,15 +63,15 @@ TEST_CASE(
         } else {
             set_view_setting(after, setting.name, setting.low);
         }
-        if (begins_anew(before, after)) names += std::string(setting.name) + ' ';
-        CHECK_FALSE(begins_anew(after, after));
+        if (restarts(before, after)) names += std::string(setting.name) + ' ';
+        CHECK_FALSE(restarts(after, after));
         const std::string name = setting.name;
         CHECK(is_shown_otherwise(before, after) == (name == "exposure" || name == "tone_map"));
     }
     CHECK(names == "layer integrator max_depth mode fov focus structure traversal rta ");
     ViewState round; // the lens of this view is a pinhole
     CHECK(set_view_setting(round, "aperture", 0.1) == "");
-    CHECK(begins_anew({}, round));
+    CHECK(restarts({}, round));
 }
 
 TEST_CASE("fixing the exposure keeps its value, and metering resets the stops") {

@@ -46,18 +46,18 @@ TEST_CASE("turning about the centre keeps the distance; what is dragged to the r
 
 TEST_CASE("looking turns about the eye by what the drag covers, and turns right when dragged right") {
     const float fov = 1;
-    const Pose turned = look(kStart, 0.3f, 0, fov);
+    const Pose turned = turn(kStart, 0.3f, 0, fov);
     CHECK(near(turned.eye, kStart.eye, 1e-6f));
     CHECK(ahead(turned).x == doctest::Approx(std::sin(0.3)));
     CHECK(near(turned.centre, turned.target, 1e-6f));
-    CHECK(ahead(look(kStart, 0, 0.2f, fov)).y == doctest::Approx(-std::sin(0.2)));
+    CHECK(ahead(turn(kStart, 0, 0.2f, fov)).y == doctest::Approx(-std::sin(0.2)));
 }
 
 TEST_CASE("no drag goes over the poles") {
     Pose pose = kStart;
     for (int i = 0; i < 50; ++i) pose = orbit(pose, 0.01f, 0.3f);
     CHECK(ahead(pose).y == doctest::Approx(-std::sin(1.55334)).epsilon(1e-4));
-    for (int i = 0; i < 50; ++i) pose = look(pose, 0, -0.9f, 1);
+    for (int i = 0; i < 50; ++i) pose = turn(pose, 0, -0.9f, 1);
     CHECK(ahead(pose).y == doctest::Approx(std::sin(1.55334)).epsilon(1e-4));
     const Transform placed = look_at(pose.eye, pose.target, pose.up);
     CHECK(is_finite(placed.row0));

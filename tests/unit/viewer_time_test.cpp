@@ -95,11 +95,11 @@ TEST_CASE("flags say a camera's place to the bit, or the name of the scene's whe
     const StartCamera start = start_at(scene);
     ViewCamera view(start, scene);
     Camera lens = start.camera;
-    CHECK_FALSE(view.is_said_by_pose());
+    CHECK_FALSE(view.is_given_by_pose());
     CHECK(view.flags(lens, 1.25).starts_with("--camera '0' --fov "));
     CHECK(view.flags(lens, 1.25).ends_with(" --time 1.25"));
     view.step(step_forward(), lens, 1);
-    CHECK(view.is_said_by_pose());
+    CHECK(view.is_given_by_pose());
     CHECK(view.flags(lens, {}).find("--eye") != std::string::npos);
     CHECK(view.flags(lens, {}).find("--time") == std::string::npos);
 }
@@ -125,7 +125,7 @@ TEST_CASE("keys that are taken lie in the order of their times, and the camera g
     CHECK(view.camera(lens).fov_y == first.fov_y);
     view.go_to(2.0, lens);
     CHECK(view.camera(lens).world_from_camera == second.world_from_camera);
-    CHECK(view.is_said_by_pose());
+    CHECK(view.is_given_by_pose());
     CHECK(view.add_key(2, lens)); // in place of the one there
     CHECK(view.path().keys.size() == 2);
     view.remove_key(7);
@@ -182,8 +182,8 @@ TEST_CASE("a view that is made up is made up again for another shape of the wind
     CHECK(away() == 2);
     camera.fit(0.5f, lens);
     CHECK(away() == 8);
-    CHECK(camera.is_said_by_pose()); // the flags give the same picture
-    camera.go_to(0.5, lens);         // time leaves it alone
+    CHECK(camera.is_given_by_pose()); // the flags give the same picture
+    camera.go_to(0.5, lens);          // time leaves it alone
     CHECK(away() == 8);
     ClientMessage zoom;
     zoom.kind = MessageKind::Zoom;
@@ -208,17 +208,17 @@ TEST_CASE("a made-up view is said to the bit by eye and target before anybody st
         mesh.indices = {0, 1, 2};
         scene.meshes.push_back(std::move(mesh));
         scene.instances.emplace_back();
-        Messages unsaid;
+        Messages ignored;
         const float aspect = random.within(0.5f, 2);
         StartCamera start;
-        start.camera = choose_camera({}, scene, aspect, unsaid);
+        start.camera = choose_camera({}, scene, aspect, ignored);
         start.pose = pose_of(CameraSource{.camera = start.camera}, scene, 3);
         CHECK(length(start.pose.centre - start.pose.eye) == doctest::Approx(3));
         const ViewCamera view(start, scene);
-        CHECK(view.is_said_by_pose());
+        CHECK(view.is_given_by_pose());
         const Pose pose = view.pose();
-        const CameraChoice said = {
+        const CameraChoice choice = {
             .eye = in_file(scene, pose.eye), .target = in_file(scene, pose.target), .up = pose.up};
-        CHECK(choose_camera(said, scene, aspect, unsaid).world_from_camera == start.camera.world_from_camera);
+        CHECK(choose_camera(choice, scene, aspect, ignored).world_from_camera == start.camera.world_from_camera);
     }
 }

@@ -9,7 +9,7 @@
 
 #include "accel/builders/build_bvh.h"
 #include "tests/support/meshes.h"
-#include "tests/support/nasty_meshes.h"
+#include "tests/support/stress_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -115,7 +115,7 @@ TEST_CASE("the chosen collapse of a small tree has minimal cost") {
 }
 
 TEST_CASE("wide trees of all nasty meshes are sound and lose no triangle") {
-    for (const NastyMesh& mesh : nasty_meshes()) {
+    for (const StressMesh& mesh : stress_meshes()) {
         CAPTURE(mesh.name);
         for (const int build_leaf : {1, 4, 40}) {
             const Bvh bvh = build_bvh(mesh.triangles, {.max_leaf = build_leaf, .leaf_cost = 0.1f});

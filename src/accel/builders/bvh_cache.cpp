@@ -205,9 +205,9 @@ std::optional<Bvh> load_cached_bvh(const Hash128& key, const fs::path& folder,
         fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
         return bvh;
     } catch (const Unusable& unusable) {
-        messages.warn({Place{path.string()}, fmt::format("ignored and built anew: {}", unusable.why)});
+        messages.warn({FileLocation{path.string()}, fmt::format("ignored and built anew: {}", unusable.why)});
     } catch (const fs::filesystem_error& error) {
-        messages.warn({Place{path.string()}, fmt::format("ignored and built anew: {}", error.code().message())});
+        messages.warn({FileLocation{path.string()}, fmt::format("ignored and built anew: {}", error.code().message())});
     }
     return std::nullopt;
 }
@@ -243,10 +243,11 @@ void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTre
         write_file_atomically(file_of(key, folder), bytes);
         remove_oldest(folder, max_bytes);
     } catch (const fs::filesystem_error& error) {
-        messages.warn(
-            {Place{folder.string()}, fmt::format("the structure cache cannot be written: {}", error.code().message())});
+        messages.warn({FileLocation{folder.string()},
+                       fmt::format("the structure cache cannot be written: {}", error.code().message())});
     } catch (const Error& error) {
-        messages.warn({Place{folder.string()}, fmt::format("the structure cache cannot be written: {}", error.what())});
+        messages.warn(
+            {FileLocation{folder.string()}, fmt::format("the structure cache cannot be written: {}", error.what())});
     }
 }
 

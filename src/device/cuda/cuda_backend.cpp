@@ -68,7 +68,7 @@ public:
     CudaHostCopy& operator=(const CudaHostCopy&) = delete;
 
     void take(const void* device) override;
-    void* place() override { return memory_; } // pinned memory has the same address on both sides
+    void* target() override { return memory_; } // pinned memory has the same address on both sides
     void mark() override;
     const void* wait(const char* stage) override {
         check_cuda(cudaSetDevice(index_), "cudaSetDevice");

@@ -27,11 +27,11 @@ bool is_within(const fs::path& path, const fs::path& root) {
     return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
 }
 
-Error refusal(const Place& from, const std::string& reference, const std::string& why) {
+Error refusal(const FileLocation& from, const std::string& reference, const std::string& why) {
     return Error(ErrorCode::BadInput, from, fmt::format("refers to \"{}\", {}", shortened(reference), why));
 }
 
-void check_is_name(const Place& from, const std::string& reference) {
+void check_is_name(const FileLocation& from, const std::string& reference) {
     if (reference.empty()) throw refusal(from, reference, "which is no file name");
     // The system would cut the name there, after the checks have seen all of it.
     if (reference.find('\0') != std::string::npos) throw refusal(from, reference, "a name that holds a zero byte");
@@ -42,7 +42,7 @@ fs::path portable(std::string reference) {
     return reference;
 }
 
-fs::path folder_of(const Place& from) {
+fs::path folder_of(const FileLocation& from) {
     const fs::path folder = fs::path(from.file).parent_path();
     return folder.empty() ? fs::path(".") : folder;
 }
@@ -61,7 +61,7 @@ bool FileAccess::is_allowed(const fs::path& canonical) const {
     return std::any_of(roots_.begin(), roots_.end(), [&](const fs::path& root) { return is_within(canonical, root); });
 }
 
-fs::path FileAccess::resolve(const Place& from, const std::string& reference) const {
+fs::path FileAccess::resolve(const FileLocation& from, const std::string& reference) const {
     check_is_name(from, reference);
     std::error_code ec;
     const fs::path path = fs::weakly_canonical(folder_of(from) / portable(reference), ec);
@@ -86,7 +86,8 @@ FileAccess::Located FileAccess::locate(const fs::path& name) const {
 }
 
 /// The file whose path ends like `name`. Nothing after a warning where several fit.
-std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const Place& from, Messages& messages) const {
+std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const FileLocation& from,
+                                                Messages& messages) const {
     const std::vector<std::string> components = components_below(name);
     if (components.empty()) return std::nullopt;
     // Names in the same case below the folder itself are found without a look around.
@@ -114,7 +115,8 @@ std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const Plac
     return std::nullopt;
 }
 
-std::optional<fs::path> FileAccess::find(const Place& from, const std::string& reference, Messages& messages) const {
+std::optional<fs::path> FileAccess::find(const FileLocation& from, const std::string& reference,
+                                         Messages& messages) const {
     check_is_name(from, reference);
     const fs::path name = portable(reference);
     const Located wanted = locate(folder_of(from) / name);
@@ -129,16 +131,16 @@ std::optional<fs::path> FileAccess::find(const Place& from, const std::string& r
     if (is_same_name && name.has_parent_path()) {
         const fs::path there = found->parent_path().lexically_relative(locate(folder_of(from)).path);
         messages.warn(
-            {Place{folder}, fmt::format("files named as in \"{}\", {}: those of the same name in {} are read",
-                                        shortened(name.parent_path().string()),
-                                        wanted.is_allowed ? "which are not there" : "outside the scene's folder",
-                                        there == "." ? "the folder itself" : "\"" + there.string() + "\"")});
+            {FileLocation{folder}, fmt::format("files named as in \"{}\", {}: those of the same name in {} are read",
+                                               shortened(name.parent_path().string()),
+                                               wanted.is_allowed ? "which are not there" : "outside the scene's folder",
+                                               there == "." ? "the folder itself" : "\"" + there.string() + "\"")});
     } else if (listing_->may_name_another()) {
         messages.warn(
             {from, fmt::format("\"{}\" is not there: {} is read, the only file of that name{}", shortened(reference),
                                found->string(), is_same_name ? "" : " but for upper and lower case")});
     } else {
-        messages.warn({Place{folder},
+        messages.warn({FileLocation{folder},
                        "further files that are not there are read from the only file of that name but for "
                        "upper and lower case"});
     }

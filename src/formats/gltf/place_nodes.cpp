@@ -47,7 +47,7 @@ std::vector<Transform> read_placements(const Document& document, Buffers& buffer
                          static_cast<double>(rotation.z), static_cast<double>(rotation.w)};
         if (!t.empty()) pose.translation = to_double(t[i]);
         if (!s.empty()) pose.scale = to_double(s[i]);
-        placements.push_back(world_from_node(place_of(pose), {0, 0, 0}));
+        placements.push_back(world_from_node(transform_of(pose), {0, 0, 0}));
     }
     return placements;
 }
@@ -85,9 +85,9 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         const std::string& name = scene.nodes[index].name;
         buffers.charge(node_from_local.size() * parts.size() * (sizeof(Instance) + name.size()), node);
         for (const Transform& m : node_from_local) {
-            const Transform world_from_local = has_skin ? Transform() : placed_in(nodes.place(index), m, {0, 0, 0});
+            const Transform world_from_local = has_skin ? Transform() : placed_in(nodes.transform(index), m, {0, 0, 0});
             if (!is_near(world_from_local)) {
-                messages.leave_out({node.place(), "the mesh lies further out than 2^40 metres; it is left out"});
+                messages.leave_out({node.location(), "the mesh lies further out than 2^40 metres; it is left out"});
                 continue;
             }
             for (const Meshes::Part& part : parts) {
@@ -100,7 +100,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             }
         }
         if (scene.instances.size() > kMaxInstances) {
-            throw Error(ErrorCode::OverLimit, node.place(), fmt::format("more than {} instances", kMaxInstances));
+            throw Error(ErrorCode::OverLimit, node.location(), fmt::format("more than {} instances", kMaxInstances));
         }
     };
 
@@ -116,7 +116,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             camera.world_from_camera = *rigid;
             scene.cameras.push_back(std::move(camera));
         } else {
-            messages.leave_out({node.place(), "the camera is squashed to nothing and left out"});
+            messages.leave_out({node.location(), "the camera is squashed to nothing and left out"});
         }
     };
     const auto place_emitter = [&](const JsonValue& node, uint32_t index, const Transform& world_from_node) {
@@ -132,14 +132,14 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         if (place_light(world_from_node, light)) {
             scene.lights.push_back(std::move(light));
         } else {
-            messages.leave_out({node.place(), "the light is squashed to nothing and left out"});
+            messages.leave_out({node.location(), "the light is squashed to nothing and left out"});
         }
     };
     for (const uint32_t index : nodes.scene_nodes()) {
         const JsonValue& node = document.table("nodes")[index];
         const Transform& world_from_node = nodes.world_from_node(index);
-        const auto attempt = [&](const char* what, const auto& place) {
-            read_or_leave_out(fmt::format("the {} of {}", what, node.pointer()), messages, place);
+        const auto attempt = [&](const char* what, const auto& add) {
+            read_or_leave_out(fmt::format("the {} of {}", what, node.pointer()), messages, add);
         };
         attempt("mesh", [&] {
             if (node.find("mesh")) place_mesh(node, index);

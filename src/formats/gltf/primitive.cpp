@@ -130,7 +130,7 @@ void drop_triangles_past(std::size_t vertices, const JsonValue& primitive, std::
     const std::size_t dropped = (indices.size() - kept) / 3;
     indices.resize(kept);
     messages.leave_out(
-        {primitive.at("indices").place(),
+        {primitive.at("indices").location(),
          fmt::format("index {} where there are {} vertices; {} with such a corner left out", index, vertices,
                      dropped == 1 ? "the triangle" : fmt::format("the {} triangles", dropped))});
 }
@@ -146,7 +146,7 @@ bool is_compressed_alone(const PrimitiveRequest& request, const JsonValue& posit
 
 std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Messages& messages) {
     const auto leave_out = [&](const std::string& what) {
-        messages.leave_out({request.primitive.place(), what});
+        messages.leave_out({request.primitive.location(), what});
         return std::nullopt;
     };
     const Topology topology = read_topology(request.primitive);

@@ -43,7 +43,7 @@ struct RawGroup {
 };
 
 Error fault_at(const std::string& file, uint32_t line, const std::string& what) {
-    return Error(ErrorCode::BadInput, Place{file, line}, what);
+    return Error(ErrorCode::BadInput, FileLocation{file, line}, what);
 }
 
 /// Parses one piece, and writes its vertices to their positions in arrays that have their final size.
@@ -257,9 +257,9 @@ public:
         parse_pieces(found_materials);
         move_to_origin();
         if (!join_groups(false)) {
-            messages_.note(
-                {Place{file_}, fmt::format("more than {} objects and groups: faces are put together by material alone",
-                                           kMaxObjGroups)});
+            messages_.note({FileLocation{file_},
+                            fmt::format("more than {} objects and groups: faces are put together by material alone",
+                                        kMaxObjGroups)});
             join_groups(true);
         }
         join_colors();
@@ -303,23 +303,23 @@ private:
             fmt::format("; {} {} left out", counted(bad.times, "such face"), is_or_are(bad.times))));
     }
 
-    Remark told(const CountedLines& what, const char* thing, const char* text) const {
-        return {Place{file_, what.first_line}, fmt::format("{} {}", counted(what.times, thing), text)};
+    Remark remark_on(const CountedLines& what, const char* thing, const char* text) const {
+        return {FileLocation{file_, what.first_line}, fmt::format("{} {}", counted(what.times, thing), text)};
     }
 
     void leave_out(const CountedLines& what, const char* thing, const char* text) const {
         if (what.times == 0) return;
-        messages_.leave_out(told(what, thing, text).and_then(fmt::format(" {} left out", is_or_are(what.times))));
+        messages_.leave_out(remark_on(what, thing, text).and_then(fmt::format(" {} left out", is_or_are(what.times))));
     }
 
     void warn(const CountedLines& what, const char* thing, const char* text) const {
-        if (what.times > 0) messages_.warn(told(what, thing, text));
+        if (what.times > 0) messages_.warn(remark_on(what, thing, text));
     }
 
     void parse_pieces(const FoundMaterials& found_materials) {
         const ObjCounts all = count_before(pieces_, end_of_line_);
         if (std::max({all.positions, all.uvs, all.normals}) >= kNoIndex) {
-            throw Error(ErrorCode::OverLimit, Place{file_}, "more than 2^32 - 1 vertices");
+            throw Error(ErrorCode::OverLimit, FileLocation{file_}, "more than 2^32 - 1 vertices");
         }
         data_.positions.resize(all.positions); // pieces write to disjoint ranges
         exact_.resize(all.positions);

@@ -39,10 +39,10 @@ public:
 
     Error fault(const std::string& what) const {
         const std::string value = fmt::format("{} {}: {}", element_, number_, what);
-        if (format_ == PlyFormat::Ascii) return Error(ErrorCode::BadInput, Place{file_, line()}, value);
-        return Error(ErrorCode::BadInput, Place{file_}, fmt::format("byte {}: {}", at_ - begin_, value));
+        if (format_ == PlyFormat::Ascii) return Error(ErrorCode::BadInput, FileLocation{file_, line()}, value);
+        return Error(ErrorCode::BadInput, FileLocation{file_}, fmt::format("byte {}: {}", at_ - begin_, value));
     }
-    void set_place(const std::string& element, uint64_t number) {
+    void set_location(const std::string& element, uint64_t number) {
         element_ = element;
         number_ = number;
     }
@@ -117,9 +117,9 @@ public:
                                  : fmt::format("; this and {} more are left out", bad_values_ - 1)));
         }
         if (long_lines_ == 0) return;
-        messages.leave_out(
-            {Place{file_, first_long_line_}, fmt::format("{} with more numbers than the header says: the rest left out",
-                                                         counted(long_lines_, "line"))});
+        messages.leave_out({FileLocation{file_, first_long_line_},
+                            fmt::format("{} with more numbers than the header says: the rest left out",
+                                        counted(long_lines_, "line"))});
     }
 
 private:

@@ -81,13 +81,17 @@ public:
     }
 
 private:
-    Error fault(const std::string& what) const { return Error(ErrorCode::BadInput, Place{file_, line_number_}, what); }
+    Error fault(const std::string& what) const {
+        return Error(ErrorCode::BadInput, FileLocation{file_, line_number_}, what);
+    }
 
     static bool is_one_of_elements(std::string_view word) {
         return word == "element" || word == "property" || word == "end_header";
     }
 
-    void repaired(std::string what) { header_.repairs.emplace_back(Place{file_, line_number_}, std::move(what)); }
+    void repaired(std::string what) {
+        header_.repairs.emplace_back(FileLocation{file_, line_number_}, std::move(what));
+    }
 
     /// Blender 2.4 wrote "Created by Blender3D ...", and old Assimp its own name, without the word comment.
     void take_as_comment() {

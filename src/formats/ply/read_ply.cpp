@@ -61,7 +61,7 @@ public:
                                                  "face with a list vertex_indices");
         }
         for (const PlyElement& element : header_.elements) {
-            body_.set_place(element.name, 0);
+            body_.set_location(element.name, 0);
             if (element.properties.empty() && element.name != "vertex") continue; // takes no bytes, whatever its count
             std::size_t least = 0;
             for (const PlyProperty& p : element.properties) least += body_.min_size(p.is_list ? p.count_type : p.type);
@@ -86,7 +86,7 @@ public:
         move_to_origin();
         if (has_float_colors_) decode_vertex_colors(mesh_.colors, file_, messages);
         if (!of_faces_.textures.empty() && of_faces_.textures.size() != sizes_.size()) {
-            messages.leave_out({Place{file_}, "textures of faces beside triangle strips are left out"});
+            messages.leave_out({FileLocation{file_}, "textures of faces beside triangle strips are left out"});
             of_faces_ = {};
         }
         if (!of_faces_.uvs.empty()) split_vertices(of_faces_.uvs, corners_, mesh_);
@@ -99,12 +99,13 @@ public:
                 bad_indices_ == 1 ? "has that corner is" : fmt::format("has such a corner, of {}, is", bad_indices_))));
         }
         if (bad_textures_ > 0) {
-            messages.leave_out({Place{file_}, fmt::format("{} of a texture that is not in the header {} without it",
-                                                          counted(bad_textures_, "face"), is_or_are(bad_textures_))});
+            messages.leave_out(
+                {FileLocation{file_}, fmt::format("{} of a texture that is not in the header {} without it",
+                                                  counted(bad_textures_, "face"), is_or_are(bad_textures_))});
         }
         if (strays_ > 0) {
-            messages.leave_out({Place{file_}, fmt::format("{} of fewer than three corners {} left out",
-                                                          counted(strays_, "face"), is_or_are(strays_))});
+            messages.leave_out({FileLocation{file_}, fmt::format("{} of fewer than three corners {} left out",
+                                                                 counted(strays_, "face"), is_or_are(strays_))});
         }
         return std::move(mesh_);
     }
@@ -133,10 +134,10 @@ private:
                 has_uv |= is_face_uv(p) && header_.textures.empty();
             }
             if (has_colour)
-                messages.leave_out({Place{file_}, "colours of faces are left out; those of vertices are read"});
+                messages.leave_out({FileLocation{file_}, "colours of faces are left out; those of vertices are read"});
             if (has_uv)
-                messages.leave_out(
-                    {Place{file_}, "texture coordinates of faces are left out: no comment TextureFile has a texture"});
+                messages.leave_out({FileLocation{file_},
+                                    "texture coordinates of faces are left out: no comment TextureFile has a texture"});
         }
     }
 
@@ -159,7 +160,7 @@ private:
 
     void vertices(const PlyElement& element) {
         if (element.count > std::numeric_limits<uint32_t>::max()) {
-            throw Error(ErrorCode::OverLimit, Place{file_}, "more than 2^32 - 1 vertices");
+            throw Error(ErrorCode::OverLimit, FileLocation{file_}, "more than 2^32 - 1 vertices");
         }
         std::vector<std::size_t> slots;
         std::array<bool, kSlots + 1> has = {};
@@ -349,7 +350,7 @@ private:
         std::size_t triangles = 0;
         for (const uint32_t size : sizes_) triangles += size - 2;
         if (triangles > kMaxTrianglesPerMesh) {
-            throw Error(ErrorCode::OverLimit, Place{file_},
+            throw Error(ErrorCode::OverLimit, FileLocation{file_},
                         fmt::format("{} triangles; a mesh has at most {}", triangles, kMaxTrianglesPerMesh));
         }
         if (triangles == sizes_.size()) {

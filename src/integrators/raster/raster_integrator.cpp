@@ -42,7 +42,7 @@ void RasterIntegrator::render(uint32_t first, uint32_t count, const FilmView& fi
         const RasterPass pass = {camera_,      picture_,          picture_settings_, depths_.data(),
                                  rows_.data(), row_count_.data(), rows_.size(),      sample};
         depths_.fill(0xff); // kNoDepth
-        if (picture_settings_.look.is_wireframe) {
+        if (picture_settings_.display.is_wireframe) {
             launch(queue_, "draw_edges", triangles, DrawEdges{pass});
         } else {
             row_count_.zero();

@@ -134,10 +134,10 @@ private:
 class ReaderSets {
 public:
     uint16_t number_of(std::vector<bool> readers) {
-        const auto [place, is_new] = numbers_.try_emplace(std::move(readers), static_cast<uint16_t>(sets_.size()));
-        if (is_new) sets_.push_back(&place->first);
+        const auto [offset, is_new] = numbers_.try_emplace(std::move(readers), static_cast<uint16_t>(sets_.size()));
+        if (is_new) sets_.push_back(&offset->first);
         if (sets_.size() > UINT16_MAX) refuse("the names tell more than 65535 things apart");
-        return place->second;
+        return offset->second;
     }
     const std::vector<const std::vector<bool>*>& all() const { return sets_; }
     uint32_t count() const { return static_cast<uint32_t>(sets_.size()); }
@@ -177,8 +177,8 @@ LightPathAutomaton determinise(AllExpressions& all, StateSet firsts, const Light
     std::unordered_map<StateSet, uint16_t, HashOfStates> numbers;
     std::vector<const StateSet*> sets;
     const auto number_of = [&](StateSet set) {
-        const auto [place, is_new] = numbers.try_emplace(std::move(set), static_cast<uint16_t>(numbers.size()));
-        if (is_new) sets.push_back(&place->first);
+        const auto [offset, is_new] = numbers.try_emplace(std::move(set), static_cast<uint16_t>(numbers.size()));
+        if (is_new) sets.push_back(&offset->first);
         if (sets.size() > kMaxLightPathStates) {
             refuse(fmt::format("the expressions need more than {} states together", kMaxLightPathStates));
         }
@@ -186,7 +186,7 @@ LightPathAutomaton determinise(AllExpressions& all, StateSet firsts, const Light
             refuse(fmt::format("the names tell {} things apart, too many for {} states",
                                automaton.column_count + automaton.light_count, sets.size()));
         }
-        return place->second;
+        return offset->second;
     };
     number_of({});
     all.close(firsts);

@@ -55,8 +55,8 @@ public:
     }
 
 private:
-    [[noreturn]] void fail(std::size_t place, std::string_view why) const {
-        throw Error(ErrorCode::BadInput, point_at(expression_, place, why));
+    [[noreturn]] void fail(std::size_t offset, std::string_view why) const {
+        throw Error(ErrorCode::BadInput, point_at(expression_, offset, why));
     }
     /// Returns the next letter that is not blank; 0 at the end.
     char peek() {
@@ -130,12 +130,12 @@ private:
     }
     uint32_t parse_atom(uint32_t nesting) {
         const char letter = peek();
-        const std::size_t place = at_;
+        const std::size_t offset = at_;
         switch (letter) {
         case '(': {
             ++at_;
             const uint32_t inner = parse_choice(nesting + 1);
-            if (!take(')')) fail(place, "this ( is not closed");
+            if (!take(')')) fail(offset, "this ( is not closed");
             return inner;
         }
         case '[':
@@ -145,7 +145,7 @@ private:
             LightPathLetter light = {.kind = LightPathLetter::Kind::Light};
             uint8_t ways = 0;
             if (peek() == '<') light.names = parse_filter(ways);
-            if (ways != 0) fail(place, "R and T are ways of scattering: a light has a name alone, L<'lamp'>");
+            if (ways != 0) fail(offset, "R and T are ways of scattering: a light has a name alone, L<'lamp'>");
             return add(std::move(light));
         }
         case 'E':
@@ -156,7 +156,7 @@ private:
             break;
         }
         if (const auto term = parse_term()) return add(LightPathLetter{.terms = {*term}});
-        fail(place, why_no_atom(letter));
+        fail(offset, why_no_atom(letter));
     }
     /// Parses D, G, S or . with its filter.
     std::optional<ScatteringTerm> parse_term() {
@@ -246,15 +246,15 @@ bool is_name(std::string_view name) {
 }
 
 /// Number of visible letters before byte `place`; UTF-8 has up to four bytes per letter.
-std::size_t letters_before(std::string_view text, std::size_t place) {
+std::size_t letters_before(std::string_view text, std::size_t offset) {
     return static_cast<std::size_t>(
-        std::ranges::count_if(text.substr(0, place), [](char c) { return (static_cast<uint8_t>(c) & 0xc0) != 0x80; }));
+        std::ranges::count_if(text.substr(0, offset), [](char c) { return (static_cast<uint8_t>(c) & 0xc0) != 0x80; }));
 }
 
 } // namespace
 
-Remark point_at(const LightPathExpression& expression, std::size_t place, std::string_view why) {
-    const std::size_t column = letters_before(expression.text, place);
+Remark point_at(const LightPathExpression& expression, std::size_t offset, std::string_view why) {
+    const std::size_t column = letters_before(expression.text, offset);
     std::string shown = expression.text;
     std::ranges::replace_if(
         shown, [](char c) { return static_cast<uint8_t>(c) < ' '; }, ' ');

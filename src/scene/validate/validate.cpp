@@ -39,7 +39,7 @@ public:
         drop_singular_instances();
         if (scene_.instances.empty()) {
             if (first_misplaced_.ends_with(kTooFar)) {
-                throw Error(ErrorCode::OverLimit, Place{file_},
+                throw Error(ErrorCode::OverLimit, FileLocation{file_},
                             fmt::format("{}; scale the scene down", first_misplaced_));
             }
             if (!first_misplaced_.empty()) throw bad(first_misplaced_);
@@ -52,9 +52,10 @@ public:
     }
 
 private:
-    Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, Place{file_}, what); }
+    Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, FileLocation{file_}, what); }
     Error too_far(const std::string& what) const {
-        return Error(ErrorCode::OverLimit, Place{file_}, fmt::format("{} {}; scale the scene down", what, kTooFar));
+        return Error(ErrorCode::OverLimit, FileLocation{file_},
+                     fmt::format("{} {}; scale the scene down", what, kTooFar));
     }
 
     Error no_geometry(std::size_t without_triangles, std::size_t singular) const {
@@ -73,25 +74,25 @@ private:
         return bad(fmt::format("no geometry, not one triangle to see: {}", fmt::join(reasons, "; ")));
     }
 
-    static std::string place_of(std::size_t i, const Mesh& mesh) { return numbered("mesh", i, mesh.name, mesh.origin); }
+    static std::string name_of(std::size_t i, const Mesh& mesh) { return numbered("mesh", i, mesh.name, mesh.origin); }
 
-    static std::string place_of(std::size_t i, const Instance& instance) {
+    static std::string name_of(std::size_t i, const Instance& instance) {
         return numbered("instance", i, instance.name, origin_of(instance));
     }
 
     void references() const {
         if (scene_.instances.size() > kMaxInstances) {
-            throw Error(ErrorCode::OverLimit, Place{file_},
+            throw Error(ErrorCode::OverLimit, FileLocation{file_},
                         fmt::format("{} instances; the limit is {}", scene_.instances.size(), kMaxInstances));
         }
         for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
             const Instance& instance = scene_.instances[i];
             if (instance.mesh >= scene_.meshes.size()) {
-                throw bad(fmt::format("{}: mesh {} is out of range; there are {}", place_of(i, instance), instance.mesh,
+                throw bad(fmt::format("{}: mesh {} is out of range; there are {}", name_of(i, instance), instance.mesh,
                                       scene_.meshes.size()));
             }
             if (instance.material >= scene_.materials.size()) {
-                throw bad(fmt::format("{}: material {} is out of range; there are {}", place_of(i, instance),
+                throw bad(fmt::format("{}: material {} is out of range; there are {}", name_of(i, instance),
                                       instance.material, scene_.materials.size()));
             }
         }
@@ -112,7 +113,7 @@ private:
         }
         for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
             Mesh& mesh = scene_.meshes[i];
-            const std::string of = fmt::format("{}: {}", file_, place_of(i, mesh));
+            const std::string of = fmt::format("{}: {}", file_, name_of(i, mesh));
             MeshShape* shape = shapes[i];
             repairs_ += repair_mesh(mesh, shape != nullptr && moves[i], of);
             if (shape == nullptr) continue;
@@ -150,7 +151,7 @@ private:
         uint32_t kept = 0;
         for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
             if (scene_.meshes[i].indices.empty()) {
-                if (first_empty_mesh_.empty()) first_empty_mesh_ = place_of(i, scene_.meshes[i]);
+                if (first_empty_mesh_.empty()) first_empty_mesh_ = name_of(i, scene_.meshes[i]);
                 continue;
             }
             if (kept != i) scene_.meshes[kept] = std::move(scene_.meshes[i]);
@@ -171,19 +172,19 @@ private:
         std::size_t i = 0, dropped = 0;
         std::erase_if(scene_.instances, [&](const Instance& instance) {
             const std::size_t number = i++;
-            if (const std::string fault = fault_of_place(instance, bounds[instance.mesh]); !fault.empty()) {
-                const std::string what = fmt::format("{} {}", place_of(number, instance), fault);
+            if (const std::string fault = fault_of_transform(instance, bounds[instance.mesh]); !fault.empty()) {
+                const std::string what = fmt::format("{} {}", name_of(number, instance), fault);
                 if (first_misplaced_.empty()) first_misplaced_ = what;
-                messages_.leave_out({Place{file_}, fmt::format("{}; it is left out", what)});
+                messages_.leave_out({FileLocation{file_}, fmt::format("{}; it is left out", what)});
                 return true;
             }
             const bool drops = is_singular(instance.world_from_local) && !moves_[number];
-            if (drops && dropped++ == 0) first_singular_ = place_of(number, instance);
+            if (drops && dropped++ == 0) first_singular_ = name_of(number, instance);
             if (drops && is_flat(instance.world_from_local)) {
-                messages_.leave_out(
-                    {Place{file_}, fmt::format("{} is squeezed flat by its transform, such as by one scale of 0: it "
-                                               "is left out",
-                                               place_of(number, instance))});
+                messages_.leave_out({FileLocation{file_},
+                                     fmt::format("{} is squeezed flat by its transform, such as by one scale of 0: it "
+                                                 "is left out",
+                                                 name_of(number, instance))});
             }
             return drops;
         });
@@ -193,9 +194,9 @@ private:
             instance.world_from_local = {};
         }
         if (dropped == 0) return;
-        messages_.warn(
-            {Place{file_}, fmt::format("{} with a singular transform, such as a scale of 0: hidden; the first is {}",
-                                       counted(dropped, "instance"), first_singular_)});
+        messages_.warn({FileLocation{file_},
+                        fmt::format("{} with a singular transform, such as a scale of 0: hidden; the first is {}",
+                                    counted(dropped, "instance"), first_singular_)});
     }
 
     /// Whether a transform removes all area of surfaces.
@@ -205,7 +206,7 @@ private:
     }
 
     /// Returns why an instance cannot be placed there; empty if it can.
-    static std::string fault_of_place(const Instance& instance, const Bounds3& local) {
+    static std::string fault_of_transform(const Instance& instance, const Bounds3& local) {
         const Transform& m = instance.world_from_local;
         if (!is_finite(m)) return "has a transform that is not finite";
         return local.is_empty() || lies_near(m, local) ? "" : kTooFar;
@@ -246,7 +247,7 @@ private:
                 fmt::format("{}: its intensity is ({}, {}, {}); it is finite and not negative", of, e.r, e.g, e.b));
         }
         const LightParts parts = parts_of(light.kind);
-        if (parts.place) {
+        if (parts.position) {
             if (!is_near(light.position)) throw too_far(of);
             if (!(light.range >= 0)) throw bad(fmt::format("{}: its range is {}; it is 0 or above", of, light.range));
         }

@@ -21,20 +21,20 @@ public:
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) material(i);
         if (clamped_ > 0) {
             messages_.warn(
-                {Place{file_}, fmt::format("{} of materials outside the range {} clamped; the first is {}",
-                                           counted(clamped_, "number"), is_or_are(clamped_), first_clamped_)});
+                {FileLocation{file_}, fmt::format("{} of materials outside the range {} clamped; the first is {}",
+                                                  counted(clamped_, "number"), is_or_are(clamped_), first_clamped_)});
         }
         if (scene_.environment) environment(*scene_.environment);
     }
 
 private:
-    Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, Place{file_}, what); }
+    Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, FileLocation{file_}, what); }
 
     void check_size(uint64_t width, uint64_t height, uint64_t values, uint64_t values_per_pixel,
                     const std::string& of) const {
         if (width == 0 || height == 0) throw bad(of + ": it has no pixels");
         if (width > kMaxImageSide || height > kMaxImageSide || width * height > kMaxImagePixels) {
-            throw Error(ErrorCode::OverLimit, Place{file_},
+            throw Error(ErrorCode::OverLimit, FileLocation{file_},
                         fmt::format("{}: {} x {} pixels; a side has at most {}, an image {}", of, width, height,
                                     kMaxImageSide, kMaxImagePixels));
         }
@@ -52,7 +52,7 @@ private:
             ++bad_values;
         }
         if (bad_values > 0) {
-            messages_.warn({Place{file_},
+            messages_.warn({FileLocation{file_},
                             fmt::format("{}: {} negative or not finite: set to 0", of, counted(bad_values, "value"))});
         }
     }

@@ -75,9 +75,9 @@ std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
 }
 
 void validate_nodes(const Scene& scene, const std::string& file) {
-    const auto bad = [&](const std::string& what) { return Error(ErrorCode::BadInput, Place{file}, what); };
+    const auto bad = [&](const std::string& what) { return Error(ErrorCode::BadInput, FileLocation{file}, what); };
     const std::size_t count = scene.nodes.size();
-    const auto place_of = [&](std::size_t i) {
+    const auto name_of = [&](std::size_t i) {
         return numbered("node", i, scene.nodes[i].name, fmt::format("/nodes/{}", i));
     };
     const auto check_node = [&](uint32_t node, const auto& of) {
@@ -86,20 +86,20 @@ void validate_nodes(const Scene& scene, const std::string& file) {
     };
     for (std::size_t i = 0; i < count; ++i) {
         const Node& node = scene.nodes[i];
-        check_node(node.parent, [&] { return place_of(i) + ": its parent"; });
+        check_node(node.parent, [&] { return name_of(i) + ": its parent"; });
         if (node.skin != kNoSkin && node.skin >= scene.skins.size()) {
             throw bad(
-                fmt::format("{}: skin {} is out of range; there are {}", place_of(i), node.skin, scene.skins.size()));
+                fmt::format("{}: skin {} is out of range; there are {}", name_of(i), node.skin, scene.skins.size()));
         }
         const NodePose* pose = std::get_if<NodePose>(&node.pose);
         if (pose != nullptr ? !is_finite_pose(*pose) : !is_finite(to_float(std::get<DoubleTransform>(node.pose)))) {
-            throw bad(place_of(i) + ": its transform is not finite");
+            throw bad(name_of(i) + ": its transform is not finite");
         }
         if (pose != nullptr && is_zero(pose->rotation)) {
-            throw bad(place_of(i) + ": its rotation is 0; expected a unit quaternion");
+            throw bad(name_of(i) + ": its rotation is 0; expected a unit quaternion");
         }
         if (!std::ranges::all_of(node.morph_weights, [](float w) { return is_finite(w); })) {
-            throw bad(place_of(i) + ": a morph weight is not finite");
+            throw bad(name_of(i) + ": a morph weight is not finite");
         }
     }
     if (const std::size_t placed = parents_first(scene.nodes).size(); placed != count) {

@@ -10,7 +10,7 @@
 #include "math/portable_math.h"
 #include "scene/scene_origin.h"
 #include "session/degrees.h"
-#include "session/place_text.h"
+#include "session/position_text.h"
 #include "session/survey/aim_camera.h"
 #include "session/survey/default_camera.h"
 
@@ -52,7 +52,7 @@ Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect,
     const Camera camera = make_default_camera(scene, aspect, unsaid);
     const Vec3 eye = camera.world_from_camera.translation;
     messages.make_up(fmt::format("no camera in the scene: a made-up eye looks at the target (`eye={}` `target={}`)",
-                                 place_text(scene, eye, 4), text_of(*choice.target)));
+                                 position_text(scene, eye, 4), text_of(*choice.target)));
     return camera;
 }
 
@@ -131,12 +131,12 @@ const Camera* scene_camera(const std::string& name, const Scene& scene) {
 void aim_eye(CameraChoice& choice, const Scene& scene, Messages& messages) {
     if (!choice.eye || choice.target) return;
     const Target target = target_from(scene, in_scene(scene, *choice.eye));
-    choice.target = told_place(scene, target.position, 6);
+    choice.target = stated_position(scene, target.position, 6);
     choice.is_aimed = true;
     messages.make_up({"eye", "",
                       fmt::format("without `target` it looks {} (`eye={}` `target={}`)",
                                   target.is_middle ? "at the middle of the scene" : "along the scene from its middle",
-                                  text_of(*choice.eye), place_text(scene, target.position, 6))});
+                                  text_of(*choice.eye), position_text(scene, target.position, 6))});
 }
 
 Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Messages& messages) {
@@ -147,8 +147,8 @@ Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Mess
     } else if (!choice.eye) {
         camera = make_camera(choice, scene, aspect, messages);
     }
-    Vec3& place = camera.world_from_camera.translation;
-    place = told_in_file(scene, place); // so that numbers in the coordinates of the file state it to the bit
+    Vec3& position = camera.world_from_camera.translation;
+    position = rounded_to_file(scene, position); // so that numbers in the coordinates of the file state it to the bit
     place_camera(choice, scene, camera);
     if (choice.fov_deg) camera.fov_y = *choice.fov_deg * kRadiansPerDegree;
     if (choice.aperture) camera.aperture_radius = *choice.aperture;

@@ -38,9 +38,10 @@ bool SequenceRecord::load() {
     for (const auto& [name, value] : settings_) {
         const std::string then = before.string_or(name, "");
         if (then == value) continue;
-        Remark why(before.place(), fmt::format("the frames there were made with {} \"{}\", not \"{}\"; make them anew "
-                                               "without `continue`, or elsewhere",
-                                               name, then, value));
+        Remark why(before.location(),
+                   fmt::format("the frames there were made with {} \"{}\", not \"{}\"; make them anew "
+                               "without `continue`, or elsewhere",
+                               name, then, value));
         why.setting = "continue";
         throw Error(ErrorCode::BadInput, why);
     }
@@ -68,7 +69,7 @@ void SequenceRecord::check_picture(uint32_t frame, const std::string& picture) c
     const auto known = pictures_.find(frame);
     if (known == pictures_.end() || known->second == picture) return;
     throw Error(
-        ErrorCode::BadInput, Place{path_.string()},
+        ErrorCode::BadInput, FileLocation{path_.string()},
         fmt::format("frame {} is another picture now ({}) than when it was written ({}), so that those after it would "
                     "not follow; make them anew without `continue`, or elsewhere",
                     frame, picture, known->second));

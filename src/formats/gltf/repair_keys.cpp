@@ -1,4 +1,4 @@
-#include "formats/gltf/mend_keys.h"
+#include "formats/gltf/repair_keys.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ std::vector<std::size_t> without_repeats(const std::vector<std::size_t>& order, 
 
 } // namespace
 
-std::string mend_keys(AnimationChannel& channel, std::size_t numbers_a_key) {
+std::string repair_keys(AnimationChannel& channel, std::size_t numbers_a_key) {
     const std::vector<float>& times = channel.times;
     std::vector<std::size_t> order(times.size());
     std::iota(order.begin(), order.end(), std::size_t(0));

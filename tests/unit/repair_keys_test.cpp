@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "formats/gltf/mend_keys.h"
+#include "formats/gltf/repair_keys.h"
 #include "math/scalar.h"
 #include "scene/pose/sample_channel.h"
 #include "scene/scene.h"
@@ -31,8 +31,8 @@ float at(const AnimationChannel& channel, double time_s) {
     return value[0];
 }
 
-AnimationChannel mended(AnimationChannel channel, bool is_told) {
-    CHECK(!gltf::mend_keys(channel, 3).empty() == is_told);
+AnimationChannel mended(AnimationChannel channel, bool is_reported) {
+    CHECK(!gltf::repair_keys(channel, 3).empty() == is_reported);
     Scene scene;
     scene.nodes.resize(1);
     CHECK(fault_of(channel, scene).empty());
@@ -87,7 +87,7 @@ TEST_CASE("a spline jumps between the values of its keys, with their own tangent
     for (const float value : {0.0f, 0.0f, 4.0f, 4.0f}) {
         for (const float number : {0.0f, value, 0.0f}) spline.values.insert(spline.values.end(), {number, 0, 0});
     }
-    CHECK(gltf::mend_keys(spline, 9).empty());
+    CHECK(gltf::repair_keys(spline, 9).empty());
     CHECK(at(spline, 0.5) == 0);
     CHECK(at(spline, 1) == 4);
     CHECK(at(spline, 1.5) == 4);
