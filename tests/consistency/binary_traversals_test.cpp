@@ -241,7 +241,8 @@ TEST_CASE("redundant traversal avoidance never visits more nodes and saves some"
     check_rta_saves<SkipLinksTraversal>("skip links", view_of(skip), rays);
 }
 
-TEST_CASE("traversals with a stack visit equally many nodes, those without one more, brute force all") {
+TEST_CASE(
+    "traversals with a stack visit equally many nodes, those without one visit more, and brute force visits all") {
     constexpr TraversalOptions kAll = {};
     const Bvh bvh = with_parent_links(build_bvh(shells()));
     uint64_t by_stack = 0, by_short_stack = 0, by_trail = 0, far_first = 0, near_first = 0, wrong = 0;
@@ -269,7 +270,7 @@ TEST_CASE("traversals with a stack visit equally many nodes, those without one m
     CHECK(near_first < far_first);
 }
 
-TEST_CASE("with the laboratory's fast tests every traversal finds the same surfaces, but for rays at edges") {
+TEST_CASE("with the laboratory's fast tests every traversal finds the same surfaces, except for rays at edges") {
     constexpr TraversalOptions kFast = {.tests = TestKind::Fast};
     const Bvh bvh = with_parent_links(build_bvh(shells()));
     const SkipBvh skip = make_skip_bvh(bvh);

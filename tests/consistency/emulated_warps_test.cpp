@@ -140,7 +140,7 @@ struct HostHits {
 
 } // namespace
 
-TEST_CASE("on warps, every traversal by every way of handing out rays gives each ray its hit, once") {
+TEST_CASE("on warps, every traversal with every distribution of rays finds each ray's hit once") {
     const uint32_t rounds = static_cast<uint32_t>(effort(1, 40));
     uint32_t seed = 0;
     for (const StressMesh& c : stress_meshes(500)) {
@@ -162,7 +162,7 @@ TEST_CASE("on warps, every traversal by every way of handing out rays gives each
     }
 }
 
-TEST_CASE("on warps, every ray gets its hit once for any number of rays and warps") {
+TEST_CASE("on warps, each ray's hit is found once for any number of rays and warps") {
     const StressMesh mesh = stress_meshes()[3];
     const TestTrees trees(mesh.triangles);
     uint32_t seed = 0;
@@ -184,7 +184,7 @@ TEST_CASE("on warps, every ray gets its hit once for any number of rays and warp
     }
 }
 
-TEST_CASE("on warps, every ray gets its hit over instances where lanes diverge between meshes") {
+TEST_CASE("on warps, each ray's hit is found over instances where lanes diverge between meshes") {
     const InstancedScene s = make_instanced_scene(static_cast<uint32_t>(effort(kRays, 20'011)));
     std::vector<BvhView> views;
     std::vector<CompressedBvh> compressed;
@@ -209,7 +209,7 @@ TEST_CASE("on warps, every ray gets its hit over instances where lanes diverge b
     CHECK(runs == 26); // four traversals, two ways, and three by dynamic fetch too; closest and any
 }
 
-TEST_CASE("on warps, live lanes add up to the visits of the rays") {
+TEST_CASE("on warps, the active lanes add up to the visits of the rays") {
     const TestTrees trees(triangles_of(make_torus(40, 24)));
     Random random(4);
     std::vector<Ray> rays(static_cast<std::size_t>(effort(kRays, 20'011)));

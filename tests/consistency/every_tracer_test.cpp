@@ -107,7 +107,7 @@ TEST_CASE("every tracer gives one picture: a scene with instances, cut-outs, ble
     check(check_all(test::make_mixed_scene()));
 }
 
-TEST_CASE("every tracer gives one picture: the same as one tree") {
+TEST_CASE("every tracer gives one picture: the same scene in one tree") {
     check(check_all(make_single_tree(test::make_mixed_scene())));
 }
 

@@ -69,7 +69,7 @@ std::vector<Hash128> hashes_of_sequence(Queue& queue, const FrameRange& sequence
 
 } // namespace
 
-TEST_CASE("frames of a moving sequence have the same bytes by every body, on every device, and after a cut") {
+TEST_CASE("frames of a moving sequence have the same bytes in every schedule, on every device and after a cut") {
     Queue cpu = Queue::make_cpu();
     const FrameRange sequence = {.first = 3, .last = 7, .fps = 8.0};
     const RenderSettings settings = result_settings();
@@ -94,7 +94,7 @@ TEST_CASE("frames of a moving sequence have the same bytes by every body, on eve
     }
 }
 
-TEST_CASE("layers of a frame come from its own sample in any order of samples") {
+TEST_CASE("layers of a frame come from its own sample, in any order of samples") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

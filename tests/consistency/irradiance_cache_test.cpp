@@ -39,8 +39,7 @@ Scene scene_with_mirror() {
 
 } // namespace
 
-TEST_CASE(
-    "pictures by irradiance caching do not depend on threads, passes, bodies, or how many subpaths are in flight") {
+TEST_CASE("pictures by irradiance caching do not depend on threads, passes, schedules or subpaths in flight") {
     for (const bool shows_records : {false, true}) {
         RenderSettings settings = cache_settings();
         settings.irradiance_cache.show_records = shows_records;
@@ -75,7 +74,7 @@ TEST_CASE("irradiance caching has path tracing's first-surface layers and direct
     }
 }
 
-TEST_CASE("a session that switches to irradiance caching and back renders whole pictures") {
+TEST_CASE("a session that switches to irradiance caching and back renders complete pictures") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -110,7 +109,7 @@ uint64_t rays_of_a_sample(Session& session) {
 
 } // namespace
 
-TEST_CASE("records are made once per picture and anew for another picture") {
+TEST_CASE("records are made once per picture and again for another picture") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -168,7 +167,7 @@ TEST_CASE("records are made once per picture and anew for another picture") {
     }
 }
 
-TEST_CASE("a meter and looks aside trace no ray of the picture that goes on, and leave its bytes as they are") {
+TEST_CASE("metering and separate renders trace no ray of the picture in progress and do not change its bytes") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -232,7 +231,7 @@ TEST_CASE("an overture's progress rises monotonically from 0 to 1") {
     }
 }
 
-TEST_CASE("invalid values of records are reported with sample 0, whatever was rendered before") {
+TEST_CASE("invalid values in records are reported with sample 0, whatever was rendered before") {
     Queue queue = test::requested_queue();
     Scene scene = test::make_mixed_scene();
     test::add(scene, test::sheet({0, 3, 0}, {1, 0, 0}, {0, 0, 1}),
@@ -256,7 +255,7 @@ TEST_CASE("invalid values of records are reported with sample 0, whatever was re
     CHECK(in_parts.stats().invalid_samples + 100 < at_once.stats().invalid_samples);
 }
 
-TEST_CASE("an overture is broken off by who watches, by the time and by abandoning, and leaves no trace") {
+TEST_CASE("an overture can be stopped by its callback, a time limit or abandonment, and leaves no trace") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();

@@ -151,7 +151,7 @@ void check_stress_meshes(Queue& queue, uint32_t side) {
 
 } // namespace
 
-TEST_CASE("every combination gives the same hits in the mixed scene, which has instances") {
+TEST_CASE("every combination gives the same hits in the mixed scene with instances") {
     Queue queue = Queue::make_cpu();
     const Scene scene = make_mixed_scene();
     LabSettings settings = all_combinations(false, true);
@@ -160,7 +160,7 @@ TEST_CASE("every combination gives the same hits in the mixed scene, which has i
     check(report);
 }
 
-TEST_CASE("every combination gives the same hits in meshes made to break them") {
+TEST_CASE("every combination gives the same hits in stress meshes") {
     Queue queue = Queue::make_cpu();
     check_stress_meshes(queue, static_cast<uint32_t>(effort(12, 48)));
 }
@@ -252,7 +252,7 @@ TEST_CASE("an interrupted laboratory keeps what it has measured") {
     CHECK(static_cast<std::size_t>(measured) < report.combinations.size());
 }
 
-TEST_CASE("the laboratory can be stopped inside each stage of long work, and says how far that is") {
+TEST_CASE("the laboratory can be stopped inside each stage of long work and reports its progress") {
     Queue queue = Queue::make_cpu();
     const Scene scene = scene_of({"torus", triangles_of(make_torus(20, 10), 0), {}});
     LabSettings settings = all_combinations(false, false);
@@ -282,7 +282,7 @@ TEST_CASE("the laboratory can be stopped inside each stage of long work, and say
     set_thread_count(0);
 }
 
-TEST_CASE("a scene without triangles is refused by a clear line") {
+TEST_CASE("a scene without triangles is refused with a clear message") {
     Queue queue = Queue::make_cpu();
     const LabSettings settings = all_combinations(false, false);
     CHECK_THROWS_WITH(run_lab(queue, Scene{}, Camera{}, settings, {}), "the scene has no triangles: nothing to trace");

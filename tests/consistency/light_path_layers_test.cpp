@@ -67,7 +67,7 @@ const Hash128& reference_layers_hash() {
 
 } // namespace
 
-TEST_CASE("layers do not depend on threads, passes, bodies and batches") {
+TEST_CASE("layers do not depend on threads, passes, schedules and batch sizes") {
     const RenderSettings settings = with_light_layers(test::make_mixed_scene());
     for (const int threads : {1, 5}) {
         set_thread_count(threads);
@@ -107,7 +107,7 @@ TEST_CASE("layers change neither the picture nor the auxiliary layers") {
     CHECK(test::render_hash(with) == test::render_hash(without));
 }
 
-TEST_CASE("layers that partition all paths sum to the picture within 1e-6") {
+TEST_CASE("layers that partition all paths add up to the picture within 1e-6") {
     Queue queue = test::requested_queue();
     for (const LightStrategy strategy : test::kLightStrategies) {
         RenderSettings settings = with_light_layers(test::make_mixed_scene());
@@ -207,7 +207,7 @@ TEST_CASE("a session that changes its layers renders the pictures of new session
     CHECK(test::render_hash(session.result()) == reference_layers_hash());
 }
 
-TEST_CASE("memory of layers equals its prediction in both bodies") {
+TEST_CASE("memory of layers equals its prediction in both schedules") {
     const Scene scene = test::make_mixed_scene();
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -86,7 +86,7 @@ TEST_CASE("packets match brute force over instances, with and without a baked tr
     }
 }
 
-TEST_CASE("a packet of one ray visits the ray's own nodes, and coherent rays share visits") {
+TEST_CASE("a packet of one ray visits that ray's nodes, and coherent rays share visits") {
     constexpr TraversalOptions kOptions = {};
     const Bvh bvh = build_bvh(triangles_of(make_torus(60, 40)));
     Random random(12);

@@ -40,7 +40,7 @@ RenderSettings shown(const RadiosityDisplay& display) {
 
 } // namespace
 
-TEST_CASE("pictures of a radiosity solution do not depend on threads, passes, bodies or how many are in flight") {
+TEST_CASE("pictures of a radiosity solution do not depend on threads, passes, schedules or rays in flight") {
     RenderSettings settings = shown(look_at_mixed_scene(1));
     for (const bool is_flat : {false, true}) {
         settings.radiosity.is_flat = is_flat;
@@ -65,7 +65,7 @@ TEST_CASE("radiosity has path tracing's first-surface layers and visible emissio
     CHECK(test::checked_picture(queue, test::make_mixed_scene(), settings).hash == seen);
 }
 
-TEST_CASE("a session that switches to radiosity, another solution and back renders whole pictures") {
+TEST_CASE("a session that switches to radiosity, another solution and back renders complete pictures") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();

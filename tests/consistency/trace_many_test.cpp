@@ -90,7 +90,7 @@ TEST_CASE("tracing many rays at once matches brute force bit for bit") {
     }
 }
 
-TEST_CASE("any number of rays can be traced at once, and leaves may be of any length") {
+TEST_CASE("any number of rays can be traced at once, with leaves of any length") {
     const StressMesh mesh = stress_meshes()[3];
     const Bvh bvh = build_bvh(mesh.triangles, {.max_leaf = 30, .leaf_cost = 0.1f});
     const WideBvh<8> tree = make_wide_bvh<8>(bvh, {.max_leaf = 100});

@@ -66,7 +66,7 @@ TEST_CASE("instances match brute force bit for bit") {
     }
 }
 
-TEST_CASE("the top level loses no rays at the edges of instances with tight boxes") {
+TEST_CASE("the TLAS loses no rays at the edges of instances with tight boxes") {
     const std::vector<BvhTriangle> quad = {{{0, 0, 0}, 0, {1, 0, 0}, 0, {1, 1, 0}, 0},
                                            {{0, 0, 0}, 1, {1, 1, 0}, 0, {0, 1, 0}, 0}};
     const Bvh bvh = build_bvh(quad);

@@ -215,7 +215,7 @@ TEST_CASE("traversals of wide and compressed trees over instances match brute fo
     check_instances<CompressedTraversal>(top, trees, &Trees::compressed, rays, expected);
 }
 
-TEST_CASE("RTA at pops saves the compressed traversal nodes, beyond what it saves at nodes, and changes no hit") {
+TEST_CASE("in the compressed traversal RTA at pops saves more nodes than RTA at nodes and changes no hit") {
     const std::vector<BvhTriangle> soup = make_soup(20'000, 0);
     const Trees trees(build_bvh(soup));
     const std::vector<Ray> rays = stress_rays(2000, {"soup", soup, {}, 1}, 31);
@@ -300,7 +300,7 @@ void check_nearly_equal(const typename Traversal::Tree& tree, const std::vector<
 
 } // namespace
 
-TEST_CASE("with the fast tests of the laboratory nearly all hits are the same") {
+TEST_CASE("with the laboratory's fast tests nearly all hits are the same") {
     const std::vector<BvhTriangle> torus = triangles_of(make_torus(40, 24));
     Random random(4);
     std::vector<Ray> rays(20'000);

@@ -140,7 +140,8 @@ RenderSettings settings_of(const Case& c) {
 
 } // namespace
 
-TEST_CASE("bidirectional and light tracing give path tracing's picture where they find the same light") {
+TEST_CASE(
+    "bidirectional path tracing and light tracing give the path tracer's picture where they find the same light") {
     Queue queue = test::requested_queue();
     for (const Case& c : cases()) {
         CAPTURE(c.name);
@@ -176,7 +177,7 @@ TEST_CASE("bidirectional and light tracing give path tracing's picture where the
     }
 }
 
-TEST_CASE("distributed gives the light paths that it follows as bright as path tracing does") {
+TEST_CASE("distributed ray tracing gives its light paths the brightness that path tracing gives them") {
     Queue queue = test::requested_queue();
     for (const Case& c : cases()) {
         if (c.name == "within glass") continue; // but for the sky none of its light is followed
@@ -198,7 +199,7 @@ TEST_CASE("distributed gives the light paths that it follows as bright as path t
     }
 }
 
-TEST_CASE("light and bidirectional show a floor under a flat lamp as bright as the closed form, to 1 %") {
+TEST_CASE("light tracing and bidirectional path tracing match the closed form of a floor under an area light to 1 %") {
     constexpr double kHalf = 0.3; // half size of the visible patch of floor, metres
     Queue queue = test::requested_queue();
     const auto mean_of = [&](const Mesh& emitter, IntegratorKind integrator, uint32_t samples) {

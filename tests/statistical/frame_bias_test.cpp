@@ -219,7 +219,7 @@ TEST_CASE("shared bounces at bent normals lose little light at grazing angles") 
     }
 }
 
-TEST_CASE("light beneath a layer that reflects more of it from the side does not lag behind a camera that rises") {
+TEST_CASE("light beneath a layer with Fresnel reflection does not lag behind a rising camera") {
     Scene scene;
     add(scene, floor_at(0, 50),
         {{.kind = MaterialKind::MetallicRoughness, .base_color = grey(0.8f), .metallic = 0, .roughness = 0.7f},
@@ -254,7 +254,7 @@ TEST_CASE("light beneath a layer that reflects more of it from the side does not
     CHECK(bias.of_block < 0.01);
 }
 
-TEST_CASE("clamped shared bounces have the light of clamped paths") {
+TEST_CASE("clamped shared bounces carry the light of clamped paths") {
     for (const BiasScene& s : bias_scenes()) {
         Messages messages;
         const PreparedScene prepared = prepare_scene(s.scene, {}, messages);

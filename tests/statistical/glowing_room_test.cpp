@@ -98,7 +98,7 @@ TEST_CASE("Russian roulette takes no light away and adds none") {
     }
 }
 
-TEST_CASE("direct light is emission and one scattering, indirect light the rest") {
+TEST_CASE("direct light is emission and one scattering, and indirect light is the rest") {
     PathSettings path;
     path.max_depth = 3;
     path.roulette_depth = 100;

@@ -77,7 +77,7 @@ double difference_of(const RadiositySolution& a, const RadiositySolution& b) {
 
 } // namespace
 
-TEST_CASE("links converge to the solution by form factor rows as their error bound shrinks") {
+TEST_CASE("links converge to the solution of form factor rows as their error bound shrinks") {
     const Scene scene = room_with_boxes();
     const SolvedRadiosity rows = solved_by(scene, RadiositySolver::GaussSeidel, 0.2f);
     double before = 1e9;
@@ -125,7 +125,7 @@ TEST_CASE("links lose no light to surfaces inside solids") {
     CHECK(by_links == doctest::Approx(by_rows).epsilon(0.03)); // 0.07 where clusters hold insides and outsides
 }
 
-TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) by links too") {
+TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) with links") {
     const float reflectance = 0.5f;
     const SolvedRadiosity solved =
         solved_by(test::closed_box(test::emitter_material(reflectance, 1)), RadiositySolver::Hierarchical, 0.4f, 0.02f);
@@ -139,7 +139,7 @@ TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) by
     CHECK(sum == doctest::Approx(known).epsilon(0.01));
 }
 
-TEST_CASE("links over the limit are refined again with a larger error, with the bytes of that error") {
+TEST_CASE("links over the limit are refined again with a larger error and give the bytes of that error") {
     const test::PatchedScene patched(room_with_boxes(), kInfinity);
     const auto solve = [&](float link_error, uint64_t max_links) {
         RadiositySettings settings;
@@ -211,7 +211,7 @@ TEST_CASE("links do not depend on the number of threads") {
     CHECK(solved_by(scene, RadiositySolver::Hierarchical, 0.5f, 0.1f).solution.hash() != reference);
 }
 
-TEST_CASE("light that leaves a cluster depends on direction") {
+TEST_CASE("light leaving a cluster depends on its direction") {
     test::Random random(9);
     SentLight sent;
     std::vector<Vec3> normals;
@@ -259,7 +259,7 @@ TEST_CASE("clusters contain each face once, within their bounding spheres") {
     }
 }
 
-TEST_CASE("clusters of triangles are linked to each other, so that links grow as triangles do") {
+TEST_CASE("clusters of triangles are linked to each other, so that links grow linearly with triangles") {
     double links_a_triangle[2];
     for (int fine = 0; fine < 2; ++fine) {
         Scene scene = test::closed_box(test::white(0.6f));

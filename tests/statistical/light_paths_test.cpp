@@ -50,7 +50,7 @@ Scene varnished_floor(float albedo) {
 
 } // namespace
 
-TEST_CASE("layers of at most n scatterings equal pictures of depth n") {
+TEST_CASE("layers of at most n scatterings equal pictures of max depth n") {
     Queue queue = test::requested_queue();
     const Scene scene = test::make_mixed_scene();
     RenderSettings settings = small_lpe_settings(4);
@@ -109,7 +109,7 @@ TEST_CASE("each emitter's layer equals the picture with only that emitter") {
     }
 }
 
-TEST_CASE("a point light's diffuse and glossy parts are those of the lobes") {
+TEST_CASE("a point light's diffuse and glossy parts equal those of the lobes") {
     Queue queue = test::requested_queue();
     Scene scene = varnished_floor(0.6f), black = varnished_floor(0.0f);
     scene.lights.push_back(test::point_light({0.7f, 1.5f, -0.4f}, {3, 2, 1}));
@@ -131,7 +131,7 @@ TEST_CASE("a point light's diffuse and glossy parts are those of the lobes") {
     CHECK(test::mean_of(glossy) > 0.01 * test::mean_of(diffuse));
 }
 
-TEST_CASE("randomly chosen lobe classes have the mean of split ones") {
+TEST_CASE("randomly chosen lobe classes have the same mean as split ones") {
     Queue queue = test::requested_queue();
     Scene scene = varnished_floor(0.6f);
     Material glow = test::white(0);

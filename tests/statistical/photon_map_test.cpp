@@ -135,7 +135,7 @@ TEST_CASE("photon mapping has at most a 60th of path tracing's error on a causti
     CHECK(path > 60 * photons);
 }
 
-TEST_CASE("a lamp that stands on the floor is no noisier than by path tracing, from millimetres on") {
+TEST_CASE("an emitter standing on the floor is no noisier than with path tracing, from millimetres on") {
     const Material floors[] = {test::white(0.7f), test::of_roughness(MaterialKind::MetallicRoughness, 0.4f)};
     for (const Material& floor : floors) {
         CAPTURE(floor.name);

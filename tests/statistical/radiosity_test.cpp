@@ -42,7 +42,7 @@ double mean_difference(const Image& a, const Image& b) {
 
 } // namespace
 
-TEST_CASE("all of a closed box that emits E and reflects r has radiosity E / (1 - r)") {
+TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) everywhere") {
     Messages messages;
     const float reflectance = 0.6f, radiance = 2;
     const Scene scene = test::closed_box(test::emitter_material(reflectance, radiance));
@@ -123,7 +123,7 @@ TEST_CASE("every row solver refuses a closed box that reflects all light") {
     }
 }
 
-TEST_CASE("a sphere in a furnace receives pi of the furnace's radiance, and shows its albedo") {
+TEST_CASE("a sphere in a furnace has the irradiance pi times the furnace's radiance and shows its albedo") {
     Messages messages;
     const Scene scene = test::make_furnace_scene(0.7f);
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

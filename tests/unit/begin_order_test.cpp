@@ -16,7 +16,7 @@ struct Size {
     uint32_t width, height;
 };
 
-TEST_CASE("every pixel comes once, also where tiles and bands do not fill the picture") {
+TEST_CASE("every pixel occurs once, even where tiles and bands do not fill the picture") {
     const Size sizes[] = {{1, 1}, {7, 3}, {8, 4}, {64, 64}, {101, 67}, {16, 131}, {200, 9}, {24, 84}, {29, 87}};
     for (const Size size : sizes) {
         CAPTURE(size.width);
@@ -31,7 +31,7 @@ TEST_CASE("every pixel comes once, also where tiles and bands do not fill the pi
     }
 }
 
-TEST_CASE("32 pixels that come together are one tile") {
+TEST_CASE("32 consecutive pixels are one tile") {
     for (const Size size : {Size{1920, 1080}, Size{101, 67}, Size{29, 87}}) {
         const uint32_t tiled = (size.width / 8) * (size.height / 4) * 32;
         uint32_t apart = 0;
@@ -45,7 +45,7 @@ TEST_CASE("32 pixels that come together are one tile") {
     }
 }
 
-TEST_CASE("samples of a pixel come one after another, of the pixels and samples that are asked for") {
+TEST_CASE("samples of a pixel are consecutive and cover the requested pixels and samples") {
     const Size size = {101, 67};
     const BeginOrder order = {1000, 500, 7, 3};
     CHECK(order.count() == 1500);
@@ -56,14 +56,14 @@ TEST_CASE("samples of a pixel come one after another, of the pixels and samples 
     }
 }
 
-TEST_CASE("numbers beyond 32 bits keep their place") {
+TEST_CASE("indices beyond 32 bits keep their order") {
     const BeginOrder order = {0, 1920 * 1080, 0, 1u << 20};
     const PixelSample last = order.at(order.count() - 1, 1920, 1080);
     CHECK(last.pixel == ordered_pixel(1920 * 1080 - 1, 1920, 1080));
     CHECK(last.sample == (1u << 20) - 1);
 }
 
-TEST_CASE("pixels that come together lie in about a square") {
+TEST_CASE("consecutive pixels lie in an approximate square") {
     uint32_t left = 1920, right = 0, top = 1080, bottom = 0;
     for (uint32_t index = 500'000; index < 504'096; ++index) {
         const uint32_t pixel = ordered_pixel(index, 1920, 1080), x = pixel % 1920, y = pixel / 1920;

@@ -59,7 +59,7 @@ TEST_CASE("a scene that cast or whitted would render black is refused with alter
 }
 
 TEST_CASE(
-    "an environment that is black is no light: what needs some refuses the scene, the others say that it is dark") {
+    "a black environment is no light: integrators that need light refuse the scene, and others warn that it is dark") {
     Scene scene;
     test::add(scene, test::floor_at(0, 1), test::white());
     const std::string none = "no lamp, no point, spot or directional light, and the environment is black";

@@ -78,7 +78,7 @@ TEST_CASE("a small object keeps its own light in a scene a hundred thousand time
     CHECK(compared == 2 * 128 * 3);
 }
 
-TEST_CASE("neighbours that only rounding has put apart share their corners' light") {
+TEST_CASE("neighbours separated only by rounding share the light at their corners") {
     for (int turn = 0; turn < 8; ++turn) {
         Scene scene;
         const Mesh tile = grid_at({0.5f, 0, 0.5f}, 1, 1);
@@ -109,7 +109,7 @@ TEST_CASE("neighbours that only rounding has put apart share their corners' ligh
     }
 }
 
-TEST_CASE("corners are found in little time where tens of thousands of triangles meet") {
+TEST_CASE("corners are found quickly where tens of thousands of triangles meet") {
     for (const bool is_cone : {true, false}) {
         Scene scene;
         Mesh mesh = is_cone ? cone_of(60000) : grid_at({0, 0, 0}, 1, 1);

@@ -30,7 +30,7 @@ CompressedBvh build(Queue& queue, const std::vector<BvhTriangle>& triangles, boo
 
 } // namespace
 
-TEST_CASE("trees that are built on the device are sound, and hold each triangle once") {
+TEST_CASE("trees built on the device are valid and contain each triangle once") {
     Queue queue = Queue::make_cpu();
     for (const StressMesh& mesh : builder_meshes()) {
         for (const bool balanced : {false, true}) {
@@ -55,7 +55,7 @@ TEST_CASE("trees that are built on the device are sound, and hold each triangle 
     }
 }
 
-TEST_CASE("trees that are built on the device cost rays little more than those by PLOC on the host") {
+TEST_CASE("trees built on the device cost rays little more than those of PLOC on the host") {
     Queue queue = Queue::make_cpu();
     for (const StressMesh& mesh : stress_meshes()) {
         if (mesh.triangles.size() < 1000) continue;
@@ -103,7 +103,7 @@ CompressedBvh refit(Queue& queue, const std::vector<BvhTriangle>& triangles, con
 
 } // namespace
 
-TEST_CASE("a tree that is fitted to where its triangles are has the bytes of the build") {
+TEST_CASE("a tree refitted to unmoved triangles has the bytes of the build") {
     Queue queue = Queue::make_cpu();
     for (const StressMesh& mesh : builder_meshes()) {
         CAPTURE(mesh.name);
@@ -111,7 +111,7 @@ TEST_CASE("a tree that is fitted to where its triangles are has the bytes of the
     }
 }
 
-TEST_CASE("a tree that is fitted to triangles that moved is sound, its boxes tight and its leaves the same") {
+TEST_CASE("a tree refitted to moved triangles is valid, with tight boxes and the same leaves") {
     Queue queue = Queue::make_cpu();
     for (const StressMesh& mesh : builder_meshes()) {
         CAPTURE(mesh.name);
@@ -132,7 +132,7 @@ TEST_CASE("a tree that is fitted to triangles that moved is sound, its boxes tig
     }
 }
 
-TEST_CASE("a GPU makes the bytes that the CPU makes") {
+TEST_CASE("a GPU builds the bytes that the CPU builds") {
     if (!cuda_requested()) return;
     Queue cpu = Queue::make_cpu(), gpu = Queue::make_cuda(0);
     std::vector<StressMesh> all = builder_meshes();

@@ -25,7 +25,7 @@ Scene make_kept_emitters() {
 
 } // namespace
 
-TEST_CASE("a light that is found again at its place is the one that was drawn") {
+TEST_CASE("a light evaluated again at its emitter point equals its sample") {
     const Lights lights(make_kept_emitters());
     Random random(3);
     uint32_t triangles = 0, punctual = 0, sky = 0;

@@ -12,7 +12,7 @@
 using namespace pertev;
 using namespace pertev::test;
 
-TEST_CASE("warps make the bytes that single threads make") {
+TEST_CASE("warps build the bytes that single threads build") {
     Queue queue = Queue::make_cpu();
     for (const StressMesh& mesh : builder_meshes()) {
         const auto n = static_cast<uint32_t>(mesh.triangles.size());

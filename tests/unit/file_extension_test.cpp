@@ -10,7 +10,7 @@
 
 using namespace pertev;
 
-TEST_CASE("an extension is the same in letters of either case, for all who ask for it") {
+TEST_CASE("extensions are compared without case everywhere") {
     CHECK(lower_case_extension("folder.X/Leaf.PnG") == ".png");
     CHECK(lower_case_extension("a.b.GLB") == ".glb");
     CHECK(lower_case_extension("folder.X/leaf").empty());

@@ -43,7 +43,7 @@ TEST_CASE("a heartbeat repeats the work's name while it makes no progress") {
     }
 }
 
-TEST_CASE("a heartbeat names the latest work, and nothing before there is any") {
+TEST_CASE("a heartbeat names the latest work and is silent before there is any") {
     std::atomic<int> reports = 0;
     std::string last;
     std::atomic<bool> has_work = false, was_early = false;
@@ -63,7 +63,7 @@ TEST_CASE("a heartbeat names the latest work, and nothing before there is any") 
     CHECK(last == "two");
 }
 
-TEST_CASE("a heartbeat's end does not wait for the next beat") {
+TEST_CASE("ending a heartbeat does not wait for the next beat") {
     const auto start = std::chrono::steady_clock::now();
     {
         const Heartbeat heartbeat(1h, [](double, const std::string&) {});

@@ -77,8 +77,7 @@ double part_of(DoubleVec3 off, Vec3 error) {
 
 } // namespace
 
-TEST_CASE(
-    "a position is within its error of where the traversal has the surface, baked or moved into an instance's space") {
+TEST_CASE("a hit position is within its error bound of the traversed surface, baked or in an instance") {
     test::Random random(3);
     for (const bool is_baked : {true, false}) {
         CAPTURE(is_baked);
@@ -109,7 +108,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a position is kept off all edges by more than its error, and is moved no farther than 900 of it") {
+TEST_CASE("a hit position is kept off all edges by more than its error and moves by at most 900 times that") {
     test::Random random(5);
     double nearest = 1e30, farthest = 0;
     int kept = 0;

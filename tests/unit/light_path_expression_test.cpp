@@ -84,7 +84,7 @@ std::size_t lpe_caret(const std::string& message) { return message.size() - mess
 
 } // namespace
 
-TEST_CASE("the automaton accepts the words that std::regex accepts") {
+TEST_CASE("the automaton accepts exactly the words that std::regex accepts") {
     const std::vector<std::string> texts = {
         "LE",         "L(D|S)*E",      "LDE",     "L(S|D)*D+DE", "LS+DE",         "L.*E",
         "L.{0}E",     "L.{2,3}E",      "L.{2,}E", "L[DS]?G*E",   "L[^S]+E",       "(LD|LS)(G|D)*E",
@@ -143,7 +143,7 @@ TEST_CASE("the automaton is minimal") {
     CHECK(automaton_of({"L.*E"}).column_count == 1); // nothing tells scatterings apart
 }
 
-TEST_CASE("a scattering may be asked to go on to one side") {
+TEST_CASE("a scattering event may be limited to reflection or transmission") {
     const LightPathAutomaton automaton = automaton_of({"LS<T>+DE", "L[S<R>D]*E", "L[^S<T>]*E", "L.<T>E"});
     CHECK(layers_of_word(automaton, "ssD") == 0b0001);
     CHECK(layers_of_word(automaton, "SD") == 0b0110);
@@ -205,13 +205,13 @@ TEST_CASE("characters of a name are counted as displayed") {
     CHECK(lpe_caret(message) == 7);
 }
 
-TEST_CASE("texts that are not NAME=EXPRESSION are refused") {
+TEST_CASE("texts other than NAME=EXPRESSION are refused") {
     for (const std::string text : {"LDE", "=LDE", "a b=LDE", "a.b=LDE", "\xc3\xa4=LDE"}) {
         CHECK(lpe_refusal(text).find("expected NAME=EXPRESSION") != std::string::npos);
     }
 }
 
-TEST_CASE("expressions that grow without end are refused") {
+TEST_CASE("expressions that grow without bound are refused") {
     CHECK(is_over({"L" + std::string(5000, 'D') + "E"}, "more than 4096 characters"));
     CHECK(is_over({"L((D{255}){255}){255}E"}, "more than 4096 letters"));
     CHECK(is_over({"L.{15}D.*E"}, "16384 states")); // from the eye it needs a state for each of 2^15 pasts
@@ -220,7 +220,7 @@ TEST_CASE("expressions that grow without end are refused") {
     parse_light_path("x=LD" + std::string(4000, '*') + "E"); // nested as deeply as possible
 }
 
-TEST_CASE("expressions that are too large together are refused") {
+TEST_CASE("expressions whose total size is too large are refused") {
     const auto repeated = [](std::size_t count, auto text_of) {
         std::vector<std::string> texts;
         for (std::size_t i = 0; i < count; ++i) texts.push_back(text_of(i));

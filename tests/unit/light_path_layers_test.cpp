@@ -85,7 +85,7 @@ TEST_CASE("a surface's names are those of its object, mesh, material and parent 
     CHECK(surfaces_of_filter("x=L.E") == TheseAre{true, true, true});
 }
 
-TEST_CASE("a light's names are its own and its parent nodes', and the environment has a word") {
+TEST_CASE("a light's names are its own and its parent nodes', and the environment has a keyword") {
     CHECK(lights_of_filter("x=L<'bulb'>E") == TheseAre{false, true, false, false});
     CHECK(lights_of_filter("x=L<'lamp'>E") == TheseAre{true, false, false, false});
     CHECK(lights_of_filter("x=L<'glow'>E") == TheseAre{true, false, false, false});

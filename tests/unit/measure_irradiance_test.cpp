@@ -79,7 +79,7 @@ constexpr double kUnderDisc = kPiExact * 10 * 0.25 / (0.25 + 4); // pi L R^2 / (
 
 } // namespace
 
-TEST_CASE("under a disc a meter reads pi L R^2 / (R^2 + h^2), and the floor that it lies on does not shade it") {
+TEST_CASE("under a disc a meter reads pi L R^2 / (R^2 + h^2), unshadowed by the floor below it") {
     const Room room(disc_over_floor());
     const Irradiance irradiance = room.measure(kUpwards, samples_of(4));
     check_measured(irradiance.luminance, kUnderDisc, 2e-3);
@@ -88,7 +88,7 @@ TEST_CASE("under a disc a meter reads pi L R^2 / (R^2 + h^2), and the floor that
     CHECK(room.measure({{0, 0, 0}, {0, -2, 0}}, samples_of(1)).luminance.value == 0); // turned away
 }
 
-TEST_CASE("under a rectangle a meter reads what the closed form says, by each colour") {
+TEST_CASE("under a rectangle a meter matches the closed form in each channel") {
     Scene scene;
     Material emitter = black_emitter(1);
     emitter.emission = {1, 2, 3};
@@ -129,7 +129,7 @@ TEST_CASE("under an environment of radiance 1 a meter reads pi, whichever way it
     }
 }
 
-TEST_CASE("in a room that glows a meter reads all scattered light, and no more of it than the depth allows") {
+TEST_CASE("in a glowing room a meter reads all scattered light up to the max depth") {
     const test::TriangleMesh sphere = test::make_sphere(2, {0, 0, 0}, 2.0f);
     Mesh mesh;
     mesh.positions = sphere.positions;
@@ -145,7 +145,7 @@ TEST_CASE("in a room that glows a meter reads all scattered light, and no more o
     }
 }
 
-TEST_CASE("the error of a measurement is what measurements with other seeds differ from the truth by") {
+TEST_CASE("the error of a measurement matches the deviation of measurements with other seeds") {
     const Room room(disc_over_floor());
     constexpr uint32_t kSeeds = 24;
     double squares = 0;
@@ -158,7 +158,7 @@ TEST_CASE("the error of a measurement is what measurements with other seeds diff
     CHECK(squares / kSeeds < 2.4);
 }
 
-TEST_CASE("a meter reads the very same by both bodies of the path tracer, and on both devices") {
+TEST_CASE("a meter reads the same bits in both schedules of the path tracer and on both devices") {
     const Room room(test::make_mixed_scene());
     const MeterPoint point = {{0.1f, 0.02f, 0.2f}, {0.2f, 1, 0}};
     RenderSettings settings = samples_of(1);

@@ -143,7 +143,7 @@ Vec2 some_place(test::Random& random) {
 
 } // namespace
 
-TEST_CASE("each micro-triangle has an index of its own, and the places on it have that index") {
+TEST_CASE("each micro-triangle has a unique index, which all of its points have") {
     test::Random random(3);
     for (uint32_t level = kMinMicroLevel; level <= kMaxMicroLevel; ++level) {
         CAPTURE(level);
@@ -168,7 +168,7 @@ TEST_CASE("each micro-triangle has an index of its own, and the places on it hav
     }
 }
 
-TEST_CASE("the range over a box of texels holds each of them, and of small boxes no more") {
+TEST_CASE("the range over a box of texels contains each of them, and is tight for small boxes") {
     test::Random random(5);
     const int size = 64;
     for (const Wrap wrap : {Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge}) {
@@ -192,7 +192,7 @@ TEST_CASE("the range over a box of texels holds each of them, and of small boxes
     }
 }
 
-TEST_CASE("micromaps never say anything else than textures, whatever these are, and however they lie") {
+TEST_CASE("micromaps never contradict their textures, whatever these hold and however they are mapped") {
     CutOuts made;
     for (const Wrap wrap : {Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge}) {
         for (const TextureFilter filter : {TextureFilter::Linear, TextureFilter::Nearest}) {
@@ -242,7 +242,7 @@ TEST_CASE("micromaps never say anything else than textures, whatever these are, 
     CHECK(known > places / 4);
 }
 
-TEST_CASE("what a texture gives on a micro-triangle is within the range that is said of it") {
+TEST_CASE("a texture's values on a micro-triangle lie within its range") {
     test::Random random(11);
     TextureImage fine, wide; // texels a rounding apart, some of them no number; and an image of many columns
     fine.rgba_float = {5, 4, 4, std::vector<float>(size_t(4) * 5 * 4)};
@@ -287,7 +287,7 @@ TEST_CASE("what a texture gives on a micro-triangle is within the range that is 
     CHECK(bounded > 50'000);
 }
 
-TEST_CASE("micromaps know of most places of a leaf, and none is made where alpha is one number") {
+TEST_CASE("micromaps know the opacity of most points of a leaf, and constant alpha has none") {
     CutOuts made;
     Mesh square;
     square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -316,7 +316,7 @@ TEST_CASE("micromaps know of most places of a leaf, and none is made where alpha
     CHECK(micromaps_of.with.micromaps[3].states == nullptr);
 }
 
-TEST_CASE("micromaps are made again when textures, materials or meshes change, and left where things only move") {
+TEST_CASE("micromaps are remade when textures, materials or meshes change, and kept when objects only move") {
     CutOuts made;
     made.add(made.triangles(8, 1),
              {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f, .base_color_texture = {.image = 0}}});

@@ -41,7 +41,7 @@ TEST_CASE("parent links lead from every node to the root") {
     }
 }
 
-TEST_CASE("a tree without parent links, or with a wrong one, is told") {
+TEST_CASE("a tree without parent links, or with a wrong one, is detected") {
     Bvh bvh = build_bvh(make_soup(200, 0));
     CHECK(find_parent_link_fault(bvh) != std::nullopt);
     add_parent_links(bvh);

@@ -55,7 +55,7 @@ bool same(const ObjData& a, const ObjData& b) {
 
 } // namespace
 
-TEST_CASE("a text that several threads read in pieces is the same, and so is what is said of it") {
+TEST_CASE("a text read in pieces by several threads gives the same result and messages") {
     // ; ends a line. Every construct whose meaning lies in what stands before it, and each kind of fault.
     const std::string corners = "v 0 0 0;v 1 0 0 1 0.5 0;v 0 1 \\;0;v 1 1 0;vt 0 0;vt 1 0;vn 0 0 1;";
     const std::string faces = "f 1 2 3;o box # one;usemtl red one # note;f -4/-2/-1 -3//-1 -2/-1;# C:\\;f 2 3 4;usemtl "

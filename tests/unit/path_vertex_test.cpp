@@ -111,7 +111,7 @@ Features chosen(CompiledFor<kMasks...>, Features wanted) {
 
 } // namespace
 
-TEST_CASE("unit/path_vertex: a listener is told of a vertex in its order, and changes nothing of the light") {
+TEST_CASE("path vertex: a listener gets a vertex's events in order and does not change the light") {
     const LitFloor place;
     PathState alone, heard = path_down();
     ShadowRay shadow_alone, shadow_heard;
@@ -153,7 +153,7 @@ TEST_CASE("unit/path_vertex: a listener is told of a vertex in its order, and ch
     CHECK(kept.vertices == 1);
 }
 
-TEST_CASE("unit/path_vertex: light that a listener takes is not the path's, and others are told that none was added") {
+TEST_CASE("path vertex: light taken by a listener is not added to the path, and other listeners get zero") {
     const LitFloor place;
     PathState path = path_down();
     ShadowRay shadow;
@@ -171,7 +171,7 @@ TEST_CASE("unit/path_vertex: light that a listener takes is not the path's, and 
     CHECK(both.place_.kind() == SourceKind::Environment);
 }
 
-TEST_CASE("unit/path_vertex: the code for a mask of features is the least that holds all of them") {
+TEST_CASE("path vertex: the variant of a mask of features is the smallest that covers all of them") {
     const FilmFeatures films;
     CHECK(chosen(films, 0) == kPlainDiffuse);
     CHECK(chosen(films, kTextured) == kDiffuse);

@@ -55,7 +55,7 @@ struct GridOfPoints {
 
 } // namespace
 
-TEST_CASE("a hash grid finds what looking at every photon finds, ties by number") {
+TEST_CASE("a hash grid matches brute force over all photons, with ties by number") {
     for (const test::StressPoints& set : test::stress_points(600)) {
         if (set.extent < 1e-30f) continue; // squares of such distances are 0: all is near all, but not in a grid
         CAPTURE(set.name);
@@ -79,7 +79,7 @@ TEST_CASE("a hash grid finds what looking at every photon finds, ties by number"
     }
 }
 
-TEST_CASE("of a crowded bucket as many photons stay as are wanted, each as often as any other, with the power of all") {
+TEST_CASE("a crowded bucket keeps the requested number of photons, chosen uniformly, with the total power") {
     test::Random random(12);
     std::vector<Vec3> points;
     for (int i = 0; i < 700; ++i) points.push_back(random.point(0, 1));
@@ -129,7 +129,7 @@ TEST_CASE("of a crowded bucket as many photons stay as are wanted, each as often
     CHECK(thinned < points.size());
 }
 
-TEST_CASE("photons are sorted by their numbers whatever the order in which they come") {
+TEST_CASE("photons are sorted by their numbers, whatever their order of arrival") {
     Queue queue = Queue::make_cpu();
     test::Random random(4);
     std::vector<std::pair<uint64_t, uint32_t>> wanted;

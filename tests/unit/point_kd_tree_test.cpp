@@ -12,7 +12,7 @@
 using namespace pertev;
 using namespace pertev::test;
 
-TEST_CASE("searches of a kd-tree over points find what looking at every point finds, ties by index") {
+TEST_CASE("searches of a kd-tree over points match brute force, with ties by index") {
     for (const StressPoints& set : stress_points(static_cast<uint32_t>(effort(600, 5000)))) {
         CAPTURE(set.name);
         const PointKdTree tree = build_point_kd_tree(set.points);
@@ -40,7 +40,7 @@ TEST_CASE("a kd-tree over any number of points is left-balanced") {
     }
 }
 
-TEST_CASE("a kd-tree over points looks at few of them, and does not depend on the number of threads") {
+TEST_CASE("a kd-tree over points visits few of them and does not depend on the number of threads") {
     Random random(6);
     std::vector<Vec3> points;
     for (uint32_t i = 0; i < effort(100'000, 2'000'000); ++i) points.push_back(random.point(-1, 1));

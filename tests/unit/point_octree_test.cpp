@@ -20,7 +20,7 @@ std::vector<Sphere> points_as_spheres(const std::vector<Vec3>& points) {
 
 } // namespace
 
-TEST_CASE("searches of an octree over points find what looking at every point finds, ties by index") {
+TEST_CASE("searches of an octree over points match brute force, with ties by index") {
     for (const StressPoints& set : stress_points(static_cast<uint32_t>(effort(600, 5000)))) {
         CAPTURE(set.name);
         for (const uint32_t max_leaf : {1u, 4u}) {
@@ -31,7 +31,7 @@ TEST_CASE("searches of an octree over points find what looking at every point fi
     }
 }
 
-TEST_CASE("an octree over spheres finds all that cover a place, and no other, each once") {
+TEST_CASE("an octree over spheres finds exactly the spheres that cover a point, each once") {
     for (const StressPoints& set : stress_points(static_cast<uint32_t>(effort(3000, 20000)))) {
         CAPTURE(set.name);
         Random random(12);
@@ -62,7 +62,7 @@ TEST_CASE("an octree over spheres finds all that cover a place, and no other, ea
     }
 }
 
-TEST_CASE("a few large spheres do not make the search for small ones slow") {
+TEST_CASE("a few large spheres do not slow down the search for small ones") {
     Random random(6);
     std::vector<Sphere> spheres;
     for (uint32_t i = 0; i < 50'000; ++i) spheres.push_back({random.point(-1, 1), i % 1000 == 0 ? 1.0f : 0.01f});

@@ -43,12 +43,12 @@ std::size_t bytes_of(const Scene& scene) {
 
 } // namespace
 
-TEST_CASE("a scene takes the bytes that are said beforehand") {
+TEST_CASE("memory of a scene equals its prediction") {
     CHECK(bytes_of(test::make_mixed_scene()) > 50'000);
     CHECK(bytes_of(test::make_furnace_scene(0.5f)) > 5'000);
 }
 
-TEST_CASE("each light of a scene counts in the bytes that it will take") {
+TEST_CASE("each light of a scene counts in its predicted memory") {
     constexpr std::size_t kCount = 64;
     Scene scene;
     scene.meshes.push_back(make_triangle());
@@ -67,7 +67,7 @@ TEST_CASE("each light of a scene counts in the bytes that it will take") {
     CHECK(bytes_of(glowing) >= dark + kCount * (sizeof(Emitter) + sizeof(EmissiveTriangle) + 16));
 }
 
-TEST_CASE("queues of paths have at most their bytes, and nearly those, whatever a path has beside") {
+TEST_CASE("queues of paths use nearly all of their memory limit, whatever else a path stores") {
     constexpr std::size_t kMost = PathIntegrator::kMaxQueueBytes;
     for (uint32_t bits = 0; bits < 16; ++bits) {
         CAPTURE(bits);
@@ -98,7 +98,7 @@ TEST_CASE("queues of paths have at most their bytes, and nearly those, whatever 
     }
 }
 
-TEST_CASE("every integrator predicts its memory for a picture that no machine holds, and the host gives none of it") {
+TEST_CASE("every integrator predicts its memory for an impossibly large picture without allocating it") {
     const WorkSize huge = {.width = 1 << 16, .height = 1 << 15, .samples = 4, .triangles = 1'000'000};
     const auto peak_kib = [] {
         rusage usage = {};

@@ -55,7 +55,7 @@ std::string why_refused(const std::filesystem::path& path, const Scene& scene) {
 
 } // namespace
 
-TEST_CASE("patches cover their triangles, no edge is longer than asked for, and each place finds its own") {
+TEST_CASE("patches cover their triangles with edges within the requested length, and each point finds its patch") {
     test::PatchedScene patched(lit_box(), 0.8f);
     double area = 0;
     for (const Patch& patch : patched.tree.patches) {
@@ -83,7 +83,7 @@ TEST_CASE("patches cover their triangles, no edge is longer than asked for, and 
     CHECK(lookups == 3 * patched.tree.patches.size());
 }
 
-TEST_CASE("light that is shown has no gap where a patch meets smaller ones") {
+TEST_CASE("displayed light has no gap where a patch meets smaller ones") {
     Scene scene;
     test::add(scene, test::floor_at(0, 1), test::white(0.5f));
     test::PatchedScene patched(std::move(scene), 1.5f); // four patches a triangle
@@ -120,7 +120,7 @@ TEST_CASE("light that is shown has no gap where a patch meets smaller ones") {
                           patched.tree.patches[5].corners.middle().y) == irradiance[5] + grey(7));
 }
 
-TEST_CASE("a solution comes back from its file, and another scene's or a damaged one is refused") {
+TEST_CASE("a solution is read back from its file, and another scene's or a damaged one is refused") {
     const std::filesystem::path path = test::scratch_folder() / "solution";
     const Scene scene = lit_box();
     const RadiositySolution solution = solution_of(scene);
@@ -228,7 +228,7 @@ TEST_CASE("a solution is rendered only with the light it was solved for") {
     CHECK(why_refused(path, seen) == "no error");
 }
 
-TEST_CASE("a solution's file of the version before is read, with a warning that its light is not known") {
+TEST_CASE("a solution's file of the previous version is read with a warning that its light is unknown") {
     const std::filesystem::path path = test::scratch_folder() / "old";
     Scene scene = lit_box();
     const RadiositySolution solution = solution_of(scene);
@@ -252,7 +252,7 @@ TEST_CASE("a solution's file of the version before is read, with a warning that 
     CHECK(why_refused(path, scene).find("no radiosity solution") != std::string::npos);
 }
 
-TEST_CASE("an interrupted solution records what it holds and is rendered with a warning") {
+TEST_CASE("an interrupted solution records its state and is rendered with a warning") {
     const std::filesystem::path path = test::scratch_folder() / "ended";
     Messages messages;
     /// Ended at the `heard`th time that it tells of `during`.
@@ -312,7 +312,7 @@ TEST_CASE("an interrupted solution records what it holds and is rendered with a 
     CHECK(why_refused(path, scene).find("was damaged") != std::string::npos);
 }
 
-TEST_CASE("where links are ended while patches are divided, the parts keep the light of the whole") {
+TEST_CASE("if links are interrupted while patches are divided, the parts keep the light of the whole") {
     const Scene scene = lit_box(0.02f);
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -337,7 +337,7 @@ TEST_CASE("where links are ended while patches are divided, the parts keep the l
     CHECK(dim_share(solved.solution) < 0.5); // 0.82 for black parts
 }
 
-TEST_CASE("a solution's bytes do not depend on threads, and follow its settings") {
+TEST_CASE("a solution's bytes depend on its settings and not on threads") {
     const Scene scene = lit_box();
     for (const auto& [method, solver] : {std::pair(FormFactors::Rays, RadiositySolver::Southwell),
                                          std::pair(FormFactors::Hemicube, RadiositySolver::GaussSeidel),
@@ -380,7 +380,7 @@ TEST_CASE("a scene that cannot be solved is refused") {
     CHECK(error->code() == ErrorCode::Interrupted);
 }
 
-TEST_CASE("solving stops promptly when asked, however long a row takes") {
+TEST_CASE("solving stops promptly on request, however long a row takes") {
     Messages messages;
     const Scene scene = lit_box();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -95,7 +95,7 @@ Vec3 pixel_of(const Image& image, uint32_t x, uint32_t y) {
 
 } // namespace
 
-TEST_CASE("triangles that share edges draw each sample once") {
+TEST_CASE("triangles with shared edges cover each sample once") {
     for (const uint32_t n : {3u, 40u, 300u}) { // cells of many pixels, and of less than one
         const Mesh grid = crooked_grid(n, 2, n);
         // Straight on; askew; through the picture's edges, the eye's plane and behind it.
@@ -128,7 +128,7 @@ TEST_CASE("a sample on an edge belongs to the triangle to its right or below it"
     CHECK(times == expected);
 }
 
-TEST_CASE("coverage and depth are those of rays through a million pixels") {
+TEST_CASE("coverage and depth equal those of rays through a million pixels") {
     const Scene scene = test::make_mixed_scene();
     Queue queue = test::requested_queue();
     RenderSettings settings = raster_settings(1000, 1000);
@@ -160,7 +160,7 @@ TEST_CASE("coverage and depth are those of rays through a million pixels") {
     CHECK(worst < 1e-4);
 }
 
-TEST_CASE("light is evaluated in pixels, at corners or once a triangle, and is that of the formula") {
+TEST_CASE("light is evaluated per pixel, corner or triangle and matches the formula") {
     Scene scene;
     test::add(scene, test::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), test::white(0.5f)); // faces +z
     scene.lights.push_back(test::point_light({0, 0, 1}, {3, 2, 1}));
@@ -191,7 +191,7 @@ TEST_CASE("light is evaluated in pixels, at corners or once a triangle, and is t
     check(middle(RasterShading::Phong), {0, 0, 0});
 }
 
-TEST_CASE("without shadows raster shades as cast does, by all lobes, textures and interpolated normals") {
+TEST_CASE("without shadows raster shades as cast does, with all lobes, textures and interpolated normals") {
     Scene scene = test::make_furnace_scene(0.7f); // a smooth sphere
     scene.environment.reset();
     scene.materials.front().kind = MaterialKind::MetallicRoughness;
@@ -215,7 +215,7 @@ TEST_CASE("without shadows raster shades as cast does, by all lobes, textures an
     CHECK(alike >= lit - lit / 50); // but for samples at edges, which have another triangle
 }
 
-TEST_CASE("edges are Bresenham's lines, the nearer one first") {
+TEST_CASE("edges are Bresenham's lines, and the nearer one is visible") {
     Scene scene;
     Mesh triangle; // from (2, 2) to (12, 2) to (2, 6), pixels of a picture 16 wide, and one behind it
     triangle.positions = {{-5.5f, 5.5f, 0}, {4.5f, 5.5f, 0}, {-5.5f, 1.5f, 0}};
@@ -245,7 +245,8 @@ TEST_CASE("edges are Bresenham's lines, the nearer one first") {
     }
 }
 
-TEST_CASE("samples of a pixel lie in its filter, evenly, the first in the middle; a picture is their mean") {
+TEST_CASE(
+    "samples of a pixel are spread evenly over its filter, the first in the middle, and a picture is their mean") {
     Scene scene;
     test::add(scene, test::sheet({-1, 0, 0}, {1, 0, 0}, {0, 9, 0}), {{.emission = {1, 1, 1}}, "lamp"});
     Queue queue = test::requested_queue();
@@ -262,7 +263,7 @@ TEST_CASE("samples of a pixel lie in its filter, evenly, the first in the middle
     CHECK(covered == doctest::Approx(0.3).epsilon(0.02));
 }
 
-TEST_CASE("raster refuses lenses and scenes that it would render black, and predicts its memory") {
+TEST_CASE("raster refuses lenses and scenes that it would render black, and its memory equals its prediction") {
     Scene scene = test::make_furnace_scene(0.5f);
     Camera camera;
     camera.aperture_radius = 0.1f;
@@ -282,7 +283,7 @@ TEST_CASE("raster refuses lenses and scenes that it would render black, and pred
     CHECK(queue.allocated_bytes() <= predicted + 4096); // the filter's table, the scene's view
 }
 
-TEST_CASE("rasterised pictures do not depend on threads or passes, and layers are those of the first surface") {
+TEST_CASE("rasterised pictures do not depend on threads or passes, and layers describe the first surface") {
     const Scene scene = test::make_mixed_scene(); // cut-outs, blended sheets, hidden backs, instances
     RenderSettings settings = raster_settings(67, 45);
     settings.samples = 3;

@@ -66,7 +66,7 @@ TEST_CASE("ply: a comment TextureFile is the texture of vertices with texture co
     }
 }
 
-TEST_CASE("ply: the name of a texture may stand between quotes, and be a file: URI") {
+TEST_CASE("ply: the name of a texture may be quoted or a file: URI") {
     for (const std::string name : {"\"blue one.png\"", "file:///C:/scans/blue%20one.png"}) {
         CAPTURE(name);
         const Loaded l = load(kStart + "comment TextureFile " + name + "\n" + kVertices + kVertexUv +
@@ -75,7 +75,7 @@ TEST_CASE("ply: the name of a texture may stand between quotes, and be a file: U
     }
 }
 
-TEST_CASE("ply: texture coordinates of faces split the vertices that have several, and those alone") {
+TEST_CASE("ply: texture coordinates of faces split only the vertices that have several") {
     // The vertices 0 and 2 have one place in the texture for both triangles, 1 and 3 are of one triangle each.
     const Loaded joined = load(kStart + kRed + kVertices + "element face 2\n" + kList + kFaceUv + "end_header\n" +
                                kSquare + "3 0 1 2 6 0 0 1 0 1 1\n3 0 2 3 6 0 0 1 1 0 1\n");
@@ -100,7 +100,7 @@ TEST_CASE("ply: texture coordinates of faces split the vertices that have severa
     CHECK(quad.mesh(0).uv[0][1] == Vec2{0.5f, 1});
 }
 
-TEST_CASE("ply: texnumber gives faces one of several textures, and -1 none") {
+TEST_CASE("ply: texnumber selects one of several textures for a face, and -1 none") {
     const Loaded l =
         load(kStart + kRed + kBlue + kVertices + "property uchar red\nproperty uchar green\nproperty uchar blue\n" +
              "element face 4\n" + kList + kFaceUv + "property int texnumber\nend_header\n" +
@@ -119,7 +119,7 @@ TEST_CASE("ply: texnumber gives faces one of several textures, and -1 none") {
     CHECK(l.reports("vertex colours beside a texture are left out"));
 }
 
-TEST_CASE("ply: what of textures cannot be used is said") {
+TEST_CASE("ply: unusable textures are reported") {
     const std::string face = "element face 1\n" + kList;
     const Loaded without_uv = load(kStart + kRed + kVertices + face + "end_header\n" + kSquare + "4 0 1 2 3\n");
     CHECK(without_uv.reports("a.ply:3: 1 texture left out"));
@@ -140,7 +140,7 @@ TEST_CASE("ply: what of textures cannot be used is said") {
     CHECK(grey_only.messages.all().empty());
 }
 
-TEST_CASE("ply: more numbers on a line than the header says are left out, with one warning") {
+TEST_CASE("ply: excess numbers on a line are left out with one warning") {
     const std::string head = kStart + kVertices + "element face 2\n" + kList + "end_header\n";
     const Loaded l = load(head + "0 0 0 255 128\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 2 3 0 255 0\n");
     CHECK(l.mesh(0).indices == std::vector<uint32_t>{0, 1, 2, 0, 2, 3});
@@ -156,7 +156,7 @@ TEST_CASE("ply: more numbers on a line than the header says are left out, with o
     CHECK(broken.messages.all().empty());
 }
 
-TEST_CASE("ply: the line of Blender 2.4 and old Assimp without the word comment is taken as one") {
+TEST_CASE("ply: the line of Blender 2.4 and old Assimp without the word comment is read as a comment") {
     const std::string rest = kVertices + "element face 1\n" + kList + "end_header\n" + kSquare + "4 0 1 2 3\n";
     const Loaded l = load(kStart + "Created by Blender3D 241 - www.blender.org, source file: bust.blend\n" + rest);
     CHECK(l.mesh(0).triangle_count() == 2);

@@ -19,7 +19,7 @@ std::string in_brackets(const std::string& text) {
 
 } // namespace
 
-TEST_CASE("an error keeps its parts, and its text is made of them") {
+TEST_CASE("an error keeps its parts and makes its text of them") {
     const auto of_setting = test::thrown_error(
         [] { throw Error(ErrorCode::OverLimit, "max_depth", "20", "with `integrator=cast` at most 12"); });
     REQUIRE(test::is_about(of_setting, ErrorCode::OverLimit, "max_depth", "20"));
@@ -52,7 +52,7 @@ TEST_CASE("a message keeps the parts of an error, and repeats of it are counted"
     CHECK(others.all()[1].remark.location == FileLocation{"a.obj", 13});
 }
 
-TEST_CASE("settings between backquotes are phrased; all else of a text stays") {
+TEST_CASE("settings between backquotes are phrased, and the rest of a text is unchanged") {
     CHECK(in_brackets("say `fov`, or `projection=orthographic`") == "say [fov], or [projection orthographic]");
     CHECK(in_brackets("`eye=0,1,3` `lpe=a=LE`") == "[eye 0,1,3] [lpe a=LE]");
     CHECK(in_brackets("`` `Ply` `a b` `open `fov` last`") == "`` `Ply` `a b` `open [fov] last`");

@@ -46,7 +46,7 @@ std::string texts_for(Audience& audience, uint32_t client) {
 
 constexpr const char* kOrbit = R"({"type":"orbit","n":1,"dx":0.1,"dy":0})";
 
-TEST_CASE("commands that move the camera raise the flags until they are taken, and a closed inbox takes none") {
+TEST_CASE("commands that move the camera set the flags until they are taken, and a closed inbox accepts none") {
     std::atomic<bool> abandon{false}, hurry{false};
     Inbox inbox;
     inbox.raise(abandon, hurry);
@@ -68,7 +68,7 @@ TEST_CASE("commands that move the camera raise the flags until they are taken, a
     CHECK_FALSE(replied);
 }
 
-TEST_CASE("a setting that is refused, or that is so already, costs no sample") {
+TEST_CASE("a refused or unchanged setting restarts nothing") {
     Flagged flagged;
     ViewState view;
     view.dark = {{IntegratorKind::Whitted, "whitted: black"}};
@@ -100,7 +100,7 @@ TEST_CASE("a setting that is refused, or that is so already, costs no sample") {
     CHECK(flagged.put(shape) == "hurry abandon");
 }
 
-TEST_CASE("viewers who do not steer are told so, and the one who steers sees their request") {
+TEST_CASE("clients that do not steer are informed, and the steering one sees their requests") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     for (const uint32_t id : {1u, 2u}) {
@@ -145,7 +145,7 @@ TEST_CASE("viewers who do not steer are told so, and the one who steers sees the
     CHECK(texts_for(audience, 1).find("has left") != std::string::npos);
 }
 
-TEST_CASE("every message that steers has words for a wish") {
+TEST_CASE("every message that steers has a text for its request") {
     for (int kind = 0; kind <= static_cast<int>(MessageKind::Hand); ++kind) {
         CAPTURE(kind);
         ClientMessage message;

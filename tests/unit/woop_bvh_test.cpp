@@ -47,7 +47,7 @@ TEST_CASE("Woop's transform maps a triangle to the unit triangle with heights in
     }
 }
 
-TEST_CASE("rays inside a triangle hit it where the exact test says, rays outside pass") {
+TEST_CASE("rays inside a triangle hit it as in the exact test, and rays outside miss it") {
     Random random(12);
     int inside = 0, outside = 0;
     for (int i = 0; i < 20'000; ++i) {
@@ -77,7 +77,7 @@ TEST_CASE("rays inside a triangle hit it where the exact test says, rays outside
     CHECK(outside > 2000);
 }
 
-TEST_CASE("triangles without area, too small and too large are never hit") {
+TEST_CASE("triangles without area, and those too small or too large, are never hit") {
     const Vec3 o = {0, 0, 0}, x = {1, 0, 0}, y = {0, 1, 0};
     const float tiny = 0x1p-149f;
     const Vec3 corners[][3] = {
