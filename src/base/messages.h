@@ -60,7 +60,7 @@ public:
 
 private:
     static constexpr std::size_t kMaxLeftOut = 100;
-    static constexpr const char* kMoreLeftOut = "more is left out than these warnings name";
+    static constexpr const char* kMoreLeftOut = "further things are left out; only the first are listed";
 
     /// Returns its index in all_.
     std::size_t add(bool is_warning, Remark remark) {

@@ -33,7 +33,7 @@ public:
 
     bool read(char to[], int count) override {
         if (count < 0 || static_cast<uint64_t>(count) > bytes_.size() - offset_)
-            throw std::runtime_error("the file is cut short");
+            throw std::runtime_error("the file is truncated");
         std::memcpy(to, bytes_.data() + offset_, static_cast<std::size_t>(count));
         offset_ += static_cast<std::size_t>(count);
         return offset_ < bytes_.size();

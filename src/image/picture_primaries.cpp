@@ -41,10 +41,8 @@ std::optional<ColorMatrix> color_matrix_of(std::span<const std::byte> bytes, con
         if (std::optional<ColorMatrix> matrix = rec709_from(*found.primaries)) return matrix;
     }
     if (messages != nullptr) {
-        messages->leave_out(
-            fmt::format("{}: its chromaticities are no primaries of colours and are left out; its colours are taken "
-                        "as Rec. 709",
-                        name));
+        messages->leave_out(fmt::format(
+            "{}: its chromaticities are not valid primaries and are left out; its colours are read as Rec. 709", name));
     }
     return std::nullopt;
 }

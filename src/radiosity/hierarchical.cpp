@@ -242,12 +242,12 @@ HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree co
             return solve_by_links(scene, coarse, patch_size, tried, watch, max_links);
         } catch (const TooManyLinks&) {
             if (tried.link_error > kLargestLinkError / 2) break;
-            watch.set_note(fmt::format(", anew by `link_error={}`", 2 * tried.link_error));
+            watch.set_note(fmt::format(", again with `link_error={}`", 2 * tried.link_error));
         }
     }
-    throw Error(
-        ErrorCode::OverLimit, "solver", "hierarchical",
-        fmt::format("more than {} links by any `link_error` (a larger `patch_size`, or another `solver`)", max_links));
+    throw Error(ErrorCode::OverLimit, "solver", "hierarchical",
+                fmt::format("more than {} links with any `link_error` (use a larger `patch_size` or another `solver`)",
+                            max_links));
 }
 
 } // namespace pertev

@@ -48,10 +48,10 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
     DeviceScene& scene = pictures_.scene();
     if (!makes_frames(settings.integrator)) {
         throw Error(ErrorCode::BadInput, "integrator", std::string(integrator_name(settings)),
-                    "only path's samples can be reconstructed");
+                    "only path tracing's samples can be reconstructed");
     }
     if (!camera.motion.empty() || scene.view().motions.is_there()) {
-        throw Error(ErrorCode::BadInput, "shutter", "", "frames that are reconstructed are of one moment each");
+        throw Error(ErrorCode::BadInput, "shutter", "", "reconstructed frames do not support an open shutter");
     }
     RenderSettings of_light = settings_of_frames(settings);
     of_light.width = scaled_side(settings.width, reconstruction);

@@ -55,7 +55,7 @@ Integrator& PictureRenderer::begin(const Camera& camera, const RenderSettings& s
     if (picture.camera.is_open) {
         check_shutter(settings);
         if (is_light_meter(camera.projection)) {
-            throw Error(ErrorCode::BadInput, "shutter", "", "light is measured at one moment");
+            throw Error(ErrorCode::BadInput, "shutter", "", "irradiance does not support an open shutter");
         }
     }
     const IntegratorSettings& wanted = settings;

@@ -51,7 +51,7 @@ void compare_scene(const JsonValue& root, const std::filesystem::path& file, con
     const std::string name = source->string_or("name", ""), hash = source->string_or("hash", "");
     const std::string here = hash.empty() ? "" : scene_hash(scene);
     if (here.empty() || here == hash) return;
-    messages.warn(fmt::format("{}: these are settings for {}, whose hash is {}; {} is another scene (hash {})",
+    messages.warn(fmt::format("{}: the settings are for {} with hash {}; {} is a different scene (hash {})",
                               file.string(), name, hash, scene, here));
 }
 

@@ -42,8 +42,7 @@ Tlas tlas_over(std::span<const PlacedBvh> placed, const std::map<uint32_t, Bound
         tree.local_bounds = bounds->second;
         if (tree.local_bounds.is_empty() || lies_near(tree.world_from_local, tree.local_bounds)) continue;
         throw Error(ErrorCode::OverLimit,
-                    fmt::format("instance {} lies further out than 2^40 metres, as its vertices are moved; scale the "
-                                "scene down",
+                    fmt::format("instance {} lies beyond 2^40 metres with its moved vertices; scale the scene down",
                                 tree.instance));
     }
     return build_tlas(now);

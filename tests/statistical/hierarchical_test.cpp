@@ -179,7 +179,7 @@ TEST_CASE("a solution with an enlarged error warns and records that error") {
     REQUIRE(solved.stats.link_error >= 0.1f);
     CHECK(solved.solution.made.find(fmt::format(R"("link_error":{},)", solved.stats.link_error)) != std::string::npos);
     CHECK(reported.contains("links, pass 1"));
-    CHECK(reported.contains(fmt::format("links, pass 1, anew by `link_error={}`", solved.stats.link_error)));
+    CHECK(reported.contains(fmt::format("links, pass 1, again with `link_error={}`", solved.stats.link_error)));
 }
 
 TEST_CASE("solutions with a larger error or fewer steps than requested warn") {

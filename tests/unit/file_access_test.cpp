@@ -85,10 +85,10 @@ TEST_CASE("a file named with a path of another machine is found in the folder of
     CHECK(access.find(at(f.file), "D:/t.png", messages) == f.scene / "textures/t.png");
     CHECK(access.find(at(f.file), "t.png", messages) == f.scene / "textures/t.png");
     REQUIRE(messages.all().size() == 5);
-    CHECK(messages.all()[2].text.find("\"C:/models/textures\", which are not there") != std::string::npos);
+    CHECK(messages.all()[2].text.find("\"C:/models/textures\" are missing") != std::string::npos);
     CHECK(messages.all()[2].text.find("in \"textures\" are read") != std::string::npos);
-    CHECK(messages.all()[4].text.find("\"t.png\" is not there: " + (f.scene / "textures/t.png").string() +
-                                      " is read") != std::string::npos);
+    CHECK(messages.all()[4].text.find("there is no \"t.png\"; " + (f.scene / "textures/t.png").string() + " is read") !=
+          std::string::npos);
     for (const Message& message : messages.all()) CHECK(message.is_warning);
 }
 
@@ -107,7 +107,7 @@ TEST_CASE("the file whose path has the longest common end with a name is found, 
     const std::size_t before = messages.all().size();
     CHECK(!access.find(at(f.file), "C:/p/wood/x.png", messages)); // a's or b's
     REQUIRE(messages.all().size() == before + 1);
-    CHECK(messages.all().back().text.find("2 files could be meant") != std::string::npos);
+    CHECK(messages.all().back().text.find("2 files match") != std::string::npos);
 }
 
 TEST_CASE("a name in another case is found if only one file matches, with a message that names it") {

@@ -49,7 +49,7 @@ TEST_CASE("a height map has a material, a file, a scale and a neutral height") {
         CAPTURE(text);
         CHECK(why_not(text).find("expected MATERIAL=FILE,SCALE") != std::string::npos);
     }
-    CHECK(why_not("a=b,3e6").find("SCALE and MIDDLE are within") != std::string::npos);
+    CHECK(why_not("a=b,3e6").find("SCALE and MIDDLE must be between") != std::string::npos);
 }
 
 TEST_CASE("heights are the first channel as stored, for every material of the name, and the last map counts") {
@@ -84,7 +84,7 @@ TEST_CASE("a height map without a material, texture coordinates or picture is re
         const HeightMapText map[] = {parse_height_map(material + "=" + name + ",1")};
         return test::bad_input_message([&] { read_height_maps(map, scene); });
     };
-    CHECK(why("door", file).find("no material of the scene has this name; there are 'floor', 'wall left'") !=
+    CHECK(why("door", file).find("there is no material of the scene with this name; there are 'floor', 'wall left'") !=
           std::string::npos);
     CHECK(why("floor", png).find("'floor' is on a mesh without texture coordinates") != std::string::npos);
     CHECK(why("wall left", file).find(file) != std::string::npos);

@@ -93,7 +93,7 @@ TEST_CASE("a damaged Radiance file is an error that describes the fault") {
     CHECK(message_of(header("-Y 1 +Z 1") + "abcd").find("-Y 512 +X 1024") != std::string::npos);
     CHECK(message_of(header("-Y 1 -Y 1") + "abcd").find("-Y 512 +X 1024") != std::string::npos);
     CHECK(message_of(header("-Y 0 +X 4")).find("at least 1") != std::string::npos);
-    CHECK(message_of(header("-Y 1 +X 2") + "abcd").find("cut short") != std::string::npos);
+    CHECK(message_of(header("-Y 1 +X 2") + "abcd").find("truncated") != std::string::npos);
     CHECK(message_of(header("-Y 1 +X 8") + pixel(2, 2, 0, 9)).find("9 pixels") != std::string::npos);
     CHECK(message_of(header("-Y 1 +X 8") + pixel(2, 2, 0, 8) + "\x89\x01").find("beyond") != std::string::npos);
     CHECK(message_of(header("-Y 1 +X 4") + pixel(1, 1, 1, 4)).find("before the first") != std::string::npos);

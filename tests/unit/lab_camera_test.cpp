@@ -42,7 +42,7 @@ TEST_CASE("combinations that cannot be measured are listed with the reason; if n
     settings.traversals = {TraversalKind::Kd};
     CHECK_THROWS_WITH(check_any_can_run(list_combinations(settings, {})),
                       "none of the combinations asked for can be measured:\n  binned kd rta near and 1 more: the kd "
-                      "traversal goes over a kd-tree's planes; the structures for it are kd-median and kd-sah");
+                      "traversal needs a kd-tree; choose the structure kd-median or kd-sah");
 }
 
 TEST_CASE("text of any bytes becomes UTF-8") {

@@ -162,41 +162,41 @@ TEST_CASE("a bad expression points at its character") {
         CHECK(message.find(says) != std::string::npos);
         CHECK(message.find("\n  " + text + "\n  ") != std::string::npos);
     };
-    points_at("LXE", 1, "no letter of an expression");
+    points_at("LXE", 1, "unknown letter; expected L");
     points_at("L(DE", 1, "not closed");
     points_at("LD)E", 2, "no ( before it");
-    points_at("L[DE", 3, "a set holds scatterings");
+    points_at("L[DE", 3, "a set can hold only scatterings");
     points_at("L[D", 1, "not closed");
-    points_at("L[]E", 2, "one letter at least");
-    points_at("L[Q]E", 2, "no letter of a set");
-    points_at("*LE", 0, "nothing stands before it");
-    points_at("L(|+)E", 3, "nothing stands before it");
+    points_at("L[]E", 2, "at least one letter");
+    points_at("L[Q]E", 2, "unknown letter of a set");
+    points_at("*LE", 0, "nothing before it");
+    points_at("L(|+)E", 3, "nothing before it");
     points_at("LD{2E", 4, "} is missing");
     points_at("LD{}E", 3, "a whole number");
-    points_at("LD{3,2}E", 2, "the smaller one");
+    points_at("LD{3,2}E", 2, "smaller than the first");
     points_at("LD{256}E", 3, "at most 255");
     points_at("L<'lamp>E", 2, "not closed");
     points_at("L<'lamp' E", 9, "between < and >");
     points_at("L<'lamp'", 1, "not closed");
     points_at("L<>E", 2, "between < and >");
-    points_at("L<''>E", 3, "a name stands here");
+    points_at("L<''>E", 3, "expected a name");
     points_at("LD<^>E", 3, "before names");
-    points_at("L<T>E", 0, "ways of scattering");
-    points_at("L[DG]<'x'>E", 5, "in brackets too");
-    points_at("L(D|G)<'x'>E", 6, "in brackets too");
-    points_at("LD<R><'x'>E", 5, "behind one letter");
-    points_at("L'lamp'E", 1, "names stand between < and >");
-    points_at("LE,b=LDE", 2, "`lpe` NAME=EXPRESSION of its own");
+    points_at("L<T>E", 0, "apply only to scattering");
+    points_at("L[DG]<'x'>E", 5, "also in brackets");
+    points_at("L(D|G)<'x'>E", 6, "also in brackets");
+    points_at("LD<R><'x'>E", 5, "after a single letter");
+    points_at("L'lamp'E", 1, "names are enclosed in < and >");
+    points_at("LE,b=LDE", 2, "needs its own `lpe` NAME=EXPRESSION");
     points_at("CD*L", 0, "from the light to the eye");
-    points_at("lde", 0, "capitals");
-    points_at("LdE", 1, "capitals");
+    points_at("lde", 0, "upper case");
+    points_at("LdE", 1, "upper case");
     points_at("LDE<'x'>", 3, "the eye has no name");
-    points_at("", 0, "an expression stands here");
+    points_at("", 0, "expected an expression");
     points_at(" DE", 1, "begins with one L");
     points_at("LD", 1, "ends with one E");
     points_at("ELE", 0, "begins with one L");
-    points_at("LEE", 0, "scatterings alone");
-    points_at("LLE", 0, "scatterings alone");
+    points_at("LEE", 0, "only by scatterings");
+    points_at("LLE", 0, "only by scatterings");
 }
 
 TEST_CASE("characters of a name are counted as displayed") {
@@ -215,7 +215,7 @@ TEST_CASE("expressions that grow without bound are refused") {
     CHECK(is_over({"L" + std::string(5000, 'D') + "E"}, "more than 4096 characters"));
     CHECK(is_over({"L((D{255}){255}){255}E"}, "more than 4096 letters"));
     CHECK(is_over({"L.{15}D.*E"}, "16384 states")); // from the eye it needs a state for each of 2^15 pasts
-    CHECK(lpe_refusal("x=L" + std::string(300, '(') + "D" + std::string(300, ')') + "E").find("within each other") !=
+    CHECK(lpe_refusal("x=L" + std::string(300, '(') + "D" + std::string(300, ')') + "E").find("nested parentheses") !=
           std::string::npos);
     parse_light_path("x=LD" + std::string(4000, '*') + "E"); // nested as deeply as possible
 }

@@ -433,7 +433,7 @@ TEST_CASE("scenes without lights, and too many photons, are refused") {
     settings.photon_map.photons = kMaxPhotons;
     const auto error = test::thrown_error([&] { check_integrator(settings); });
     CHECK(test::is_about(error, ErrorCode::OverLimit, "photons", "16777216"));
-    CHECK(test::says(error, "at most 8521760"));
+    CHECK(test::says(error, "the limit is 8521760"));
     settings.path.max_depth = 65;
     const auto too_deep = test::thrown_error([&] { check_integrator(settings); });
     CHECK(test::is_about(too_deep, ErrorCode::OverLimit, "max_depth", "65"));

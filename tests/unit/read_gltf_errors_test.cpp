@@ -131,10 +131,10 @@ TEST_CASE("an error for a damaged GLB container names the first faulty byte") {
         bad[at] = static_cast<std::byte>(value);
         return glb_fault(bad);
     };
-    CHECK(with_byte(0, 'x') == "model.glb: byte 0: expected the letters glTF, with which a GLB file starts");
+    CHECK(with_byte(0, 'x') == "model.glb: byte 0: expected \"glTF\", the start of a GLB file");
     CHECK(with_byte(4, 1) == "model.glb: byte 4: GLB container version 1; expected 2");
     CHECK(with_byte(15, 0x7f).starts_with(
-        "model.glb: byte 12: the chunk says ")); // the JSON tells by itself where it ends
+        "model.glb: byte 12: the chunk states ")); // the JSON tells by itself where it ends
     CHECK(with_byte(20, '[').starts_with("model.glb: not valid JSON: "));
     CHECK(with_byte(16, 'X') == "model.glb: byte 12: the first chunk of a GLB file must be JSON");
 }

@@ -281,7 +281,7 @@ TEST_CASE("a GLB's JSON may be padded with zero bytes, and its header may give a
     std::vector<std::byte> cut_off(good.begin(), good.end() - 4);
     Messages messages;
     CHECK(read_glb(cut_off, messages).instances.empty());
-    CHECK(test::has_warning(messages, {"model.glb: byte", "cut off", "left out"}));
+    CHECK(test::has_warning(messages, {"model.glb: byte", "truncated", "left out"}));
 }
 
 TEST_CASE("a primitive with only compressed data is left out, with the command that converts the file") {
@@ -294,8 +294,9 @@ TEST_CASE("a primitive with only compressed data is left out, with the command t
         left_out_of(R"({"asset":{"version":"2.0"},)" + draco + R"("meshes":[{"primitives":[)" + compressed +
                     R"(]}],"nodes":[{"mesh":0}]})");
     REQUIRE(left_out.size() == 2);
-    CHECK(left_out[0].find("model.gltf: /meshes/0/primitives/0: a part compressed by KHR_draco_mesh_compression") !=
-          std::string::npos);
+    CHECK(
+        left_out[0].find("model.gltf: /meshes/0/primitives/0: a primitive compressed by KHR_draco_mesh_compression") !=
+        std::string::npos);
     CHECK(left_out[0].find(command) != std::string::npos);
     CHECK(left_out[1].starts_with("error: "));
     CHECK(left_out[1].find(command) != std::string::npos);

@@ -264,7 +264,7 @@ TEST_CASE("a texture over missing texture coordinates causes a warning with the 
     CHECK(read(R"({"emissiveTexture":{"index":0}})").all().empty());
     for (const std::string slot : {"emissiveTexture", "normalTexture"}) {
         const Messages messages = read("{\"" + slot + R"(":{"index":0,"texCoord":1}})");
-        CHECK(test::has_warning(messages, {"model.gltf: /materials/0: a texture over TEXCOORD_1"}));
+        CHECK(test::has_warning(messages, {"model.gltf: /materials/0: a texture uses TEXCOORD_1"}));
         CHECK(messages.all().size() == 1);
     }
 }

@@ -251,12 +251,12 @@ TEST_CASE("an error for a file without meshes lists its content") {
     const auto reason_of = [](const std::string& text) { return test::read_gltf_text(text).no_instances; };
     CHECK(reason_of(with_triangle(R"("nodes":[{"mesh":0}])")).empty());
     CHECK(reason_of(with_triangle(R"("nodes":[{},{}])")) ==
-          "/nodes: the scene has 2 nodes, and none shows a mesh (of 1); expected a \"mesh\" in one of them");
+          "/nodes: the scene has 2 nodes, and none uses a mesh (of 1); expected a \"mesh\" in one of them");
     CHECK(reason_of(with_triangle(R"("scenes":[{"nodes":[1]}],"nodes":[{"mesh":0},{}])"))
               .starts_with("/nodes: the scene has 1 node,"));
     CHECK(reason_of(only_nodes(R"("nodes":[{}])")).starts_with("/meshes: there are none"));
     CHECK(reason_of(only_nodes(R"("meshes":[{"primitives":[{"attributes":{}}]}],"nodes":[{"mesh":0}])"))
-              .starts_with("/meshes: none that a node of the scene shows has a triangle"));
+              .starts_with("/meshes: none that a node of the scene uses has a triangle"));
 }
 
 TEST_CASE("a skinned mesh follows its joints and not its own node") {

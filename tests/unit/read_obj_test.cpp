@@ -141,7 +141,7 @@ TEST_CASE("missing and unreadable numbers become NaN, with a warning that names 
     CHECK(!is_finite(p[1]));
     CHECK(!is_finite(p[2]));
     CHECK(!is_finite(p[3]));
-    CHECK(l.reports("a.obj:3: 2 lines with a number"));
+    CHECK(l.reports("a.obj:3: 2 lines with a missing"));
 }
 
 TEST_CASE("a face with a missing vertex is left out with its line, and the others are read") {
@@ -268,10 +268,10 @@ TEST_CASE("mtl: unread lines cause one warning that names the first") {
     const Loaded l = load_text("mtllib a.mtl\n" + kTriangle + "usemtl m\nf 1 2 3\n",
                                "Kd 1 0 0\nnewmtl m\nfoo 3\nmap_Normal x.png\nKd spectral x.rfl\nmap_Ks t.png\n"
                                "map_Ks u.png\nNs 10 11\nPc 0.5\nPs 0\nKa 1 1 1\nsharpness 60\nmap_Ka t.png\n");
-    CHECK(l.reports("a.mtl:1: 3 lines that are not understood (Kd is the first) are left out"));
+    CHECK(l.reports("a.mtl:1: 3 lines with an unknown key (Kd is the first) are left out"));
     CHECK(l.reports("a.mtl:5: 1 line of Kd spectral is left out"));
     CHECK(l.reports("a.mtl:6: 2 lines of map_Ks are left out"));
-    CHECK(l.reports("a.mtl:8: 1 line with more than the key takes"));
+    CHECK(l.reports("a.mtl:8: 1 line with more numbers than the key has"));
     CHECK(l.reports("a.mtl:9: 1 line of Pc is left out"));
     CHECK(l.messages.all().size() == 5);
     CHECK(l.material("m").base_color == grey(0.5f));
@@ -334,7 +334,7 @@ TEST_CASE("mtl: a texture on faces without texture coordinates causes a warning"
     CHECK(good.material("m").base_color_texture.has_image());
     CHECK(good.material("m").base_color == grey(1)); // no Kd: the map alone
     const Loaded bad = load(test::write_text(folder / "b.obj", start + textured + bare + plain));
-    CHECK(bad.reports("b.obj: 1 material with a texture, but on faces without texture coordinates (m is the first)"));
+    CHECK(bad.reports("b.obj: 1 material with a texture on faces without texture coordinates (m is the first)"));
 }
 
 TEST_CASE("mtl: textures may have options, spaces, backslashes and alpha") {

@@ -155,7 +155,7 @@ TEST_CASE(
     CHECK(says(left_out(2, "3 0 1 2\n3 0 1 4\n", 1), "face 1: vertex index 4 is out of range; there are 4"));
     CHECK(says(left_out(2, "3 0 1 -1\n4 0 1 2 3\n", 2), "index -1"));
     CHECK(says(left_out(3, "3 0 1 2\n3 0 1\n", 1), "the file ends here"));
-    CHECK(says(left_out(3, "3 0 1 2\n", 1), "what follows is left out"));
+    CHECK(says(left_out(3, "3 0 1 2\n", 1), "the rest is left out"));
     CHECK(says(left_out(1, "3 0 1 9\n", 0), "index 9"));
 }
 

@@ -104,8 +104,8 @@ TEST_CASE("a mesh without valid triangles is dropped with its instances, and a s
     CHECK(result.scene.instances[0].name == "two");
     CHECK(result.scene.instances[0].mesh == 0);
 
-    check_refused("no geometry", ErrorCode::BadInput, [](Scene& scene) { scene.meshes[0].indices = {0, 0, 0}; });
-    check_refused("no geometry", ErrorCode::BadInput, [](Scene& scene) { scene = {}; });
+    check_refused("no visible triangle", ErrorCode::BadInput, [](Scene& scene) { scene.meshes[0].indices = {0, 0, 0}; });
+    check_refused("no visible triangle", ErrorCode::BadInput, [](Scene& scene) { scene = {}; });
 }
 
 TEST_CASE("an instance hidden by a scale of 0 is left out with a warning; if all are, an error explains that") {
@@ -123,11 +123,11 @@ TEST_CASE("an instance hidden by a scale of 0 is left out with a warning; if all
     CHECK(result.scene.instances[0].name == "one");
     CHECK(result.scene.instances[1].name == "last");
     REQUIRE(result.messages.all().size() == 1);
-    CHECK(result.messages.all()[0].text == "file: 2 instances with a singular transform, such as a scale of 0: hidden; "
-                                           "the first is /nodes/5 hidden");
+    CHECK(result.messages.all()[0].text ==
+          "file: 2 instances with a singular transform, such as a scale of 0, hidden (/nodes/5 hidden is the first)");
 
-    check_refused("file: no geometry, not one triangle to see: 1 instance with a singular transform, the first of them "
-                  "/nodes/5 hidden; expected scales "
+    check_refused("file: the scene has no visible triangle: 1 instance with a singular transform (/nodes/5 hidden is "
+                  "the first); expected scales "
                   "other than 0",
                   ErrorCode::BadInput, [&](Scene& scene) {
                       scene.instances.clear();
@@ -153,11 +153,11 @@ TEST_CASE("an instance that is out of bounds or squeezed flat is left out if oth
 }
 
 TEST_CASE("an error for a scene without geometry lists its content") {
-    check_refused("1 instance of meshes that lost all their triangles, the first of them mesh 0 square; expected",
+    check_refused("1 instance of meshes without valid triangles (mesh 0 square is the first); expected",
                   ErrorCode::BadInput, [](Scene& scene) {
                       scene.meshes[0].indices = {0, 0, 0};
                   });
-    check_refused("no geometry, not one triangle to see: as the reader says", ErrorCode::BadInput, [](Scene& scene) {
+    check_refused("the scene has no visible triangle: as the reader says", ErrorCode::BadInput, [](Scene& scene) {
         scene = {};
         scene.no_instances = "as the reader says";
     });
@@ -179,7 +179,7 @@ TEST_CASE("messages name elements by their location in the file") {
         s.meshes[0].origin = "/meshes/3/primitives/1";
         s.meshes[0].indices[4] = 4;
     });
-    check_refused("file: /nodes/7 one lies further", E::OverLimit, [](Scene& s) {
+    check_refused("file: /nodes/7 one lies beyond", E::OverLimit, [](Scene& s) {
         s.nodes.resize(8);
         s.instances[0].node = 7;
         s.instances[0].world_from_local = make_scale({1e30f, 1, 1});
@@ -280,8 +280,8 @@ TEST_CASE("faults of cameras and lights are refused") {
     using E = ErrorCode;
     const auto camera = [](auto change) { return [change](Scene& s) { change(s.cameras.emplace_back()); }; };
     CHECK(!validated(camera([](Camera&) {})).error);
-    check_refused("angle of view", E::BadInput, camera([](Camera& c) { c.fov_y = 0; }));
-    check_refused("angle of view", E::BadInput, camera([](Camera& c) { c.fov_y = 3.2f; }));
+    check_refused("field of view", E::BadInput, camera([](Camera& c) { c.fov_y = 0; }));
+    check_refused("field of view", E::BadInput, camera([](Camera& c) { c.fov_y = 3.2f; }));
     check_refused("singular", E::BadInput, camera([](Camera& c) { c.world_from_camera = make_scale({0, 1, 1}); }));
     check_refused("aperture", E::BadInput, camera([](Camera& c) { c.aperture_radius = kNan; }));
     check_refused("focus", E::BadInput, camera([](Camera& c) { c.focus_distance = 0; }));

@@ -18,7 +18,7 @@ fs::path canonical_folder(const fs::path& folder, const char* setting) {
     const fs::path canonical = fs::canonical(folder.empty() ? fs::path(".") : folder, ec);
     if (ec) throw Error(ErrorCode::BadInput, setting, folder.string(), "the folder cannot be opened: " + ec.message());
     if (!fs::is_directory(canonical, ec))
-        throw Error(ErrorCode::BadInput, setting, folder.string(), "this is no folder");
+        throw Error(ErrorCode::BadInput, setting, folder.string(), "it is not a folder");
     return canonical;
 }
 
@@ -32,7 +32,7 @@ Error refusal(const FileLocation& from, const std::string& reference, const std:
 }
 
 void check_is_name(const FileLocation& from, const std::string& reference) {
-    if (reference.empty()) throw refusal(from, reference, "which is no file name");
+    if (reference.empty()) throw refusal(from, reference, "which is not a file name");
     // The system would cut the name there, after the checks have seen all of it.
     if (reference.find('\0') != std::string::npos) throw refusal(from, reference, "a name that holds a zero byte");
 }
@@ -68,11 +68,11 @@ fs::path FileAccess::resolve(const FileLocation& from, const std::string& refere
     if (ec) throw refusal(from, reference, fmt::format("which cannot be opened: {}", ec.message()));
     // A symbolic link that remains after resolving is dangling; its future target is unknown.
     if (fs::is_symlink(fs::symlink_status(path, ec))) {
-        throw refusal(from, reference, "a symbolic link that leads nowhere");
+        throw refusal(from, reference, "a broken symbolic link");
     }
     if (!is_allowed(path)) {
         throw refusal(from, reference,
-                      fmt::format("which is outside the scene's folder; if it is meant, allow it with `allow_path={}`",
+                      fmt::format("which is outside the scene's folder; to allow it, set `allow_path={}`",
                                   path.parent_path().string()));
     }
     return path;
@@ -106,10 +106,8 @@ std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const File
         }
         if (fits.size() == 1) return fits.front();
         if (fits.empty()) continue;
-        messages.warn(
-            {from, fmt::format("\"{}\" is not there, and {} files could be meant, {} and {} for example: none "
-                               "is read",
-                               shortened(name.string()), fits.size(), fits[0].string(), fits[1].string())});
+        messages.warn({from, fmt::format("there is no \"{}\", and {} files match, such as {} and {}; none is read",
+                                         shortened(name.string()), fits.size(), fits[0].string(), fits[1].string())});
         return std::nullopt;
     }
     return std::nullopt;
@@ -130,19 +128,18 @@ std::optional<fs::path> FileAccess::find(const FileLocation& from, const std::st
     const bool is_same_name = found->filename() == name.filename();
     if (is_same_name && name.has_parent_path()) {
         const fs::path there = found->parent_path().lexically_relative(locate(folder_of(from)).path);
-        messages.warn(
-            {FileLocation{folder}, fmt::format("files named as in \"{}\", {}: those of the same name in {} are read",
-                                               shortened(name.parent_path().string()),
-                                               wanted.is_allowed ? "which are not there" : "outside the scene's folder",
-                                               there == "." ? "the folder itself" : "\"" + there.string() + "\"")});
+        messages.warn({FileLocation{folder},
+                       fmt::format("files named as in \"{}\" are {}; files of the same name in {} are read instead",
+                                   shortened(name.parent_path().string()),
+                                   wanted.is_allowed ? "missing" : "outside the scene's folder",
+                                   there == "." ? "the folder itself" : "\"" + there.string() + "\"")});
     } else if (listing_->may_name_another()) {
         messages.warn(
-            {from, fmt::format("\"{}\" is not there: {} is read, the only file of that name{}", shortened(reference),
-                               found->string(), is_same_name ? "" : " but for upper and lower case")});
+            {from, fmt::format("there is no \"{}\"; {} is read instead, the only file of that name{}",
+                               shortened(reference), found->string(), is_same_name ? "" : " except for its case")});
     } else {
         messages.warn({FileLocation{folder},
-                       "further files that are not there are read from the only file of that name but for "
-                       "upper and lower case"});
+                       "further missing files are read from the only file of that name except for its case"});
     }
     return found;
 }

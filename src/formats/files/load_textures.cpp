@@ -110,7 +110,7 @@ int32_t TextureLoader::add_file(const FileLocation& from, const std::string& ref
     if (!path) {
         if (missing_++ < kMissingNamed) {
             messages_->leave_out(
-                {from, fmt::format("there is no texture {}; its factor alone is used", shortened(reference))});
+                {from, fmt::format("there is no texture {}; only its factor is used", shortened(reference))});
         }
         return kNoImage;
     }
@@ -140,8 +140,8 @@ void TextureLoader::check_budget(uint64_t limit) const {
         sum += source.texture_bytes;
         if (sum <= limit) continue;
         throw Error(ErrorCode::OverLimit, FileLocation{source.path.empty() ? source.name : source.path.string()},
-                    fmt::format("with this picture the scene's images take {} MiB in memory; the limit for files of "
-                                "this size is {} MiB; use one image many times instead of copies, or smaller ones",
+                    fmt::format("with this picture the scene's images take {} MiB of memory; the limit for files of "
+                                "this size is {} MiB; share one image instead of copies, or use smaller images",
                                 sum >> 20, limit >> 20));
     }
 }
@@ -199,7 +199,7 @@ void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         messages_->add_all(sources_[i].messages);
         if (sources_[i].fault) {
-            messages_->leave_out(sources_[i].fault->and_then("; its factor alone is used"));
+            messages_->leave_out(sources_[i].fault->and_then("; only its factor is used"));
             continue;
         }
         PERTEV_CHECK(sources_[i].image);

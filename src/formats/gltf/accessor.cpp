@@ -45,9 +45,9 @@ void check_range(const JsonValue& json, uint64_t offset, uint64_t count, uint64_
     if (count == 0) return;
     const bool first_fits = offset <= available && size <= available - offset;
     if (!first_fits || count - 1 > (available - offset - size) / stride) {
-        throw json.error(fmt::format("{} elements of {} bytes, {} apart, from byte {} leave the buffer view, which has "
-                                     "{} bytes",
-                                     count, size, stride, offset, available));
+        throw json.error(
+            fmt::format("{} elements of {} bytes, {} apart, from byte {} exceed the buffer view of {} bytes", count,
+                        size, stride, offset, available));
     }
 }
 

@@ -66,7 +66,8 @@ constexpr NumberPart kLightNumbers[] = {{"/range", AnimatedPart::LightRange, 1},
 Target node_target(const Document& document, const JsonValue& json, uint32_t node, AnimatedPart part,
                    const Scene& scene) {
     if (part == AnimatedPart::Weights && scene.nodes[node].morph_weights.empty()) {
-        throw json.error(fmt::format("the mesh of node {} has no morph targets; expected one that has", node));
+        throw json.error(
+            fmt::format("the mesh of node {} has no morph targets, so that its weights cannot be animated", node));
     }
     if (part != AnimatedPart::Weights && document.table("nodes")[node].find("matrix")) {
         throw json.error(fmt::format("node {} has a matrix; expected translation, rotation and scale", node));
@@ -160,7 +161,7 @@ std::optional<Target> read_target(const Document& document, const JsonValue& tar
     }
     const std::optional<JsonValue> node = target.find("node");
     if (!node) { // the format leaves such to extensions
-        messages.leave_out({target.location(), "the channel names no node and is left out"});
+        messages.leave_out({target.location(), "the channel has no node and is left out"});
         return std::nullopt;
     }
     const uint32_t index = document.index_into("nodes", *node);
@@ -184,15 +185,16 @@ AnimationChannel read_keys(const Document& document, Buffers& buffers, const Jso
     const Accessor times(document, buffers, input, {ElementType::Scalar});
     const Accessor values(document, buffers, output,
                           {target.is_scalar ? ElementType::Scalar : element_of(target.part)});
-    if (times.component_type() != ComponentType::Float) throw input.error("key times are no floats; expected 5126");
+    if (times.component_type() != ComponentType::Float)
+        throw input.error("key times are not floats; expected component type 5126");
     if (values.component_type() != ComponentType::Float && !(takes_integers(channel.part) && values.is_normalized())) {
-        throw output.error("the values are neither floats nor, of a rotation or weights, normalized integers");
+        throw output.error("the values must be floats, or normalized integers for a rotation or weights");
     }
     const bool has_weights = channel.part == AnimatedPart::Weights;
     const uint64_t a_key = (channel.interpolation == Interpolation::CubicSpline ? 3 : 1) *
                            (has_weights ? scene.nodes[target.indices[0]].morph_weights.size() : 1);
     if (times.count() == 0 || values.count() % a_key != 0 || values.count() / a_key != times.count()) {
-        throw output.error(fmt::format("{} for {}; expected at least one time and {} a time",
+        throw output.error(fmt::format("{} for {}; expected at least one key time and {} per time",
                                        counted(values.count(), "element"), counted(times.count(), "key time"), a_key));
     }
     channel.times = times.read_floats();
@@ -274,11 +276,11 @@ void read_animations(const Document& document, Buffers& buffers, Scene& scene, M
             if (!taken.emplace(target->indices[0], target->part).second) {
                 messages.leave_out(
                     {json.location(),
-                     fmt::format("{}; the channel is left out",
-                                 target->factor ? "colour and intensity of one light are animated together, "
-                                                  "of which the first alone is played"
-                                                : "an earlier channel of the animation has this node and "
-                                                  "path, and is played")});
+                     fmt::format(
+                         "{}; the channel is left out",
+                         target->factor
+                             ? "colour and intensity of one light are animated together; only the first is played"
+                             : "an earlier channel of the animation has this node and path; that one is played")});
                 return;
             }
             buffers.charge(channel.values.size() * target->indices.size() * sizeof(float), entry);

@@ -85,7 +85,7 @@ std::span<const std::byte> Buffers::slice(const JsonValue& json) const {
     const uint64_t offset = json.unsigned_or("byteOffset", 0), length = json.at("byteLength").to_unsigned();
     if (offset > buffer->size() || length > buffer->size() - offset) {
         throw json.error(
-            fmt::format("{} bytes from byte {} leave the buffer, which has {}", length, offset, buffer->size()));
+            fmt::format("{} bytes from byte {} exceed the buffer of {} bytes", length, offset, buffer->size()));
     }
     return buffer->subspan(offset, length);
 }
@@ -145,8 +145,8 @@ void Buffers::charge(uint64_t bytes, const JsonValue& json) {
     charged_bytes_ += bytes;
     if (bytes > limit || charged_bytes_ > limit) {
         throw Error(ErrorCode::OverLimit, json.location(),
-                    fmt::format("the scene takes more than {} MB in memory, {} times the size of its files; use "
-                                "one mesh many times instead of many meshes with the same data",
+                    fmt::format("the scene takes more than {} MB of memory, {} times the size of its files; share one "
+                                "mesh instead of many meshes with the same data",
                                 limit >> 20, kMaxExpansion));
     }
 }

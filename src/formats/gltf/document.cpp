@@ -76,8 +76,7 @@ Document::Document(const std::filesystem::path& path, std::vector<std::byte> byt
     if (bytes_.size() >= sizeof kGlbMagic && read_u32(bytes_, 0) == kGlbMagic) {
         split_glb(messages);
     } else if (lower_case_extension(path) == ".glb") {
-        throw Error(ErrorCode::BadInput, FileLocation{file_},
-                    "byte 0: expected the letters glTF, with which a GLB file starts");
+        throw Error(ErrorCode::BadInput, FileLocation{file_}, "byte 0: expected \"glTF\", the start of a GLB file");
     }
     parse(json_chunk_, messages);
     check_version(messages);
@@ -97,9 +96,9 @@ void Document::read_table(std::string_view name, const JsonValue& holder, Messag
 std::size_t Document::glb_end(Messages& messages) const {
     const uint32_t length = read_u32(bytes_, 8);
     if (length >= kHeaderBytes && length <= bytes_.size()) return length;
-    messages.warn(
-        {FileLocation{file_},
-         fmt::format("byte 8: the header says {} bytes, but the file has {}; these are read", length, bytes_.size())});
+    messages.warn({FileLocation{file_},
+                   fmt::format("byte 8: the header states {} bytes, but the file has {}; all of them are read", length,
+                               bytes_.size())});
     return bytes_.size();
 }
 
@@ -121,9 +120,9 @@ Document::ChunkEnd Document::json_chunk_end(std::size_t begin, std::size_t size,
         if (is_whole || end == glb.size()) return {declared, declared};
         next = end;
     }
-    messages.warn(
-        {FileLocation{file_}, fmt::format("byte {}: the chunk says {} bytes, but its text ends after {}; that is read",
-                                          begin - kChunkHeaderBytes, size, end - begin)});
+    messages.warn({FileLocation{file_},
+                   fmt::format("byte {}: the chunk states {} bytes, but its text ends after {}; the text is read",
+                               begin - kChunkHeaderBytes, size, end - begin)});
     return {end, next};
 }
 
@@ -137,7 +136,7 @@ std::size_t Document::binary_chunk_end(std::size_t begin, std::size_t size, Mess
                           std::ranges::all_of(glb.subspan(declared + 4, 3), is_letter);
     if (is_chunk || std::ranges::all_of(text_of(glb.subspan(declared)), is_padding)) return declared;
     messages.warn(
-        {FileLocation{file_}, fmt::format("byte {}: the chunk says {} bytes, and no other follows; all {} are read",
+        {FileLocation{file_}, fmt::format("byte {}: the chunk states {} bytes, but no other follows; all {} are read",
                                           begin - kChunkHeaderBytes, size, glb.size() - begin)});
     return glb.size();
 }
@@ -166,10 +165,10 @@ void Document::split_glb(Messages& messages) {
             end_of_chunk.end = end_of_chunk.next = binary_chunk_end(begin, size, messages);
         }
         if (size > available && end_of_chunk.end == glb.size()) {
-            messages.leave_out({FileLocation{file_},
-                                fmt::format("byte {}: the chunk says {} bytes, but {} are left; the file is cut off "
-                                            "or damaged, and what is missing is left out",
-                                            at, size, available)});
+            messages.leave_out(
+                {FileLocation{file_}, fmt::format("byte {}: the chunk states {} bytes, but {} are left; the file is "
+                                                  "truncated or damaged, and missing data is left out",
+                                                  at, size, available)});
         }
         const std::span<const std::byte> chunk = glb.subspan(begin, end_of_chunk.end - begin);
         if (!has_json)
@@ -223,8 +222,8 @@ void Document::check_version(Messages& messages) const {
             good = minor.ec == std::errc() && minor.ptr == end;
         }
         if (!good) {
-            messages.warn(
-                {value.location(), fmt::format("\"{}\" is not a version; it is read as \"2.0\"", shortened(text))});
+            messages.warn({value.location(),
+                           fmt::format("\"{}\" is not a version; the file is read as glTF 2.0", shortened(text))});
             numbers = {2, 0};
         }
         return numbers;
@@ -236,12 +235,13 @@ void Document::check_version(Messages& messages) const {
         return;
     }
     if (parts(*version)[0] != 2) {
-        throw version->error(fmt::format("glTF {}; this reader knows 2.0", version_text(*version)));
+        throw version->error(fmt::format("glTF {} is not supported; expected 2.0", version_text(*version)));
     }
     const std::optional<JsonValue> least = asset->find("minVersion");
     if (least && parts(*least) > std::array<unsigned, 2>{2, 0}) {
-        messages.leave_out({least->location(), fmt::format("the file needs glTF {}; what 2.0 does not have is left out",
-                                                           version_text(*least))});
+        messages.leave_out(
+            {least->location(),
+             fmt::format("the file needs glTF {}; features that 2.0 lacks are left out", version_text(*least))});
     }
 }
 
@@ -256,9 +256,9 @@ void Document::check_extensions(Messages& messages) const {
             read_or_leave_out(name, messages, [&] {
                 const std::string_view extension = name.to_string();
                 if (is_known_extension(extension) || !reported.emplace(extension).second) return;
-                messages.leave_out({name.location(),
-                                    fmt::format("the file {} the extension {}, which is not supported: it is left out",
-                                                verb, shortened(extension))});
+                messages.leave_out(
+                    {name.location(), fmt::format("the file {} the extension {}, which is not supported and left out",
+                                                  verb, shortened(extension))});
             });
         }
     };
@@ -267,9 +267,10 @@ void Document::check_extensions(Messages& messages) const {
     const auto is_news = [&](std::string_view name) { return !is_known_extension(name) && !reported.contains(name); };
     for (const auto& [name, json] : root().extensions_within(is_news)) {
         if (!reported.insert(name).second) continue;
-        messages.leave_out({json.location(), fmt::format("the extension {}, which is not supported and which "
-                                                         "\"extensionsUsed\" does not list: it is left out",
-                                                         shortened(name))});
+        messages.leave_out(
+            {json.location(),
+             fmt::format("the extension {} is not supported, not listed in \"extensionsUsed\", and left out",
+                         shortened(name))});
     }
 }
 

@@ -126,9 +126,8 @@ void Materials::read_specular_glossiness(const JsonValue& source, Material& mate
     }
     if (is_exact) return;
     messages_.leave_out({extension->location(),
-                         "the material is converted to metal and roughness: what of its specular colour "
-                         "such a surface does not have, as coloured reflections of what is no metal, is left "
-                         "out"});
+                         "the material is converted to metal and roughness; specular colours that these cannot "
+                         "express, such as coloured reflections of a non-metal, are left out"});
 }
 
 void Materials::convert_textures(uint64_t limit) { gltf::convert_textures(pending_, limit, scene_, messages_); }
@@ -170,9 +169,9 @@ void Materials::read_specular(const JsonValue& material, Material& result) const
         result.kind = MaterialKind::Diffuse;
         return;
     }
-    messages_.leave_out({extension->location(),
-                         "KHR_materials_specular is left out, but for a specularFactor of 0 with a "
-                         "metallicFactor of 0"});
+    messages_.leave_out(
+        {extension->location(),
+         "KHR_materials_specular is left out; only a specularFactor of 0 with a metallicFactor of 0 is supported"});
 }
 
 void Materials::read_transmission(const JsonValue& material, Material& result) const {
@@ -182,16 +181,16 @@ void Materials::read_transmission(const JsonValue& material, Material& result) c
     const std::optional<JsonValue> volume = material.extension("KHR_materials_volume");
     const bool is_solid = volume && volume->float_or("thicknessFactor", 0) > 0;
     if (factor != 1 || transmission->find("transmissionTexture") || !is_solid || result.metallic != 0) {
-        messages_.leave_out({transmission->location(),
-                             "KHR_materials_transmission is left out, and the material opaque, but for solid "
-                             "glass: a transmissionFactor of 1 without texture, a thicknessFactor above 0 and a "
-                             "metallicFactor of 0"});
+        messages_.leave_out(
+            {transmission->location(),
+             "KHR_materials_transmission is left out and the material opaque; only solid glass is supported: a "
+             "transmissionFactor of 1 without texture, a thicknessFactor above 0 and a metallicFactor of 0"});
         return;
     }
     result.kind = MaterialKind::Dielectric;
     if (volume->find("attenuationDistance")) {
         messages_.leave_out(
-            {volume->location(), "glass does not absorb: the attenuation of KHR_materials_volume is left out"});
+            {volume->location(), "the attenuation of KHR_materials_volume is not supported and left out"});
     }
 }
 

@@ -35,7 +35,7 @@ std::string repair_keys(AnimationChannel& channel, std::size_t numbers_a_key) {
     if (!std::ranges::is_sorted(order, is_before)) {
         std::ranges::stable_sort(order, is_before);
         mended += mended.empty() ? "" : ", ";
-        mended += "keys are taken in the order of their times";
+        mended += "keys are sorted by time";
     }
     const std::vector<std::size_t> kept = without_repeats(order, channel);
     if (kept.size() == times.size() && mended.empty()) return mended;

@@ -152,7 +152,7 @@ void convert_textures(const std::vector<PendingConversion>& pending, uint64_t li
         };
         if (!diffuse.has_image() && !specular.has_image()) continue; // the loader has told why
         if (diffuse.has_image() && specular.has_image() && !use_same_coordinates(diffuse, specular)) {
-            use_factors("its two textures lie over the surface in different ways");
+            use_factors("its two textures use different coordinates");
             continue;
         }
         const Rgb d = factors.diffuse, s = factors.specular;
@@ -162,7 +162,7 @@ void convert_textures(const std::vector<PendingConversion>& pending, uint64_t li
             const Texels a(scene, diffuse), b(scene, specular);
             bytes += uint64_t(8) * max(a.width(), b.width()) * max(a.height(), b.height());
             if (bytes > limit) {
-                use_factors("its textures as metal and roughness would take too much memory");
+                use_factors("its converted textures would take too much memory");
                 continue;
             }
             ConvertedImages images = convert_images(scene, material, factors);

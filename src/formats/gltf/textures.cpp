@@ -76,9 +76,9 @@ TextureRef Textures::read(const JsonValue& info) {
                 [&](const JsonValue& sampler) { read_sampler(document_.item("samplers", sampler), texture); });
     if (uv_set > 1) {
         messages_.leave_out(
-            {info.location(), fmt::format("set {} of texture coordinates; only 0 and 1 are supported, the texture is "
-                                          "left out",
-                                          uv_set)});
+            {info.location(),
+             fmt::format("set {} of texture coordinates; only 0 and 1 are supported; the texture is left out",
+                         uv_set)});
         return {};
     }
     texture.uv_set = static_cast<uint8_t>(uv_set);
@@ -95,12 +95,12 @@ void Textures::leave_out_without_image(const JsonValue& texture) {
     for (const std::string_view extension : kOtherImages) {
         if (!texture.extension(extension)) continue;
         messages_.leave_out(
-            {texture.location(), fmt::format("the texture has its picture by {} alone, which is not supported; it is "
-                                             "left out{}",
-                                             extension, conversion_advice(extension, document_.path()))});
+            {texture.location(),
+             fmt::format("the texture's image is given only by {}, which is not supported; it is left out{}", extension,
+                         conversion_advice(extension, document_.path()))});
         return;
     }
-    messages_.leave_out({texture.location(), "the texture has no image that is supported; it is left out"});
+    messages_.leave_out({texture.location(), "the texture has no supported image and is left out"});
 }
 
 void Textures::read_sampler(const JsonValue& sampler, TextureRef& texture) const {

@@ -155,9 +155,9 @@ std::string repair_json(std::string_view text, RepairJson repair, std::vector<st
     std::string mended = repairer.run();
     if (repairs != nullptr) {
         if (repairer.had_infinity())
-            repairs->emplace_back("NaN is no JSON and read as null, Infinity as the largest number");
+            repairs->emplace_back("NaN is not valid JSON and read as null, and Infinity as the largest number");
         if (repairer.had_odd_string() || valid != text) {
-            repairs->emplace_back("a text is not Unicode as JSON has it; U+FFFD is read where it is not");
+            repairs->emplace_back("a text is not valid Unicode; invalid bytes are read as U+FFFD");
         }
     }
     return mended;

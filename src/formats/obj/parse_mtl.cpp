@@ -91,13 +91,13 @@ public:
         }
         if (too_long_.times > 0) {
             messages_.leave_out({FileLocation{file_, too_long_.first_line},
-                                 fmt::format("{} with more than the key takes; the rest is left out",
+                                 fmt::format("{} with more numbers than the key has; the rest is left out",
                                              counted(too_long_.times, "line"))});
         }
         if (unknown_.times > 0) {
             messages_.leave_out(
                 {FileLocation{file_, unknown_.first_line},
-                 fmt::format("{} that {} not understood ({} is the first) {} left out", counted(unknown_.times, "line"),
+                 fmt::format("{} with an unknown key ({} is the first) {} left out", counted(unknown_.times, "line"),
                              is_or_are(unknown_.times), first_unknown_, is_or_are(unknown_.times))});
         }
         return std::move(materials_);

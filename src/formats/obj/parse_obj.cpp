@@ -184,7 +184,7 @@ private:
         const int64_t zero_based = number < 0 ? static_cast<int64_t>(count_so_far) + number : number - 1;
         // An index may lead to what stands further down, so the upper end is checked when all is read.
         if (ec != std::errc{} || number == 0 || zero_based < 0 || zero_based >= int64_t(kNoIndex)) {
-            throw fault_here(fmt::format("{} index {} is out of range; {} stand above, the first has index 1", of,
+            throw fault_here(fmt::format("{} index {} is out of range; there are {} above, counted from 1", of,
                                          std::string_view(text.data(), static_cast<std::size_t>(after - text.data())),
                                          count_so_far));
         }
@@ -257,9 +257,9 @@ public:
         parse_pieces(found_materials);
         move_to_origin();
         if (!join_groups(false)) {
-            messages_.note({FileLocation{file_},
-                            fmt::format("more than {} objects and groups: faces are put together by material alone",
-                                        kMaxObjGroups)});
+            messages_.note(
+                {FileLocation{file_},
+                 fmt::format("more than {} objects and groups; faces are grouped by material only", kMaxObjGroups)});
             join_groups(true);
         }
         join_colors();
@@ -275,13 +275,13 @@ public:
         leave_out_bad_faces();
         CountedLines no_vertex;
         for (const CountedLines& of_group : without_vertex) no_vertex.add(of_group);
-        leave_out(no_vertex, "face", "with a vertex that is not in the file");
-        leave_out(all_of(&PieceParser::short_faces), "face", "of fewer than three corners");
+        leave_out(no_vertex, "face", "with a missing vertex");
+        leave_out(all_of(&PieceParser::short_faces), "face", "with fewer than three corners");
         leave_out(all_of(&PieceParser::points_and_lines), "statement", "of points or lines");
         leave_out(all_of(&PieceParser::free_form), "statement", "of curves or free-form surfaces");
-        leave_out(all_of(&PieceParser::unknown), "line", "that nothing is known of");
-        warn(missing, "face corner", "with a texture coordinate or normal that is not in the file; it does without");
-        warn(all_of(&PieceParser::bad_numbers), "line", "with a number missing or not readable");
+        leave_out(all_of(&PieceParser::unknown), "line", "of unknown kinds");
+        warn(missing, "face corner", "with a missing texture coordinate or normal, which is ignored");
+        warn(all_of(&PieceParser::bad_numbers), "line", "with a missing or unreadable number");
         return std::move(data_);
     }
 

@@ -48,7 +48,7 @@ private:
             ref.image = loader_.add_file(FileLocation{path_.string(), from.line}, gltf::plain_file_name(from.name));
         } catch (const Error& error) { // it may not be read
             if (error.code() != ErrorCode::BadInput) throw;
-            messages_.leave_out(error.remark().and_then("; its factor alone is used"));
+            messages_.leave_out(error.remark().and_then("; only its factor is used"));
         }
         ref.is_srgb = is_colour && !from.is_linear;
         if (from.clamp) ref.wrap_s = ref.wrap_t = Wrap::ClampToEdge;
@@ -180,7 +180,7 @@ std::map<std::string, MtlMaterial> read_mtl(std::span<const std::byte> bytes, co
         if (statements.name.empty() || materials.contains(statements.name)) continue;
         materials.emplace(statements.name, converter.convert(statements));
     }
-    if (materials.empty()) messages.warn({FileLocation{path.string()}, "no material (newmtl) in it"});
+    if (materials.empty()) messages.warn({FileLocation{path.string()}, "it has no material (newmtl)"});
     return materials;
 }
 
@@ -189,8 +189,7 @@ void finish_mtl_material(MtlMaterial& material, const std::vector<TextureImage>&
     Material& to = material.material;
     if (material.normal_may_be_height && to.normal_texture.has_image()) {
         if (!looks_like_normals(images[static_cast<std::size_t>(to.normal_texture.image)])) {
-            messages.leave_out(
-                {FileLocation{file}, "a map_bump that is a height map is left out; normal maps are read"});
+            messages.leave_out({FileLocation{file}, "a height map in map_bump is left out; only normal maps are read"});
             to.normal_texture = {};
         }
     }

@@ -129,8 +129,7 @@ Scene make_ply_scene(Mesh mesh, const std::vector<uint32_t>& sizes, const PlyFac
         has_colors_beside = true;
     }
     if (has_colors_beside) {
-        messages.leave_out(
-            {FileLocation{file}, "vertex colours beside a texture are left out: the texture tells the colour"});
+        messages.leave_out({FileLocation{file}, "vertex colours are left out, because a texture defines the colour"});
     }
     return scene;
 }

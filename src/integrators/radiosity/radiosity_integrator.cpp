@@ -22,10 +22,11 @@ void RadiosityIntegrator::reserve(const WorkSize& size) {
 }
 
 void RadiosityIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
-    if (!display_.solution) throw Error(ErrorCode::BadInput, "integrator", "radiosity", "there is no solution to show");
+    if (!display_.solution)
+        throw Error(ErrorCode::BadInput, "integrator", "radiosity", "there is no solution to display");
     const RadiositySolution& solution = *display_.solution;
     if (picture.scene.first_triangle == nullptr || solution.roots.size() != 2 * picture.scene.triangle_count) {
-        throw Error(ErrorCode::BadInput, "integrator", "radiosity", "the solution is of another scene");
+        throw Error(ErrorCode::BadInput, "integrator", "radiosity", "the solution belongs to another scene");
     }
     RayTreeIntegrator::begin(picture, tracer, samples);
     picture_settings_.radiosity = {{roots_.data(), quads_.data()}, patches_.data(), solution.ambient, display_.is_flat};

@@ -25,7 +25,7 @@ void RasterIntegrator::reserve(const WorkSize& size) {
 void RasterIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
     if (picture.scene.triangle_count >= kNoHit) {
         throw Error(ErrorCode::OverLimit, "integrator", "raster",
-                    fmt::format("{} triangles in all instances of the scene; it draws {} at most",
+                    fmt::format("{} triangles in all instances of the scene; the limit is {}",
                                 picture.scene.triangle_count, kNoHit - 1));
     }
     IntegratorBase::begin(picture, tracer, samples);

@@ -80,7 +80,7 @@ void ReyesIntegrator::reserve(const WorkSize& size) {
 void ReyesIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
     if (picture.scene.triangle_count >= kNoHit) {
         throw Error(ErrorCode::OverLimit, "integrator", "reyes",
-                    fmt::format("{} triangles in all instances of the scene; it dices {} at most",
+                    fmt::format("{} triangles in all instances of the scene; the limit is {}",
                                 picture.scene.triangle_count, kNoHit - 1));
     }
     IntegratorBase::begin(picture, tracer, samples);
@@ -113,11 +113,10 @@ void ReyesIntegrator::check_work(uint64_t pieces, uint32_t wide) const {
     const double most = kMaxPiecesOfTriangle * static_cast<double>(picture_.scene.triangle_count) +
                         static_cast<double>(max_work(pixels)) * finer * finer;
     if (static_cast<double>(pieces) <= most && wide <= max_wide(pixels)) return;
-    throw Error(
-        ErrorCode::OverLimit, "displacement", "",
-        fmt::format("surfaces are moved so far that dicing them does not end (over {} pieces a pixel); a smaller "
-                    "SCALE makes fewer, and so does a larger `shading_rate`",
-                    kMaxWorkOfPixel));
+    throw Error(ErrorCode::OverLimit, "displacement", "",
+                fmt::format("surfaces are displaced so far that dicing does not end (over {} pieces per pixel); use a "
+                            "smaller SCALE or a larger `shading_rate`",
+                            kMaxWorkOfPixel));
 }
 
 template <HidingPass kPass>

@@ -56,8 +56,8 @@ public:
                     const auto has = [&](const Names& names) { return has_name(names, name.pattern); };
                     if (std::ranges::any_of(things.names, has)) continue;
                     throw Error(ErrorCode::BadInput, point_at(expression, name.offset,
-                                                              fmt::format("no {} has this name; {}", things.kind,
-                                                                          some_names(things.names))));
+                                                              fmt::format("there is no {} with this name; {}",
+                                                                          things.kind, some_names(things.names))));
                 }
             }
         }
@@ -84,7 +84,7 @@ std::vector<uint16_t> tag(const Things& things, const Chooser& chooser, std::vec
         const auto [offset, is_new] = numbers.try_emplace(chooser.choose(names), static_cast<uint16_t>(tags.size()));
         if (is_new) tags.push_back(offset->first);
         if (tags.size() > UINT16_MAX) {
-            throw Error(ErrorCode::OverLimit, "lpe", "", "the names tell more than 65535 things apart");
+            throw Error(ErrorCode::OverLimit, "lpe", "", "the names distinguish more than 65535 objects");
         }
         of_things.push_back(offset->second);
     }

@@ -88,7 +88,7 @@ bool PosedScene::is_animated() const {
 
 SceneUpdate PosedScene::set_time(double time_s) {
     if (!std::isfinite(time_s)) {
-        throw Error(ErrorCode::BadInput, fmt::format("time {}: expected seconds, a finite number", time_s));
+        throw Error(ErrorCode::BadInput, fmt::format("time {} is not finite; expected seconds", time_s));
     }
     if (!is_animated()) return {};
     read_channels(time_s);
@@ -244,7 +244,7 @@ void PosedScene::check_placements(double time_s) const {
         const Bounds3& local = bounds_[instance.mesh];
         if (local.is_empty() || lies_near(instance.world_from_local, local)) continue;
         throw Error(ErrorCode::OverLimit,
-                    fmt::format("{} lies further out than 2^40 metres at {} s; scale the scene down",
+                    fmt::format("{} lies beyond 2^40 metres at {} s; scale the scene down",
                                 numbered("instance", i, instance.name, origin_of(instance)), time_s));
     }
 }

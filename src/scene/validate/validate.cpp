@@ -19,7 +19,7 @@
 namespace pertev {
 namespace {
 
-constexpr const char* kTooFar = "lies further out than 2^40 metres";
+constexpr const char* kTooFar = "lies beyond 2^40 metres";
 
 class Validator {
 public:
@@ -61,17 +61,18 @@ private:
     Error no_geometry(std::size_t without_triangles, std::size_t singular) const {
         std::vector<std::string> reasons;
         if (without_triangles > 0) {
-            reasons.push_back(fmt::format("{} of meshes that lost all their triangles, the first of them {}; expected "
-                                          "triangles with an area and finite vertices",
+            reasons.push_back(fmt::format("{} of meshes without valid triangles ({} is the first); expected triangles "
+                                          "with an area and finite vertices",
                                           counted(without_triangles, "instance"), first_empty_mesh_));
         }
         if (singular > 0) {
-            reasons.push_back(fmt::format("{} with a singular transform, the first of them {}; expected scales other "
-                                          "than 0",
-                                          counted(singular, "instance"), first_singular_));
+            reasons.push_back(
+                fmt::format("{} with a singular transform ({} is the first); expected scales other than 0",
+                            counted(singular, "instance"), first_singular_));
         }
-        if (reasons.empty()) reasons.push_back(scene_.no_instances.empty() ? "no mesh is placed" : scene_.no_instances);
-        return bad(fmt::format("no geometry, not one triangle to see: {}", fmt::join(reasons, "; ")));
+        if (reasons.empty())
+            reasons.push_back(scene_.no_instances.empty() ? "no instance uses a mesh" : scene_.no_instances);
+        return bad(fmt::format("the scene has no visible triangle: {}", fmt::join(reasons, "; ")));
     }
 
     static std::string name_of(std::size_t i, const Mesh& mesh) { return numbered("mesh", i, mesh.name, mesh.origin); }
@@ -107,7 +108,8 @@ private:
         for (MeshShape& shape : scene_.shapes) {
             if (shape.mesh >= shapes.size() || (shape.node != kNoNode && shape.node >= scene_.nodes.size()) ||
                 (shape.skin != kNoSkin && shape.skin >= scene_.skins.size())) {
-                throw bad(fmt::format("what shapes mesh {}: its mesh, node or skin is out of range", shape.mesh));
+                throw bad(fmt::format("the skin or morph targets of mesh {}: its mesh, node or skin is out of range",
+                                      shape.mesh));
             }
             shapes[shape.mesh] = &shape;
         }
@@ -135,11 +137,10 @@ private:
             messages_.leave_out(text(repairs_.not_finite, "triangle", "with a vertex that is not finite", "left out"));
         }
         if (repairs_.too_far > 0) {
-            messages_.leave_out(
-                text(repairs_.too_far, "triangle", "that reaches further out than 2^40 metres", "left out"));
+            messages_.leave_out(text(repairs_.too_far, "triangle", "that reaches beyond 2^40 metres", "left out"));
         }
         warn(repairs_.without_area, "triangle", "without area", "left out");
-        warn(repairs_.normals, "normal", "of length zero or not finite", "replaced by the surface's own");
+        warn(repairs_.normals, "normal", "of length zero or not finite", "replaced by the geometric normal");
         warn(repairs_.tangents, "tangent", "of length zero or not finite", "replaced");
         warn(repairs_.texture_coordinates, "texture coordinate", "that is not finite", "set to 0");
         warn(repairs_.colors, "vertex colour", "outside [0, 1]", "clamped");
@@ -182,8 +183,7 @@ private:
             if (drops && dropped++ == 0) first_singular_ = name_of(number, instance);
             if (drops && is_flat(instance.world_from_local)) {
                 messages_.leave_out({FileLocation{file_},
-                                     fmt::format("{} is squeezed flat by its transform, such as by one scale of 0: it "
-                                                 "is left out",
+                                     fmt::format("{} has a singular transform, such as one scale of 0, and is left out",
                                                  name_of(number, instance))});
             }
             return drops;
@@ -195,7 +195,7 @@ private:
         }
         if (dropped == 0) return;
         messages_.warn({FileLocation{file_},
-                        fmt::format("{} with a singular transform, such as a scale of 0: hidden; the first is {}",
+                        fmt::format("{} with a singular transform, such as a scale of 0, hidden ({} is the first)",
                                     counted(dropped, "instance"), first_singular_)});
     }
 
@@ -222,19 +222,19 @@ private:
         if (!is_near(camera.world_from_camera.translation)) throw too_far(of);
         const bool is_flat = has_parallel_rays(camera.projection);
         if (!is_flat && !(camera.fov_y > 0 && camera.fov_y < kPi)) {
-            throw bad(fmt::format("{}: its angle of view is {} radians; it lies between 0 and pi", of, camera.fov_y));
+            throw bad(fmt::format("{}: its field of view is {} radians; expected between 0 and pi", of, camera.fov_y));
         }
         if (is_flat && !(camera.ortho_height > 0 && camera.ortho_height <= kMaxCoordinate)) {
-            throw bad(fmt::format("{}: the height of its view is {}; it is above 0", of, camera.ortho_height));
+            throw bad(fmt::format("{}: its view height is {}; expected above 0", of, camera.ortho_height));
         }
         if (!(camera.aspect >= 0 && is_finite(camera.aspect))) {
-            throw bad(fmt::format("{}: its aspect is {}; it is above 0, or 0 for none", of, camera.aspect));
+            throw bad(fmt::format("{}: its aspect is {}; expected above 0, or 0 for none", of, camera.aspect));
         }
         if (!(camera.aperture_radius >= 0 && camera.aperture_radius <= kMaxCoordinate)) {
-            throw bad(fmt::format("{}: its aperture is {}; it is 0 or above", of, camera.aperture_radius));
+            throw bad(fmt::format("{}: its aperture is {}; expected at least 0", of, camera.aperture_radius));
         }
         if (!(camera.focus_distance > 0 && camera.focus_distance <= kMaxCoordinate)) {
-            throw bad(fmt::format("{}: its focus distance is {}; it is above 0", of, camera.focus_distance));
+            throw bad(fmt::format("{}: its focus distance is {}; expected above 0", of, camera.focus_distance));
         }
     }
 
@@ -243,23 +243,23 @@ private:
         const std::string of = numbered("light", i, light.name, light.origin);
         const Rgb e = light.intensity;
         if (!(is_finite(e) && e.r >= 0 && e.g >= 0 && e.b >= 0)) {
-            throw bad(
-                fmt::format("{}: its intensity is ({}, {}, {}); it is finite and not negative", of, e.r, e.g, e.b));
+            throw bad(fmt::format("{}: its intensity is ({}, {}, {}); expected finite numbers of at least 0", of, e.r,
+                                  e.g, e.b));
         }
         const LightParts parts = parts_of(light.kind);
         if (parts.position) {
             if (!is_near(light.position)) throw too_far(of);
-            if (!(light.range >= 0)) throw bad(fmt::format("{}: its range is {}; it is 0 or above", of, light.range));
+            if (!(light.range >= 0))
+                throw bad(fmt::format("{}: its range is {}; expected at least 0", of, light.range));
         }
         if (!parts.direction) return;
         light.direction = normalize_safely(light.direction);
         if (!is_finite(light.direction)) throw bad(of + ": its direction is zero or not finite");
         if (!parts.cone) return;
         if (!(light.cos_outer >= -1 && light.cos_inner <= 1 && light.cos_outer < light.cos_inner)) {
-            throw bad(
-                fmt::format("{}: the cosines of its cone are {} (inner) and {} (outer); outer is the smaller, both "
-                            "within -1 and 1",
-                            of, light.cos_inner, light.cos_outer));
+            throw bad(fmt::format("{}: the cosines of its cone are {} (inner) and {} (outer); expected outer < inner, "
+                                  "both between -1 and 1",
+                                  of, light.cos_inner, light.cos_outer));
         }
     }
 

@@ -49,7 +49,7 @@ void check_sizes(const Mesh& mesh, const std::string& of) {
     check(mesh.colors.size(), "colours");
     if (mesh.indices.size() % 3 != 0) {
         throw Error(ErrorCode::BadInput,
-                    fmt::format("{}: {} indices; a triangle takes three", of, mesh.indices.size()));
+                    fmt::format("{}: {} indices; expected a multiple of 3", of, mesh.indices.size()));
     }
     if (mesh.indices.size() / 3 > kMaxTrianglesPerMesh) {
         throw Error(ErrorCode::OverLimit, fmt::format("{}: {} triangles; the limit is {}", of, mesh.indices.size() / 3,
@@ -152,9 +152,8 @@ void check_shape_sizes(const MeshShape& shape, const Mesh& mesh, const std::stri
         }
     }
     if (!fit || shape.joints.size() != influences || shape.weights.size() != influences) {
-        throw Error(ErrorCode::BadInput, fmt::format("{}: its morph targets or its skin have another number of "
-                                                     "vertices than its {}",
-                                                     of, vertices));
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("{}: the vertices of its morph targets or skin do not match its {}", of, vertices));
     }
 }
 

@@ -45,7 +45,7 @@ std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
     const std::vector<float>& times = channel.times;
     const std::vector<float>& values = channel.values;
     if (channel.part == AnimatedPart::Weights && scene.nodes[channel.target].morph_weights.empty()) {
-        return "its node's mesh has no morph targets; expected one that has";
+        return "its node's mesh has no morph targets, so that its weights cannot be animated";
     }
     if (places_node(channel.part) && std::holds_alternative<DoubleTransform>(scene.nodes[channel.target].pose)) {
         return "its node has a matrix; expected translation, rotation and scale";
@@ -53,13 +53,13 @@ std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
     if (times.empty()) return "it has no key times; expected at least one";
     for (std::size_t i = 0; i < times.size(); ++i) {
         if (!is_finite(times[i]) || (i > 0 && times[i] < times[i - 1])) {
-            return fmt::format("key time {} is {}; expected finite seconds, none below the one before", i, times[i]);
+            return fmt::format("key time {} is {}; expected finite seconds in order", i, times[i]);
         }
     }
     const std::size_t numbers = numbers_in_value(channel, scene);
     const std::size_t per_key = channel.interpolation == Interpolation::CubicSpline ? 3 : 1;
     if (values.size() != times.size() * per_key * numbers) {
-        return fmt::format("{} numbers for {}; expected {}: {} a key of {} each", values.size(),
+        return fmt::format("{} numbers for {}; expected {}: {} per key of {} each", values.size(),
                            counted(times.size(), "key time"), times.size() * per_key * numbers,
                            counted(per_key, "value"), counted(numbers, "number"));
     }
@@ -103,8 +103,8 @@ void validate_nodes(const Scene& scene, const std::string& file) {
         }
     }
     if (const std::size_t placed = parents_first(scene.nodes).size(); placed != count) {
-        throw bad(
-            fmt::format("{} of {} nodes are their own ancestors or below such; expected trees", count - placed, count));
+        throw bad(fmt::format("{} of {} nodes are their own ancestors or descendants of such; expected trees",
+                              count - placed, count));
     }
     for (std::size_t i = 0; i < scene.skins.size(); ++i) {
         const Skin& skin = scene.skins[i];

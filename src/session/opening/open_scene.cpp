@@ -49,7 +49,7 @@ void turn_and_scale(const OpenOptions& options, Scene& scene, Messages& messages
         return;
     }
     const auto warn = [&](const char* setting) {
-        messages.warn({setting, "", "the scene has no environment; `environment` gives it one"});
+        messages.warn({setting, "", "the scene has no environment; set `environment`"});
     };
     if (options.environment_rotation_deg != 0) warn("environment_rotation");
     if (options.environment_scale != 1) warn("environment_scale");
@@ -69,7 +69,7 @@ bool names_emitter_of_file(const Scene& scene, const EmitterStrength& emitter) {
 void show_back_faces(Scene& scene, Messages& messages) {
     bool any_hidden = false;
     for (Material& material : scene.materials) any_hidden |= !std::exchange(material.double_sided, true);
-    if (!any_hidden) messages.warn({"show_back_faces", "", "no surface of the scene hides its back"});
+    if (!any_hidden) messages.warn({"show_back_faces", "", "no surface of the scene has a hidden back"});
 }
 
 /// `light` is the light that was added. `around` describes the scene if that is a sky.
@@ -97,19 +97,17 @@ std::string in_a_row(const std::vector<std::string>& list) {
 void report_animation(const Scene& scene, const std::string& file, Messages& messages) {
     if (scene.clips.size() < 2) return;
     const std::vector<std::string> clips = list_clips(scene.clips);
-    messages.note({FileLocation{file},
-                   fmt::format("the file has {} animations, of which the first plays, {}; `animation` (NAME, N or all) "
-                               "plays another or all of {}",
-                               clips.size(), shortened(clips.front()), in_a_row(clips))});
+    messages.note({FileLocation{file}, fmt::format("the file has {} animations and plays the first, {}; `animation` "
+                                                   "(NAME, N or all) plays another or all of {}",
+                                                   clips.size(), shortened(clips.front()), in_a_row(clips))});
 }
 
 void report_file_scene(const Scene& scene, const std::string& file, Messages& messages) {
     if (scene.file_scenes.size() < 2) return;
     const std::vector<std::string> scenes = list_file_scenes(scene);
-    messages.note(
-        {FileLocation{file},
-         fmt::format("the file has {} scenes, of which {} is shown; `file_scene` (NAME or N) shows another of {}",
-                     scenes.size(), shortened(scenes[scene.file_scene]), in_a_row(scenes))});
+    messages.note({FileLocation{file},
+                   fmt::format("the file has {} scenes and shows {}; `file_scene` (NAME or N) shows another of {}",
+                               scenes.size(), shortened(scenes[scene.file_scene]), in_a_row(scenes))});
 }
 
 } // namespace
@@ -203,7 +201,7 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
         is_turned_off ? DefaultLight::None : add_default_light(scene, options.use, messages, &around);
     if (wants_ground(options, scene, light, around)) {
         add_ground(scene);
-        messages.make_up("a made-up ground catches the shadow; `ground=off` leaves it out");
+        messages.make_up("a default ground receives the shadow; `ground=off` leaves it out");
     }
     turn_and_scale(options, scene, messages);
     set_emitters(scene, others, efficacy);

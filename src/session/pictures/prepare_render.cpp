@@ -23,7 +23,7 @@ namespace {
 Ground ground_of(const PictureOptions& options) {
     if (options.scene.ground == "on" && options.render.transparent) {
         throw Error(ErrorCode::BadInput, "ground", "on",
-                    "the ground is a part of the background, which `transparent` leaves out; leave out one of them");
+                    "the ground is part of the background, which `transparent` removes; leave out one of them");
     }
     if (options.scene.ground == "on") return Ground::On;
     const CameraChoice& camera = options.scene.camera;
@@ -95,8 +95,8 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     if (settings.integrator == IntegratorKind::Radiosity) {
         if (ready->moving->is_animated() && !options.frames.empty()) {
             throw Error(ErrorCode::BadInput, "frames", "",
-                        "radiosity is solved for one time, and this scene moves; `time` shows it at one (`camera_path` "
-                        "and `turntable` take it as it is)");
+                        "radiosity is solved for one time, and this scene moves; set `time` (`camera_path` and "
+                        "`turntable` work with the scene at rest)");
         }
         sink.report_messages();
         settings.radiosity = solve(*ready);

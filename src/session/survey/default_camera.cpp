@@ -142,7 +142,7 @@ Camera make_default_camera(const Scene& scene, float aspect, Messages& messages)
     }
     const Vec3 eye = camera.world_from_camera.translation;
     const Vec3 target = eye - camera.focus_distance * column(camera.world_from_camera, 2);
-    messages.make_up(fmt::format("no camera in the scene: {} (`eye={}` `target={}`)", what,
+    messages.make_up(fmt::format("the scene has no camera: {} (`eye={}` `target={}`)", what,
                                  position_text(scene, eye, 4), position_text(scene, target, 4)));
     return camera;
 }

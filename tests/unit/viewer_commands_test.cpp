@@ -10,7 +10,7 @@
 
 using namespace pertev;
 
-namespace viewer_wishes_test { // tests are compiled several files at once
+namespace viewer_commands_test { // tests are compiled several files at once
 
 Steer setting(const char* name, const std::variant<double, std::string>& value) {
     Steer steer;
@@ -157,4 +157,4 @@ TEST_CASE("every message that steers has a text for its request") {
     }
 }
 
-} // namespace viewer_wishes_test
+} // namespace viewer_commands_test
