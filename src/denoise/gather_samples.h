@@ -11,7 +11,7 @@ namespace pertev {
 
 /// Copies the guides from a frame of rays through pixels' centres, and clears the sums.
 struct BeginSums {
-    NoisyFrameView centres;
+    GBufferView centres;
     PictureGuide guide;
     PictureSums sums;
 

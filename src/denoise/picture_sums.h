@@ -12,8 +12,8 @@ namespace pertev {
 
 /// Hits of the rays through pixels' centres, from the middle of the lens.
 struct PictureGuide {
-    Float4* normal;   // see NoisyFrameView
-    Float4* albedo;   // see NoisyFrameView
+    Float4* normal;   // see GBufferView
+    Float4* albedo;   // see GBufferView
     uint32_t* object; // instance; kNoHit: no hit
 };
 

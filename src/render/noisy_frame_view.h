@@ -39,16 +39,22 @@ struct FirstBounceView {
     }
 };
 
-/// G-buffer and light of a frame: arrays with one element per pixel, row by row.
-struct NoisyFrameView {
+/// First hits of a frame: arrays with one element per pixel, row by row.
+struct GBufferView {
+    Float4* hit = nullptr;    // bits of instance (kNoHit: no hit) and primitive, u, v
+    Float4* normal = nullptr; // unit shading normal on the camera's side; depth along the camera's axis, metres
+    Float4* albedo = nullptr; // rgb of diffuse lobes; GGX width of the sharpest other lobe, or 1 without one
+    Float4* gloss = nullptr;  // rgb, approximate reflectance of the other lobes; metres from the first surface to the
+                              // path's next hit, kFarAway without one
+};
+
+/// G-buffer and light of a frame.
+struct NoisyFrameView : GBufferView {
     Float4* light = nullptr;    // rgb of the sample, W/(sr m2); w is 1, or 0 for an invalid sample, which counts as
                                 // black
     Float4* diffuse = nullptr;  // rgb, the part of `light` that the first surface scatters by diffuse lobes. Null:
                                 // all of `light` but `emission`, in scenes without other lobes
-    Float4* emission = nullptr; // rgb, the part of `light` that the camera ray hits directly; Gloss::passage
-    Float4* hit = nullptr;      // bits of instance (kNoHit: no hit) and primitive, u, v
-    Float4* normal = nullptr;   // unit shading normal on the camera's side; depth along the camera's axis, metres
-    Float4* albedo = nullptr;   // rgb of diffuse lobes; GGX width of the sharpest other lobe, or 1 without one
+    Float4* emission = nullptr; // rgb, the part of `light` that the camera ray hits directly; Gloss::transmittance
     Float4* gloss = nullptr;    // rgb, approximate reflectance of the other lobes; metres from the first surface to
                                 // the path's next hit, kFarAway without one
     FirstBounceView first_bounce;

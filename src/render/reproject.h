@@ -36,7 +36,7 @@ struct Reprojection {
     float depth; // expected depth of the same surface, metres
 };
 
-/// World-space point at `place` (NoisyFrameView).
+/// World-space point of `hit` (GBufferView::hit).
 HD inline Vec3 point_at(const InstanceView* instances, const MeshView* meshes, Float4 hit) {
     const InstanceView& instance = instances[bits_of(hit.x)];
     const MeshView& mesh = meshes[instance.mesh];
@@ -60,7 +60,7 @@ HD inline Reprojection reproject_surface(const FrameCameras& cameras, const Scen
 inline constexpr float kSeenAlike = 0.5f;
 HD inline bool is_depth_alike(float seen, float depth) { return abs(seen - depth) <= 0.05f * depth; }
 
-/// Whether a pixel with this normal and depth (NoisyFrameView::normal) shows approximately the surface at `depth`
+/// Whether a pixel with this normal and depth (GBufferView::normal) shows approximately the surface at `depth`
 /// with this normal; otherwise it is disoccluded.
 HD inline bool is_seen_alike(Float4 seen, float depth, Vec3 normal) {
     return is_depth_alike(seen.w, depth) && dot(vec3_of(seen), normal) > kSeenAlike;

@@ -25,7 +25,7 @@ public:
         if (path.depth == 1) film_.frame.gloss[path.pixel].w = hit.t;
     }
     HD void emitted(const PathState& path, Rgb light) {
-        if (path.depth == 0) film_.frame.emission[path.pixel] = {light.r, light.g, light.b, passage_};
+        if (path.depth == 0) film_.frame.emission[path.pixel] = {light.r, light.g, light.b, transmittance_};
     }
     HD void ended(uint32_t pixel, Rgb radiance, const Kept&) const { store_sample(film_, pixel, radiance, {}); }
 
@@ -40,12 +40,12 @@ private:
         frame.normal[path.pixel] = {seen.x, seen.y, seen.z, dot(surface.position - path.origin, axis_)};
         frame.albedo[path.pixel] = {surface.albedo.r, surface.albedo.g, surface.albedo.b, gloss.alpha};
         frame.gloss[path.pixel] = {gloss.reflectance.r, gloss.reflectance.g, gloss.reflectance.b, kFarAway};
-        passage_ = gloss.transmittance;
+        transmittance_ = gloss.transmittance;
     }
 
     const FilmView& film_;
     const Vec3& axis_;
-    float passage_ = 1; // transmittance of Gloss
+    float transmittance_ = 1; // transmittance of Gloss
 };
 
 /// Separates the part of a path's radiance that diffuse lobes of its first vertex scatter, if a frame splits light.
