@@ -119,7 +119,7 @@ Fields time_fields(const RunTimes& times);
 Camera moved(const Camera& camera, float yaw, Vec3 step);
 
 /// The session's picture from its first sample on. Throws Error(Interrupted) where it is asked to end before.
-void render_anew(Session& session, uint32_t samples);
+void render_again(Session& session, uint32_t samples);
 
 /// Adds a verb of `bench` that calls `run` with its flags. A flag of `bench` itself before the verb's name, which the
 /// verb would not see, is refused.

@@ -59,7 +59,7 @@ int corners_off(const std::vector<Vec4>& tangents, const std::vector<Vec4>& expe
     return off;
 }
 
-TEST_CASE("tangents of stored meshes are MikkTSpace's, and the same corners share them") {
+TEST_CASE("tangents of stored meshes equal MikkTSpace's and are shared by the same corners") {
     for (const Case& stored : kStored) {
         CAPTURE(stored.name);
         const std::vector<Vec4> tangents = tangents_of(stored.mesh());
@@ -85,7 +85,7 @@ TEST_CASE("tangents do not depend on which vertices the file shares") {
     }
 }
 
-TEST_CASE("a vertex of very many triangles takes no more than its share of time") {
+TEST_CASE("a vertex of very many triangles takes time linear in their number") {
     Case fan;
     const uint32_t sides = 50'000;
     fan.positions.push_back({0, 0, 0});
@@ -106,7 +106,7 @@ TEST_CASE("a vertex of very many triangles takes no more than its share of time"
     CHECK(tangents[6 * (sides / 2 - sides / 8)].x < -0.9f);
 }
 
-TEST_CASE("tangents of any numbers are unit and finite") {
+TEST_CASE("tangents of arbitrary numbers are unit and finite") {
     Random random(7);
     const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
     const auto number = [&] {

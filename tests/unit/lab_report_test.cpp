@@ -24,7 +24,7 @@ TEST_CASE("a frame of depth d is the sets of depths 1 to d, and needs all of the
     CHECK(mrays(report, c.runs[0]) == doctest::Approx(4));
 }
 
-TEST_CASE("the laboratory's table of runs has each figure, and nothing where nothing was measured") {
+TEST_CASE("the laboratory's table of runs has each figure and empty cells where nothing was measured") {
     LabReport report = small_report();
     report.combinations[0].registers = 40, report.combinations[0].local_bytes = 0;
     report.combinations[0].runs[1].is_copy = true;
@@ -56,7 +56,7 @@ TEST_CASE("the laboratory's table of runs has each figure, and nothing where not
     CHECK(runs.at(3, "structure") == "binned");
 }
 
-TEST_CASE("the laboratory's CSV has the scene's columns in front of those of its runs") {
+TEST_CASE("the laboratory's CSV has the scene's columns before those of its runs") {
     const std::string csv = csv_of(measurement_of(small_report()), "runs");
     CHECK(
         csv.starts_with("program,date,processor,threads,device,scene,scene_triangles,instances,camera,width,height,"));
@@ -67,7 +67,7 @@ TEST_CASE("the laboratory's CSV has the scene's columns in front of those of its
     CHECK(has(csv, "\"no <planes>, none\""));
 }
 
-TEST_CASE("the laboratory's other tables are of its scene, its sets of rays and its structures") {
+TEST_CASE("the laboratory's other tables describe its scene, ray sets and structures") {
     LabReport report = small_report();
     report.structures.push_back({.name = "octree", .failed = "too <large>"});
     const Measurement m = measurement_of(report);
@@ -109,7 +109,7 @@ TEST_CASE("notes list missing results and skipped combinations, grouped by reaso
     CHECK(has(text_of(report), "\nshadow: <none>\n"));
 }
 
-TEST_CASE("heat maps that the report kept are pictures on one scale") {
+TEST_CASE("heat maps of a report share one scale") {
     LabReport report = small_report();
     report.heat_maps.push_back({"b", 1e6, 1, 1, {1}, {2}});
     const Measurement m = measurement_of(report);
@@ -136,7 +136,7 @@ TEST_CASE("the terminal's table has a column for each set, gaps included, and th
     CHECK(text.ends_with("interrupted: this is what had been measured\n"));
 }
 
-TEST_CASE("combinations that were checked and not timed have no speed") {
+TEST_CASE("combinations that were checked but not timed have no speed") {
     LabReport report = small_report();
     report.runs = 0;
     for (RunFigures& run : report.combinations[0].runs) run = {.set = run.set};

@@ -90,14 +90,14 @@ TEST_CASE("the table of jobs has the record's scenes and jobs and the presets of
     CHECK(camera_choice(record.presets[1]).fov_deg == 50.0f);
 }
 
-TEST_CASE("ratios are summed up by their geometric mean and the least") {
+TEST_CASE("ratios are summarised by their geometric mean and minimum") {
     const RatioSummary summary = summarize(std::array{2.0, 0.5, 4.0});
     CHECK(summary.geometric_mean == doctest::Approx(1.5874).epsilon(1e-4));
     CHECK(summary.least == 0.5);
     CHECK(summarize(std::array{1.25}).geometric_mean == doctest::Approx(1.25));
 }
 
-TEST_CASE("depths of jobs are counted as each of the others' does") {
+TEST_CASE("depths of jobs are counted as each other program counts them") {
     CHECK(job_settings(*find_named(the_record().jobs, "S8")).path.max_depth == 8); // scatterings
     const RenderSettings box = job_settings(*find_named(the_record().jobs, "cornell-box-65"));
     CHECK(box.path.max_depth == 64); // edges

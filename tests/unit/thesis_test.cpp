@@ -46,7 +46,7 @@ CombinationFigures& variant(LabReport& report, const std::string& name, bool is_
 
 } // namespace
 
-TEST_CASE("the thesis's variants are different combinations that make sense on their device") {
+TEST_CASE("the thesis's variants are different combinations that are valid on their device") {
     for (const bool is_cuda : {false, true}) {
         std::vector<std::string> names;
         for (const ThesisVariant& v : thesis_variants(is_cuda)) {
@@ -60,7 +60,7 @@ TEST_CASE("the thesis's variants are different combinations that make sense on t
     }
 }
 
-TEST_CASE("the thesis has a row for each scene, variant and depth, of which the page draws its tables and figures") {
+TEST_CASE("the thesis has a row per scene, variant and depth, from which the page draws its tables and figures") {
     const Measurement m = measurement_of(full_thesis("NVIDIA H200"));
     const ResultTable& frames = m.table("frames");
     REQUIRE(frames.rows.size() == 2 * 7 * 3);
@@ -79,7 +79,7 @@ TEST_CASE("the thesis has a row for each scene, variant and depth, of which the 
     CHECK(!has(text, "WRONG"));
 }
 
-TEST_CASE("what the thesis lacks is named in its notes and in the terminal, with its reason") {
+TEST_CASE("missing parts of the thesis are named with the reason in its notes and the terminal") {
     ThesisReport thesis = full_thesis("CPU");
     thesis.scenes.pop_back();
     thesis.lacking = {"figure 6.8: <no file>", "figure-3.6: out of memory"};
@@ -90,7 +90,7 @@ TEST_CASE("what the thesis lacks is named in its notes and in the terminal, with
     CHECK(m.table("lacking").at(1, "what") == "figure-3.6: out of memory");
 }
 
-TEST_CASE("the thesis's pictures are grouped by figure, with how they were made") {
+TEST_CASE("the thesis's pictures are grouped by figure, with their commands") {
     ThesisReport thesis = full_thesis("CPU");
     ThesisPicture rendered = {.name = "figure-3.8",
                               .place = "Figure 3.8",
@@ -138,7 +138,7 @@ TEST_CASE("wrong, refused and missing variants are named with the reason") {
     CHECK(measurement_of(thesis).table("frames").rows.size() == (2 * 7 - 3) * 3);
 }
 
-TEST_CASE("an interrupted chapter says so, and what it lacks") {
+TEST_CASE("an interrupted chapter is marked and lists what it lacks") {
     ThesisReport thesis = full_thesis("CPU");
     thesis.scenes.pop_back();
     LabReport& report = thesis.scenes[0];
