@@ -357,7 +357,7 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         path = os.path.join(scratch, "meshes")
         write_binary(path, meshes, tangents)
-        test = "tangents of the meshes that PERTEV_TANGENT_MESHES names are MikkTSpace's"
+        test = "tangents of the meshes in PERTEV_TANGENT_MESHES equal MikkTSpace's"
         return subprocess.run([arguments.tests, "--test-case=" + test],
                               env={**os.environ, "PERTEV_TANGENT_MESHES": path}, check=False).returncode
 

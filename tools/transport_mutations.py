@@ -163,7 +163,7 @@ TRANSPORT_MUTATIONS = [
              [edit("src/radiosity/link_nodes.cpp", "cluster_received_[half].add(cluster_received_[number]);", "")],
              ["statistical/hierarchical"]),
     Mutation("vertices that rounding has put apart stay apart",
-             [edit("src/radiosity/welded_vertices.cpp", "if (best != kNone) return places_[best];", "")],
+             [edit("src/radiosity/welded_vertices.cpp", "if (best != kNone) return positions_[best];", "")],
              ["unit/corner_light"]),
     Mutation("corners of places that are near are one",
              [edit("src/radiosity/welded_vertices.h", "kWeld = 0x1p-22f", "kWeld = 0x1p-14f")],

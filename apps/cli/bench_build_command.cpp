@@ -69,7 +69,7 @@ void bench_scene(const std::string& name, Queue& queue, const BuildFlags& flags,
                  BenchReport& report) {
     reporter.set_work(fmt::format("{}: reading", name));
     const std::vector<BvhTriangle> triangles = read_triangles(name, reporter.messages());
-    reporter.say_messages();
+    reporter.report_messages();
     throw_if_interrupted();
     float sbvh_cost = 0;
     const auto count = static_cast<uint32_t>(triangles.size());

@@ -87,10 +87,10 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     const Camera camera = choose_camera(CameraChoice{}, scene, aspect_of(settings.width, settings.height), messages);
     {
         Session warm_up(queue, cached, camera, settings); // whose trees are not those that are yet to be converted
-        render_anew(warm_up, 1);
+        render_again(warm_up, 1);
     }
     Session session(queue, prepared, camera, settings);
-    render_anew(session, settings.samples);
+    render_again(session, settings.samples);
     const RenderStats whole = session.stats();
     figures.first_pixel_s = whole.upload_seconds + whole.first_pixel_seconds;
     figures.render_s = whole.render_seconds;
@@ -100,7 +100,7 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     settings.time_kinds = true; // once more, each kind of ray on its own
     settings.body = PathBody::Wavefront;
     session.set_settings(settings);
-    render_anew(session, settings.samples);
+    render_again(session, settings.samples);
     const RenderStats staged = session.stats();
     figures.camera_mrays = millions_a_second(staged.rays.camera, staged.kind_seconds.camera);
     figures.bounce_mrays = millions_a_second(staged.rays.bounce, staged.kind_seconds.bounce);
@@ -151,7 +151,7 @@ int bench_scenes(PictureFlags& flags) {
     std::vector<std::unique_ptr<Queue>> queues;
     queues.push_back(take_machine(flags.machine, messages));
     if (flags.machine.device == "auto" && queues.front()->is_cuda()) queues.push_back(choose_device("cpu", messages));
-    reporter.say_messages();
+    reporter.report_messages();
     BenchReport report(reporter, flags.report, *queues.front(), "Loading, building and rendering");
     for (const std::string& scene : scenes) {
         for (const auto& queue : queues) {

@@ -36,7 +36,7 @@ int make_page(const PageFlags& flags) {
     for (const std::string& file : flags.files) measurements.push_back(read_measurement(file));
     const std::string page = report_page(measurements);
     reporter.write_output(flags.output, [&] { write_file_atomically(flags.output, std::as_bytes(std::span(page))); });
-    reporter.say(fmt::format("written: {}", flags.output));
+    reporter.print(fmt::format("written: {}", flags.output));
     return 0;
 }
 

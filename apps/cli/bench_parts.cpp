@@ -70,7 +70,7 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, Reporter& r
     listen_for_interrupt();
     auto benched = std::make_unique<BenchedScene>();
     benched->queue = take_machine(flags.machine, messages);
-    reporter.say_messages();
+    reporter.report_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     benched->scene = load_scene(flags.scene, SceneUse::Benchmark, messages);
     if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
@@ -83,9 +83,10 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, Reporter& r
     throw_if_interrupted();
     reporter.set_work("building trees");
     benched->prepared = prepare_scene(benched->scene, {}, messages);
-    reporter.say_messages();
+    reporter.report_messages();
     if (settings.integrator == IntegratorKind::Radiosity) {
-        benched->settings.radiosity = radiosity_look(flags.radiosity, benched->prepared, settings.path.seed, reporter);
+        benched->settings.radiosity =
+            radiosity_display(flags.radiosity, benched->prepared, settings.path.seed, reporter);
     }
     return benched;
 }
@@ -175,7 +176,7 @@ Camera moved(const Camera& camera, float yaw, Vec3 step) {
     return result;
 }
 
-void render_anew(Session& session, uint32_t samples) {
+void render_again(Session& session, uint32_t samples) {
     throw_if_interrupted();
     session.cut();
     session.render(samples, [](const RenderProgress&) { return !interrupted(); });

@@ -111,7 +111,7 @@ Fields time_fields(const RunTimes& times);
 Camera moved(const Camera& camera, float yaw, Vec3 step);
 
 /// The session's picture from its first sample on. Throws Error(Interrupted) where it is asked to end before.
-void render_anew(Session& session, uint32_t samples);
+void render_again(Session& session, uint32_t samples);
 
 /// Throws Error(BadInput) for a flag of `bench` itself before the name of this verb of it, which would not see it.
 void refuse_flags_before(const CLI::App& verb);

@@ -134,7 +134,7 @@ Fields fields_of(const SetFigures& f, bool is_checked) {
 void print_summary(const std::string& scene, std::span<const double> ratios, Reporter& reporter) {
     if (ratios.empty()) return;
     const auto [mean, least] = summarize(ratios);
-    reporter.event(json_of("ratios", {{"scene", "", if_said(scene)},
+    reporter.event(json_of("ratios", {{"scene", "", if_not_empty(scene)},
                                       {"sets", "", ratios.size()},
                                       {"ratio_to_best", "", mean},
                                       {"least", "", least}}));
@@ -156,14 +156,14 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
         prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, messages);
     const FrameSize frame = record_frame(flags.count);
     const Camera camera = choose_camera(flags.scene.camera, scene, 16.0f / 9.0f, messages);
-    reporter.say_messages();
+    reporter.report_messages();
     watch.restart();
     std::vector<RaySet> sets = make_isolated_sets(queue, scene, camera, prepared, flags.count, throw_if_interrupted);
     const std::size_t recorded = sets.size();
     if (flags.axes) std::ranges::move(make_axis_ray_sets(sets[2]), std::back_inserter(sets));
-    reporter.say(fmt::format("{}: {} triangles, scene {:.2f} s, trees {:.2f} s, ray sets {:.2f} s (frames of {}x{})",
-                             name, prepared.triangles, load_s, prepared.build_seconds, watch.seconds(), frame.width,
-                             frame.height));
+    reporter.print(fmt::format("{}: {} triangles, scene {:.2f} s, trees {:.2f} s, ray sets {:.2f} s (frames of {}x{})",
+                               name, prepared.triangles, load_s, prepared.build_seconds, watch.seconds(), frame.width,
+                               frame.height));
     const RecordScene* const record = find_named(the_record().scenes, name);
     const bool is_moved = flags.scene.camera.eye || flags.scene.camera.target || flags.scene.camera.fov_deg;
     std::vector<double> ratios;

@@ -116,11 +116,11 @@ int bench_job(JobFlags& flags) {
     throw_if_interrupted();
     const PreparedScene prepared = prepare_scene(scene, trees_for(settings, *queue), messages);
     const Camera camera = job_camera(job, scene, aspect_of(settings.width, settings.height), messages);
-    reporter.say_messages();
+    reporter.report_messages();
 
     Session session(*queue, prepared, camera, settings);
-    render_anew(session, 1); // clocks, caches, the driver's first launch
-    render_anew(session, settings.samples);
+    render_again(session, 1); // clocks, caches, the driver's first launch
+    render_again(session, settings.samples);
     const RenderResult result = session.result();
     const std::string hash = picture_hash(result.picture).hex();
     if (!flags.output.empty()) {

@@ -78,7 +78,7 @@ RenderResult sample_of(Session& session, const RenderSettings& settings, uint32_
     one.samples = samples;
     one.aovs = aovs;
     one.path.seed = frame;
-    return session.look_aside(session.camera(), one);
+    return session.render_separately(session.camera(), one);
 }
 
 Image mean_of_both(const Image& a, const Image& b) {
@@ -176,7 +176,7 @@ int bench_sequence(SequenceFlags& flags) {
     check_motion_flags(flags.render);
     check_radiosity_flags(flags.render.radiosity, flags.render.render, flags.render.limits_memory);
     const std::unique_ptr<RenderSetup> ready = prepare_render(flags.render, kBenchSequence, reporter);
-    reporter.say_messages();
+    reporter.report_messages();
     listen_for_interrupt();
     BenchReport report(reporter, flags.render.report, *ready->queue, "Frames of a moving picture");
     PictureRecord record = picture_record(flags.render, *ready, reporter.messages());

@@ -41,7 +41,7 @@ int compare(const CompareFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
     Image a = read_image(flags.picture, &messages), b = read_image(flags.reference, &messages);
-    reporter.say_messages();
+    reporter.report_messages();
     check_comparable(a, b);
     const Hash128 hash_a = picture_hash(a), hash_b = picture_hash(b);
     const bool equal = hash_a == hash_b;

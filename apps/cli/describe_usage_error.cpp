@@ -78,20 +78,20 @@ std::string describe_words(const std::vector<std::string>& words, const CLI::App
 /// only if there is no unknown flag, because they may be values of that.
 std::string describe_strangers(const std::vector<const CLI::App*>& verbs) {
     std::vector<std::string> flags, words;
-    const CLI::App* place = verbs.front(); // verb of the first word
+    const CLI::App* verb_at = verbs.front(); // verb of the first word
     for (std::size_t i = 0; i < verbs.size(); ++i) {
         for (const std::string& word : verbs[i]->remaining()) {
             if (is_flag(word)) {
                 flags.push_back(describe_flag(word, verbs, i));
             } else {
-                if (words.empty()) place = verbs[i];
+                if (words.empty()) verb_at = verbs[i];
                 words.push_back(word);
             }
         }
     }
     if (verbs.size() == 1 && !words.empty())
-        return describe_words({words.front()}, *place); // a verb with its own words
-    if (flags.empty() && !words.empty()) return describe_words(words, *place);
+        return describe_words({words.front()}, *verb_at); // a verb with its own words
+    if (flags.empty() && !words.empty()) return describe_words(words, *verb_at);
     return fmt::format("{}", fmt::join(flags, "; "));
 }
 

@@ -27,10 +27,10 @@ std::string flag_and_value(std::string_view setting, std::string_view value) {
     return flag_of(setting) + (value.empty() ? "" : ' ' + shell_word(value));
 }
 
-std::string place_json(const Place& place) {
-    std::string json = fmt::format(R"({{"file":{})", json_string(place.file));
-    if (place.line > 0) json += fmt::format(R"(,"line":{})", place.line);
-    if (place.pointer) json += fmt::format(R"(,"pointer":{})", json_string(*place.pointer));
+std::string location_json(const FileLocation& location) {
+    std::string json = fmt::format(R"({{"file":{})", json_string(location.file));
+    if (location.line > 0) json += fmt::format(R"(,"line":{})", location.line);
+    if (location.pointer) json += fmt::format(R"(,"pointer":{})", json_string(*location.pointer));
     return json + '}';
 }
 
@@ -53,7 +53,7 @@ std::string named_settings_json(const std::string& reason) {
 /// The command line's own remarks begin with the flag that they are about, "--lpe NAME: why": those by its setting.
 Remark by_setting(const Remark& remark) {
     const std::size_t end = remark.reason.find(": ");
-    if (remark.place || !remark.setting.empty() || !remark.reason.starts_with("--") || end == std::string::npos) {
+    if (remark.location || !remark.setting.empty() || !remark.reason.starts_with("--") || end == std::string::npos) {
         return remark;
     }
     const std::string flag = remark.reason.substr(2, end - 2), name = flag.substr(0, flag.find(' '));
@@ -76,15 +76,15 @@ std::string flag_of(std::string_view setting) {
 
 std::string phrase(const Remark& remark) {
     std::string text;
-    if (remark.place) text += text_of(*remark.place) + ": ";
+    if (remark.location) text += text_of(*remark.location) + ": ";
     if (!remark.setting.empty()) text += flag_and_value(remark.setting, remark.value) + ": ";
     return text + phrase_settings(remark.reason, flag_and_value);
 }
 
-std::string json_parts(const Remark& said) {
-    const Remark remark = by_setting(said);
+std::string json_parts(const Remark& of) {
+    const Remark remark = by_setting(of);
     std::string json;
-    if (remark.place) json += fmt::format(R"(,"place":{})", place_json(*remark.place));
+    if (remark.location) json += fmt::format(R"(,"place":{})", location_json(*remark.location));
     if (!remark.setting.empty()) json += fmt::format(R"(,"setting":{})", json_string(remark.setting));
     if (!remark.value.empty()) json += fmt::format(R"(,"value":{})", json_string(remark.value));
     json += fmt::format(R"(,"reason":{})", json_string(remark.reason));

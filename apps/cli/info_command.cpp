@@ -199,7 +199,7 @@ int info(InfoFlags& flags) {
                     fmt::format("{}: neither a picture ({}) nor {}, nor a radiosity solution", flags.scene.scene,
                                 fmt::join(kPictureExtensions, " "), scene_kinds()));
     }
-    reporter.say_messages();
+    reporter.report_messages();
     facts.report(reporter);
     return 0;
 }

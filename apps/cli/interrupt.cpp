@@ -19,18 +19,18 @@ std::string g_last_line;
 int g_last_line_goes_to = STDERR_FILENO;
 
 /// A second signal of either kind ends the process.
-void hear_no_second() {
+void ignore_second() {
     std::signal(SIGTERM, SIG_DFL);
     std::signal(SIGINT, SIG_DFL);
 }
 
 extern "C" void handle_interrupt(int) {
     g_interrupted = 1;
-    hear_no_second();
+    ignore_second();
 }
 
 extern "C" void end_process(int) {
-    hear_no_second(); // whoever should read the line may not
+    ignore_second(); // whoever should read the line may not
     [[maybe_unused]] const ssize_t written = ::write(g_last_line_goes_to, g_last_line.data(), g_last_line.size());
     ::_exit(exit_status(ErrorCode::Interrupted));
 }

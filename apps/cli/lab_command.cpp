@@ -133,10 +133,10 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
 }
 
 /// A line for each refusal that the user asked for by name; the rest are in the report.
-void say_refusals(const LabFlags& flags, const LabReport& report, Reporter& reporter) {
+void report_refusals(const LabFlags& flags, const LabReport& report, Reporter& reporter) {
     if (flags.structures.empty() || flags.traversals.empty()) return;
     for (const CombinationFigures& c : report.combinations) {
-        if (!c.refused.empty()) reporter.say(fmt::format("{}: {}", c.name, c.refused));
+        if (!c.refused.empty()) reporter.print(fmt::format("{}: {}", c.name, c.refused));
     }
 }
 
@@ -162,7 +162,7 @@ int run(LabFlags& flags) {
         choose_camera(flags.scene.camera, scene, aspect_of(settings.width, settings.height), messages);
     check_any_can_run(list_combinations(settings, queue->is_cuda())); // before a folder is made
     if (!flags.output.empty()) check_lab_folder(flags.output);
-    reporter.say_messages();
+    reporter.report_messages();
     settings.scene = lab_scene_title(flags.scene.scene);
     settings.camera = phrase(describe_camera(camera, scene.origin_in_file));
     listen_for_interrupt();
@@ -171,10 +171,10 @@ int run(LabFlags& flags) {
     reporter.end_progress();
     reporter.result(json_of(measurement_of(report, head), "lab"));
     if (!has_findings(report) && report.interrupted) {
-        reporter.say("interrupted before anything was measured; nothing is written");
+        reporter.print("interrupted before anything was measured; nothing is written");
         return exit_status(ErrorCode::Interrupted);
     }
-    say_refusals(flags, report, reporter);
+    report_refusals(flags, report, reporter);
     reporter.answer(text_of(report));
     if (!flags.output.empty()) write_lab_files(flags.output, report, head, reporter);
     fail_if_wrong(report);

@@ -101,7 +101,7 @@ void write_lab_files(const std::filesystem::path& folder, const LabReport& repor
         for (const std::string& file : heat_map_files(name)) stale.erase(file);
     }
     remove_files(folder, stale);
-    reporter.say(fmt::format("written: {}", (folder / "report.html").string()));
+    reporter.print(fmt::format("written: {}", (folder / "report.html").string()));
 }
 
 std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter, const std::filesystem::path& folder,

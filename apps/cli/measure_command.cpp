@@ -28,14 +28,14 @@ struct MeasureFlags : PictureOptions {
     ReportFlags report;
 };
 
-MeterPlace place_of(const MeasureFlags& flags) {
-    const MeterPlace place = {parse_position("--at", flags.at), parse_vec3("--normal", flags.normal)};
-    const float squared = length_squared(place.normal);
-    if (!(squared > 0) || !is_finite(normalize(place.normal))) {
+MeterPoint point_of(const MeasureFlags& flags) {
+    const MeterPoint point = {parse_position("--at", flags.at), parse_vec3("--normal", flags.normal)};
+    const float squared = length_squared(point.normal);
+    if (!(squared > 0) || !is_finite(normalize(point.normal))) {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--normal {}: is no direction; expected a length above 0", flags.normal));
     }
-    return place;
+    return point;
 }
 
 /// A vector of the command line, which is one.
@@ -66,9 +66,9 @@ void print(const MeasureFlags& flags, const Irradiance& e, const Queue& queue, d
                                 "illuminance  {} lx ({:.6g} lm/W)\n",
                                 in_words(e.luminance), in_words(e.rgb[0]), in_words(e.rgb[1]), in_words(e.rgb[2]),
                                 in_words(e.luminance, efficacy), efficacy));
-    reporter.say(fmt::format("{} paths of at most {} scatterings on {} in {:.2f} s{}", e.paths,
-                             flags.render.path.max_depth, queue.device_name(), seconds,
-                             e.invalid_paths > 0 ? fmt::format("; {} were not finite", e.invalid_paths) : ""));
+    reporter.print(fmt::format("{} paths of at most {} scatterings on {} in {:.2f} s{}", e.paths,
+                               flags.render.path.max_depth, queue.device_name(), seconds,
+                               e.invalid_paths > 0 ? fmt::format("; {} were not finite", e.invalid_paths) : ""));
 }
 
 int measure(MeasureFlags& flags) {
@@ -77,9 +77,9 @@ int measure(MeasureFlags& flags) {
     flags.settings.read(flags, messages);
     const uint32_t seed = flags.render.path.seed;
     refuse(seed > kMaxMeterSeed, fmt::format("--seed {}: at most {}", seed, kMaxMeterSeed));
-    const MeterPlace place = place_of(flags); // before anything is read
+    const MeterPoint point = point_of(flags); // before anything is read
     ComingMachine machine(flags.machine, messages);
-    reporter.say_messages();
+    reporter.report_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     const RenderSettings& settings = flags.render;
     Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
@@ -91,7 +91,7 @@ int measure(MeasureFlags& flags) {
     reporter.set_work("building trees");
     const MovingScene moving(std::move(scene), flags.time_s, prepare, messages);
     const std::unique_ptr<Queue> queue = machine.take();
-    reporter.say_messages();
+    reporter.report_messages();
     listen_for_interrupt();
     reporter.set_work("measuring");
     const Stopwatch watch;
@@ -99,7 +99,7 @@ int measure(MeasureFlags& flags) {
         reporter.progress(share, "measuring");
         return !interrupted();
     };
-    const Irradiance irradiance = measure_irradiance(*queue, moving.prepared(), place, settings, keep_going);
+    const Irradiance irradiance = measure_irradiance(*queue, moving.prepared(), point, settings, keep_going);
     reporter.end_progress();
     print(flags, irradiance, *queue, watch.seconds(), reporter);
     return 0;

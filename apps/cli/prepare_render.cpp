@@ -9,7 +9,7 @@
 
 namespace pertev {
 
-void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Messages& messages) {
+void report_motion(const RenderFlags& flags, const MovingScene& moving, Messages& messages) {
     const bool has_time = flags.time_s || !flags.frames.empty();
     if (moving.is_animated() && !has_time) {
         const double end_s = moving.end_s();
@@ -35,7 +35,7 @@ std::unique_ptr<RenderSetup> prepare_render(RenderFlags& flags, uint32_t verbs, 
             check_render_memory(film, settings,
                                 memory_to_render_in(*ready.queue, settings, max_memory_bytes(flags.radiosity)));
         }
-        return radiosity_look(flags.radiosity, ready.prepared(), settings.path.seed, reporter);
+        return radiosity_display(flags.radiosity, ready.prepared(), settings.path.seed, reporter);
     });
 }
 

@@ -11,6 +11,6 @@ namespace pertev {
 std::unique_ptr<RenderSetup> prepare_render(RenderFlags& flags, uint32_t verbs, Reporter& reporter);
 
 /// Notes what a time would show if none is given, or that a given time has no effect.
-void say_what_moves(const RenderFlags& flags, const MovingScene& moving, Messages& messages);
+void report_motion(const RenderFlags& flags, const MovingScene& moving, Messages& messages);
 
 } // namespace pertev

@@ -81,9 +81,9 @@ SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityO
     const RadiositySettings settings = radiosity_settings(options, seed);
     reporter.set_work("solving radiosity");
     const SolveMemory memory = predict_memory(prepared, settings, thread_count());
-    reporter.say(fmt::format("radiosity: at most {} of {:.4g} m, {:.0f} MiB of this machine's memory",
-                             fmt::format("{} {}", memory.patches, memory.patches == 1 ? "patch" : "patches"),
-                             patch_size_of(prepared, settings), mebibytes(memory.bytes)));
+    reporter.print(fmt::format("radiosity: at most {} of {:.4g} m, {:.0f} MiB of this machine's memory",
+                               fmt::format("{} {}", memory.patches, memory.patches == 1 ? "patch" : "patches"),
+                               patch_size_of(prepared, settings), mebibytes(memory.bytes)));
     const uint64_t before = peak_memory_bytes();
     reporter.event(fmt::format(
         R"({{"event":"radiosity","most_patches":{},"most_shown":{},"patch_size":{},"predicted_bytes":{},"peak_bytes":{}}})",
@@ -97,7 +97,7 @@ SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityO
     });
     reporter.end_progress();
     const SolveStats& stats = solved.stats;
-    reporter.say(
+    reporter.print(
         fmt::format("{} patches send, {} are shown; {} form factors ({:.0f} bytes a patch) in {:.2f} s, "
                     "{} {:.2f} s ({} steps, {:.2g} left), divided in {:.2f} s",
                     stats.patches, stats.shown, stats.factors,
@@ -105,7 +105,7 @@ SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityO
                     stats.factor_seconds, stats.was_interrupted ? "ended after solving for" : "solved in",
                     stats.solve_seconds, stats.steps, stats.left, stats.divide_seconds));
     warn_of_limits(stats, settings, reporter.messages());
-    reporter.say_messages();
+    reporter.report_messages();
     reporter.event(fmt::format(
         R"({{"event":"radiosity_solved","patches":{},"shown":{},"form_factors":{},"bytes":{},"peak_bytes":{},"steps":{},"left":{},"reached_limit":{},"link_error":{},"factor_seconds":{:.3f},"solve_seconds":{:.3f},"divide_seconds":{:.3f},"hash":{},"interrupted":{},"holds":{}}})",
         stats.patches, stats.shown, stats.factors, stats.bytes, peak_memory_bytes(), stats.steps,
@@ -116,22 +116,22 @@ SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityO
     return solved;
 }
 
-RadiosityLook radiosity_look(const RadiosityOptions& options, const PreparedScene& prepared, uint32_t seed,
-                             Reporter& reporter) {
-    const auto look = [&](RadiositySolution&& solution) {
-        return RadiosityLook{std::make_shared<const RadiositySolution>(std::move(solution)), options.flat_patches};
+RadiosityDisplay radiosity_display(const RadiosityOptions& options, const PreparedScene& prepared, uint32_t seed,
+                                   Reporter& reporter) {
+    const auto display = [&](RadiositySolution&& solution) {
+        return RadiosityDisplay{std::make_shared<const RadiositySolution>(std::move(solution)), options.flat_patches};
     };
     if (!options.solution.empty()) {
         RadiositySolution solution = read_solution(options.solution, *prepared.scene, reporter.messages());
-        reporter.say_messages();
-        return look(std::move(solution));
+        reporter.report_messages();
+        return display(std::move(solution));
     }
     SolvedRadiosity solved = solve_and_report(prepared, options, seed, reporter);
     if (solved.stats.was_interrupted) { // a picture of it could not be made again
         throw Error(ErrorCode::Interrupted, "interrupted while radiosity was solved, so that there is nothing to show "
                                             "(pertev solve radiosity keeps what has been solved by then)");
     }
-    return look(std::move(solved.solution));
+    return display(std::move(solved.solution));
 }
 
 } // namespace pertev

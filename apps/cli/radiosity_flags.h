@@ -26,7 +26,7 @@ SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityO
                                  Reporter& reporter);
 
 /// The solution of a picture: that of --solution, or a new one. Throws Error(Interrupted) if solving was interrupted.
-RadiosityLook radiosity_look(const RadiosityOptions& options, const PreparedScene& prepared, uint32_t seed,
-                             Reporter& reporter);
+RadiosityDisplay radiosity_display(const RadiosityOptions& options, const PreparedScene& prepared, uint32_t seed,
+                                   Reporter& reporter);
 
 } // namespace pertev

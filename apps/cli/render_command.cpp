@@ -62,7 +62,7 @@ bool report_progress(const RenderProgress& now, const RenderSettings& settings, 
     return !interrupted();
 }
 
-void say_hidden_backs(double share, Messages& messages) {
+void report_hidden_backs(double share, Messages& messages) {
     if (!(share > 0.01)) return;
     messages.note(fmt::format("the camera looks through the backs of surfaces at {:.0f} % of the picture, as they are "
                               "not double sided (--show-back-faces shows them)",
@@ -79,12 +79,12 @@ void report_start(const RenderFlags& flags, const Scene& scene, const PreparedSc
     const bool has_more = has_ground(scene); // the file is counted, not what is made up
     const uint64_t triangles = prepared.triangles - (has_more ? scene.meshes.back().triangle_count() : 0);
     const uint64_t instances = scene.instances.size() - (has_more ? 1 : 0);
-    reporter.say(fmt::format("{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
-                             "rendering {}x{}, {} spp{} on {}, which takes {:.0f} MiB there",
-                             flags.scene.scene, counted(triangles, "triangle"), counted(instances, "instance"),
-                             counted(prepared.lights.count(), "light"), load_s, prepared.build_seconds, settings.width,
-                             settings.height, settings.samples, flags.real_time ? " a frame, reconstructed," : "",
-                             queue.device_name(), mebibytes(bytes)));
+    reporter.print(fmt::format(
+        "{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
+        "rendering {}x{}, {} spp{} on {}, which takes {:.0f} MiB there",
+        flags.scene.scene, counted(triangles, "triangle"), counted(instances, "instance"),
+        counted(prepared.lights.count(), "light"), load_s, prepared.build_seconds, settings.width, settings.height,
+        settings.samples, flags.real_time ? " a frame, reconstructed," : "", queue.device_name(), mebibytes(bytes)));
     reporter.event(fmt::format(
         R"({{"event":"scene","scene":{},"triangles":{},"instances":{},"lights":{},"load_seconds":{:.6f},"build_seconds":{:.6f}}})",
         json_string(flags.scene.scene), triangles, instances, prepared.lights.count(), load_s, prepared.build_seconds));
@@ -114,9 +114,9 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureR
     session.reset(); // writing takes memory too
     reporter.end_progress();
     const bool cut_short = interrupted() && result.samples < settings.samples;
-    if (cut_short) reporter.say(fmt::format("interrupted after {} of {} spp", result.samples, settings.samples));
-    say_hidden_backs(result.hidden_back_share, reporter.messages());
-    reporter.say_messages();
+    if (cut_short) reporter.print(fmt::format("interrupted after {} of {} spp", result.samples, settings.samples));
+    report_hidden_backs(result.hidden_back_share, reporter.messages());
+    reporter.report_messages();
     reporter.set_work("writing");
     const WrittenPicture written = write_picture(flags.outputs, record, result);
     const std::string failures = report_files(written, reporter);
@@ -133,10 +133,10 @@ int render(RenderFlags& flags) {
     check_render_flags(flags, reporter.messages());
     const Stopwatch watch;
     const std::unique_ptr<RenderSetup> ready = prepare_render(flags, kRender, reporter);
-    say_what_moves(flags, *ready->moving, reporter.messages());
+    report_motion(flags, *ready->moving, reporter.messages());
     const RenderSettings& settings = ready->settings;
     Queue& queue = *ready->queue;
-    reporter.say_messages();
+    reporter.report_messages();
     listen_for_interrupt();
     report_start(flags, ready->scene(), ready->prepared(), settings, queue, ready->load_s, reporter);
     PictureRecord record = picture_record(flags, *ready, reporter.messages());

@@ -30,15 +30,15 @@ bool writes_any(const RenderFlags& flags, std::initializer_list<ImageFormat> for
 
 /// The file that is written, however it is named: without links, also one to a file that is not there yet, "." and
 /// "..".
-std::filesystem::path place_of(const std::string& file) {
+std::filesystem::path canonical_path(const std::string& file) {
     constexpr int kMaxLinks = 40; // limit of Linux
     std::error_code fault;        // after an error the path is resolved as far as possible
-    std::filesystem::path place = std::filesystem::absolute(file, fault);
-    for (int i = 0; i < kMaxLinks && std::filesystem::is_symlink(place, fault); ++i) {
-        place = place.parent_path() / std::filesystem::read_symlink(place, fault);
+    std::filesystem::path full_path = std::filesystem::absolute(file, fault);
+    for (int i = 0; i < kMaxLinks && std::filesystem::is_symlink(full_path, fault); ++i) {
+        full_path = full_path.parent_path() / std::filesystem::read_symlink(full_path, fault);
     }
-    const std::filesystem::path known = std::filesystem::weakly_canonical(place, fault);
-    return fault ? place : known;
+    const std::filesystem::path known = std::filesystem::weakly_canonical(full_path, fault);
+    return fault ? full_path : known;
 }
 
 /// Throws Error(BadInput) where two outputs are one file, of which the second picture would replace the first; of a
@@ -47,10 +47,10 @@ void refuse_twins(const std::vector<std::string>& outputs, const std::optional<F
     std::map<std::filesystem::path, std::string> taken;
     for (const std::string& output : outputs) {
         const std::string file = frames ? frame_file(output, frames->last) : output; // the most digits
-        const auto [place, is_new] = taken.emplace(place_of(file), output);
+        const auto [entry, is_new] = taken.emplace(canonical_path(file), output);
         if (is_new) continue;
         throw Error(ErrorCode::BadInput,
-                    fmt::format("-o {}: -o {} names the same file{}; leave out one of them", output, place->second,
+                    fmt::format("-o {}: -o {} names the same file{}; leave out one of them", output, entry->second,
                                 frames ? fmt::format(" for frame {}", frames->last) : ""));
     }
 }

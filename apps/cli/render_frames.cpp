@@ -100,14 +100,14 @@ uint32_t count_frames_to_make(const FrameRange& sequence, const SequenceRecord& 
     return count;
 }
 
-void say_history(const SequenceRun& run, const SequenceRecord& done, uint32_t frames) {
+void report_history(const SequenceRun& run, const SequenceRecord& done, uint32_t frames) {
     const uint32_t first = run.camera.sequence.first;
     uint32_t there = 0;
     while (there < frames && done.has(first + there)) ++there;
     if (there == 0) return;
-    run.reporter.say(there == 1 ? fmt::format("renders frame {} again for the history of those after it", first)
-                                : fmt::format("renders frames {} to {} again for the history of those after them",
-                                              first, first + there - 1));
+    run.reporter.print(there == 1 ? fmt::format("renders frame {} again for the history of those after it", first)
+                                  : fmt::format("renders frames {} to {} again for the history of those after them",
+                                                first, first + there - 1));
 }
 
 /// Writes the frame's files. Throws Error(FileWrite) that names those that could not be written.
@@ -125,7 +125,7 @@ void make_frames(const SequenceRun& run, SequenceRecord& done, Tally& tally) {
     const bool goes_on = run.flags.goes_on, in_real_time = run.record.frame.has_value();
     const uint32_t with_history = in_real_time ? count_frames_to_make(sequence, done, goes_on) : 0;
     if (in_real_time) run.session.cut();
-    if (goes_on) say_history(run, done, with_history);
+    if (goes_on) report_history(run, done, with_history);
     run.reporter.set_work("rendering");
     for (uint32_t number = 0; number < sequence.count() && !interrupted(); ++number) {
         const uint32_t frame = sequence.first + number;
@@ -189,13 +189,13 @@ int render_frames(const RenderFlags& flags, const FrameCamera& camera, MovingSce
     }
     if (failure && !tally.has_begun && tally.kept == 0) std::rethrow_exception(failure); // there is nothing to count
     reporter.end_progress();
-    reporter.say_messages();
+    reporter.report_messages();
     const bool is_whole = tally.written + tally.kept == sequence.count(), cut_short = !failure && !is_whole;
-    reporter.say(fmt::format("{} of {} written{} in {:.2f} s, of which {:.1f} ms a frame to move the scene; {}{}",
-                             tally.written, counted(sequence.count(), "frame"), kept_text(tally), watch.seconds(),
-                             1e3 * tally.update_s / std::max(tally.written, 1u),
-                             counted(tally.invalid_samples, "invalid sample"),
-                             cut_short ? "; interrupted: the same command with --continue resumes" : ""));
+    reporter.print(fmt::format("{} of {} written{} in {:.2f} s, of which {:.1f} ms a frame to move the scene; {}{}",
+                               tally.written, counted(sequence.count(), "frame"), kept_text(tally), watch.seconds(),
+                               1e3 * tally.update_s / std::max(tally.written, 1u),
+                               counted(tally.invalid_samples, "invalid sample"),
+                               cut_short ? "; interrupted: the same command with --continue resumes" : ""));
     reporter.result(fmt::format(
         R"({{"event":"sequence","frames":{},"written":{},"kept":{},"rendered_again":{},"seconds":{:.6f},"update_seconds":{:.6f},"invalid_samples":{},"interrupted":{}}})",
         sequence.count(), tally.written, tally.kept, tally.again, watch.seconds(), tally.update_s,

@@ -25,7 +25,7 @@ Display choose_and_report_display(const RenderFlags& flags, Session& session, Re
     }
     reporter.event(fmt::format(R"({{"event":"exposure","stops":{},"auto":{},"tone_map":"{}"}})",
                                json_number(static_cast<double>(stops)), is_auto, name));
-    reporter.say_messages();
+    reporter.report_messages();
     return display;
 }
 

@@ -54,7 +54,7 @@ void report_result(const RenderResult& result, const WrittenPicture& written, co
     const double rays_per_second = static_cast<double>(result.rays.total()) / result.render_seconds;
     const double frame_seconds = result.render_seconds / result.samples; // one sample of every pixel
     const uint64_t host_bytes = peak_memory_bytes();
-    reporter.say(fmt::format(
+    reporter.print(fmt::format(
         "{} spp in {:.2f} s ({:.2f} s in all), {:.4g} s a frame of 1 spp ({:.4g} frames/s), {:.2f} Msamples/s, {:.1f} "
         "Mrays/s, peak {:.0f} MiB{}, {}, picture {}{}",
         result.samples, result.render_seconds, total_seconds, frame_seconds, 1 / frame_seconds,

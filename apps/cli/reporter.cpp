@@ -47,27 +47,27 @@ Reporter::Reporter(const ReportFlags& flags) : flags_(flags), redraws_(is_drawn_
 Reporter::~Reporter() {
     end_progress();
     try {
-        say_messages();
+        report_messages();
     } catch (const std::bad_alloc&) { // there is worse to say then
     }
 }
 
-void Reporter::say_messages() {
-    for (; said_ < messages().all().size(); ++said_) {
-        const Message& message = messages().all()[said_];
+void Reporter::report_messages() {
+    for (; reported_ < messages().all().size(); ++reported_) {
+        const Message& message = messages().all()[reported_];
         if (flags_.json && !flags_.quiet) {
             event(fmt::format(R"({{"event":"{}","text":{},"times":{}{}}})", message.is_warning ? "warning" : "notice",
                               json_string(phrase(message.remark)), message.times, json_parts(message.remark)));
         } else {
-            say(fmt::format("{}: {}{}", message.is_warning ? "warning" : "note", phrase(message.remark),
-                            message.times > 1 ? fmt::format(" ({} times)", message.times) : ""));
+            print(fmt::format("{}: {}{}", message.is_warning ? "warning" : "note", phrase(message.remark),
+                              message.times > 1 ? fmt::format(" ({} times)", message.times) : ""));
         }
     }
 }
 
 bool Reporter::is_cancelled() { return interrupted(); }
 
-void Reporter::say(const std::string& line) {
+void Reporter::print(const std::string& line) {
     if (is_silent()) return;
     end_progress();
     write_now(stderr, line + '\n');

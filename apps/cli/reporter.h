@@ -33,11 +33,11 @@ public:
     Reporter& operator=(const Reporter&) = delete;
 
     /// Writes the messages. The destructor writes remaining ones, which may explain an error.
-    void say_messages() override;
+    void report_messages() override;
     /// Returns whether Ctrl-C was pressed.
     bool is_cancelled() override;
     /// Writes a line for people to stderr.
-    void say(const std::string& line);
+    void print(const std::string& line);
     /// Shows the share that is done, in [0, 1], and a text after the bar. It is redrawn in place on a terminal;
     /// otherwise, or on a dumb one, there is a line every 10 s.
     void progress(double share, const std::string& detail) override;
@@ -64,7 +64,7 @@ private:
     ReportFlags flags_;
     bool redraws_; // a terminal with escape sequences
     bool drawn_ = false;
-    std::size_t said_ = 0;
+    std::size_t reported_ = 0;
     std::unique_ptr<Heartbeat> heartbeat_; // used if nobody sees a bar
 };
 

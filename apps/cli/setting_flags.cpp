@@ -96,10 +96,10 @@ void SettingFlags::add_file(CLI::App& verb) {
 void SettingFlags::read(PictureOptions& options, Messages& messages) const {
     const PictureOptions start = options;
     std::vector<std::string> overruled; // settings of the file that do not go with flags
-    Messages said_already;
+    Messages already_reported;
     while (true) {
         if (!file_.empty())
-            read_settings(file_, verbs_, overruled, options, overruled.empty() ? messages : said_already);
+            read_settings(file_, verbs_, overruled, options, overruled.empty() ? messages : already_reported);
         read_flags(options);
         const auto conflict = find_conflict(options, verbs_);
         if (!conflict) return;

@@ -59,7 +59,7 @@ int solve(SolveFlags& flags) {
     if (!flags.no_cache) prepare.bvh_cache = bvh_cache_folder();
     reporter.set_work("building trees");
     const MovingScene moving(std::move(scene), flags.time_s, prepare, messages);
-    reporter.say_messages();
+    reporter.report_messages();
     const SolvedRadiosity solved =
         solve_and_report(moving.prepared(), flags.radiosity, flags.render.path.seed, reporter);
     reporter.set_work("writing");
@@ -68,7 +68,7 @@ int solve(SolveFlags& flags) {
     const std::string holds =
         cut_short ? fmt::format(", stopped early: it holds {}", describe(solved.solution.extent)) : "";
     const std::string hash = solved.solution.hash().hex();
-    reporter.say(fmt::format("wrote {}{}: hash {}", flags.output, holds, hash));
+    reporter.print(fmt::format("wrote {}{}: hash {}", flags.output, holds, hash));
     const SolveStats& stats = solved.stats;
     reporter.result(fmt::format(
         R"({{"event":"done","seconds":{:.6f},"total_seconds":{:.6f},"peak_bytes":{},"hash":"{}","interrupted":{}}})",

@@ -214,14 +214,14 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
         reporter.messages().warn(fmt::format("left out: {}", kLacksSibenik));
     }
     if (has_pictures) check_lab_folder(output);
-    reporter.say_messages();
+    reporter.report_messages();
     listen_for_interrupt();
     for (const MeasuredScene& scene : scenes) {
         if (!attempts.may_go_on()) break;
         settings.scene = scene.name;
         settings.camera = phrase(describe_camera(scene.camera, scene.scene.origin_in_file));
-        reporter.say(fmt::format("{}: {}x{}, depths {} to {}", scene.name, settings.width, settings.height,
-                                 settings.first_depth, settings.depth));
+        reporter.print(fmt::format("{}: {}x{}, depths {} to {}", scene.name, settings.width, settings.height,
+                                   settings.first_depth, settings.depth));
         attempts.attempt(scene.name, [&] {
             LabReport report = run_lab(queue, scene.scene, scene.camera, settings, show_lab_progress(reporter));
             reporter.end_progress();
@@ -248,12 +248,12 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
     made.interrupted = cut_short;
     reporter.event(json_of(made, "thesis"));
     if (thesis.scenes.empty()) { // only an interrupt comes so early
-        reporter.say("interrupted before anything was measured; nothing is written");
+        reporter.print("interrupted before anything was measured; nothing is written");
         return exit_status(ErrorCode::Interrupted);
     }
     reporter.answer(text_of(thesis));
     if (is_written) {
-        reporter.say(fmt::format("written: {}", (std::filesystem::path(output) / "thesis.html").string()));
+        reporter.print(fmt::format("written: {}", (std::filesystem::path(output) / "thesis.html").string()));
     }
     for (const LabReport& report : thesis.scenes) fail_if_wrong(report);
     attempts.throw_first();

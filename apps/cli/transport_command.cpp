@@ -139,7 +139,7 @@ int run_transport_command(Queue& queue, const SceneOptions& scene, const Transpo
                                         reporter.messages()));
     }
     if (!output.empty()) check_lab_folder(output);
-    reporter.say_messages();
+    reporter.report_messages();
     listen_for_interrupt();
 
     TransportReport report = {.device = queue.device_name(),
@@ -181,12 +181,12 @@ int run_transport_command(Queue& queue, const SceneOptions& scene, const Transpo
     reporter.end_progress();
     reporter.event(json_of(measurement_of(report, head), "transport"));
     if (!has_findings(report) && report.interrupted) {
-        reporter.say("interrupted before anything was measured; nothing is written");
+        reporter.print("interrupted before anything was measured; nothing is written");
         return exit_status(ErrorCode::Interrupted);
     }
     reporter.answer(text_of(report));
     if (!output.empty() && has_findings(report)) {
-        reporter.say(fmt::format("written: {}", (std::filesystem::path(output) / "transport.html").string()));
+        reporter.print(fmt::format("written: {}", (std::filesystem::path(output) / "transport.html").string()));
     }
     if (!has_findings(report)) {
         throw Error(ErrorCode::BadInput, "none of the integrators can render this; their reasons are above");

@@ -85,7 +85,7 @@ void report_address(const ViewFlags& flags, const std::string& address, Reporter
             "--host {}: anyone who reaches this machine by that name can try to connect, the connection is not "
             "encrypted, and anyone with the address below can watch and steer; without --host, ssh -L is a safe way",
             flags.host));
-        reporter.say_messages();
+        reporter.report_messages();
     }
     if (!reporter.json()) reporter.answer(fmt::format("Open {}\nCtrl-C ends the viewer.", address));
     if (!flags.no_browser) open_browser(address);
@@ -112,14 +112,14 @@ CameraSource turned_camera(const RenderSetup& ready, double time_s) {
 
 /// Says in the panel which animation plays and which scene is shown, where the file has several, and by which words the
 /// others are chosen.
-void tell_choices(const Scene& scene, ViewerStart& start) {
-    const auto tell = [&](const char* label, const std::string& chosen, const std::vector<std::string>& all,
-                          const char* flag) {
+void report_choices(const Scene& scene, ViewerStart& start) {
+    const auto report = [&](const char* label, const std::string& chosen, const std::vector<std::string>& all,
+                            const char* flag) {
         if (chosen.empty()) return;
         start.about.emplace_back(label, fmt::format("{} of {} ({})", chosen, fmt::join(all, ", "), flag));
     };
-    tell("animation", clip_choice(scene.clips), list_clips(scene.clips), "--animation");
-    tell("scene of the file", file_scene_choice(scene), list_file_scenes(scene), "--file-scene");
+    report("animation", clip_choice(scene.clips), list_clips(scene.clips), "--animation");
+    report("scene of the file", file_scene_choice(scene), list_file_scenes(scene), "--file-scene");
 }
 
 /// Sets how time moves the camera, and when all motion ends.
@@ -150,8 +150,8 @@ void let_time_move(const ViewFlags& flags, const RenderSetup& ready, ViewerStart
     const bool is_made_up = ready.scene().cameras.empty() && !scene.camera.eye && flags.render.camera_path.empty();
     if (is_made_up && turntable == 0 && !moving.is_animated()) {
         start.camera.framed = [&ready, choice = scene.camera](float aspect) {
-            Messages said_already;
-            const MovingCamera framed(choice, std::nullopt, ready.scene(), aspect, said_already);
+            Messages already_reported;
+            const MovingCamera framed(choice, std::nullopt, ready.scene(), aspect, already_reported);
             return camera_at(framed, ready.scene(), std::nullopt, 0);
         };
     }
@@ -171,8 +171,8 @@ Pose start_pose(const PictureRecord& record, const Scene& scene, FrameSource& so
 std::unique_ptr<Queue> queue_for_jpeg(const ViewFlags& flags) {
     if (flags.jpeg == "cpu") return nullptr;
     try {
-        Messages said_already;
-        std::unique_ptr<Queue> queue = choose_device(flags.render.machine.device, said_already);
+        Messages already_reported;
+        std::unique_ptr<Queue> queue = choose_device(flags.render.machine.device, already_reported);
         return queue->is_cuda() ? std::move(queue) : nullptr;
     } catch (const Error&) { // it has no room for two
         return nullptr;
@@ -214,9 +214,9 @@ int view(ViewFlags& flags) {
                                              "--resolution-scale apply once the panel's integrator is path or hybrid",
                                              integrator_name(ready->settings)));
     }
-    if (flags.render.time_s) say_what_moves(flags.render, *ready->moving, reporter.messages());
+    if (flags.render.time_s) report_motion(flags.render, *ready->moving, reporter.messages());
     check_jpeg_size("--size", ready->settings.width, ready->settings.height); // that is how pictures are sent
-    reporter.say_messages();
+    reporter.report_messages();
     listen_for_interrupt();
     reporter.set_work("handing the scene to the device");
     PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
@@ -253,12 +253,12 @@ int view(ViewFlags& flags) {
     const float size = length(bounds_of(ready->scene()).size());
     start.speed = 0.12f * size;
     start.camera.pose = start_pose(start.record, ready->scene(), source, size);
-    tell_choices(ready->scene(), start);
+    report_choices(ready->scene(), start);
     let_time_move(flags, *ready, start);
     if (!start.why_still.empty()) {
         reporter.messages().note(fmt::format("{}: the scene {}; --time S shows it at another, --integrator path moving",
                                              flags.render.scene.scene, start.why_still));
-        reporter.say_messages();
+        reporter.report_messages();
     }
     const std::unique_ptr<Queue> jpeg_queue = on_cuda ? queue_for_jpeg(flags) : nullptr;
     reporter.set_work(""); // from now on nothing is said that was said before

@@ -93,8 +93,8 @@ std::string bash_completion(const CLI::App& app) {
             values += fmt::format("    {}) words=\"{}\" ;;\n", flag_of(setting.name), fmt::join(choices, " "));
     }
     std::string script = kBash;
-    for (const auto& [place, text] : {std::pair("@PATHS@", &paths), {"@VALUES@", &values}, {"@VERBS@", &verbs}}) {
-        script.replace(script.find(place), std::string_view(place).size(), *text);
+    for (const auto& [mark, text] : {std::pair("@PATHS@", &paths), {"@VALUES@", &values}, {"@VERBS@", &verbs}}) {
+        script.replace(script.find(mark), std::string_view(mark).size(), *text);
     }
     return script;
 }

@@ -6,16 +6,16 @@
 #include <fmt/format.h>
 
 #include "apps/viewer/panel_text.h"
-#include "apps/viewer/wish_text.h"
+#include "apps/viewer/request_text.h"
 #include "base/json_text.h"
 
 namespace pertev {
 namespace {
 
-constexpr std::size_t kMostTold = 8; // texts queued for one client; the oldest is dropped
-constexpr double kGreeting = 10;     // seconds within which a client must say hello
-constexpr double kTellWhyEvery = 4;  // seconds between two answers to a client that does not steer
-constexpr double kPiece = 0.2;       // seconds of the link that a piece of a PNG takes
+constexpr std::size_t kMaxNotices = 8; // texts queued for one client; the oldest is dropped
+constexpr double kGreeting = 10;       // seconds within which a client must say hello
+constexpr double kRefusalEvery = 4;    // seconds between two answers to a client that does not steer
+constexpr double kPiece = 0.2;         // seconds of the link that a piece of a PNG takes
 
 } // namespace
 
@@ -35,7 +35,7 @@ bool Audience::may_speak(Client& client, double now_s) {
     return client.allowance >= 0;
 }
 
-std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
+std::string Audience::received(uint32_t id, std::string_view text, double now_s) {
     const std::lock_guard lock(mutex_);
     const auto found = clients_.find(id);
     if (found == clients_.end()) return "unknown";
@@ -47,7 +47,7 @@ std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
         if (message->kind != MessageKind::Hello) return "no hello";
         client.has_joined = true;
         wheel_.join(id, message->key, now_s);
-        people_changed();
+        clients_changed();
         inbox_.put(Joined{});
         return {};
     }
@@ -57,43 +57,43 @@ std::string Audience::said(uint32_t id, std::string_view text, double now_s) {
         changed_.notify_one();
         return {};
     }
-    if (message->kind == MessageKind::Ask) {
-        wheel_.ask(id);
-        people_changed();
+    if (message->kind == MessageKind::RequestWheel) {
+        wheel_.request_wheel(id);
+        clients_changed();
         return {};
     }
     if (message->kind == MessageKind::Hand) {
-        if (wheel_.hand(id, message->client, now_s)) people_changed();
+        if (wheel_.hand(id, message->client, now_s)) clients_changed();
         return {};
     }
     // A client that has just lost the wheel may not know it yet, which is no reason to drop it. Anyone may pick.
-    if (!wheel_.steers(id)) note_wish(id, client, *message, now_s);
+    if (!wheel_.steers(id)) note_request(id, client, *message, now_s);
     const bool may = wheel_.steers(id) || (message->kind == MessageKind::Pick && message->use == PickUse::Show);
     if (may && !inbox_.put(Steer{id, *std::move(message)}) && !inbox_.is_closed()) return "too many messages wait";
     return {};
 }
 
 /// Tells a client that does not steer why nothing happens, and the one that steers what was requested.
-void Audience::note_wish(uint32_t id, Client& client, const ClientMessage& message, double now_s) {
+void Audience::note_request(uint32_t id, Client& client, const ClientMessage& message, double now_s) {
     if (message.kind == MessageKind::Pick && message.use == PickUse::Show) return; // anyone may do that
-    const std::string wish = wish_text(message);
-    const Wheel::Wish is = wish.empty() ? Wheel::Wish::None : wheel_.wish(id, wish, now_s);
-    if (is == Wheel::Wish::None) return;
-    if (is == Wheel::Wish::New) people_changed();
-    if (now_s - client.told_why_s < kTellWhyEvery) return; // a drag consists of many messages
-    client.told_why_s = now_s;
+    const std::string request = request_text(message);
+    const Wheel::Request is = request.empty() ? Wheel::Request::None : wheel_.request(id, request, now_s);
+    if (is == Wheel::Request::None) return;
+    if (is == Wheel::Request::New) clients_changed();
+    if (now_s - client.refused_at_s < kRefusalEvery) return; // a drag consists of many messages
+    client.refused_at_s = now_s;
     const std::string why =
         wheel_.holder() != 0
             ? fmt::format("viewer {} steers, so this page cannot {}. Viewer {} sees your request and may hand over",
-                          wheel_.holder(), wish, wheel_.holder())
+                          wheel_.holder(), request, wheel_.holder())
             : "the viewer that steered has left and has a moment to return. \"ask to steer\" takes over";
     put_text(client, notice_text("why", why));
     changed_.notify_one();
 }
 
 void Audience::put_text(Client& client, std::string text) {
-    if (client.told.size() >= kMostTold) client.told.pop_front();
-    client.told.push_back(std::move(text));
+    if (client.notices.size() >= kMaxNotices) client.notices.pop_front();
+    client.notices.push_back(std::move(text));
 }
 
 void Audience::text_was_sent(uint32_t client) {
@@ -107,12 +107,12 @@ void Audience::close(uint32_t client, double now_s) {
     const std::lock_guard lock(mutex_);
     clients_.erase(client);
     wheel_.leave(client, now_s);
-    people_changed();
+    clients_changed();
 }
 
-std::vector<uint32_t> Audience::look(double now_s) {
+std::vector<uint32_t> Audience::tick(double now_s) {
     const std::lock_guard lock(mutex_);
-    if (wheel_.look(now_s)) people_changed();
+    if (wheel_.tick(now_s)) clients_changed();
     std::vector<uint32_t> mute;
     for (const auto& [id, client] : clients_) {
         if (!client.has_joined && now_s - client.opened_s > kGreeting) mute.push_back(id);
@@ -120,8 +120,8 @@ std::vector<uint32_t> Audience::look(double now_s) {
     return mute;
 }
 
-void Audience::people_changed() {
-    for (auto& [id, client] : clients_) client.wants_people = true;
+void Audience::clients_changed() {
+    for (auto& [id, client] : clients_) client.wants_clients = true;
     changed_.notify_one();
 }
 
@@ -131,14 +131,14 @@ void Audience::publish(ShownFrame frame, uint32_t input) {
     changed_.notify_one();
 }
 
-void Audience::tell_state(std::string text) {
+void Audience::report_state(std::string text) {
     const std::lock_guard lock(mutex_);
     state_ = std::move(text);
     ++state_number_;
     changed_.notify_one();
 }
 
-void Audience::tell(uint32_t to, const std::string& text) {
+void Audience::notify(uint32_t to, const std::string& text) {
     const std::lock_guard lock(mutex_);
     for (auto& [id, client] : clients_) {
         if (to != 0 && id != to) continue;
@@ -160,11 +160,11 @@ bool Audience::is_behind(double now_s) const {
            });
 }
 
-std::string Audience::people_text(uint32_t you) const {
+std::string Audience::clients_text(uint32_t you) const {
     std::string people;
     for (const Wheel::Seat& seat : wheel_.seats()) {
-        people += fmt::format(R"({}{{"id":{},"asks":{},"wish":{}}})", people.empty() ? "" : ",", seat.client, seat.asks,
-                              json_string(seat.wish));
+        people += fmt::format(R"({}{{"id":{},"asks":{},"wish":{}}})", people.empty() ? "" : ",", seat.client,
+                              seat.wants_wheel, json_string(seat.request));
     }
     return fmt::format(R"({{"type":"people","you":{},"steers":{},"people":[{}]}})", you, wheel_.holder(), people);
 }
@@ -176,12 +176,12 @@ std::optional<SendJob> Audience::text_job(uint32_t id, Client& client) {
     if (client.wants_welcome) {
         client.wants_welcome = false;
         job.text = welcome_;
-    } else if (client.wants_people) {
-        client.wants_people = false;
-        job.text = people_text(id);
-    } else if (!client.told.empty()) {
-        job.text = std::move(client.told.front());
-        client.told.pop_front();
+    } else if (client.wants_clients) {
+        client.wants_clients = false;
+        job.text = clients_text(id);
+    } else if (!client.notices.empty()) {
+        job.text = std::move(client.notices.front());
+        client.notices.pop_front();
     } else if (client.state_seen != state_number_) {
         client.state_seen = state_number_;
         job.text = state_;

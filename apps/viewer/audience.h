@@ -54,19 +54,19 @@ public:
     /// Returns false if there are too many clients.
     bool open(uint32_t client, double now_s);
     /// Handles a message. Returns empty on success, else why the client must be dropped.
-    std::string said(uint32_t client, std::string_view text, double now_s);
+    std::string received(uint32_t client, std::string_view text, double now_s);
     void text_was_sent(uint32_t client);
     void close(uint32_t client, double now_s);
     /// Must be called regularly. Returns the clients that have not said hello in time.
-    std::vector<uint32_t> look(double now_s);
+    std::vector<uint32_t> tick(double now_s);
 
     // For the render's thread.
 
     void publish(ShownFrame frame, uint32_t input);
     /// Sends the panel's state to all clients; a queued one is replaced.
-    void tell_state(std::string text);
+    void report_state(std::string text);
     /// Sends an answer to one client; 0: to all.
-    void tell(uint32_t client, const std::string& text);
+    void notify(uint32_t client, const std::string& text);
     bool is_anyone_there() const;
     /// Whether some client is ready but has not got the last picture.
     bool is_behind(double now_s) const;
@@ -97,20 +97,20 @@ private:
         uint32_t seen = 0; // number of the last picture sent
         std::size_t offset = 0;
         bool has_png = false; // whether the client has the whole PNG of the last picture
-        bool text_under_way = false, wants_welcome = true, wants_people = true;
+        bool text_under_way = false, wants_welcome = true, wants_clients = true;
         uint64_t state_seen = 0;
-        std::deque<std::string> told;
-        double told_why_s = -1e9; // when it was last told why it cannot steer
+        std::deque<std::string> notices;
+        double refused_at_s = -1e9; // when it was last told why it cannot steer
     };
-    std::string people_text(uint32_t you) const;
+    std::string clients_text(uint32_t you) const;
     std::optional<SendJob> text_job(uint32_t id, Client& client);
     std::optional<SendJob> picture_job(uint32_t id, Client& client, double now_s);
     std::optional<SendJob> job_for_anyone(double now_s);
     double next_send_at_s(double now_s) const;
-    void people_changed();
+    void clients_changed();
     void put_text(Client& client, std::string text);
     bool may_speak(Client& client, double now_s);
-    void note_wish(uint32_t id, Client& client, const ClientMessage& message, double now_s);
+    void note_request(uint32_t id, Client& client, const ClientMessage& message, double now_s);
 
     Inbox& inbox_;
     const std::string welcome_;

@@ -136,7 +136,7 @@ struct Form {
     const char* type;
     MessageKind kind;
     std::span<const Key> keys; // each must be present exactly once
-    const char* wish = "";     // wish of a client that does not steer
+    const char* request = "";  // wish of a client that does not steer
     bool moves_the_picture = false;
 };
 
@@ -161,7 +161,7 @@ constexpr Form kForms[] = {
     {"rate", MessageKind::Rate, kRateKeys},
     {"shape", MessageKind::Shape, kShapeKeys},
     {"ack", MessageKind::Ack, kAckKeys},
-    {"ask", MessageKind::Ask, {}},
+    {"ask", MessageKind::RequestWheel, {}},
     {"hand", MessageKind::Hand, kHandKeys},
 };
 
@@ -210,6 +210,6 @@ std::optional<ClientMessage> parse_client_message(std::string_view text) {
 }
 
 bool moves_the_picture(MessageKind kind) { return form_of(kind).moves_the_picture; }
-const char* wish_of(MessageKind kind) { return form_of(kind).wish; }
+const char* request_of(MessageKind kind) { return form_of(kind).request; }
 
 } // namespace pertev

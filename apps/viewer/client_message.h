@@ -75,6 +75,6 @@ bool moves_the_picture(MessageKind kind);
 
 /// Returns its meaning as the end of a sentence that begins with "viewer 2 would like to"; empty if it steers
 /// nothing.
-const char* wish_of(MessageKind kind);
+const char* request_of(MessageKind kind);
 
 } // namespace pertev

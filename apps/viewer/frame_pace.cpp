@@ -8,30 +8,30 @@ namespace {
 
 constexpr float kScales[] = {1.0f, 0.75f, 0.5f, 0.375f, 0.25f, 0.1875f, 0.125f, 0.09375f, 0.0625f, 0.046875f, 0.03125f};
 constexpr int kLast = static_cast<int>(std::size(kScales)) - 1;
-constexpr double kRoom = 0.8;  // fraction of the time in which a larger picture must fit
-constexpr double kLeast = 0.3; // minimum fraction of the frame's time that is attributed to the picture
+constexpr double kHeadroom = 0.8; // fraction of the time in which a larger picture must fit
+constexpr double kLeast = 0.3;    // minimum fraction of the frame's time that is attributed to the picture
 
 } // namespace
 
-bool FramePace::fits(int step, double room) const {
+bool FramePace::fits(int step, double headroom) const {
     const double size = static_cast<double>(kScales[step]);
-    return full_s_ * size * size <= room * std::max(frame_s_ - beside_s_, kLeast * frame_s_);
+    return full_s_ * size * size <= headroom * std::max(frame_s_ - other_s_, kLeast * frame_s_);
 }
 
-void FramePace::took(float scale, double seconds, double beside_s) {
+void FramePace::took(float scale, double seconds, double other_s) {
     const double pixels = static_cast<double>(scale) * static_cast<double>(scale);
     const double full = seconds / pixels;
     const bool is_first = full_s_ == 0;
     full_s_ = is_first ? full : full_s_ + 0.35 * (full - full_s_);
-    beside_s_ = beside_s;
+    other_s_ = other_s;
     while (step_ < kLast && !fits(step_, 1)) ++step_;
     const int least = is_first ? 0 : std::max(step_ - 1, 0);
-    while (step_ > least && fits(step_ - 1, kRoom)) --step_;
+    while (step_ > least && fits(step_ - 1, kHeadroom)) --step_;
 }
 
 bool FramePace::keeps_rate() const {
     const double size = static_cast<double>(scale());
-    return full_s_ * size * size + beside_s_ <= frame_s_;
+    return full_s_ * size * size + other_s_ <= frame_s_;
 }
 
 float FramePace::scale() const { return kScales[step_]; }

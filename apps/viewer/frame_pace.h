@@ -15,7 +15,7 @@ public:
 
     /// Records a frame at `scale` that took `seconds` for all its stages, and before it `beside_s`, independently of
     /// its size (for moving the scene).
-    void took(float scale, double seconds, double beside_s = 0);
+    void took(float scale, double seconds, double other_s = 0);
     /// Scale of each side of the picture: 1, 3/4, 1/2, 3/8, 1/4, 3/16, 1/8, 3/32, 1/16, 3/64 or 1/32.
     float scale() const;
     double frame_s() const { return frame_s_; }
@@ -27,12 +27,12 @@ public:
     bool keeps_rate() const;
 
 private:
-    bool fits(int step, double room) const;
+    bool fits(int step, double headroom) const;
 
     double frame_s_;
-    double full_s_ = 0;   // estimated time of a full-size frame; 0 if unknown
-    double beside_s_ = 0; // time beside the last frame
-    int step_ = 8;        // small until a frame has shown the speed of the machine
+    double full_s_ = 0;  // estimated time of a full-size frame; 0 if unknown
+    double other_s_ = 0; // time beside the last frame
+    int step_ = 8;       // small until a frame has shown the speed of the machine
 };
 
 /// Side of the picture at this scale in pixels; at least 1.

@@ -24,7 +24,7 @@ struct FrameRequest {
     bool is_moving = false; // camera or time is changing: the frame should come soon, at a lower resolution if needed
     double budget_s = 0.1;  // approximate time limit of next(); it renders at least one sample of all pixels
     /// Called occasionally by next() during precomputation, with the share that is done, [0, 1).
-    std::function<void(double share)> tell_made;
+    std::function<void(double share)> on_progress;
 };
 
 /// Milliseconds by name, in the order of the stages.

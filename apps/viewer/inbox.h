@@ -91,11 +91,11 @@ public:
     }
 
 private:
-    enum class Effect : uint8_t { None, ShownOtherwise, BeginsAnew };
+    enum class Effect : uint8_t { None, ShownOtherwise, Restarts };
 
     /// Applies the message to the expected view. Returns its effect on the picture.
     Effect foresee(const ClientMessage& message) {
-        if (moves_the_picture(message.kind)) return Effect::BeginsAnew;
+        if (moves_the_picture(message.kind)) return Effect::Restarts;
         if (message.kind == MessageKind::Meter) return Effect::ShownOtherwise;
         ViewState after = expected_;
         bool is_taken = false;
@@ -106,14 +106,14 @@ private:
         }
         if (!is_taken) return Effect::None;
         const ViewState before = std::exchange(expected_, std::move(after));
-        if (begins_anew(before, expected_)) return Effect::BeginsAnew;
+        if (restarts(before, expected_)) return Effect::Restarts;
         return is_shown_otherwise(before, expected_) ? Effect::ShownOtherwise : Effect::None;
     }
 
     void raise_for(Effect effect) {
         if (abandon_ == nullptr || effect == Effect::None) return;
         *hurry_ = true;
-        if (effect == Effect::BeginsAnew) *abandon_ = true;
+        if (effect == Effect::Restarts) *abandon_ = true;
     }
 
     mutable std::mutex mutex_;

@@ -66,7 +66,7 @@ void Packer::run() {
             try {
                 send_picture(*job, encoder);
             } catch (const std::exception& error) { // usually out of memory; the next picture may fit again
-                audience_.tell(0, notice_text("error", panel_phrase(error.what())));
+                audience_.notify(0, notice_text("error", panel_phrase(error.what())));
                 std::this_thread::sleep_for(std::chrono::seconds(1));
             }
         }

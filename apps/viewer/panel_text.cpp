@@ -8,7 +8,7 @@
 #include "apps/viewer/panel_phrases.h"
 #include "base/json_text.h"
 #include "scene/scene_origin.h"
-#include "session/place_text.h"
+#include "session/position_text.h"
 
 namespace pertev {
 namespace {
@@ -45,7 +45,7 @@ std::string settings_json() {
 struct NumberRow {
     const char* group;
     const char* label;
-    std::string (*tell)(const ViewState&, const ViewNumbers&);
+    std::string (*describe)(const ViewState&, const ViewNumbers&);
 };
 
 /// `kind_s` is the time of this kind of rays; 0 if it was not measured, when the frame's total time is used.
@@ -109,7 +109,7 @@ std::string rows_json(const ViewState& view, const ViewNumbers& numbers) {
     }
     if (numbers.frame == nullptr) return rows;
     for (const NumberRow& row : kRows) {
-        const std::string value = row.tell(view, numbers);
+        const std::string value = row.describe(view, numbers);
         if (!value.empty()) append(rows, row_json(row.group, row.label, value));
     }
     for (const auto& [stage, milliseconds] : numbers.frame->stages) {
@@ -185,10 +185,10 @@ std::string notice_text(const char* kind, const std::string& text) {
 }
 
 std::string picked_text(const Scene& scene, const PickedPoint* point, float x, float y) {
-    const std::string place =
+    const std::string position =
         fmt::format(R"("x":{},"y":{})", json_number(static_cast<double>(x)), json_number(static_cast<double>(y)));
     if (point == nullptr || point->instance >= scene.instances.size()) {
-        return fmt::format(R"({{"type":"picked",{},"rows":[]}})", place);
+        return fmt::format(R"({{"type":"picked",{},"rows":[]}})", position);
     }
     const Instance& instance = scene.instances[point->instance];
     const auto named = [](const std::string& name, uint32_t number) {
@@ -207,13 +207,13 @@ std::string picked_text(const Scene& scene, const PickedPoint* point, float x, f
     row("triangle", fmt::format("{}", point->primitive));
     row("distance", fmt::format("{:.4g} m", point->distance));
     row("position",
-        scene.origin_in_file == DoubleVec3{0, 0, 0} ? text(point->position) : place_text(scene, point->position, 4));
+        scene.origin_in_file == DoubleVec3{0, 0, 0} ? text(point->position) : position_text(scene, point->position, 4));
     row("normal", text(point->normal));
     if (point->light) {
         row("light", fmt::format("{:.3g}, {:.3g}, {:.3g}", point->light->r, point->light->g, point->light->b));
     }
     row("albedo", fmt::format("{:.3g}, {:.3g}, {:.3g}", point->albedo.r, point->albedo.g, point->albedo.b));
-    return fmt::format(R"({{"type":"picked",{},"position":{},"rows":[{}]}})", place,
+    return fmt::format(R"({{"type":"picked",{},"position":{},"rows":[{}]}})", position,
                        json_of(in_file(scene, point->position)), rows);
 }
 

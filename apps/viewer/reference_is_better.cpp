@@ -12,9 +12,9 @@ struct Between {
     double share;
 };
 Between between(uint32_t at, uint32_t of, uint32_t among) {
-    const double place = std::clamp((at + 0.5) * among / of - 0.5, 0.0, among - 1.0);
-    const auto first = static_cast<uint32_t>(place);
-    return {first, std::min(first + 1, among - 1), place - first};
+    const double rank = std::clamp((at + 0.5) * among / of - 0.5, 0.0, among - 1.0);
+    const auto first = static_cast<uint32_t>(rank);
+    return {first, std::min(first + 1, among - 1), rank - first};
 }
 
 } // namespace

@@ -16,7 +16,7 @@ namespace pertev {
 namespace {
 
 constexpr double kStillAfter = 0.15; // seconds without a step after which the camera is at rest
-constexpr double kTellEvery = 0.2;   // seconds between two states, while nothing else is new
+constexpr double kReportEvery = 0.2; // seconds between two states, while nothing else is new
 constexpr double kFirstBudget = 0.1, kLongestBudget = 1;
 constexpr float kSpeedStep = 1.25f;
 constexpr double kSlowestTime = 1.0 / 64; // seconds of the scene per second
@@ -55,7 +55,7 @@ void RenderLoop::run(const std::function<bool()>& goes_on) {
         for (const Command& command : inbox_.take(std::chrono::milliseconds(works ? 0 : 50))) handle(command);
         if (!goes_on()) return;
         if (is_done_ && saves_.empty()) {
-            if (now_s_() - told_at_s_ > 1) tell_state(); // the encoding time is known by now
+            if (now_s_() - reported_at_s_ > 1) report_state(); // the encoding time is known by now
             continue;
         }
         if (!audience_.is_anyone_there() && saves_.empty()) continue;
@@ -76,7 +76,7 @@ void RenderLoop::handle(const Command& command) {
             steer(*requested);
         } catch (const Error& error) { // from a pick, or from the light meter
             if (error.code() == ErrorCode::DeviceFault) throw;
-            tell_error(requested->client, error);
+            report_error(requested->client, error);
         }
         return inbox_.expect(view_);
     }
@@ -117,7 +117,7 @@ void RenderLoop::steer(const Steer& requested) {
     case MessageKind::Speed:
         speed_ *= pow(kSpeedStep, message.steps);
         speed_ = clamp(speed_, 1e-6f * start_.speed, 1e6f * start_.speed);
-        audience_.tell(requested.client, notice_text("note", fmt::format("speed {:.3g} m/s", speed_)));
+        audience_.notify(requested.client, notice_text("note", fmt::format("speed {:.3g} m/s", speed_)));
         break;
     case MessageKind::Pick:
         return pick(requested);
@@ -145,7 +145,7 @@ void RenderLoop::steer(const Steer& requested) {
     case MessageKind::Shape:
     case MessageKind::Hello:
     case MessageKind::Ack:
-    case MessageKind::Ask:
+    case MessageKind::RequestWheel:
     case MessageKind::Hand:
         break; // handled by the audience
     }
@@ -162,15 +162,15 @@ void RenderLoop::steer_time(const ClientMessage& message) {
         clock_.play(message.on);
     }
     clocked_at_s_ = now_s_();
-    tell_state();
+    report_state();
 }
 
 void RenderLoop::steer_path(const Steer& requested) {
     const ClientMessage& message = requested.message;
     if (message.kind == MessageKind::Key) {
         if (!camera_.add_key(message.at, view_.lens)) {
-            audience_.tell(requested.client,
-                           notice_text("error", fmt::format("a path has {} keys at most", ViewCamera::kMaxKeys)));
+            audience_.notify(requested.client,
+                             notice_text("error", fmt::format("a path has {} keys at most", ViewCamera::kMaxKeys)));
         }
     } else if (message.kind == MessageKind::Unkey) {
         camera_.remove_key(message.index);
@@ -184,7 +184,7 @@ void RenderLoop::steer_path(const Steer& requested) {
         clocked_at_s_ = moved_at_s_ = now_s_();
         camera_.follow_path(clock_.time_s, view_.lens);
     }
-    tell_state();
+    report_state();
 }
 
 /// Advances time since the last call, if it runs.
@@ -194,9 +194,9 @@ void RenderLoop::let_time_pass() {
 }
 
 /// `client` is the one that made the request; 0: all are informed.
-void RenderLoop::tell_error(uint32_t client, const Error& error) {
-    audience_.tell(client,
-                   notice_text("error", without_folders(panel_phrase(error.remark()), start_.record.scene.scene)));
+void RenderLoop::report_error(uint32_t client, const Error& error) {
+    audience_.notify(client,
+                     notice_text("error", without_folders(panel_phrase(error.remark()), start_.record.scene.scene)));
 }
 
 /// Moves scene and camera to the clock's time, if it affects them. Throws as FrameSource::set_time.
@@ -213,29 +213,29 @@ void RenderLoop::pick(const Steer& requested) {
     const Camera now = camera_.camera(view_.lens);
     const std::optional<PickedPoint> point = source_.pick(now, message.x, message.y);
     if (message.use == PickUse::Show) {
-        return audience_.tell(requested.client,
-                              picked_text(*start_.scene, point ? &*point : nullptr, message.x, message.y));
+        return audience_.notify(requested.client,
+                                picked_text(*start_.scene, point ? &*point : nullptr, message.x, message.y));
     }
-    if (!point) return audience_.tell(requested.client, notice_text("note", "there is only background"));
+    if (!point) return audience_.notify(requested.client, notice_text("note", "there is only background"));
     if (message.use == PickUse::Orbit) {
         camera_.turn_about(point->position);
-        return audience_.tell(requested.client, notice_text("note", "the view now turns about this point"));
+        return audience_.notify(requested.client, notice_text("note", "the view now turns about this point"));
     }
     const Transform& from = now.world_from_camera;
     view_.lens.focus_distance = max(-dot(point->position - from.translation, column(from, 2)), 1e-6f);
     budget_s_ = kFirstBudget;
     is_done_ = false;
     const bool has_lens = view_.lens.aperture_radius > 0;
-    audience_.tell(requested.client,
-                   notice_text("note", fmt::format("in focus: {:.4g} m{}", view_.lens.focus_distance,
-                                                   has_lens ? "" : " (the lens has no radius, so all is sharp)")));
+    audience_.notify(requested.client,
+                     notice_text("note", fmt::format("in focus: {:.4g} m{}", view_.lens.focus_distance,
+                                                     has_lens ? "" : " (the lens has no radius, so all is sharp)")));
 }
 
 void RenderLoop::set(const Steer& requested) {
     const std::string why_not = set_view_setting(view_, requested.message.name, requested.message.value);
-    if (!why_not.empty()) audience_.tell(requested.client, notice_text("error", why_not));
+    if (!why_not.empty()) audience_.notify(requested.client, notice_text("error", why_not));
     budget_s_ = kFirstBudget;
-    tell_state();
+    report_state();
 }
 
 /// If something cannot be provided, all clients are informed, and the view returns to the last one that worked.
@@ -244,7 +244,7 @@ std::optional<ShownFrame> RenderLoop::next_frame(const FrameRequest& wanted) {
         return source_.next(wanted);
     } catch (const Error& error) {
         if (error.code() == ErrorCode::DeviceFault) throw;
-        tell_error(0, error);
+        report_error(0, error);
         made_share_ = 1;
         is_done_ = error.code() == ErrorCode::OverLimit; // the view itself exceeds a limit, until it changes
         const ViewState failed = std::exchange(view_, shown_);
@@ -252,7 +252,7 @@ std::optional<ShownFrame> RenderLoop::next_frame(const FrameRequest& wanted) {
         // A setting changed at rest takes effect with the next moving frame.
         if (failed.restir == shown_.restir) view_.restir.light = RestirLight::Off;
         inbox_.expect(view_);
-        tell_state();
+        report_state();
         return std::nullopt;
     }
 }
@@ -263,17 +263,17 @@ void RenderLoop::show_next() {
         follow_time();
     } catch (const Error& error) {
         if (error.code() == ErrorCode::DeviceFault) throw;
-        tell_error(0, error);
+        report_error(0, error);
         const double back_s = shown_s_.value_or(0);
         is_done_ = clock_.time_s == back_s; // only another time can help
         clock_.plays = false;
         clock_.time_s = back_s;
-        return tell_state();
+        return report_state();
     }
     FrameRequest wanted = request();
-    wanted.tell_made = [this](double share) {
+    wanted.on_progress = [this](double share) {
         made_share_ = share;
-        if (now_s_() - told_at_s_ > kTellEvery) tell_state();
+        if (now_s_() - reported_at_s_ > kReportEvery) report_state();
     };
     if (wanted.is_moving && !is_new_ && !time_runs() && last_ &&
         last_->samples >= view_.picture.samples) { // nothing new to show
@@ -283,7 +283,7 @@ void RenderLoop::show_next() {
     std::optional<ShownFrame> frame = next_frame(wanted);
     made_share_ = 1;
     if (!frame) { // samples accumulate in a picture that is not shown yet
-        if (now_s_() - told_at_s_ > kTellEvery) tell_state();
+        if (now_s_() - reported_at_s_ > kReportEvery) report_state();
         return;
     }
     is_new_ = false;
@@ -300,7 +300,7 @@ void RenderLoop::show_next() {
     last_ = *frame;
     last_->image.pixels.clear();
     audience_.publish(*std::move(frame), input_);
-    if (is_done_ || now - told_at_s_ > kTellEvery) tell_state();
+    if (is_done_ || now - reported_at_s_ > kReportEvery) report_state();
 }
 
 /// Record of how the current picture is made.
@@ -319,7 +319,7 @@ PictureRecord RenderLoop::record() const {
     record.camera.camera = camera_.camera(view_.lens);
     record.camera.target.reset();
     record.camera.up.reset();
-    if (camera_.is_said_by_pose()) {
+    if (camera_.is_given_by_pose()) {
         record.camera.target = in_file(*start_.scene, camera_.pose().target);
         record.camera.up = camera_.pose().up;
     }
@@ -331,7 +331,7 @@ PictureRecord RenderLoop::record() const {
 void RenderLoop::save_pictures() {
     if (saves_.empty() || !last_ || !last_->is_reference) {
         if (saves_.empty() || view_.layer == ShownLayer::Beauty) return;
-        audience_.tell(0, notice_text("error", "a layer is shown; show the picture to save it"));
+        audience_.notify(0, notice_text("error", "a layer is shown; show the picture to save it"));
         for (const Save& save : std::exchange(saves_, {})) save.reply({});
         return;
     }
@@ -343,8 +343,8 @@ void RenderLoop::save_pictures() {
     }
 }
 
-void RenderLoop::tell_state() {
-    told_at_s_ = now_s_();
+void RenderLoop::report_state() {
+    reported_at_s_ = now_s_();
     ViewNumbers numbers;
     numbers.frame = last_ ? &*last_ : nullptr;
     numbers.made_share = made_share_;
@@ -364,7 +364,7 @@ void RenderLoop::tell_state() {
     numbers.clock = clock_;
     if (!time_matters()) numbers.clock.end_s = 0;
     numbers.path = &camera_.path();
-    audience_.tell_state(state_text(view_, numbers));
+    audience_.report_state(state_text(view_, numbers));
 }
 
 } // namespace pertev

@@ -29,7 +29,7 @@ private:
     void steer_time(const ClientMessage& message);
     void steer_path(const Steer& steer);
     void pick(const Steer& steer);
-    void tell_error(uint32_t client, const Error& error);
+    void report_error(uint32_t client, const Error& error);
     void set(const Steer& steer);
     void let_time_pass();
     void follow_time();
@@ -37,7 +37,7 @@ private:
     void show_next();
     void save_pictures();
     PictureRecord record() const;
-    void tell_state();
+    void report_state();
     bool time_matters() const;
     bool time_runs() const;
     bool is_moving() const;
@@ -58,7 +58,7 @@ private:
     double clocked_at_s_ = 0;
     float speed_;
     uint32_t input_ = 0, steerer_ = 0; // number of the last input, and its client
-    double moved_at_s_ = -1e9, told_at_s_ = -1e9, framed_at_s_ = -1e9;
+    double moved_at_s_ = -1e9, reported_at_s_ = -1e9, framed_at_s_ = -1e9;
     double frames_per_second_ = 0;
     double made_share_ = 1;          // progress of the precomputation for the current picture
     double budget_s_ = 0.1;          // for the next picture at rest

@@ -75,7 +75,7 @@ Rgba8Image shown_picture(Picture& picture, ToneMap tone_map, float exposure_stop
 }
 
 /// Records that rendering took `seconds`.
-void tell_rendering(double seconds, ShownFrame& frame) {
+void set_render_times(double seconds, ShownFrame& frame) {
     const SceneTracer::Seconds& rays = frame.kind_seconds;
     if (rays.total() <= 0) return void(frame.stages.emplace_back("render", 1e3 * seconds));
     frame.stages.emplace_back("camera rays", 1e3 * rays.camera);
@@ -100,9 +100,9 @@ SessionFrames::SessionFrames(Session& session, MovingScene& scene, double frame_
 void SessionFrames::set_time(double time_s) {
     if (scene_.time_s() == time_s && !is_behind_) return;
     const Stopwatch watch;
-    Messages said_already; // discards messages about the scene, which were shown at the start
+    Messages already_reported; // discards messages about the scene, which were shown at the start
     const bool was_behind = std::exchange(is_behind_, true);
-    const uint32_t parts = scene_.set_time(time_s, said_already);
+    const uint32_t parts = scene_.set_time(time_s, already_reported);
     if (was_behind) {
         shows_reconstruction_ = false; // its frames are discarded
         session_.set_scene(scene_.prepared());
@@ -306,7 +306,7 @@ std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request
     frame.image = shows_layer ? show_layer(request, frame)
                               : shown_picture(session_.frame(), request.view.display.tone_map, frame.exposure_stops);
     if (update_s > 0) frame.stages.emplace_back("scene", 1e3 * update_s);
-    tell_rendering(std::max(frame.render_s - sharing_s, 0.0), frame);
+    set_render_times(std::max(frame.render_s - sharing_s, 0.0), frame);
     if (sharing_s > 0) frame.stages.emplace_back("ReSTIR", 1e3 * sharing_s);
     frame.stages.emplace_back("reconstruction", 1e3 * reconstruction_s);
     frame.stages.emplace_back("tone map", 1e3 * display.seconds());
@@ -320,7 +320,7 @@ std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request
         return frame;
     }
     pace_.took(scale, whole.seconds(), update_s);
-    tell_pace(request, frame);
+    report_pace(request, frame);
     return frame;
 }
 
@@ -339,7 +339,7 @@ std::optional<ShownFrame> SessionFrames::show_reconstruction_again(const FrameRe
     return frame;
 }
 
-void SessionFrames::tell_pace(const FrameRequest& request, ShownFrame& frame) const {
+void SessionFrames::report_pace(const FrameRequest& request, ShownFrame& frame) const {
     if (request.view.moving_scale > 0) return;
     frame.kept_rate = 1 / pace_.frame_s();
     frame.keeps_rate = pace_.keeps_rate();
@@ -431,7 +431,7 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     if (before < wanted && !waits) {
         added = session_.render(is_small ? 1 : until - before, [&](const RenderProgress& now) {
             frame.rays = now.rays;
-            if (now.made_share < 1 && request.tell_made) request.tell_made(now.made_share);
+            if (now.made_share < 1 && request.on_progress) request.on_progress(now.made_share);
             const bool has_begun = now.samples_done > before; // a picture has at least one sample, however long it
                                                               // takes
             return (is_of_movement || !stops) && (!has_begun || now.seconds < request.budget_s);
@@ -459,7 +459,7 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     frame.scale = scale;
     shows_film_ = frame.is_reference = !is_small && is_beauty(request.view.layer);
     frame.is_final = !is_small && frame.samples >= wanted;
-    tell_rendering(frame.render_s, frame);
+    set_render_times(frame.render_s, frame);
     frame.stages.emplace_back("tone map", 1e3 * display_s);
     if (frame.is_reference) {
         const Stopwatch hash;
@@ -471,7 +471,7 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
         growth_.showed(scale);
     }
     if (is_of_movement && !was_begun) pace_.took(scale, whole.seconds(), update_s);
-    if (is_of_movement) tell_pace(request, frame);
+    if (is_of_movement) report_pace(request, frame);
     return frame;
 }
 

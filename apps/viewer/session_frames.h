@@ -39,7 +39,7 @@ private:
     RenderSettings settings_for(const FrameRequest& request, float scale);
     RenderSettings small_settings_for(const FrameRequest& request, float scale);
     float scale_for(const FrameRequest& request);
-    void tell_pace(const FrameRequest& request, ShownFrame& frame) const;
+    void report_pace(const FrameRequest& request, ShownFrame& frame) const;
     void use(const RenderSettings& settings);
     Rgba8Image show(const FrameRequest& request, ShownFrame& frame);
     Rgba8Image show_layer(const FrameRequest& request, ShownFrame& frame);

@@ -20,15 +20,15 @@ std::optional<PickedPoint> SessionFrames::pick(const Camera& camera, float x, fl
     settings.filter = PixelFilter::Box;
     settings.filter_radius = 0;
     settings.path.max_depth = 0;
-    const RenderResult seen = session_.look_aside(camera_through(camera, aspect, x, y), settings);
+    const RenderResult seen = session_.render_separately(camera_through(camera, aspect, x, y), settings);
     if (seen.ids.empty() || seen.ids.front().instance == kNoHit) return std::nullopt;
     std::optional<Rgb> light;
     if (shows_film_ && session_.camera() == camera) {
         const Image film = session_.picture();
-        const auto place = [](float share, uint32_t side) {
+        const auto pixel_at = [](float share, uint32_t side) {
             return std::min(static_cast<uint32_t>(share * static_cast<float>(side)), side - 1);
         };
-        const float* const values = film.at(place(x, film.width), place(y, film.height));
+        const float* const values = film.at(pixel_at(x, film.width), pixel_at(y, film.height));
         light = {values[0], values[1], values[2]};
     }
     PickedPoint picked = {.instance = seen.ids.front().instance,

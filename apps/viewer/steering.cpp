@@ -40,8 +40,8 @@ std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
 std::string text_of(Vec3 p, DoubleVec3 origin) {
     if (origin == DoubleVec3{0, 0, 0}) return text_of(p);
-    const DoubleVec3 place = origin + to_double(p);
-    return fmt::format("{},{},{}", place.x, place.y, place.z);
+    const DoubleVec3 position = origin + to_double(p);
+    return fmt::format("{},{},{}", position.x, position.y, position.z);
 }
 
 std::string lens_flags(const Camera& camera) {
@@ -92,7 +92,7 @@ Pose orbit(const Pose& pose, float dx, float dy) {
     return {about(pose.eye), about(pose.target), pose.up, pose.centre};
 }
 
-Pose look(const Pose& pose, float dx, float dy, float fov_y) {
+Pose turn(const Pose& pose, float dx, float dy, float fov_y) {
     const Axes axes = axes_of(pose);
     const float pitch = allowed_pitch(axes.back, pose.up, -dy * fov_y);
     const Vec3 ahead = turned(turned(pose.target - pose.eye, axes.right, pitch), normalize(pose.up), -dx * fov_y);

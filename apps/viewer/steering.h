@@ -33,7 +33,7 @@ Pose fly(const Pose& pose, float right, float up, float forward);
 Pose orbit(const Pose& pose, float dx, float dy);
 /// Rotates around the eye by the dragged angle of the view. The centre becomes the target. `fov_y` is that of the
 /// view.
-Pose look(const Pose& pose, float dx, float dy, float fov_y);
+Pose turn(const Pose& pose, float dx, float dy, float fov_y);
 /// Moves across the view, so that points at the centre's distance follow the pointer. `view_height` is the picture's
 /// height at distance 1, or that of an orthographic view.
 Pose pan(const Pose& pose, float dx, float dy, float view_height, bool is_orthographic);

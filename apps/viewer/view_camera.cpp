@@ -16,7 +16,7 @@ constexpr float kMinFov = 0.01f, kMaxFov = 179; // degrees; the limits of a path
 constexpr int kMaxTargets = 256;                // number of targets tried to state a position to the bit
 constexpr float kFarthest = 1e9f;               // metres that anybody may go
 
-bool is_finite_place(const Transform& m) {
+bool is_finite_transform(const Transform& m) {
     return is_finite(m.row0) && is_finite(m.row1) && is_finite(m.row2) && is_finite(m.translation);
 }
 
@@ -35,7 +35,7 @@ Pose pose_of(const CameraSource& source, const Scene& scene, float distance) {
     // Takes the first point near the focus that reproduces these axes; most differ in the last digit.
     for (int i = 0; i < kMaxTargets; ++i) {
         const float away = source.camera.focus_distance * (1 + static_cast<float>(i) / kMaxTargets);
-        const Vec3 target = told_in_file(scene, pose.eye - away * column(placed, 2));
+        const Vec3 target = rounded_to_file(scene, pose.eye - away * column(placed, 2));
         if (!(look_at(pose.eye, target, pose.up) == placed)) continue;
         pose.target = target;
         break;
@@ -60,7 +60,7 @@ Camera ViewCamera::camera(const Camera& lens) const {
     return is_own_ ? camera_at(pose_, camera) : camera;
 }
 
-bool ViewCamera::is_said_by_pose() const {
+bool ViewCamera::is_given_by_pose() const {
     return is_own_ || look_at(pose_.eye, pose_.target, pose_.up) == base_.world_from_camera;
 }
 
@@ -109,7 +109,7 @@ void ViewCamera::go_to(std::optional<double> time_s, Camera& lens) {
     case Guide::Path: {
         const CameraSource source = on_path(time_s.value_or(path_.keys.front().time_s));
         // Where a path's eye passes through its target there is no view, so the previous one stays.
-        if (is_finite_place(source.camera.world_from_camera)) place(source, lens);
+        if (is_finite_transform(source.camera.world_from_camera)) place(source, lens);
         return;
     }
     }
@@ -171,7 +171,7 @@ void ViewCamera::step(const ClientMessage& message, const Camera& lens, float sp
     } else if (message.kind == MessageKind::Orbit) {
         pose_ = orbit(pose_, message.dx, message.dy);
     } else if (message.kind == MessageKind::Look) {
-        pose_ = look(pose_, message.dx, message.dy, is_flat ? 1.0f : lens.fov_y);
+        pose_ = turn(pose_, message.dx, message.dy, is_flat ? 1.0f : lens.fov_y);
     } else if (message.kind == MessageKind::Pan) {
         pose_ = pan(pose_, message.dx, message.dy, height, is_flat);
     } else if (is_flat) {
@@ -179,9 +179,9 @@ void ViewCamera::step(const ClientMessage& message, const Camera& lens, float sp
     } else {
         pose_ = zoom(pose_, message.steps);
     }
-    pose_.eye = told_in_file(scene_, pose_.eye);
-    pose_.target = told_in_file(scene_, pose_.target);
-    const bool is_good = is_finite_place(look_at(pose_.eye, pose_.target, pose_.up)) &&
+    pose_.eye = rounded_to_file(scene_, pose_.eye);
+    pose_.target = rounded_to_file(scene_, pose_.target);
+    const bool is_good = is_finite_transform(look_at(pose_.eye, pose_.target, pose_.up)) &&
                          max_component(abs(pose_.eye)) < kFarthest && max_component(abs(pose_.target)) < kFarthest;
     if (!is_good) pose_ = before; // the step went too far
     is_own_ = true;
@@ -194,11 +194,11 @@ bool ViewCamera::add_key(float time_s, const Camera& lens) {
                            .up = pose_.up,
                            .fov_deg = clamp(degrees_for(lens.fov_y), kMinFov, kMaxFov)};
     std::vector<CameraKey>& keys = path_.keys;
-    const auto place = std::ranges::lower_bound(keys, key.time_s, {}, &CameraKey::time_s);
-    if (place != keys.end() && place->time_s == key.time_s) {
-        *place = key;
+    const auto next = std::ranges::lower_bound(keys, key.time_s, {}, &CameraKey::time_s);
+    if (next != keys.end() && next->time_s == key.time_s) {
+        *next = key;
     } else if (keys.size() < kMaxKeys) {
-        keys.insert(place, key);
+        keys.insert(next, key);
     } else {
         return false;
     }
@@ -218,7 +218,7 @@ void ViewCamera::remove_key(uint32_t index) {
 
 std::string ViewCamera::flags(const Camera& lens, std::optional<double> time_s) const {
     const std::string time = time_s ? fmt::format(" --time {}", *time_s) : "";
-    if (!is_said_by_pose() && !name_.empty()) {
+    if (!is_given_by_pose() && !name_.empty()) {
         const Camera* own = scene_camera(name_, scene_);
         if (own->world_from_camera == base_.world_from_camera && own->projection == base_.projection &&
             own->ortho_height == base_.ortho_height) {

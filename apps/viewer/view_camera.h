@@ -44,7 +44,7 @@ public:
     /// Whether a user has moved it.
     bool is_own() const { return is_own_; }
     /// Whether text (eye, target, up) states its position to the bit.
-    bool is_said_by_pose() const;
+    bool is_given_by_pose() const;
     /// Whether time moves it.
     bool moves_with_time() const;
     bool is_at_start() const { return guide_ == Guide::Start; }

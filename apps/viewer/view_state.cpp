@@ -293,7 +293,7 @@ const std::vector<ViewSetting>& view_settings() {
     return all;
 }
 
-bool begins_anew(const ViewState& before, const ViewState& after) {
+bool restarts(const ViewState& before, const ViewState& after) {
     return before.layer != after.layer || before.is_real_time != after.is_real_time || !(before.lens == after.lens) ||
            before.picture.tracers != after.picture.tracers || !same_picture(before.picture, after.picture);
 }

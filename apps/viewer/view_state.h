@@ -78,7 +78,7 @@ struct ViewSetting {
 const std::vector<ViewSetting>& view_settings();
 
 /// Whether the picture at rest of `after` needs other samples than that of `before`.
-bool begins_anew(const ViewState& before, const ViewState& after);
+bool restarts(const ViewState& before, const ViewState& after);
 
 /// Whether the same samples are displayed differently in `after`.
 bool is_shown_otherwise(const ViewState& before, const ViewState& after);

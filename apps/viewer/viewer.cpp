@@ -21,13 +21,15 @@ class Reception final : public WebEvents {
 public:
     Reception(Audience& audience, Inbox& inbox) : audience_(audience), inbox_(inbox) {}
     bool opened(uint32_t client) override { return audience_.open(client, now_s()); }
-    std::string said(uint32_t client, std::string_view text) override { return audience_.said(client, text, now_s()); }
+    std::string received(uint32_t client, std::string_view text) override {
+        return audience_.received(client, text, now_s());
+    }
     void text_was_sent(uint32_t client) override { audience_.text_was_sent(client); }
     void closed(uint32_t client) override { audience_.close(client, now_s()); }
     void save(const std::string& format, std::function<void(std::vector<std::byte>)> reply) override {
         if (!inbox_.put(Save{format, reply})) reply({});
     }
-    std::vector<uint32_t> tick() override { return audience_.look(now_s()); }
+    std::vector<uint32_t> tick() override { return audience_.tick(now_s()); }
 
 private:
     Audience& audience_;

@@ -154,7 +154,7 @@ private:
             const auto data = self->buffer_.cdata();
             const std::string text(static_cast<const char*>(data.data()), data.size());
             self->buffer_.consume(self->buffer_.size());
-            const std::string why = self->stream_.got_text() ? self->server_.events.said(self->client_, text)
+            const std::string why = self->stream_.got_text() ? self->server_.events.received(self->client_, text)
                                                              : "only text messages are read";
             if (!why.empty()) return self->drop(websocket::close_code::policy_error, why);
             if (self->is_open_) self->read();
@@ -301,17 +301,17 @@ private:
 void WebServer::Inside::listen(const std::string& host, uint16_t port) {
     error_code fault;
     const std::string plain = host.starts_with('[') && host.ends_with(']') ? host.substr(1, host.size() - 2) : host;
-    const auto places = tcp::resolver(context).resolve(plain, std::to_string(port), tcp::resolver::passive, fault);
+    const auto found = tcp::resolver(context).resolve(plain, std::to_string(port), tcp::resolver::passive, fault);
     const auto fail = [&] {
         throw Error(ErrorCode::BadInput,
                     fmt::format("--host {} --port {}: cannot listen there: {}", host, port, fault.message()));
     };
-    if (fault || places.empty()) fail();
-    const tcp::endpoint place = places.begin()->endpoint();
-    acceptor.open(place.protocol(), fault);
+    if (fault || found.empty()) fail();
+    const tcp::endpoint endpoint = found.begin()->endpoint();
+    acceptor.open(endpoint.protocol(), fault);
     if (fault) fail();
     acceptor.set_option(asio::socket_base::reuse_address(true), fault);
-    acceptor.bind(place, fault);
+    acceptor.bind(endpoint, fault);
     if (fault) fail();
     acceptor.listen(asio::socket_base::max_listen_connections, fault);
     if (fault) fail();

@@ -29,7 +29,7 @@ public:
     /// A WebSocket has opened. Returns false if there are too many.
     virtual bool opened(uint32_t client) = 0;
     /// A message has arrived. Returns why the client must be dropped, or empty.
-    virtual std::string said(uint32_t client, std::string_view text) = 0;
+    virtual std::string received(uint32_t client, std::string_view text) = 0;
     /// A text passed to send_text has been sent.
     virtual void text_was_sent(uint32_t client) = 0;
     virtual void closed(uint32_t client) = 0;

@@ -10,8 +10,8 @@ void Wheel::give(uint32_t client) {
     kept_for_.clear();
     for (Seat& seat : seats_) {
         if (seat.client != client) continue;
-        seat.asks = false;
-        seat.wish.clear();
+        seat.wants_wheel = false;
+        seat.request.clear();
     }
 }
 
@@ -20,7 +20,7 @@ void Wheel::join(uint32_t client, const std::string& key, double now_s) {
     const bool held_it = holder != seats_.end() && !key.empty() && holder->key == key;
     seats_.push_back({client, key, false, {}, 0});
     if (held_it) return give(client);
-    look(now_s);
+    tick(now_s);
     if (holder_ != 0) return;
     if (kept_for_.empty() || (!key.empty() && key == kept_for_)) give(client);
 }
@@ -34,13 +34,13 @@ void Wheel::leave(uint32_t client, double now_s) {
         gone_s_ = now_s;
     }
     seats_.erase(seat);
-    look(now_s);
+    tick(now_s);
 }
 
-void Wheel::ask(uint32_t client) {
+void Wheel::request_wheel(uint32_t client) {
     const auto seat = std::ranges::find(seats_, client, &Seat::client);
     if (seat == seats_.end() || holder_ == client) return;
-    seat->asks = true;
+    seat->wants_wheel = true;
     if (holder_ == 0) give(client);
 }
 
@@ -52,19 +52,19 @@ bool Wheel::hand(uint32_t from, uint32_t to, double now_s) {
     return true;
 }
 
-Wheel::Wish Wheel::wish(uint32_t client, const std::string& what, double now_s) {
+Wheel::Request Wheel::request(uint32_t client, const std::string& what, double now_s) {
     const auto seat = std::ranges::find(seats_, client, &Seat::client);
-    if (seat == seats_.end() || steers(client)) return Wish::None;
-    if (client == handed_by_ && now_s - handed_s_ < kHandingOver) return Wish::None;
-    seat->wished_s = now_s;
-    return std::exchange(seat->wish, what) == what ? Wish::Known : Wish::New;
+    if (seat == seats_.end() || steers(client)) return Request::None;
+    if (client == handed_by_ && now_s - handed_s_ < kHandingOver) return Request::None;
+    seat->requested_s = now_s;
+    return std::exchange(seat->request, what) == what ? Request::Known : Request::New;
 }
 
-bool Wheel::look(double now_s) {
+bool Wheel::tick(double now_s) {
     bool has_changed = false;
     for (Seat& seat : seats_) {
-        if (seat.wish.empty() || now_s - seat.wished_s < kWishStays) continue;
-        seat.wish.clear();
+        if (seat.request.empty() || now_s - seat.requested_s < kRequestStays) continue;
+        seat.request.clear();
         has_changed = true;
     }
     if (holder_ != 0 || seats_.empty()) return has_changed;

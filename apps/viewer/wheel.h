@@ -15,25 +15,25 @@ public:
     struct Seat {
         uint32_t client = 0;
         std::string key; // key of the page, kept over reconnects
-        bool asks = false;
-        std::string wish; // its recent attempt to steer while another client did; empty: none
-        double wished_s = 0;
+        bool wants_wheel = false;
+        std::string request; // its recent attempt to steer while another client did; empty: none
+        double requested_s = 0;
     };
-    static constexpr double kWishStays = 20;  // seconds
-    static constexpr double kHandingOver = 1; // seconds in which the former holder may not know of the change yet
-    static constexpr double kPatience = 10;   // seconds that the wheel waits for a disconnected holder
+    static constexpr double kRequestStays = 20; // seconds
+    static constexpr double kHandingOver = 1;   // seconds in which the former holder may not know of the change yet
+    static constexpr double kPatience = 10;     // seconds that the wheel waits for a disconnected holder
 
     void join(uint32_t client, const std::string& key, double now_s);
     void leave(uint32_t client, double now_s);
     /// Requests the wheel, which is granted if nobody holds it.
-    void ask(uint32_t client);
+    void request_wheel(uint32_t client);
     /// Returns false and does nothing unless `from` steers and `to` exists.
     bool hand(uint32_t from, uint32_t to, double now_s = 0);
-    enum class Wish : uint8_t { None, Known, New };
+    enum class Request : uint8_t { None, Known, New };
     /// A client that does not steer has tried to. None: it steered a moment ago, and may not know of the change.
-    Wish wish(uint32_t client, const std::string& what, double now_s);
+    Request request(uint32_t client, const std::string& what, double now_s);
     /// Must be called regularly, because the wheel and wishes expire. Returns whether anything has changed.
-    bool look(double now_s);
+    bool tick(double now_s);
 
     bool steers(uint32_t client) const { return holder_ == client && client != 0; }
     uint32_t holder() const { return holder_; } // 0: nobody

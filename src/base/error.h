@@ -30,14 +30,15 @@ class Error : public std::runtime_error {
 public:
     Error(ErrorCode code, Remark remark)
         : std::runtime_error(remark.text()), code_(code), remark_(std::make_shared<const Remark>(std::move(remark))) {}
-    Error(ErrorCode code, Place place, std::string reason) : Error(code, Remark(std::move(place), std::move(reason))) {}
+    Error(ErrorCode code, FileLocation location, std::string reason)
+        : Error(code, Remark(std::move(location), std::move(reason))) {}
     Error(ErrorCode code, std::string setting, std::string value, std::string reason)
         : Error(code, Remark(std::move(setting), std::move(value), std::move(reason))) {}
 
     ErrorCode code() const noexcept { return code_; }
     const Remark& remark() const noexcept { return *remark_; }
     // The parts of the remark; what() is all of them as text.
-    const std::optional<Place>& place() const noexcept { return remark_->place; }
+    const std::optional<FileLocation>& location() const noexcept { return remark_->location; }
     const std::string& setting() const noexcept { return remark_->setting; }
     const std::string& value() const noexcept { return remark_->value; }
     const std::string& reason() const noexcept { return remark_->reason; }

@@ -5,8 +5,8 @@
 
 namespace pertev {
 
-Heartbeat::Heartbeat(std::chrono::milliseconds interval, std::function<void(double, const std::string&)> say)
-    : interval_(interval), say_(std::move(say)) {
+Heartbeat::Heartbeat(std::chrono::milliseconds interval, std::function<void(double, const std::string&)> report)
+    : interval_(interval), report_(std::move(report)) {
     try {
         thread_ = std::thread([this] { beat(); });
     } catch (const std::system_error&) { // no thread left; the work matters more
@@ -34,7 +34,7 @@ void Heartbeat::beat() {
         if (work_.empty()) continue;
         const std::string work = work_;
         lock.unlock(); // a slow reader of the log must not delay anything else
-        say_(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), work);
+        report_(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), work);
         lock.lock();
     }
 }

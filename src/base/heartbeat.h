@@ -14,10 +14,10 @@ namespace pertev {
 
 class Heartbeat {
 public:
-    /// `say` gets the seconds since this object was made and the name of the current work. It is called from another
+    /// `report` gets the seconds since this object was made and the name of the current work. It is called from another
     /// thread, never concurrently, and not after the destructor has returned. If no thread can be created, it is
     /// never called.
-    Heartbeat(std::chrono::milliseconds interval, std::function<void(double seconds, const std::string& work)> say);
+    Heartbeat(std::chrono::milliseconds interval, std::function<void(double seconds, const std::string& work)> report);
     ~Heartbeat();
     Heartbeat(const Heartbeat&) = delete;
     Heartbeat& operator=(const Heartbeat&) = delete;
@@ -29,7 +29,7 @@ private:
     void beat();
 
     std::chrono::milliseconds interval_;
-    std::function<void(double, const std::string&)> say_;
+    std::function<void(double, const std::string&)> report_;
     std::mutex mutex_; // for the two below
     std::string work_;
     bool is_over_ = false;

@@ -23,8 +23,8 @@ inline const char* is_or_are(uint64_t count) { return count == 1 ? "is" : "are";
 
 /// Item `i` of a list of the scene; `origin` is its location in the file.
 inline std::string numbered(const char* kind, std::size_t i, const std::string& name, const std::string& origin = "") {
-    const std::string place = origin.empty() ? fmt::format("{} {}", kind, i) : origin;
-    return fmt::format("{}{}{}", place, name.empty() ? "" : " ", name);
+    const std::string location = origin.empty() ? fmt::format("{} {}", kind, i) : origin;
+    return fmt::format("{}{}{}", location, name.empty() ? "" : " ", name);
 }
 
 /// Text of a file shortened to fit a line of a message.

@@ -32,7 +32,7 @@ public:
     void warn(Remark remark) { add(true, std::move(remark)); }
     /// The picture lacks something that the input has. For a file with many faults only the first is named.
     void leave_out(Remark remark) {
-        const bool is_one_too_many = left_out_ >= kMaxLeftOut && !places_[1].contains(remark.text());
+        const bool is_one_too_many = left_out_ >= kMaxLeftOut && !indices_[1].contains(remark.text());
         Message& message = all_[add(true, is_one_too_many ? Remark(kMoreLeftOut) : std::move(remark))];
         if (!message.is_left_out) ++left_out_;
         message.is_left_out = true;
@@ -60,18 +60,18 @@ public:
 
 private:
     static constexpr std::size_t kMaxLeftOut = 100;
-    static constexpr const char* kMoreLeftOut = "more is left out than these warnings name";
+    static constexpr const char* kMoreLeftOut = "further things are left out; only the first are listed";
 
     /// Returns its index in all_.
     std::size_t add(bool is_warning, Remark remark) {
         std::string text = remark.text();
-        const auto [place, is_new] = places_[is_warning ? 1 : 0].try_emplace(text, all_.size());
+        const auto [found, is_new] = indices_[is_warning ? 1 : 0].try_emplace(text, all_.size());
         if (is_new) {
             all_.push_back({.is_warning = is_warning, .remark = std::move(remark), .text = std::move(text)});
         } else {
-            ++all_[place->second].times;
+            ++all_[found->second].times;
         }
-        return place->second;
+        return found->second;
     }
 
     std::vector<std::string> texts_of(bool Message::*kind) const {
@@ -83,8 +83,8 @@ private:
     }
 
     std::vector<Message> all_;
-    std::unordered_map<std::string, std::size_t> places_[2]; // indices of notices and warnings in all_
-    std::size_t left_out_ = 0;                               // number of such messages in all_
+    std::unordered_map<std::string, std::size_t> indices_[2]; // indices of notices and warnings in all_
+    std::size_t left_out_ = 0;                                // number of such messages in all_
 };
 
 } // namespace pertev

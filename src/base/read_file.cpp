@@ -18,7 +18,7 @@ namespace {
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 Error failure(const std::filesystem::path& path, const std::string& why) {
-    return Error(ErrorCode::BadInput, Place{path.string()}, fmt::format("cannot read: {}", why));
+    return Error(ErrorCode::BadInput, FileLocation{path.string()}, fmt::format("cannot read: {}", why));
 }
 
 File open_file(const std::filesystem::path& path) {

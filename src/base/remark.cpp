@@ -11,15 +11,15 @@ std::string marked(std::string_view setting, std::string_view value) {
 
 } // namespace
 
-std::string text_of(const Place& place) {
-    if (place.line > 0) return fmt::format("{}:{}", place.file, place.line);
-    if (!place.pointer) return place.file;
-    return fmt::format("{}: {}", place.file, place.pointer->empty() ? "/" : *place.pointer);
+std::string text_of(const FileLocation& location) {
+    if (location.line > 0) return fmt::format("{}:{}", location.file, location.line);
+    if (!location.pointer) return location.file;
+    return fmt::format("{}: {}", location.file, location.pointer->empty() ? "/" : *location.pointer);
 }
 
 std::string Remark::text() const {
     std::string text;
-    if (place) text += text_of(*place) + ": ";
+    if (location) text += text_of(*location) + ": ";
     if (!setting.empty()) text += marked(setting, value) + ": ";
     return text + reason;
 }

@@ -15,20 +15,20 @@
 namespace pertev {
 
 /// A location in the input. At most one of `line` and `pointer` is set.
-struct Place {
+struct FileLocation {
     std::string file;
     std::size_t line = 0;                    // the first is 1; 0 means none
     std::optional<std::string> pointer = {}; // RFC 6901; "" is the whole document
-    bool operator==(const Place&) const = default;
+    bool operator==(const FileLocation&) const = default;
 };
 
 /// Text such as "a.obj:12", "a.gltf: /nodes/3" or "a.exr".
-std::string text_of(const Place& place);
+std::string text_of(const FileLocation& location);
 
 struct Remark {
     Remark(std::string why) : reason(std::move(why)) {}
     Remark(const char* why) : reason(why) {}
-    Remark(Place where, std::string why) : place(std::move(where)), reason(std::move(why)) {}
+    Remark(FileLocation where, std::string why) : location(std::move(where)), reason(std::move(why)) {}
     /// `value` is empty if the setting has none or if it does not matter.
     Remark(std::string name, std::string its_value, std::string why)
         : setting(std::move(name)), value(std::move(its_value)), reason(std::move(why)) {}
@@ -38,7 +38,7 @@ struct Remark {
     /// Returns the remark with `more` appended to its reason.
     Remark and_then(std::string_view more) const;
 
-    std::optional<Place> place;
+    std::optional<FileLocation> location;
     std::string setting; // empty if the remark is about no setting
     std::string value;   // value of that setting
     std::string reason;

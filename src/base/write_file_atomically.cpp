@@ -72,7 +72,7 @@ fs::path resolve_target(const fs::path& path) {
     const fs::path target = follow_links(path);
     const fs::file_status status = fs::status(target);
     if (fs::exists(status) && !fs::is_regular_file(status)) {
-        throw Error(ErrorCode::FileWrite, Place{path.string()},
+        throw Error(ErrorCode::FileWrite, FileLocation{path.string()},
                     "cannot write: it is not a regular file; name a file to create or replace");
     }
     return target;
@@ -102,7 +102,8 @@ void replace(const fs::path& target, std::span<const std::byte> bytes) {
 }
 
 [[noreturn]] void rethrow(const fs::path& path, const std::system_error& error) {
-    throw Error(ErrorCode::FileWrite, Place{path.string()}, fmt::format("cannot write: {}", error.code().message()));
+    throw Error(ErrorCode::FileWrite, FileLocation{path.string()},
+                fmt::format("cannot write: {}", error.code().message()));
 }
 
 } // namespace

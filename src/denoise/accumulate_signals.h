@@ -30,7 +30,7 @@ struct AccumulateSignals {
     static constexpr float kRecent = 4; // frames of the recent mean
 
     HD void operator()(uint32_t i) const {
-        const PixelPlace at = tiled_place(i, cameras.width, cameras.height);
+        const PixelPosition at = tiled_position(i, cameras.width, cameras.height);
         const uint32_t pixel = at.y * cameras.width + at.x;
         const Float4 guide = now.guide[pixel];
         const uint32_t object = object_of(guide);
@@ -44,7 +44,7 @@ struct AccumulateSignals {
         float longest_diffuse = static_cast<float>(longest), longest_gloss = longest_diffuse;
         if (has_history) {
             const Vec3 normal = normal_of(guide);
-            const Reprojection then = reproject_surface(cameras, scene, scene_before, centre, frame.place[pixel]);
+            const Reprojection then = reproject_surface(cameras, scene, scene_before, centre, frame.hit[pixel]);
             was_at[pixel] = then.pixel;
             taps = find_taps(before, cameras, then.pixel, max(then.depth, 1e-20f), normal, kSeenAlike, object);
             if constexpr (kFollows) {
@@ -59,7 +59,7 @@ struct AccumulateSignals {
                 mirrored = find_taps(before, cameras, behind.pixel, 0, normal, kFlat, object);
             }
             if (has_gloss && !(mirrored.sum > kEnoughWeight)) {
-                longest_gloss = min(longest_gloss, frames_of_lobe(alpha_of(guide), frame.place[pixel]));
+                longest_gloss = min(longest_gloss, frames_of_lobe(alpha_of(guide), frame.hit[pixel]));
             }
         }
         const Float4 diffuse = limited(signals.diffuse, at);
@@ -123,9 +123,9 @@ private:
 
     /// Number of frames in which a camera with constant motion passes half a lobe of this width; meanwhile the
     /// reflection that it sees changes.
-    HD float frames_of_lobe(float alpha, Float4 place) const {
+    HD float frames_of_lobe(float alpha, Float4 hit) const {
         if (has_parallel_rays(cameras.now.projection)) return kInfinity;
-        const Vec3 point = point_at(scene.instances, scene.meshes, place),
+        const Vec3 point = point_at(scene.instances, scene.meshes, hit),
                    now_seen = normalize(point - cameras.now.world_from_camera.translation),
                    then_seen = normalize(point - cameras.before.world_from_camera.translation);
         return max(0.5f * alpha / max(length(now_seen - then_seen), 1e-6f), 1.0f);
@@ -142,7 +142,7 @@ private:
 
     /// Clamps the sample to kFirefly times the brightest of its eight neighbours. With one sample per pixel most see
     /// no light at all, so a lower limit would remove much real light.
-    HD Float4 limited(const Float4* signal, PixelPlace at) const {
+    HD Float4 limited(const Float4* signal, PixelPosition at) const {
         const int width = static_cast<int>(cameras.width), height = static_cast<int>(cameras.height);
         const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
         const Float4 own = signal[y * width + x];

@@ -26,7 +26,7 @@ struct AntiAlias {
     static constexpr float kDeviations = 1, kDeviationsPerPixel = -0.25f, kDeviationsAtLeast = 0.5f;
 
     HD void operator()(uint32_t i) const {
-        const PixelPlace at = tiled_place(i, width, height);
+        const PixelPosition at = tiled_position(i, width, height);
         const uint32_t pixel = at.y * width + at.x;
         const Rgb own = rgb_of(picture[pixel]);
         shown[pixel] = with_w(has_history ? with_history(at, own) : own, 0);
@@ -35,12 +35,12 @@ struct AntiAlias {
 private:
     struct Colors {
         Rgb mean, deviation;
-        PixelPlace nearest; // pixel of least depth, because edges move with the foreground
+        PixelPosition nearest; // pixel of least depth, because edges move with the foreground
     };
 
-    HD Rgb with_history(PixelPlace at, Rgb own) const {
-        const Colors around = look_around(at);
-        const PixelPlace nearest = around.nearest;
+    HD Rgb with_history(PixelPosition at, Rgb own) const {
+        const Colors around = neighbourhood(at);
+        const PixelPosition nearest = around.nearest;
         const Vec2 moved = was_at[nearest.y * width + nearest.x];
         const Vec2 then = {moved.x + static_cast<float>(static_cast<int>(at.x) - static_cast<int>(nearest.x)),
                            moved.y + static_cast<float>(static_cast<int>(at.y) - static_cast<int>(nearest.y))};
@@ -57,7 +57,7 @@ private:
         return lerp(limited, own, min(fma(kNewPerPixel, pixels_moved, kNew), kNewAtMost));
     }
 
-    HD Colors look_around(PixelPlace at) const {
+    HD Colors neighbourhood(PixelPosition at) const {
         Rgb sum = {0, 0, 0}, squares = {0, 0, 0};
         float least = kInfinity;
         Colors colors = {{}, {}, at};
@@ -82,8 +82,8 @@ private:
     /// Samples the previously shown picture with Catmull-Rom splines (Jimenez, "Filmic SMAA", SIGGRAPH 2016), which
     /// blur less than linear interpolation.
     /// than straight lines.
-    HD Rgb sample(Vec2 place) const {
-        const float x = place.x - 0.5f, y = place.y - 0.5f, left = floor(x), top = floor(y);
+    HD Rgb sample(Vec2 position) const {
+        const float x = position.x - 0.5f, y = position.y - 0.5f, left = floor(x), top = floor(y);
         const Weights wx = spline(x - left), wy = spline(y - top);
         const int w = static_cast<int>(width), h = static_cast<int>(height);
         const int column = to_int(left, -1, w), row = to_int(top, -1, h);

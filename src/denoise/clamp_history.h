@@ -22,7 +22,7 @@ struct ClampHistory {
     static constexpr float kUnknown = 1e6f; // lets the filter average as much as guides allow
 
     HD void operator()(uint32_t i) const {
-        const PixelPlace at = tiled_place(i, width, height);
+        const PixelPosition at = tiled_position(i, width, height);
         const uint32_t pixel = at.y * width + at.x;
         const Float4 guide = now.guide[pixel];
         if (object_of(guide) == kNoHit) {
@@ -32,7 +32,7 @@ struct ClampHistory {
         }
         Float4 diffuse = now.diffuse[pixel];
         const Vec2 squares = now.squares[pixel];
-        const Neighbours around = look_around(at, guide);
+        const Neighbours around = neighbourhood(at, guide);
         if (limits) {
             diffuse = limit(diffuse, around, deviation_of_frames(squares.x, diffuse));
             now.diffuse[pixel] = diffuse;
@@ -59,7 +59,7 @@ private:
 
     /// Thirteen of the surrounding 25 pixels in a chessboard pattern, which give as much information at half of the
     /// cost.
-    HD Neighbours look_around(PixelPlace at, Float4 guide) const {
+    HD Neighbours neighbourhood(PixelPosition at, Float4 guide) const {
         const int w = static_cast<int>(width), h = static_cast<int>(height);
         int columns[5], rows[5];
         for (int k = 0; k < 5; ++k) {

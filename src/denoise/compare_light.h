@@ -16,8 +16,8 @@ struct CompareLight {
 
     HD void operator()(uint32_t i) const {
         const Float4 normal = after.normal[i], normal_before = before.normal[i];
-        const uint32_t object = bits_of(after.place[i].x);
-        const bool is_same = object != kNoHit && bits_of(before.place[i].x) == object &&
+        const uint32_t object = bits_of(after.hit[i].x);
+        const bool is_same = object != kNoHit && bits_of(before.hit[i].x) == object &&
                              is_seen_alike(normal_before, normal.w, vec3_of(normal));
         guide[i] = pack({vec3_of(normal), after.albedo[i].w, normal.w, is_same ? object : kNoHit});
         was[i] = signals_of(before, i);
@@ -39,7 +39,7 @@ struct SpreadLight {
     int step; // pixels between taps
 
     HD void operator()(uint32_t i) const {
-        const PixelPlace at = tiled_place(i, width, height);
+        const PixelPosition at = tiled_position(i, width, height);
         const uint32_t pixel = at.y * width + at.x;
         const Float4 own = guide[pixel];
         if (object_of(own) == kNoHit) {

@@ -18,22 +18,22 @@ struct ComposeSamples {
         const Float4 met = sums.met[pixel], loose = sums.loose[pixel];
         Rgb light = rgb_of(met) + rgb_of(sums.diffuse_color[pixel]) * rgb_of(signals.diffuse[pixel]);
         if (has_gloss) light += rgb_of(sums.gloss_color[pixel]) * rgb_of(signals.gloss[pixel]);
-        Rgb of_beside = {0, 0, 0};
-        float beside_features = 0;
-        for (int slot = 0; slot < kSurfacesBeside; ++slot) {
-            const Float4 diffuse = sums.beside_diffuse[slot][pixel];
-            const uint32_t beside = bits_of(diffuse.w);
-            if (beside == kNoHit) break;
-            const Float4 gloss = sums.beside_gloss[slot][pixel];
-            of_beside += rgb_of(diffuse) * rgb_of(signals.diffuse[beside]);
-            if (has_gloss) of_beside += rgb_of(gloss) * rgb_of(signals.gloss[beside]);
-            beside_features += gloss.w;
+        Rgb of_neighbours = {0, 0, 0};
+        float neighbour_features = 0;
+        for (int slot = 0; slot < kNeighbourSurfaces; ++slot) {
+            const Float4 diffuse = sums.neighbour_diffuse[slot][pixel];
+            const uint32_t neighbour = bits_of(diffuse.w);
+            if (neighbour == kNoHit) break;
+            const Float4 gloss = sums.neighbour_gloss[slot][pixel];
+            of_neighbours += rgb_of(diffuse) * rgb_of(signals.diffuse[neighbour]);
+            if (has_gloss) of_neighbours += rgb_of(gloss) * rgb_of(signals.gloss[neighbour]);
+            neighbour_features += gloss.w;
         }
         // The more samples of such surfaces the pixel has, the more they count.
-        if (const Float4 own = sums.beside[pixel]; own.w > 0) {
-            of_beside = lerp(of_beside, (beside_features / own.w) * rgb_of(own), own.w / (own.w + kTrusted));
+        if (const Float4 own = sums.neighbour[pixel]; own.w > 0) {
+            of_neighbours = lerp(of_neighbours, (neighbour_features / own.w) * rgb_of(own), own.w / (own.w + kTrusted));
         }
-        light += of_beside;
+        light += of_neighbours;
         // Samples that fit no guide are used unfiltered. If only rays without light have hit such surfaces, the rest
         // represents them.
         const float loose_features = met.w;

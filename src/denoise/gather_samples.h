@@ -11,22 +11,22 @@ namespace pertev {
 
 /// Copies the guides from a frame of rays through pixels' centres, and clears the sums.
 struct BeginSums {
-    NoisyFrameView centres;
+    GBufferView centres;
     PictureGuide guide;
     PictureSums sums;
 
     HD void operator()(uint32_t pixel) const {
         guide.normal[pixel] = centres.normal[pixel];
         guide.albedo[pixel] = centres.albedo[pixel];
-        guide.object[pixel] = bits_of(centres.place[pixel].x);
+        guide.object[pixel] = bits_of(centres.hit[pixel].x);
         constexpr Float4 kZero = {0, 0, 0, 0};
-        sums.diffuse[pixel] = sums.gloss[pixel] = sums.beside[pixel] = sums.loose[pixel] = kZero;
+        sums.diffuse[pixel] = sums.gloss[pixel] = sums.neighbour[pixel] = sums.loose[pixel] = kZero;
         sums.diffuse_share[pixel] = sums.gloss_share[pixel] = sums.normal[pixel] = kZero;
         sums.squares[pixel] = {0, 0};
         sums.met[pixel] = sums.diffuse_color[pixel] = sums.gloss_color[pixel] = kZero;
-        for (int slot = 0; slot < kSurfacesBeside; ++slot) {
-            sums.beside_diffuse[slot][pixel] = {0, 0, 0, float_of(kNoHit)};
-            sums.beside_gloss[slot][pixel] = kZero;
+        for (int slot = 0; slot < kNeighbourSurfaces; ++slot) {
+            sums.neighbour_diffuse[slot][pixel] = {0, 0, 0, float_of(kNoHit)};
+            sums.neighbour_gloss[slot][pixel] = kZero;
         }
     }
 };
@@ -63,10 +63,10 @@ struct SampledSurfaces {
         Vec3 normal;
     };
     HD Found found(uint32_t pixel) const {
-        const Float4 place = frame.place[pixel];
-        Found f = {bits_of(place.x), {}, vec3_of(frame.normal[pixel])};
+        const Float4 hit = frame.hit[pixel];
+        Found f = {bits_of(hit.x), {}, vec3_of(frame.normal[pixel])};
         if (f.object == kNoHit) return f;
-        const Vec3 point = point_at(instances, meshes, place);
+        const Vec3 point = point_at(instances, meshes, hit);
         f.point = transform_transposed(camera.world_from_camera, point - camera.world_from_camera.translation);
         return f;
     }
@@ -77,16 +77,16 @@ struct SampledSurfaces {
     HD bool shows(uint32_t pixel, const Found& f) const {
         return shows_surface(guide, camera, width, pixel, f.object, f.point, f.normal, 0.8f);
     }
-    /// Slot of that surface among the additional ones of the pixel; kSurfacesBeside if it has none and all are taken.
-    /// `is_free` means that the slot has no surface yet.
+    /// Slot of that surface among the additional ones of the pixel; kNeighbourSurfaces if it has none and all are
+    /// taken. `is_free` means that the slot has no surface yet.
     HD int slot_of(uint32_t pixel, const Found& f, bool& is_free) const {
         is_free = false;
-        for (int slot = 0; slot < kSurfacesBeside; ++slot) {
-            const uint32_t there = bits_of(sums.beside_diffuse[slot][pixel].w);
+        for (int slot = 0; slot < kNeighbourSurfaces; ++slot) {
+            const uint32_t there = bits_of(sums.neighbour_diffuse[slot][pixel].w);
             is_free = there == kNoHit;
             if (is_free || shows(there, f)) return slot;
         }
-        return kSurfacesBeside;
+        return kNeighbourSurfaces;
     }
     HD static void add(Float4& sum, Rgb value, float w = 0) {
         const bool keeps = w == 0; // bits of a pixel index must not be added to
@@ -114,21 +114,21 @@ struct GatherFeatures {
         bool is_free = false;
         const int slot = samples.slot_of(pixel, found, is_free);
         if (is_free) {
-            const uint32_t beside = pixel_beside(pixel, found);
-            if (beside != kNoHit) {
+            const uint32_t neighbour = neighbour_pixel(pixel, found);
+            if (neighbour != kNoHit) {
                 is_free = false;
-                sums.beside_diffuse[slot][pixel].w = float_of(beside);
+                sums.neighbour_diffuse[slot][pixel].w = float_of(neighbour);
             }
         }
-        if (is_free || slot == kSurfacesBeside) return SampledSurfaces::add(sums.met[pixel], {0, 0, 0}, 1);
-        SampledSurfaces::add(sums.beside_diffuse[slot][pixel], diffuse);
-        SampledSurfaces::add(sums.beside_gloss[slot][pixel], gloss, 1);
+        if (is_free || slot == kNeighbourSurfaces) return SampledSurfaces::add(sums.met[pixel], {0, 0, 0}, 1);
+        SampledSurfaces::add(sums.neighbour_diffuse[slot][pixel], diffuse);
+        SampledSurfaces::add(sums.neighbour_gloss[slot][pixel], gloss, 1);
         SampledSurfaces::add(sums.met[pixel], met);
     }
 
 private:
     /// The nearest surrounding pixel whose guide shows the surface.
-    HD uint32_t pixel_beside(uint32_t pixel, const SampledSurfaces::Found& found) const {
+    HD uint32_t neighbour_pixel(uint32_t pixel, const SampledSurfaces::Found& found) const {
         const int w = static_cast<int>(samples.width), h = static_cast<int>(samples.height);
         const int x = static_cast<int>(pixel % samples.width), y = static_cast<int>(pixel / samples.width);
         for (int k = 0; k < 24; ++k) { // rings of a square: 8 pixels, then 16
@@ -166,11 +166,12 @@ struct GatherLight {
         }
         bool is_free = false;
         const int slot = samples.slot_of(pixel, found, is_free);
-        const bool is_beside = !is_free && slot < kSurfacesBeside;
+        const bool is_neighbour = !is_free && slot < kNeighbourSurfaces;
         const Float4 light = frame.light[pixel], emission = frame.emission[pixel];
         const Rgb all = light.w != 0 ? rgb_of(light) : Rgb{0, 0, 0};
         const Rgb scattered = light.w != 0 ? all - rgb_of(emission) : Rgb{0, 0, 0};
-        SampledSurfaces::add(is_beside ? sums.beside[pixel] : sums.loose[pixel], is_beside ? scattered : all, 1);
+        SampledSurfaces::add(is_neighbour ? sums.neighbour[pixel] : sums.loose[pixel], is_neighbour ? scattered : all,
+                             1);
     }
 };
 

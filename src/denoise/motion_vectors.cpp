@@ -18,7 +18,7 @@ uint32_t pixels_at_once(uint32_t width, uint32_t height) {
 MotionVectorMemory::MotionVectorMemory(Queue& queue, uint32_t width, uint32_t height)
     : most(pixels_at_once(width, height)), rays(queue, most, "rays of motion vectors"),
       keys(queue, most, "keys of motion vectors"), instances(queue, most, "motion vectors' hits"),
-      places(queue, most, "motion vectors' hits"), motion(queue, most, "motion vectors") {}
+      hits(queue, most, "motion vectors' hits"), motion(queue, most, "motion vectors") {}
 
 Image motion_vectors(Queue& queue, SceneTracer& tracer, const PictureView& picture, const CameraView& camera_before,
                      const PreviousScene& before) {
@@ -29,7 +29,7 @@ Image motion_vectors(Queue& queue, SceneTracer& tracer, const PictureView& pictu
     image.pixels.resize(std::size_t(2) * pixels);
     for (uint32_t first = 0; first < pixels; first += memory.most) {
         const uint32_t count = std::min(memory.most, pixels - first);
-        const HitQueueView hits = {memory.places.data(), memory.instances.data()};
+        const HitQueueView hits = {memory.hits.data(), memory.instances.data()};
         launch(queue, "centre_rays", count,
                CentreRays{cameras.now, width, first, memory.rays.data(), memory.keys.data()});
         tracer.find_hits(RayKind::Camera, {.rays = memory.rays.data(), .keys = memory.keys.data()}, count, hits);

@@ -70,7 +70,7 @@ struct MotionVectorMemory {
     uint32_t most; // pixels per batch
     Buffer<Ray> rays;
     Buffer<uint32_t> keys, instances;
-    Buffer<Float4> places;
+    Buffer<Float4> hits;
     Buffer<Vec2> motion;
 };
 

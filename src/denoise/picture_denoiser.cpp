@@ -13,7 +13,7 @@ constexpr int kPicturePasses = 5;
 // Parameters of WaveletPass. Bumps are trusted like everything else, because with more samples their noise is less
 // than their effect.
 constexpr float kPictureTolerance = 4, kPictureMinTrust = 1;
-constexpr std::size_t kOfGuide = 4, kOfSums = 10 + 2 * kSurfacesBeside,
+constexpr std::size_t kOfGuide = 4, kOfSums = 10 + 2 * kNeighbourSurfaces,
                       kOfPictureSignals = 4; // numbers of arrays of Float4
 constexpr std::size_t kWidePictureArrays = kOfGuide + kOfSums + kOfPictureSignals;
 
@@ -31,13 +31,13 @@ PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
     };
     for (Float4** array :
          {&guide_.normal, &guide_.albedo, &smooth_, &packed_, &sums_.diffuse, &sums_.gloss, &sums_.diffuse_share,
-          &sums_.gloss_share, &sums_.normal, &sums_.diffuse_color, &sums_.gloss_color, &sums_.beside, &sums_.loose,
+          &sums_.gloss_share, &sums_.normal, &sums_.diffuse_color, &sums_.gloss_color, &sums_.neighbour, &sums_.loose,
           &sums_.met, &from_.diffuse, &from_.gloss, &to_.diffuse, &to_.gloss}) {
         take(*array);
     }
-    for (int slot = 0; slot < kSurfacesBeside; ++slot) {
-        take(sums_.beside_diffuse[slot]);
-        take(sums_.beside_gloss[slot]);
+    for (int slot = 0; slot < kNeighbourSurfaces; ++slot) {
+        take(sums_.neighbour_diffuse[slot]);
+        take(sums_.neighbour_gloss[slot]);
     }
     sums_.squares = squares_.data();
     guide_.object = objects_.data();

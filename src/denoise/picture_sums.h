@@ -12,13 +12,13 @@ namespace pertev {
 
 /// Hits of the rays through pixels' centres, from the middle of the lens.
 struct PictureGuide {
-    Float4* normal;   // see NoisyFrameView
-    Float4* albedo;   // see NoisyFrameView
+    Float4* normal;   // see GBufferView
+    Float4* albedo;   // see GBufferView
     uint32_t* object; // instance; kNoHit: no hit
 };
 
 /// Number of other surfaces that samples of one pixel may hit and that are distinguished.
-inline constexpr int kSurfacesBeside = 2;
+inline constexpr int kNeighbourSurfaces = 2;
 
 /// The light of a pixel is that of its samples over the sum of their divisors, not the mean of their signals, so that
 /// light which a normal map concentrates on the bright parts of a texture is preserved.
@@ -29,17 +29,17 @@ struct PictureSums {
     Float4* diffuse_share; // rgb of divisors of these samples; luminances of the signal
     Float4* gloss_share;   // for the other signal, like diffuse_share
     Vec2* squares;         // squares of these luminances
-    Float4* beside;        // rgb of samples on another known surface, scattered; their number
+    Float4* neighbour;     // rgb of samples on another known surface, scattered; their number
     Float4* loose;         // rgb of samples whose surface no nearby guide shows; their number
 
     // Sums of features.
-    Float4* normal;                          // normal of the guide's surface; their number
-    Float4* met;                             // rgb of emission; number of loose samples, whose emission is excluded
-    Float4* diffuse_color;                   // rgb of divisors of the guide's surface
-    Float4* gloss_color;                     // for the other signal, like diffuse_color
-    Float4* beside_diffuse[kSurfacesBeside]; // divisors of another surface; bits of a pixel whose guide shows it,
-                                             // kNoHit: none
-    Float4* beside_gloss[kSurfacesBeside];   // for the other signal; their number
+    Float4* normal;        // normal of the guide's surface; their number
+    Float4* met;           // rgb of emission; number of loose samples, whose emission is excluded
+    Float4* diffuse_color; // rgb of divisors of the guide's surface
+    Float4* gloss_color;   // for the other signal, like diffuse_color
+    Float4* neighbour_diffuse[kNeighbourSurfaces]; // divisors of another surface; bits of a pixel whose guide shows it,
+                                                   // kNoHit: none
+    Float4* neighbour_gloss[kNeighbourSurfaces];   // for the other signal; their number
 };
 
 /// Whether `point`, camera space, with the normal `normal`, lies on the surface that `guide` shows at `pixel`, whose

@@ -45,9 +45,9 @@ Reconstruction::Reconstruction(Queue& queue, uint32_t width, uint32_t height)
       wide_(queue, wide_count(width, height), "reconstruction"),
       narrow_(queue, narrow_count(width, height), "reconstruction") {}
 
-TemporalGradientsMemory Reconstruction::room_for_change() const {
+TemporalGradientsMemory Reconstruction::gradients_memory() const {
     Float4* const signals = wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_;
-    return {reinterpret_cast<Float4*>(places_before()), signals,
+    return {reinterpret_cast<Float4*>(positions_before()), signals,
             wide_.data() + wide_.size() -
                 TemporalGradientsMemory::kNumbers * TemporalGradientsMemory::pixels(width_, height_)};
 }
@@ -59,10 +59,10 @@ HistoryView Reconstruction::history(uint32_t frame) const {
         wide, wide + pixels, wide + 2 * pixels, narrow_.data() + which * pixels, wide + 3 * pixels, wide + 4 * pixels};
 }
 
-/// Computes the filtered light of the frame; `room` is a free array of the picture's size.
+/// Computes the filtered light of the frame; `memory` is a free array of the picture's size.
 SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
                                    const PreviousScene& scene_before, const TemporalGradientsView& change,
-                                   const ReconstructionSettings& settings, Float4*& room) {
+                                   const ReconstructionSettings& settings, Float4*& memory) {
     PERTEV_CHECK(frame.width() == width_ && frame.height() == height_);
     const uint32_t pixels = width_ * height_;
     const HistoryView now = history(frames_ + 1), before = history(frames_);
@@ -76,8 +76,9 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
     launch(*queue_, "split_signals", pixels, SplitSignals{noisy, a, now});
     const auto accumulate = [&]<bool kFollows>() {
         launch(*queue_, "accumulate_signals", pixels,
-               AccumulateSignals<kFollows>{noisy, a, scene, scene_before, cameras, now, before, change, places_before(),
-                                           settings.history, settings.clamp_fireflies, has_gloss, has_history});
+               AccumulateSignals<kFollows>{noisy, a, scene, scene_before, cameras, now, before, change,
+                                           positions_before(), settings.history, settings.clamp_fireflies, has_gloss,
+                                           has_history});
     };
     if (change.guide != nullptr) {
         accumulate.operator()<true>();
@@ -88,14 +89,14 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
     if (settings.keep_layers) {
         if (layers_.size() != pixels) layers_ = {*queue_, pixels, "layers of the reconstruction"};
         launch(*queue_, "keep_layers", pixels,
-               KeepLayers{places_before(), b, width_, has_history, has_gloss, layers_.data()});
+               KeepLayers{positions_before(), b, width_, has_history, has_gloss, layers_.data()});
     }
     for (uint32_t pass = 0; pass < settings.passes; ++pass) {
         launch(*queue_, "wavelet_pass", pixels,
                WaveletPass{now.guide, b, a, camera, width_, height_, 1 << pass, kTolerance, kMinTrust, has_gloss});
         std::swap(a, b);
     }
-    room = a.diffuse;
+    memory = a.diffuse;
     return b;
 }
 
@@ -107,13 +108,13 @@ void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, cons
     const uint32_t pixels = width_ * height_;
     const HistoryView now = history(frames_ + 1);
     timer_.start();
-    Float4* room = nullptr;
-    const SignalsView light = filter(frame, camera, scene, scene_before, change, settings, room);
-    Float4* const picture = settings.anti_alias ? room : now.shown;
+    Float4* memory = nullptr;
+    const SignalsView light = filter(frame, camera, scene, scene_before, change, settings, memory);
+    Float4* const picture = settings.anti_alias ? memory : now.shown;
     launch(*queue_, "compose_picture", pixels, ComposePicture{frame.view(), light, picture});
     if (settings.anti_alias) {
         launch(*queue_, "anti_alias", pixels,
-               AntiAlias{picture, places_before(), history(frames_).shown, now.shown, width_, height_, frames_ > 0});
+               AntiAlias{picture, positions_before(), history(frames_).shown, now.shown, width_, height_, frames_ > 0});
     }
     timer_.stop();
     last_camera_ = camera;
@@ -130,8 +131,8 @@ void Reconstruction::add_upsampled(const NoisyFrame& frame, const CameraView& li
     }
     const HistoryView now = history(frames_ + 1);
     timer_.start();
-    Float4* room = nullptr;
-    const SignalsView light = filter(frame, light_camera, scene, scene_before, change, settings, room);
+    Float4* memory = nullptr;
+    const SignalsView light = filter(frame, light_camera, scene, scene_before, change, settings, memory);
     enlarged_->add(features, camera, {light, now.guide, light_camera, width_, height_, frame.splits_light()}, scene,
                    scene_before, settings, frames_ > 0);
     timer_.stop();
@@ -164,8 +165,8 @@ FrameTones Reconstruction::tones(const NoisyFrame& frame) const {
     const uint32_t columns = block_columns(width, side), rows = (height + side - 1) / side;
     const std::size_t row_sums = std::size_t(columns) * height, blocks = std::size_t(columns) * rows;
     Float4* const signals = wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_; // 4 per pixel
-    Float4* const room = enlarged_ ? enlarged_->room_for_tones() : signals;
-    const BlockSums sums = {room, room + row_sums}, means = {room + 2 * row_sums, room + 2 * row_sums + blocks};
+    Float4* const memory = enlarged_ ? enlarged_->tone_memory() : signals;
+    const BlockSums sums = {memory, memory + row_sums}, means = {memory + 2 * row_sums, memory + 2 * row_sums + blocks};
     launch(*queue_, "sum_block_rows", static_cast<uint32_t>(row_sums),
            SumBlockRows{shown(), frame.view(), width, side, columns, sums});
     launch(*queue_, "mean_of_block_rows", static_cast<uint32_t>(blocks),
@@ -207,7 +208,7 @@ void Reconstruction::display(ToneMap tone_map, float exposure_stops) {
     if (display_ == nullptr || display_bytes_ != size) display_ = queue_->make_host_copy(size);
     display_bytes_ = size;
     auto* const signals = reinterpret_cast<uint8_t*>(wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_);
-    uint8_t* const bytes = enlarged_ ? enlarged_->room_for_bytes() : signals;
+    uint8_t* const bytes = enlarged_ ? enlarged_->byte_memory() : signals;
     launch(*queue_, "show_picture", pixels, ShowPicture{shown(), tone_map, exposure_scale(exposure_stops), bytes});
     copy_timer_.start();
     display_->take(bytes);

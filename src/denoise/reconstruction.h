@@ -48,7 +48,7 @@ public:
                        const TemporalGradientsView& change, const ReconstructionSettings& settings);
 
     /// Memory for `change` of the next add(), free from one add() to the next.
-    TemporalGradientsMemory room_for_change() const;
+    TemporalGradientsMemory gradients_memory() const;
     /// Number of frames since the last cut.
     uint32_t frames() const { return frames_; }
     /// Size of the light, which is that of the picture unless it is upsampled.
@@ -83,8 +83,8 @@ private:
     std::vector<Float4> kept_layers() const;
     SignalsView filter(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
                        const PreviousScene& before, const TemporalGradientsView& change,
-                       const ReconstructionSettings& settings, Float4*& room);
-    Vec2* places_before() const { return narrow_.data() + 2 * std::size_t(width_) * height_; }
+                       const ReconstructionSettings& settings, Float4*& memory);
+    Vec2* positions_before() const { return narrow_.data() + 2 * std::size_t(width_) * height_; }
     const Float4* shown() const;
 
     Queue* queue_;

@@ -14,7 +14,7 @@ struct SplitSignals {
 
     HD void operator()(uint32_t i) const {
         const Float4 normal = frame.normal[i];
-        now.guide[i] = pack({vec3_of(normal), frame.albedo[i].w, normal.w, bits_of(frame.place[i].x)});
+        now.guide[i] = pack({vec3_of(normal), frame.albedo[i].w, normal.w, bits_of(frame.hit[i].x)});
         const SplitLight light = split_light(frame, i);
         signals.diffuse[i] = with_w(light.diffuse / light.diffuse_divisor, 0);
         if (frame.splits_light()) signals.gloss[i] = with_w(light.gloss / light.gloss_divisor, 0);

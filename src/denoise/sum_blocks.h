@@ -46,7 +46,7 @@ struct SumBlockRows {
             const Rgb light = light_of_shown(rgb_of(shown[pixel])), met = rgb_of(frame.emission[pixel]);
             all += light;
             const Rgb rest = light - met;
-            if (bits_of(frame.place[pixel].x) == kNoHit || !(luminance(rest) >= luminance(met))) continue;
+            if (bits_of(frame.hit[pixel].x) == kNoHit || !(luminance(rest) >= luminance(met))) continue;
             scattered += Rgb{max(rest.r, 0.0f), max(rest.g, 0.0f), max(rest.b, 0.0f)};
             counted += 1;
         }

@@ -11,10 +11,10 @@ constexpr uint32_t kPasses = 2; // passes of SpreadLight, whose means reach 12 p
 } // namespace
 
 TemporalGradients::TemporalGradients(Queue& queue, uint32_t frame_width, uint32_t frame_height, bool splits_light,
-                                     const TemporalGradientsMemory& room)
+                                     const TemporalGradientsMemory& memory)
     : queue_(&queue), frame_width_(frame_width), frame_height_(frame_height),
-      before_(queue, room.side(frame_width), room.side(frame_height), splits_light, room.before),
-      after_(queue, before_.width(), before_.height(), splits_light, room.after), numbers_(room.numbers) {}
+      before_(queue, memory.side(frame_width), memory.side(frame_height), splits_light, memory.before),
+      after_(queue, before_.width(), before_.height(), splits_light, memory.after), numbers_(memory.numbers) {}
 
 TemporalGradientsView TemporalGradients::compare() {
     const uint32_t width = before_.width(), height = before_.height(), pixels = width * height;

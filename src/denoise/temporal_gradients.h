@@ -27,7 +27,7 @@ class TemporalGradients {
 public:
     /// Makes the pictures for frames of this size. `splits_light` is that of NoisyFrame.
     TemporalGradients(Queue& queue, uint32_t frame_width, uint32_t frame_height, bool splits_light,
-                      const TemporalGradientsMemory& room);
+                      const TemporalGradientsMemory& memory);
 
     /// Whether they fit frames like this one.
     bool fits(const NoisyFrame& frame) const {

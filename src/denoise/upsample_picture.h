@@ -35,8 +35,8 @@ struct UpsamplePicture {
 
     HD void operator()(uint32_t pixel) const {
         const Float4 light = features.light[pixel], normal = features.normal[pixel];
-        const uint32_t own = bits_of(features.place[pixel].x);
-        if (has_history) was_at[pixel] = place_before(pixel, own);
+        const uint32_t own = bits_of(features.hit[pixel].x);
+        if (has_history) was_at[pixel] = position_before(pixel, own);
         Rgb seen = light.w != 0 ? rgb_of(features.emission[pixel]) : Rgb{0, 0, 0};
         if (own != kNoHit) {
             const Light at = light_at(pixel, own, normal);
@@ -52,11 +52,11 @@ private:
     };
     static constexpr int kTaps = 4; // per side
 
-    HD Vec2 place_before(uint32_t pixel, uint32_t own) const {
+    HD Vec2 position_before(uint32_t pixel, uint32_t own) const {
         const FrameCameras cameras = {camera, camera_before, width, height};
         const Vec2 centre = {static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f};
         if (own == kNoHit) return reproject_sky(cameras, centre);
-        return reproject_surface(cameras, scene, scene_before, centre, features.place[pixel]).pixel;
+        return reproject_surface(cameras, scene, scene_before, centre, features.hit[pixel]).pixel;
     }
 
     HD Light light_at(uint32_t pixel, uint32_t own, Float4 normal) const {

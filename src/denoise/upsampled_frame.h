@@ -24,9 +24,9 @@ public:
     /// The last picture as ShownColor; w is unused.
     const Float4* shown() const { return shown(frames_); }
     /// [pixels * 4]: memory for the bytes of a display.
-    uint8_t* room_for_bytes() const { return reinterpret_cast<uint8_t*>(picture_); }
+    uint8_t* byte_memory() const { return reinterpret_cast<uint8_t*>(picture_); }
     /// Memory for Reconstruction::tones().
-    Float4* room_for_tones() const { return tones_.data(); }
+    Float4* tone_memory() const { return tones_.data(); }
 
 private:
     Float4* shown(uint32_t frame) const;

@@ -22,7 +22,7 @@ struct WaveletPass {
     bool has_gloss;  // see AccumulateSignals
 
     HD void operator()(uint32_t i) const {
-        const PixelPlace at = tiled_place(i, width, height);
+        const PixelPosition at = tiled_position(i, width, height);
         const uint32_t pixel = at.y * width + at.x;
         const Float4 own = guide[pixel], diffuse = from.diffuse[pixel],
                      gloss = has_gloss ? from.gloss[pixel] : Float4{0, 0, 0, 0};

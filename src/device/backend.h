@@ -29,7 +29,7 @@ public:
     virtual void take(const void* device) = 0;
     /// Alternative to take(): the address to which a stage writes the bytes itself. mark() must follow its launch on
     /// the current stream.
-    virtual void* place() = 0;
+    virtual void* target() = 0;
     virtual void mark() = 0;
     /// Waits for the last take() or mark(), and not for later work. The bytes stay until the next one. Throws
     /// Error(DeviceFault) that names `stage`, the last one launched.

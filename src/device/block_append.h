@@ -32,11 +32,11 @@ public:
     /// Reserves slots for this thread's elements of the lists that it `adds` to, and increases *sizes[l], in the
     /// queue's memory. On the device all threads of the block must call it.
     HD ListSlots<kLists> take(uint32_t* const (&sizes)[kLists], const bool (&adds)[kLists]) const {
-        ListSlots<kLists> places = {};
+        ListSlots<kLists> slots = {};
 #if PERTEV_ON_DEVICE
         uint32_t* const counts = shared();
         for (int l = 0; l < kLists; ++l) {
-            if (adds[l]) places.at[l] = atomicAdd(counts + l, 1u);
+            if (adds[l]) slots.at[l] = atomicAdd(counts + l, 1u);
         }
         __syncthreads();
         if (threadIdx.x < kLists) { // in parallel, which a loop would not be
@@ -48,13 +48,13 @@ public:
             counts[kLists + threadIdx.x] = count > 0 ? atomicAdd(size, count) : 0u;
         }
         __syncthreads();
-        for (int l = 0; l < kLists; ++l) places.at[l] += counts[kLists + l];
+        for (int l = 0; l < kLists; ++l) slots.at[l] += counts[kLists + l];
 #else
         for (int l = 0; l < kLists; ++l) {
-            if (adds[l]) places.at[l] = atomic_add(sizes[l], 1u);
+            if (adds[l]) slots.at[l] = atomic_add(sizes[l], 1u);
         }
 #endif
-        return places;
+        return slots;
     }
 
 private:

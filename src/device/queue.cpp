@@ -32,7 +32,7 @@ class CpuHostCopy final : public HostCopy {
 public:
     explicit CpuHostCopy(std::size_t bytes) : bytes_(bytes) {}
     void take(const void* device) override { std::memcpy(bytes_.data(), device, bytes_.size()); }
-    void* place() override { return bytes_.data(); }
+    void* target() override { return bytes_.data(); }
     void mark() override {}
     const void* wait(const char*) override { return bytes_.data(); }
 

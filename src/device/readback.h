@@ -22,7 +22,7 @@ public:
     void take(const T* device) { copy_->take(device); }
     /// Alternative to take() without a copy between two kernels: a stage of the current stream writes the value
     /// there, at most once, after the previous one has been waited for; mark() follows its launch.
-    T* place() { return static_cast<T*>(copy_->place()); }
+    T* target() { return static_cast<T*>(copy_->target()); }
     void mark() { copy_->mark(); }
     /// Waits for the value of the last take(), or of the stage before the last mark(). Throws Error(DeviceFault).
     T wait() { return *static_cast<const T*>(queue_->wait(*copy_)); }

@@ -66,7 +66,7 @@ struct AcceptOpaque {
 private:
     HD bool is_at(const Uint2* ends, const RayQueueView& rays, uint32_t instance, uint32_t primitive) const {
         if (ends == nullptr) return false;
-        const Uint2 end = ends[rays.place(i)];
+        const Uint2 end = ends[rays.index(i)];
         return instance == end.x && primitive == end.y;
     }
 };
@@ -86,8 +86,8 @@ struct AcceptQueued {
         // Tested here, it needs no call if it is known.
         const Opacity known = known_opacity(query.micromaps, instance, primitive, u, v);
         if (known != Opacity::Unknown) return known == Opacity::Opaque;
-        const Ray* const ray = query.rays.rays + query.rays.place(i);
-        const uint32_t key = query.rays.keys != nullptr ? query.rays.keys[query.rays.place(i)] : 0;
+        const Ray* const ray = query.rays.rays + query.rays.index(i);
+        const uint32_t key = query.rays.keys != nullptr ? query.rays.keys[query.rays.index(i)] : 0;
         if constexpr (kMayMove) {
             return !passes_moved_surface(query.scene, ray, key, query.hides_backs, time(), instance, primitive, u, v);
         } else {
@@ -98,13 +98,13 @@ struct AcceptQueued {
         requires kMayMove
     {
         if (query.moving == nullptr) return ray;
-        const MovedLine line = moved_back(query.moving, motion, time(), query.rays.rays + query.rays.place(i));
+        const MovedLine line = moved_back(query.moving, motion, time(), query.rays.rays + query.rays.index(i));
         return {line.origin, ray.t_min, line.direction, ray.t_max};
     }
 
 private:
     HD const float* time() const {
-        return query.rays.times != nullptr ? query.rays.times + query.rays.place(i) : nullptr;
+        return query.rays.times != nullptr ? query.rays.times + query.rays.index(i) : nullptr;
     }
 };
 

@@ -61,10 +61,10 @@ std::map<MaterialAndMesh, Micromap> list_micromaps(const Scene& scene, std::size
     std::map<MaterialAndMesh, Micromap> maps;
     for (const Instance& instance : scene.instances) {
         if (!has_micromap(scene, instance)) continue;
-        const auto [place, is_new] = maps.try_emplace({instance.material, instance.mesh});
+        const auto [entry, is_new] = maps.try_emplace({instance.material, instance.mesh});
         if (!is_new) continue;
         const Mesh& mesh = scene.meshes[instance.mesh];
-        place->second = {level_for(scene, mesh, scene.materials[instance.material]), mesh.triangle_count(), 0};
+        entry->second = {level_for(scene, mesh, scene.materials[instance.material]), mesh.triangle_count(), 0};
     }
     for (uint32_t most = kMaxMicroLevel;; --most) {
         words = 0;

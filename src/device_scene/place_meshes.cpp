@@ -26,12 +26,11 @@ void add_triangles(const Mesh& mesh, const Transform& world_from_local, uint32_t
 
 Error too_many_copies(const MeshPlacement& placement, std::size_t i, const Instance& instance, uint64_t limit) {
     return {ErrorCode::OverLimit,
-            fmt::format(
-                "{}: its transform squeezes one direction more than {} times against another, so its mesh is "
-                "copied into world space; copies so far: {}, with {} triangles, where the limit for this scene is {}; "
-                "squeeze the mesh itself, or use copies of fewer triangles",
-                numbered("instance", i, instance.name, origin_of(instance)), kMaxCondition, placement.copies,
-                placement.copied_triangles, limit)};
+            fmt::format("{}: its transform squeezes one direction by more than {} times another, so that its mesh is "
+                        "copied into world space; the {} copies have {} triangles, and the limit for this scene is {}; "
+                        "squeeze the mesh itself, or use copies of fewer triangles",
+                        numbered("instance", i, instance.name, origin_of(instance)), kMaxCondition, placement.copies,
+                        placement.copied_triangles, limit)};
 }
 
 } // namespace

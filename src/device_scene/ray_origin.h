@@ -20,13 +20,13 @@ HD inline float next_float(float x, float sign) {
 }
 
 /// Weights of a triangle's second and third vertex.
-struct PlaceOnTriangle {
+struct PointOnTriangle {
     float u, v;
 };
 
 /// Moves the position (u, v) inwards if one of its three weights is below `least` (in [0, 1/4]). Each weight is then
 /// at least 2/3 of that; nothing changes if none is below it.
-HD inline PlaceOnTriangle keep_off_edges(float u, float v, float least) {
+HD inline PointOnTriangle keep_off_edges(float u, float v, float least) {
     const float w = 1.0f - u - v;
     if (min(w, min(u, v)) >= least) return {u, v};
     const float at_u = max(u, least), at_v = max(v, least);

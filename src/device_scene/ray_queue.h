@@ -47,9 +47,9 @@ struct RayQueueView {
     int32_t step = 1;               // -1: the pointers are to the last elements, and ray i is i elements before them
     bool is_endless = false;        // all go from t = 0 to infinity; t_min and t_max hold numbers of the owner
 
-    HD int64_t place(uint32_t i) const { return step * static_cast<int64_t>(i); }
+    HD int64_t index(uint32_t i) const { return step * static_cast<int64_t>(i); }
     HD Ray load(uint32_t i) const {
-        Ray ray = load_ray(rays + place(i));
+        Ray ray = load_ray(rays + index(i));
         if (is_endless) {
             ray.t_min = 0;
             ray.t_max = kInfinity;
@@ -60,22 +60,22 @@ struct RayQueueView {
 
 /// Hits of rays 0, 1, ....
 struct HitQueueView {
-    Float4* places = nullptr;      // t, u, v, bits of the primitive; absent in an any-hit search
+    Float4* records = nullptr;     // t, u, v, bits of the primitive; absent in an any-hit search
     uint32_t* instances = nullptr; // kNoHit: no hit; in an any-hit search otherwise 0
     int32_t step = 1;              // see RayQueueView
 
     HD Hit load(uint32_t i) const {
-        const Float4 p = places[place(i)];
-        return {p.x, p.y, p.z, instances[place(i)], bits_of(p.w)};
+        const Float4 p = records[index(i)];
+        return {p.x, p.y, p.z, instances[index(i)], bits_of(p.w)};
     }
     HD void store(uint32_t i, const Hit& hit) const {
-        places[place(i)] = {hit.t, hit.u, hit.v, float_of(hit.primitive)};
-        instances[place(i)] = hit.instance;
+        records[index(i)] = {hit.t, hit.u, hit.v, float_of(hit.primitive)};
+        instances[index(i)] = hit.instance;
     }
-    HD void store_any(uint32_t i, bool found) const { instances[place(i)] = found ? 0 : kNoHit; }
+    HD void store_any(uint32_t i, bool found) const { instances[index(i)] = found ? 0 : kNoHit; }
 
 private:
-    HD int64_t place(uint32_t i) const { return step * static_cast<int64_t>(i); }
+    HD int64_t index(uint32_t i) const { return step * static_cast<int64_t>(i); }
 };
 
 } // namespace pertev

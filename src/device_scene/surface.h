@@ -113,7 +113,7 @@ HD inline Ray ray_to_light(const LightSample& light, Vec3 position, Vec3 error, 
 }
 
 /// Vertices and other data of a triangle that make_surface needs repeatedly.
-struct PlacedTriangle {
+struct WorldTriangle {
     TriangleIndices i;
     Vec3 a, ab, ac; // first corner and the edges from it, world space
     Vec3 normal;    // unit, by the winding in the mesh's own space
@@ -145,8 +145,8 @@ HD inline Vec3 hit_error(const InstanceView& instance, Vec3 position, Vec3 ab, V
 /// then 4.6 e sin x - 1.7 e cos x inside the other: more than the 1.7 e of rounding from 42 degrees to flat, and for
 /// most triangles (11 e) from 17 degrees. Slivers count as at least a sixteenth as high as long, so that no point
 /// moves by more than 900 e.
-HD inline PlacedTriangle place_triangle(const InstanceView& instance, const MeshView& mesh, const Hit& hit) {
-    PlacedTriangle triangle;
+HD inline WorldTriangle world_triangle(const InstanceView& instance, const MeshView& mesh, const Hit& hit) {
+    WorldTriangle triangle;
     triangle.i = triangle_indices(mesh, hit.primitive);
     const Transform& m = instance.world_from_local;
     triangle.a = transform_point(m, mesh.positions[triangle.i.a]);
@@ -160,14 +160,14 @@ HD inline PlacedTriangle place_triangle(const InstanceView& instance, const Mesh
 
     triangle.error = hit_error(instance, triangle.at(hit.u, hit.v), triangle.ab, triangle.ac);
     const float least = (16.0f * inv) * max_component(triangle.error) / max(length(across), 0x1p-4f);
-    const PlaceOnTriangle place = keep_off_edges(hit.u, hit.v, min(least, 0.25f));
-    triangle.position = triangle.at(place.u, place.v);
+    const PointOnTriangle uv = keep_off_edges(hit.u, hit.v, min(least, 0.25f));
+    triangle.position = triangle.at(uv.u, uv.v);
     return triangle;
 }
 
 /// Front normal for shading: the normal by the winding, which defines the emitting side (scene/material.h), or its
 /// opposite if vertex normals define the other side as the front.
-HD inline Vec3 front_normal(const InstanceView& instance, const MeshView& mesh, const PlacedTriangle& triangle) {
+HD inline Vec3 front_normal(const InstanceView& instance, const MeshView& mesh, const WorldTriangle& triangle) {
     if (mesh.normals == nullptr) return triangle.normal;
     const Vec3 sum = mesh.normals[triangle.i.a] + mesh.normals[triangle.i.b] + mesh.normals[triangle.i.c];
     const bool is_behind = dot(transform_transposed(instance.local_from_world, sum), triangle.normal) < 0;
@@ -175,7 +175,7 @@ HD inline Vec3 front_normal(const InstanceView& instance, const MeshView& mesh, 
 }
 
 /// The frame before the normal map: interpolated normal and tangent, rotated like the map's coordinates.
-HD inline Frame tangent_frame(const InstanceView& instance, const MeshView& mesh, const PlacedTriangle& triangle,
+HD inline Frame tangent_frame(const InstanceView& instance, const MeshView& mesh, const WorldTriangle& triangle,
                               const Hit& hit, Vec3 normal, const TextureRef& map) {
     if (mesh.tangents == nullptr) return make_frame(normal); // no texture coordinates either (make_tangents.h)
     const Vec4 local = interpolate(mesh.tangents, triangle.i, hit.u, hit.v);
@@ -195,7 +195,7 @@ HD inline float corner_tilt(const InstanceView& instance, Vec3 local_normal, Vec
 /// normal map, because a map's bumps have no neighbours whose horizon matters.
 template <ShadingVariant kVariant>
 HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instance, const MeshView& mesh,
-                              const MaterialParameters& material, const PlacedTriangle& triangle, const Hit& hit,
+                              const MaterialParameters& material, const WorldTriangle& triangle, const Hit& hit,
                               Vec3 geometric_normal, Vec3 wo, float& tilt) {
     tilt = 0;
     if (mesh.normals == nullptr && !has_texture<kVariant>(material.normal_texture)) return make_frame(geometric_normal);
@@ -226,7 +226,7 @@ HD inline Surface make_surface(const SceneView& scene, const Hit& hit, Vec3 dire
     const InstanceView& instance = scene.instances[hit.instance];
     const MeshView& mesh = scene.meshes[instance.mesh];
     const MaterialParameters& material = scene.materials[instance.material];
-    const PlacedTriangle triangle = place_triangle(instance, mesh, hit);
+    const WorldTriangle triangle = world_triangle(instance, mesh, hit);
 
     const Vec3 geometric_normal = front_normal(instance, mesh, triangle);
     float tilt = 0;

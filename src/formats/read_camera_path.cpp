@@ -29,14 +29,14 @@ CameraKey read_key(const JsonValue& source, const CameraPath& before) {
     key.time_s = time.to_double();
     if (key.time_s < 0) throw time.error(fmt::format("{}; expected seconds, at least 0", key.time_s));
     if (!before.keys.empty() && key.time_s <= before.keys.back().time_s) {
-        throw time.error(fmt::format("{}; expected more than {}, the time of the key before", key.time_s,
+        throw time.error(fmt::format("{}; expected more than {}, the time of the previous key", key.time_s,
                                      before.keys.back().time_s));
     }
     key.eye = read_vec3(source.at("eye"));
     key.target = read_vec3(source.at("target"));
     if (const auto up = source.find("up")) key.up = to_float(read_vec3(*up));
     if (!is_finite(look_at(to_float(key.eye - key.target), {}, key.up))) {
-        throw source.error("the target must differ from the eye, and not lie along up (0, 1, 0 without \"up\")");
+        throw source.error("the target must differ from the eye, and its direction from up (0, 1, 0 without \"up\")");
     }
     const auto fov = source.find("fov");
     if (fov) key.fov_deg = fov->to_float();
@@ -44,7 +44,7 @@ CameraKey read_key(const JsonValue& source, const CameraPath& before) {
         throw fov->error(fmt::format("{}; expected degrees, from 0.01 to 179", key.fov_deg));
     }
     if (!before.keys.empty() && fov.has_value() != (before.keys[0].fov_deg > 0)) {
-        throw source.error("\"fov\" stands in some keys; expected it in all or in none");
+        throw source.error("only some keys have \"fov\"; expected it in all or none");
     }
     return key;
 }

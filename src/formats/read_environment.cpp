@@ -12,8 +12,8 @@ namespace pertev {
 Image read_environment_image(const std::filesystem::path& path, Messages& messages) {
     Image image = read_image(path, &messages);
     if (image.width != 2 * image.height) {
-        messages.warn({Place{path.string()},
-                       fmt::format("{}x{} is not twice as wide as high; it is taken as a full panorama all the same",
+        messages.warn({FileLocation{path.string()},
+                       fmt::format("{}x{} is not twice as wide as high; it is used as a full panorama anyway",
                                    image.width, image.height)});
     }
     if (image.channels == 4) { // alpha means nothing here
@@ -25,7 +25,7 @@ Image read_environment_image(const std::filesystem::path& path, Messages& messag
     const std::string extension = lower_case_extension(path);
     if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") {
         messages.warn(
-            {Place{path.string()}, "8-bit pictures cut bright light off; an .hdr or .exr gives its full range"});
+            {FileLocation{path.string()}, "8-bit pictures clip bright light; an .hdr or .exr has the full range"});
     }
     return image;
 }

@@ -24,8 +24,8 @@ namespace {
 struct FormatReader {
     std::string_view extension;
     Scene (*read)(const std::filesystem::path&, const FileAccess&, const ReadOptions&, Messages&);
-    bool tells_sides; // its files can say whether a surface emits from both faces
-    bool tells_space; // their coordinates are metres, y up
+    bool defines_sides; // its files can say whether a surface emits from both faces
+    bool defines_space; // their coordinates are metres, y up
 };
 
 const std::array kReaders = {
@@ -51,7 +51,7 @@ Scene read_file_or_builtin(const std::filesystem::path& path, const ReadOptions&
         return read_gltf(path, {bytes->begin(), bytes->end()}, access, options, messages);
     }
     if (const FormatReader* reader = find_reader(path)) return reader->read(path, access, options, messages);
-    throw Error(ErrorCode::BadInput, Place{path.string()}, fmt::format("neither {}", scene_kinds()));
+    throw Error(ErrorCode::BadInput, FileLocation{path.string()}, fmt::format("neither {}", scene_kinds()));
 }
 
 } // namespace
@@ -63,7 +63,7 @@ Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, 
     if (scene.file_scenes.empty() && !options.file_scene.empty()) {
         choose_file_scene(path.string(), {}, options.file_scene);
     }
-    if (!tells_space(path)) place_in_metres(options.space, scene);
+    if (!defines_space(path)) convert_to_metres(options.space, scene);
     validate(scene, path.string(), messages);
     warn_of_invisible_materials(scene, path.string(), messages);
     if (options.two_sided_lights) {
@@ -72,15 +72,15 @@ Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, 
     return scene;
 }
 
-bool tells_emitter_sides(const std::filesystem::path& path) {
+bool defines_emitter_sides(const std::filesystem::path& path) {
     const FormatReader* reader = find_reader(path);
-    return reader == nullptr || reader->tells_sides;
+    return reader == nullptr || reader->defines_sides;
 }
 
-bool tells_space(const std::filesystem::path& path) {
+bool defines_space(const std::filesystem::path& path) {
     if (builtin_scene(path.string())) return true;
     const FormatReader* reader = find_reader(path);
-    return reader == nullptr || reader->tells_space;
+    return reader == nullptr || reader->defines_space;
 }
 
 bool is_scene_name(const std::filesystem::path& path) {

@@ -19,11 +19,11 @@ namespace pertev {
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
 
 /// Whether files of this name's format can say if a surface emits from one face or from both; built-in scenes can.
-bool tells_emitter_sides(const std::filesystem::path& path);
+bool defines_emitter_sides(const std::filesystem::path& path);
 
 /// Whether files of this name's format define their unit and up axis, so that ReadOptions::space has no effect;
 /// built-in scenes do.
-bool tells_space(const std::filesystem::path& path);
+bool defines_space(const std::filesystem::path& path);
 
 /// Whether a name could be a scene's: it has an extension from above or is that of a built-in scene.
 bool is_scene_name(const std::filesystem::path& path);

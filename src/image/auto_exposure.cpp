@@ -39,7 +39,7 @@ struct DoubleRgb {
 };
 
 /// How much a place counts in the mean: 1 in the middle of the picture, 1/8 in its corners. `x` and `y`: [0, 1].
-double weight_of_place(double x, double y) {
+double position_weight(double x, double y) {
     const double inwards = std::max(0.0, 1 - 2 * ((x - 0.5) * (x - 0.5) + (y - 0.5) * (y - 0.5)));
     return 0.125 + 0.875 * inwards * inwards;
 }
@@ -81,7 +81,7 @@ Tones block_tones(const Image& image) {
         if (!(light > 0 && is_finite(mean))) continue;
         const double x = (static_cast<double>(i % columns) + 0.5) / columns;
         const double y = (static_cast<double>(i / columns) + 0.5) / rows;
-        tones.luminance.push_back({light, weights[i] * weight_of_place(x, y)});
+        tones.luminance.push_back({light, weights[i] * position_weight(x, y)});
         tones.largest.push_back({max_component(mean), weights[i]});
     }
     std::ranges::sort(tones.luminance, {}, &Tone::light);

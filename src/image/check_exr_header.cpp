@@ -52,7 +52,7 @@ public:
         const bool is_multi_part = (version & kMultiPart) != 0;
         for (std::size_t part = 0;; ++part) {
             if (is_multi_part && peek_is_end()) {
-                if (part == 0) fail("a file of no parts");
+                if (part == 0) fail("the file has no parts");
                 break;
             }
             if (part >= kMaxParts) fail(fmt::format("more than {} parts", kMaxParts));
@@ -72,11 +72,11 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorCode::BadInput, Place{name_},
+        throw Error(ErrorCode::BadInput, FileLocation{name_},
                     fmt::format("not a readable EXR (header, byte {}: {})", offset_, what));
     }
     void need(uint64_t count) const {
-        if (count > bytes_.size() - offset_) fail("the header is cut short");
+        if (count > bytes_.size() - offset_) fail("the header is truncated");
     }
     template <class T>
     T read(std::size_t at) const { // the caller has checked that it is there
@@ -149,7 +149,7 @@ private:
             if (offset_ >= end) fail("the list of channels has no end");
             const std::string_view channel = read_name(end);
             if (channel.empty()) return;
-            if (end - offset_ < 16) fail("the list of channels is cut short");
+            if (end - offset_ < 16) fail("the list of channels is truncated");
             const int32_t type = read<int32_t>(offset_);
             const int32_t x_sampling = read<int32_t>(offset_ + 8), y_sampling = read<int32_t>(offset_ + 12);
             if (type < 0 || type > 2) fail(fmt::format("channel \"{}\" has the unknown pixel type {}", channel, type));
@@ -184,7 +184,7 @@ private:
                      ((header.data->height() + header.tile_height - 1) / header.tile_height);
         }
         if (chunks > (bytes_.size() - offset_) / 8)
-            fail(fmt::format("{} chunks of pixels do not fit into the file; it is cut short", chunks));
+            fail(fmt::format("{} chunks of pixels do not fit into the file; it is truncated", chunks));
     }
 
     // Maximum expansion of pixels: deflate reaches 1032:1; DWA stores one number for a block of 64 pixels and

@@ -54,7 +54,7 @@ Image decode_exr(std::span<const std::byte> bytes, const std::string& name) {
         }
         return image;
     }
-    throw Error(ErrorCode::BadInput, Place{name},
+    throw Error(ErrorCode::BadInput, FileLocation{name},
                 fmt::format("no part of this EXR has the channels R, G, B or Y; it has {}", seen));
 }
 

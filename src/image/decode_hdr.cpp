@@ -38,7 +38,7 @@ public:
         read_header();
         const uint64_t line_length = x_is_major_ ? height_ : width_, lines = x_is_major_ ? width_ : height_;
         if (lines * 4 > bytes_.size() - offset_) // every coding takes a pixel's 4 bytes a line at least
-            fail(fmt::format("{} lines of pixels do not fit into the rest of the file; it is cut short", lines));
+            fail(fmt::format("{} lines of pixels do not fit into the rest of the file; it is truncated", lines));
 
         Image image{static_cast<uint32_t>(width_), static_cast<uint32_t>(height_), 3, {}};
         image.pixels.resize(image.width * std::size_t(image.height) * 3);
@@ -57,7 +57,7 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorCode::BadInput, Place{name_},
+        throw Error(ErrorCode::BadInput, FileLocation{name_},
                     fmt::format("not a readable Radiance HDR (at byte {}: {})", offset_, what));
     }
 
@@ -65,7 +65,7 @@ private:
         const char* start = reinterpret_cast<const char*>(bytes_.data()) + offset_;
         const std::size_t left = bytes_.size() - offset_;
         const void* end = std::memchr(start, '\n', left);
-        if (end == nullptr) fail("the header is cut short");
+        if (end == nullptr) fail("the header is truncated");
         const std::string_view line(start, static_cast<std::size_t>(static_cast<const char*>(end) - start));
         if (line.size() > 4096) fail("a header line of more than 4096 characters");
         offset_ += line.size() + 1;
@@ -155,7 +155,7 @@ private:
     }
 
     void need(std::size_t count) const {
-        if (bytes_.size() - offset_ < count) fail("the pixels are cut short");
+        if (bytes_.size() - offset_ < count) fail("the pixels are truncated");
     }
     uint8_t next_byte() { return std::to_integer<uint8_t>(bytes_[offset_++]); }
 
@@ -167,7 +167,7 @@ private:
             line.size() >= 8 && line.size() <= 0x7fff && first[0] == 2 && first[1] == 2 && first[2] < 128;
         if (!is_new) return read_flat_or_old(line);
         if (std::size_t(first[2]) * 256 + first[3] != line.size())
-            fail(fmt::format("a line of {} pixels, where the header says {}", first[2] * 256 + first[3], line.size()));
+            fail(fmt::format("a line of {} pixels; the header states {}", first[2] * 256 + first[3], line.size()));
         offset_ += 4;
         for (std::size_t channel = 0; channel < 4; ++channel) read_channel(line, channel);
     }
@@ -178,7 +178,7 @@ private:
             const unsigned code = next_byte();
             const bool is_run = code > 128;
             const std::size_t count = is_run ? code - 128 : code;
-            if (count == 0) fail("a run of no pixels");
+            if (count == 0) fail("a run of 0 pixels");
             if (count > line.size() - x) fail("a run goes beyond the end of its line");
             if (is_run) {
                 const uint8_t value = next_byte();

@@ -128,10 +128,10 @@ void convert_cmyk_row(unsigned char* row, std::size_t pixels, bool no_ink_is_255
 
 [[noreturn]] void fail(const JpegReader& reader, const std::string& name, std::optional<uint32_t> row) {
     std::string what = reader.error;
-    if (reader.cut_short) what = "the file is cut short";
+    if (reader.cut_short) what = "the file is truncated";
     if (reader.too_many_scans) what = fmt::format("more than {} scans", kMaxScans);
     const std::string where = row ? fmt::format("in row {} of {}", *row, reader.info.output_height) : "in its header";
-    throw Error(ErrorCode::BadInput, Place{name}, fmt::format("not a readable JPEG ({}: {})", where, what));
+    throw Error(ErrorCode::BadInput, FileLocation{name}, fmt::format("not a readable JPEG ({}: {})", where, what));
 }
 
 void open(JpegReader& reader, std::span<const std::byte> bytes, const std::string& name) {

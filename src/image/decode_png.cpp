@@ -50,7 +50,7 @@ void on_warning(png_structp png, png_const_charp message) {
 
 void read_bytes(png_structp png, png_bytep to, std::size_t count) {
     PngReader& reader = *static_cast<PngReader*>(png_get_io_ptr(png));
-    if (count > reader.bytes.size() - reader.offset) png_error(png, "the file is cut short");
+    if (count > reader.bytes.size() - reader.offset) png_error(png, "the file is truncated");
     std::memcpy(to, reader.bytes.data() + reader.offset, count);
     reader.offset += count;
 }
@@ -99,7 +99,7 @@ bool read_pixels(PngReader& reader, png_bytepp rows, std::size_t row_bytes) {
 }
 
 [[noreturn]] void fail(const PngReader& reader, const std::string& name) {
-    throw Error(ErrorCode::BadInput, Place{name},
+    throw Error(ErrorCode::BadInput, FileLocation{name},
                 fmt::format("not a readable PNG (at byte {}: {})", reader.offset,
                             reader.error[0] != '\0' ? reader.error : "out of memory"));
 }

@@ -33,7 +33,7 @@ public:
 
     bool read(char to[], int count) override {
         if (count < 0 || static_cast<uint64_t>(count) > bytes_.size() - offset_)
-            throw std::runtime_error("the file is cut short");
+            throw std::runtime_error("the file is truncated");
         std::memcpy(to, bytes_.data() + offset_, static_cast<std::size_t>(count));
         offset_ += static_cast<std::size_t>(count);
         return offset_ < bytes_.size();
@@ -83,7 +83,7 @@ struct ExrReader::State {
         : name(std::move(name_of_file)), stream(bytes, name) {}
 
     [[noreturn]] void fail(const std::exception& error) const {
-        throw Error(ErrorCode::BadInput, Place{name}, fmt::format("not a readable EXR ({})", error.what()));
+        throw Error(ErrorCode::BadInput, FileLocation{name}, fmt::format("not a readable EXR ({})", error.what()));
     }
     const Imf::Header& header(std::size_t part) const { return file->header(static_cast<int>(part)); }
 };
@@ -165,7 +165,7 @@ std::vector<ExrChannel> ExrReader::read(std::size_t part, const std::vector<Chan
     Imf::FrameBuffer frame;
     for (const ChannelInfo& channel : wanted) {
         if (channel.is_subsampled)
-            throw Error(ErrorCode::BadInput, Place{state_->name},
+            throw Error(ErrorCode::BadInput, FileLocation{state_->name},
                         fmt::format("channel {} has fewer samples than pixels (luminance/chroma), which is not "
                                     "supported; save it as R, G, B",
                                     channel.name));

@@ -10,7 +10,7 @@ namespace pertev {
 namespace {
 
 struct Found {
-    bool is_said = false;
+    bool is_given = false;
     std::optional<ColorPrimaries> primaries; // nothing also where they cannot be read
 };
 
@@ -36,15 +36,13 @@ Found find_primaries(std::span<const std::byte> bytes, const std::string& name) 
 std::optional<ColorMatrix> color_matrix_of(std::span<const std::byte> bytes, const std::string& name,
                                            Messages* messages) {
     const Found found = find_primaries(bytes, name);
-    if (!found.is_said || (found.primaries && is_rec709(*found.primaries))) return std::nullopt;
+    if (!found.is_given || (found.primaries && is_rec709(*found.primaries))) return std::nullopt;
     if (found.primaries) {
         if (std::optional<ColorMatrix> matrix = rec709_from(*found.primaries)) return matrix;
     }
     if (messages != nullptr) {
-        messages->leave_out(
-            fmt::format("{}: its chromaticities are no primaries of colours and are left out; its colours are taken "
-                        "as Rec. 709",
-                        name));
+        messages->leave_out(fmt::format(
+            "{}: its chromaticities are not valid primaries and are left out; its colours are read as Rec. 709", name));
     }
     return std::nullopt;
 }

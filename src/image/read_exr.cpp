@@ -9,7 +9,7 @@ namespace pertev {
 
 ExrFile read_exr(std::span<const std::byte> bytes, const std::string& name) {
     if (recognise_image(bytes) != ImageFormat::Exr)
-        throw Error(ErrorCode::BadInput, Place{name}, "not an OpenEXR file (its first bytes are others)");
+        throw Error(ErrorCode::BadInput, FileLocation{name}, "not an OpenEXR file (wrong first bytes)");
     ExrReader reader(bytes, name);
     ExrFile file{reader.width(), reader.height(), {}, reader.metadata()};
     for (std::size_t part = 0; part < reader.part_count(); ++part) {

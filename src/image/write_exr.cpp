@@ -89,8 +89,8 @@ void add_metadata(Imf::Header& header, const ExrMetadata& metadata) {
 
 void check_exr_row(uint32_t width, std::size_t channels) {
     if (row_bytes(width, channels) <= kMaxRowBytes) return;
-    throw Error(ErrorCode::OverLimit, fmt::format("{} channels of {} pixels a row: an EXR takes rows of 1 GiB at most, "
-                                                  "which are {} channels of that width",
+    throw Error(ErrorCode::OverLimit, fmt::format("{} channels of {} pixels per row exceed an EXR's limit of 1 GiB per "
+                                                  "row, which are {} channels of that width",
                                                   channels, width, kMaxRowBytes / row_bytes(width, 1)));
 }
 

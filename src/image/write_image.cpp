@@ -19,7 +19,7 @@ ImageFormat image_format_for(const std::filesystem::path& path) {
     if (extension == ".jpg" || extension == ".jpeg") return ImageFormat::Jpeg;
     if (extension == ".hdr") return ImageFormat::Hdr;
     throw Error(
-        ErrorCode::BadInput, Place{path.string()},
+        ErrorCode::BadInput, FileLocation{path.string()},
         fmt::format("{}; a picture is written as .exr, .png, .jpg (.jpeg) or .hdr",
                     extension.empty() ? "the name has no extension" : fmt::format("unknown extension {}", extension)));
 }

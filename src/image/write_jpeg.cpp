@@ -113,7 +113,7 @@ void put_16(std::byte* at, uint32_t value) {
 
 void check_jpeg_size(const std::string& name, uint32_t width, uint32_t height) {
     if (width > JPEG_MAX_DIMENSION || height > JPEG_MAX_DIMENSION)
-        throw Error(ErrorCode::OverLimit, Place{name},
+        throw Error(ErrorCode::OverLimit, FileLocation{name},
                     fmt::format("{} x {} pixels are too many for JPEG, whose limit is {} along a side; use .png", width,
                                 height, JPEG_MAX_DIMENSION));
 }

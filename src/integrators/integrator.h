@@ -31,7 +31,7 @@ struct WorkSize {
     bool traverses_on_host = false; // CPU threads can trace rays without the tracer (SceneTracer::host_trees)
     bool has_times = false;         // something moves while the shutter is open
     bool splits_light = false;      // a frame (FilmView::frame) separates diffuse light from the rest
-    bool tells_bounce = false;      // a frame records its first bounce
+    bool records_bounce = false;    // a frame records its first bounce
 
     uint64_t pixels() const { return uint64_t(width) * height; }
     uint64_t all() const { return pixels() * samples; }

@@ -89,7 +89,7 @@ class TwoSchedules : public IntegratorBase<Settings> {
     using Base = IntegratorBase<Settings>;
 
 public:
-    using Room = typename Job::Room;
+    using Capacity = typename Job::Capacity;
     using Counts = typename Job::Counts;
 
     /// The memory of a wavefront is kMaxBytes at most.
@@ -101,25 +101,26 @@ protected:
     static constexpr std::size_t kMaxBytes = std::size_t(1) << 30; // maximum bytes on a device
     static constexpr uint32_t kMinCount = 32;                      // minimum number of samples in memory
 
-    static std::size_t bytes_of(const Room& room) {
+    static std::size_t bytes_of(const Capacity& capacity) {
         Job job = {};
-        return lay_out(job, nullptr, room);
+        return lay_out(job, nullptr, capacity);
     }
     /// Returns the room of as many samples as fit into `bytes`, at most `most` and at least kMinCount. room_of(n) is
     /// the room of n samples.
-    template <class RoomOf>
-    static Room room_within(std::size_t bytes, uint64_t most, const RoomOf& room_of) {
-        const std::size_t each = bytes_of(room_of(kMinCount)) / kMinCount;
-        return room_of(static_cast<uint32_t>(std::min<uint64_t>(most, std::max<uint64_t>(bytes / each, kMinCount))));
+    template <class CapacityOf>
+    static Capacity capacity_within(std::size_t bytes, uint64_t most, const CapacityOf& capacity_of) {
+        const std::size_t each = bytes_of(capacity_of(kMinCount)) / kMinCount;
+        return capacity_of(
+            static_cast<uint32_t>(std::min<uint64_t>(most, std::max<uint64_t>(bytes / each, kMinCount))));
     }
 
     /// Takes the memory of the wavefront.
-    void take_room(const Room& room, const char* name) {
-        room_ = room;
-        memory_.grow(queue_, bytes_of(room), name);
+    void allocate_capacity(const Capacity& capacity, const char* name) {
+        capacity_ = capacity;
+        memory_.grow(queue_, bytes_of(capacity), name);
     }
     /// Points the arrays of `job` into that memory.
-    void use_room(Job& job) const { lay_out(job, memory_.data(), room_); }
+    void lay_out_job(Job& job) const { lay_out(job, memory_.data(), capacity_); }
 
     /// The memory and the schedule of a thread of the loop.
     class Thread {
@@ -128,12 +129,12 @@ protected:
     public:
         typename Job::Loop schedule;
 
-        Thread(const HostTrees& trees, Job& job, const Room& room)
-            : memory(bytes_of(room) / sizeof(Float4) + 1), schedule(trees, begun(job, room)) {}
+        Thread(const HostTrees& trees, Job& job, const Capacity& capacity)
+            : memory(bytes_of(capacity) / sizeof(Float4) + 1), schedule(trees, begun(job, capacity)) {}
 
     private:
-        const Job& begun(Job& job, const Room& room) {
-            lay_out(job, reinterpret_cast<std::byte*>(memory.data()), room);
+        const Job& begun(Job& job, const Capacity& capacity) {
+            lay_out(job, reinterpret_cast<std::byte*>(memory.data()), capacity);
             *job.counts() = {};
             return job;
         }
@@ -148,33 +149,33 @@ protected:
         }
     }
     /// Calls run(schedule, job) with ranges of samples [begin, end) that fit into the memory, by the schedule of the
-    /// current picture. The range has `of_pixel` samples of each pixel. `loop_room` is the room of a thread. Counts all
-    /// rays but those of the camera.
+    /// current picture. The range has `of_pixel` samples of each pixel. `loop_capacity` is the room of a thread. Counts
+    /// all rays but those of the camera.
     template <class Run>
-    void run_stages(const Job& job, uint64_t begin, uint64_t end, const Room& loop_room, uint32_t of_pixel,
+    void run_stages(const Job& job, uint64_t begin, uint64_t end, const Capacity& loop_capacity, uint32_t of_pixel,
                     const Run& run) {
         if (begin >= end) return;
         Job part = job;
         if (const HostTrees* trees = Base::trees_of_loop()) {
             Base::share_out(end - begin, uint64_t(kLoopCount) * of_pixel, [&](uint64_t from, uint64_t to) {
                 Job own = job;
-                Thread thread(*trees, own, loop_room);
-                run_in_parts(thread.schedule, own, begin + from, begin + to, loop_room.count, run);
+                Thread thread(*trees, own, loop_capacity);
+                run_in_parts(thread.schedule, own, begin + from, begin + to, loop_capacity.count, run);
                 return rays_of(*own.counts());
             });
             return;
         }
-        use_room(part);
+        lay_out_job(part);
         queue_.zero(part.counts(), sizeof(Counts));
         typename Job::Wavefront schedule(queue_, *tracer_, seen_);
-        run_in_parts(schedule, part, begin, end, room_.count, run);
+        run_in_parts(schedule, part, begin, end, capacity_.count, run);
         schedule.begin_rounds(0);
         Counts counts;
         queue_.copy_to_host(&counts, part.counts(), sizeof counts);
         rays_ = rays_ + rays_of(counts);
     }
 
-    Room room_{}; // sizes of the wavefront
+    Capacity capacity_{}; // sizes of the wavefront
     Readback<Counts> seen_;
 
 private:

@@ -98,7 +98,7 @@ Fields run_fields(const LabReport& report, const CombinationFigures& c, const Ru
                      {"near_first", "near first", o.near_first},
                      {"tests", "tests", name_of(o.tests)},
                      {"distribution", "distribution", name_of(c.combination.distribution)},
-                     {"refused", "not run because", if_said(c.refused)},
+                     {"refused", "not run because", if_not_empty(c.refused)},
                      {"wrong", "wrong", c.wrong},
                      {"registers", "registers", of_kernel ? ResultCell(c.registers) : ResultCell()},
                      {"local_bytes", "local bytes", of_kernel ? ResultCell(c.local_bytes) : ResultCell()},
@@ -151,7 +151,7 @@ ResultTable sets_of(const LabReport& report) {
 ResultTable structures_of(const LabReport& report) {
     ResultTable table = {"structures", "Structures"};
     for (const StructureFigures& s : report.structures) {
-        Fields row = {{"name", "structure", s.name}, {"failed", "", if_said(s.failed)}};
+        Fields row = {{"name", "structure", s.name}, {"failed", "", if_not_empty(s.failed)}};
         for (const ResultField& field : structure_fields(report, s.failed.empty() ? &s : nullptr)) row.push_back(field);
         table.add(row);
     }

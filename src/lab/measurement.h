@@ -64,7 +64,7 @@ private:
 /// A number, unless it is 0 because nothing was timed.
 inline std::optional<double> if_timed(double value) { return value > 0 ? std::optional(value) : std::nullopt; }
 /// A text, unless it is empty.
-inline std::optional<std::string> if_said(const std::string& text) {
+inline std::optional<std::string> if_not_empty(const std::string& text) {
     return text.empty() ? std::nullopt : std::optional(text);
 }
 

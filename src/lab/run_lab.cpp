@@ -159,7 +159,7 @@ private:
         const std::string checking = fmt::format("{}: the proven traversal against brute force", set.name);
         progress(checking);
         const uint64_t checked = check_proven_traversal(queue_, set, proven, oracle, triangles_, kOracleRays,
-                                                        kOracleNastyRays, progress_of(checking));
+                                                        kOracleStressRays, progress_of(checking));
         const std::string tracing = fmt::format("{}: what the proven traversal hits", set.name);
         sets_.push_back(trace_set(queue_, set, proven, progress_of(tracing)));
         sets_.back().figures.brute_force_rays = checked;

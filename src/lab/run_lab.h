@@ -37,7 +37,7 @@ struct LabSettings {
 
 /// Number of rays in each set on which the proven traversal is compared with brute force: rays spread over the set,
 /// and additional rays along axes or exactly at edges of triangles.
-inline constexpr uint32_t kOracleRays = 2000, kOracleNastyRays = 200;
+inline constexpr uint32_t kOracleRays = 2000, kOracleStressRays = 200;
 
 struct LabProgress {
     double share = 0; // finished share of all work, [0, 1]

@@ -9,13 +9,13 @@
 namespace pertev {
 
 std::vector<RayHit> HitsOnDevice::download(bool any_hit) const {
-    std::vector<Float4> places_copy;
+    std::vector<Float4> records_copy;
     std::vector<uint32_t> instances_copy;
-    const std::span<const Float4> places = any_hit ? std::span<const Float4>() : places_.read(places_copy);
+    const std::span<const Float4> records = any_hit ? std::span<const Float4>() : records_.read(records_copy);
     const std::span<const uint32_t> instances = instances_.read(instances_copy);
     std::vector<RayHit> hits(instances.size());
     parallel_for(hits.size(), 1 << 14, [&](uint64_t i) {
-        hits[i] = any_hit ? RayHit{0, instances[i], 0} : RayHit{places[i].x, instances[i], bits_of(places[i].w)};
+        hits[i] = any_hit ? RayHit{0, instances[i], 0} : RayHit{records[i].x, instances[i], bits_of(records[i].w)};
     });
     return hits;
 }

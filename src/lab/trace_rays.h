@@ -28,19 +28,19 @@ struct RayHit {
 class HitsOnDevice {
 public:
     /// Throws Error(OutOfMemory).
-    HitsOnDevice(Queue& queue, std::size_t rays) : places_(queue, rays, "hits"), instances_(queue, rays, "hits") {}
+    HitsOnDevice(Queue& queue, std::size_t rays) : records_(queue, rays, "hits"), instances_(queue, rays, "hits") {}
 
     /// View of the hits of ray number `first` and the rays after it.
-    HitQueueView from(std::size_t first) const { return {places_.data() + first, instances_.data() + first}; }
+    HitQueueView from(std::size_t first) const { return {records_.data() + first, instances_.data() + first}; }
     /// Fills the hits with a result that no ray has.
     void spoil() {
-        places_.fill(0xff);
+        records_.fill(0xff);
         instances_.fill(0xfe);
     }
     std::vector<RayHit> download(bool any_hit) const;
 
 private:
-    Buffer<Float4> places_;
+    Buffer<Float4> records_;
     Buffer<uint32_t> instances_;
 };
 

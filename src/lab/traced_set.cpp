@@ -30,7 +30,7 @@ BvhTriangle some_triangle(const LabTriangles& triangles, uint32_t& state) {
     return t;
 }
 
-Ray nasty_ray(Ray ray, uint32_t i, const LabTriangles& triangles) {
+Ray stress_ray(Ray ray, uint32_t i, const LabTriangles& triangles) {
     uint32_t state = secondary_state(i, 99);
     const BvhTriangle t = some_triangle(triangles, state);
     switch (i % 4) {
@@ -81,19 +81,19 @@ std::vector<RayHit> trace_proven(Queue& queue, const Tracer& proven, bool any_hi
 
 } // namespace
 
-std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, uint32_t count, uint32_t nasty_count) {
+std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, uint32_t count, uint32_t stress_count) {
     std::vector<Ray> rays;
     const std::size_t of_set = std::min<std::size_t>(count, set.rays.size());
     for (std::size_t i = 0; i < of_set; ++i) rays.push_back(set.rays[i * set.rays.size() / of_set]);
     if (of_set == 0) return rays;
-    for (uint32_t i = 0; i < nasty_count; ++i) rays.push_back(nasty_ray(rays[i % of_set], i, triangles));
+    for (uint32_t i = 0; i < stress_count; ++i) rays.push_back(stress_ray(rays[i % of_set], i, triangles));
     return rays;
 }
 
 uint64_t check_proven_traversal(Queue& queue, const RaySet& set, const Tracer& proven, const BruteForce& oracle,
-                                const LabTriangles& triangles, uint32_t count, uint32_t nasty_count,
+                                const LabTriangles& triangles, uint32_t count, uint32_t stress_count,
                                 const PieceDone& done) {
-    const std::vector<Ray> some = oracle_rays(set, triangles, count, nasty_count);
+    const std::vector<Ray> some = oracle_rays(set, triangles, count, stress_count);
     const std::vector<RayHit> truth = oracle.trace(some, done);
     const std::vector<RayHit> found =
         trace_proven(queue, proven, set.any_hit, Buffer<Ray>(queue, std::span<const Ray>(some), "rays"), {});

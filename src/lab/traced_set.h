@@ -27,12 +27,12 @@ struct LabTriangles {
 
 /// Returns some rays spread over the set, and other rays from their origins that run along axes or exactly through
 /// vertices and edges of the scene's triangles. The result depends only on the arguments.
-std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, uint32_t count, uint32_t nasty_count);
+std::vector<Ray> oracle_rays(const RaySet& set, const LabTriangles& triangles, uint32_t count, uint32_t stress_count);
 
 /// Compares the proven traversal with brute force on some of the set's rays and returns their number. Throws
 /// Error(DeviceFault) with the ray as hex floats if they differ.
 uint64_t check_proven_traversal(Queue& queue, const RaySet& set, const Tracer& proven, const BruteForce& oracle,
-                                const LabTriangles& triangles, uint32_t count, uint32_t nasty_count,
+                                const LabTriangles& triangles, uint32_t count, uint32_t stress_count,
                                 const PieceDone& done);
 
 /// Traces the set by the proven traversal.

@@ -71,7 +71,7 @@ ResultTable scenes_of(const TransportReport& report) {
     for (const TransportScene& s : report.scenes) {
         Fields fields = scene_fields(s);
         append(fields, {{"reference_hdr_flip_of_halves", "HDR-FLIP of its halves", s.reference.flip},
-                        {"reference_lacks", "it lacks", if_said(s.reference.lacks)},
+                        {"reference_lacks", "it lacks", if_not_empty(s.reference.lacks)},
                         {"equal_seconds", "equal time", equal_seconds(s), "s"},
                         {"equal_samples", "equal samples", equal_samples(s)},
                         {"triangles", "triangles", s.triangles},
@@ -82,7 +82,7 @@ ResultTable scenes_of(const TransportReport& report) {
                         {"seed", "seed", report.seed},
                         {"budget_seconds", "time of each integrator", report.seconds, "s"},
                         {"camera", "camera", s.camera},
-                        {"shows", "shows", if_said(s.shows)}});
+                        {"shows", "shows", if_not_empty(s.shows)}});
         table.add(fields);
     }
     return table;
@@ -128,7 +128,7 @@ ResultTable repetitions_of(const TransportReport& report) {
                  {"light", "light that it finds", row.light},
                  {"finds_all", "finds all", row.finds_all},
                  {"is_solved", "is solved", row.is_solved},
-                 {"refused", "not run because", if_said(row.refused)},
+                 {"refused", "not run because", if_not_empty(row.refused)},
                  {"device_bytes", "device memory", has_figures ? ResultCell(row.bytes) : ResultCell(), "bytes"},
                  {"host_bytes", "host memory", has_figures ? ResultCell(row.host_bytes) : ResultCell(), "bytes"},
                  {"invalid_samples", "invalid samples", has_figures ? ResultCell(row.invalid_samples) : ResultCell()}});

@@ -19,7 +19,9 @@ Matrix linear_part(const Transform& m) { return {to_double(m.row0), to_double(m.
 DoubleVec3 times(const Matrix& m, DoubleVec3 v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
 DoubleVec3 add(DoubleVec3 a, DoubleVec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 DoubleVec3 scaled(double s, DoubleVec3 v) { return {s * v.x, s * v.y, s * v.z}; }
-DoubleVec3 place(const Transform& m, DoubleVec3 p) { return add(times(linear_part(m), p), to_double(m.translation)); }
+DoubleVec3 transformed(const Transform& m, DoubleVec3 p) {
+    return add(times(linear_part(m), p), to_double(m.translation));
+}
 
 double determinant(const Matrix& m) { return dot(m[0], cross(m[1], m[2])); }
 /// Rows of the inverse's transpose.
@@ -80,16 +82,16 @@ double dot(const std::array<double, 4>& a, const Vec4& b) {
            a[3] * static_cast<double>(b.w);
 }
 
-RigidMotion at_key(const MotionKey& key, Vec3 pivot) { return rigid_motion(key.turn, pivot, key.place); }
+RigidMotion at_key(const MotionKey& key, Vec3 pivot) { return rigid_motion(key.turn, pivot, key.position); }
 
 /// Motion of one object through its positions at the times 0, 1 / segments, ..., 1.
-Motion motion_through(const PlacedBox& thing, std::span<const std::optional<Transform>> places) {
+Motion motion_through(const PlacedBox& thing, std::span<const std::optional<Transform>> transforms_then) {
     const Vec3 middle = thing.box.centre();
     Motion motion;
-    motion.pivot = to_float(place(thing.world_from_local, to_double(middle)));
+    motion.pivot = to_float(transformed(thing.world_from_local, to_double(middle)));
     MotionKey key = {{0, 0, 0, 1}, motion.pivot};
     bool moves = false;
-    for (const std::optional<Transform>& now : places) {
+    for (const std::optional<Transform>& now : transforms_then) {
         if (now) {
             const auto turn = nearest_rotation(over(linear_part(*now), linear_part(thing.world_from_local)));
             if (turn) {
@@ -98,7 +100,7 @@ Motion motion_through(const PlacedBox& thing, std::span<const std::optional<Tran
                 key.turn = {static_cast<float>(sign * q[0]), static_cast<float>(sign * q[1]),
                             static_cast<float>(sign * q[2]), static_cast<float>(sign * q[3])};
             }
-            key.place = to_float(place(*now, to_double(middle)));
+            key.position = to_float(transformed(*now, to_double(middle)));
             moves = moves || !(*now == thing.world_from_local);
         }
         motion.keys.push_back(key);
@@ -118,28 +120,29 @@ bool is_near(const PlacedBox& thing, const Motion& fitted, uint32_t segments, do
     for (int corner = 0; corner < 8; ++corner) {
         const Bounds3& b = thing.box;
         const Vec3 local = {corner & 1 ? b.hi.x : b.lo.x, corner & 2 ? b.hi.y : b.lo.y, corner & 4 ? b.hi.z : b.lo.z};
-        const Vec3 at = to_float(place(thing.world_from_local, to_double(local)));
+        const Vec3 at = to_float(transformed(thing.world_from_local, to_double(local)));
         const DoubleVec3 from_pivot = to_double(at) - to_double(fitted.pivot);
         const DoubleVec3 by = to_double(now.move(at)) - to_double(target.move(at));
         size = std::max(size, dot(from_pivot, from_pivot));
         off = std::max(off, dot(by, by));
     }
-    const double rounding = 0x1p-21 * static_cast<double>(max_component(abs(now.place)));
+    const double rounding = 0x1p-21 * static_cast<double>(max_component(abs(now.position)));
     return std::sqrt(off) <= kTolerance * std::sqrt(size) + rounding;
 }
 
 } // namespace
 
-FittedMotions fit_motions(std::span<const PlacedBox> things, const PlacesAt& places_at, std::span<const double> looks) {
+FittedMotions fit_motions(std::span<const PlacedBox> things, const TransformsAt& transforms_at,
+                          std::span<const double> looks) {
     std::map<double, std::vector<std::optional<Transform>>> known; // by time: keys of few segments are keys of many
-    const auto places = [&](double time) -> const std::vector<std::optional<Transform>>& {
+    const auto transforms_then = [&](double time) -> const std::vector<std::optional<Transform>>& {
         const auto [at, is_new] = known.try_emplace(time);
-        if (is_new) at->second = places_at(time);
+        if (is_new) at->second = transforms_at(time);
         return at->second;
     };
     FittedMotions fitted;
     const auto is_good_at = [&](double time) {
-        const auto& now = places(time);
+        const auto& now = transforms_then(time);
         for (std::size_t i = 0; i < things.size(); ++i) {
             if (now[i] && !is_near(things[i], fitted.motions[i], fitted.segments, time, *now[i])) return false;
         }
@@ -149,7 +152,7 @@ FittedMotions fit_motions(std::span<const PlacedBox> things, const PlacesAt& pla
         const uint32_t segments = fitted.segments;
         std::vector<std::vector<std::optional<Transform>>> of_thing(things.size());
         for (uint32_t k = 0; k <= segments; ++k) {
-            const auto& now = places(static_cast<double>(k) / segments);
+            const auto& now = transforms_then(static_cast<double>(k) / segments);
             for (std::size_t i = 0; i < things.size(); ++i) of_thing[i].push_back(now[i]);
         }
         fitted.motions.clear();
@@ -179,7 +182,7 @@ Bounds3 swept_bounds(const MotionKeys& motions, uint32_t motion, const Bounds3& 
     for (uint32_t k = 0; k <= motions.segments; ++k) {
         const RigidMotion at = at_key(keys[k], pivot);
         const Matrix turn = {to_double(at.row0), to_double(at.row1), to_double(at.row2)};
-        const DoubleVec3 centre = add(times(turn, from_pivot), to_double(at.place));
+        const DoubleVec3 centre = add(times(turn, from_pivot), to_double(at.position));
         const auto reach = [&](DoubleVec3 row) {
             return std::fabs(row.x) * half.x + std::fabs(row.y) * half.y + std::fabs(row.z) * half.z;
         };

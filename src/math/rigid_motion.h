@@ -21,8 +21,8 @@ inline constexpr uint32_t kNoMotion = 0xffffffffu;
 inline constexpr float kAtRest = -1; // stands for a time: everything is at its position at rest
 
 struct MotionKey {
-    Vec4 turn;  // unit quaternion (x, y, z, w), at less than a quarter turn in four dimensions from adjacent keys
-    Vec3 place; // position of the pivot, metres
+    Vec4 turn;     // unit quaternion (x, y, z, w), at less than a quarter turn in four dimensions from adjacent keys
+    Vec3 position; // position of the pivot, metres
     float unused = 0;
     bool operator==(const MotionKey&) const = default;
 };
@@ -31,25 +31,25 @@ static_assert(sizeof(MotionKey) == 32);
 /// A motion at one time: p maps to turn(p - pivot) + place.
 struct RigidMotion {
     Vec3 row0 = {1, 0, 0}, row1 = {0, 1, 0}, row2 = {0, 0, 1}; // rows of the rotation
-    Vec3 pivot = {0, 0, 0}, place = {0, 0, 0};
+    Vec3 pivot = {0, 0, 0}, position = {0, 0, 0};
 
     HD Vec3 turn(Vec3 v) const { return {dot(row0, v), dot(row1, v), dot(row2, v)}; }
     HD Vec3 turn_back(Vec3 v) const { return v.x * row0 + v.y * row1 + v.z * row2; }
     HD Vec3 turn_sizes(Vec3 v) const { return {dot(abs(row0), v), dot(abs(row1), v), dot(abs(row2), v)}; }
-    HD Vec3 move(Vec3 p) const { return turn(p - pivot) + place; }
-    HD Vec3 move_back(Vec3 p) const { return turn_back(p - place) + pivot; }
+    HD Vec3 move(Vec3 p) const { return turn(p - pivot) + position; }
+    HD Vec3 move_back(Vec3 p) const { return turn_back(p - position) + pivot; }
 
     /// Bound of the rounding error of move() for `p` followed by move_back(), for all components, metres: for each of
     /// the two, rows are off by 6 units of 2^-24, a rotation adds 3 and the sums 2, of at most the sum of all
     /// lengths.
     HD float error(Vec3 p) const {
         const auto size = [](Vec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); };
-        return 0x1p-19f * (size(p) + size(pivot) + size(place));
+        return 0x1p-19f * (size(p) + size(pivot) + size(position));
     }
 };
 
 /// `q` is the rotation, a quaternion with any length but 0.
-HD inline RigidMotion rigid_motion(Vec4 q, Vec3 pivot, Vec3 place) {
+HD inline RigidMotion rigid_motion(Vec4 q, Vec3 pivot, Vec3 position) {
     // Two divided by the squared length gives the rows of the unit quaternion.
     const float s = 2.0f / (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
     const float xx = s * q.x * q.x, yy = s * q.y * q.y, zz = s * q.z * q.z;
@@ -59,7 +59,7 @@ HD inline RigidMotion rigid_motion(Vec4 q, Vec3 pivot, Vec3 place) {
             {xy + zw, 1.0f - (xx + zz), yz - xw},
             {xz - yw, yz + xw, 1.0f - (xx + yy)},
             pivot,
-            place};
+            position};
 }
 
 /// Motion of one object. `keys`, at least two, are at the times 0, 1 / segments, ..., 1.
@@ -68,7 +68,7 @@ HD inline RigidMotion motion_at(const MotionKey* keys, uint32_t segments, Vec3 p
     const uint32_t first = static_cast<uint32_t>(to_int(at, 0, static_cast<int>(segments) - 1));
     const float f = at - static_cast<float>(first);
     const MotionKey &a = keys[first], &b = keys[first + 1];
-    return rigid_motion((1.0f - f) * a.turn + f * b.turn, pivot, (1.0f - f) * a.place + f * b.place);
+    return rigid_motion((1.0f - f) * a.turn + f * b.turn, pivot, (1.0f - f) * a.position + f * b.position);
 }
 
 /// The motion of one object; without keys it does not move.

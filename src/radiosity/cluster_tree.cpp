@@ -42,10 +42,10 @@ private:
     /// Puts those of the left half first. Returns how many they are.
     uint32_t part(uint32_t first, uint32_t count) {
         const auto begin = order_.begin() + first, end = begin + count;
-        Bounds3 places, normals;
+        Bounds3 positions, normals;
         int lowest = levels_[*begin], highest = lowest;
         for (auto i = begin; i != end; ++i) {
-            places.extend(balls_[*i].centre);
+            positions.extend(balls_[*i].centre);
             normals.extend(normals_[*i]);
             lowest = std::min(lowest, levels_[*i]), highest = std::max(highest, levels_[*i]);
         }
@@ -60,7 +60,7 @@ private:
             const auto is_left = [&](uint32_t i) { return component(normals_[i], axis) < middle; };
             return static_cast<uint32_t>(std::stable_partition(begin, end, is_left) - begin);
         }
-        const int axis = longest_axis(places.size());
+        const int axis = longest_axis(positions.size());
         const auto is_before = [&](uint32_t a, uint32_t b) {
             const float at_a = component(balls_[a].centre, axis), at_b = component(balls_[b].centre, axis);
             return at_a != at_b ? at_a < at_b : a < b;

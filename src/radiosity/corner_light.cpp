@@ -36,21 +36,22 @@ public:
 private:
     struct End {
         double u, v; // weights of the second and third corner of the patch's triangle
-        Vec3 place;
+        Vec3 position;
         Rgb light;
     };
     End end_of(uint32_t patch, uint32_t number) const {
         const Vec2 at = tree_.patches[patch].corners.at[number];
         const CornerSheet& sheet = table_.sheet_of(patch, number);
-        return {static_cast<double>(at.x), static_cast<double>(at.y), sheet.place, sheet.shown};
+        return {static_cast<double>(at.x), static_cast<double>(at.y), sheet.position, sheet.shown};
     }
 
     void anchor(uint32_t patch, const End& a, const End& b, int depth) {
         End middle = {0.5 * (a.u + b.u), 0.5 * (a.v + b.v), {}, 0.5f * (a.light + b.light)};
-        middle.place = table_.place_of(patch, middle.u, middle.v);
-        if (middle.place == a.place || middle.place == b.place) return; // floats tell no finer corners apart
+        middle.position = table_.position_of(patch, middle.u, middle.v);
+        if (middle.position == a.position || middle.position == b.position)
+            return; // floats tell no finer corners apart
         bool any = false;
-        for (CornerSheet& sheet : table_.at(middle.place)) {
+        for (CornerSheet& sheet : table_.at(middle.position)) {
             if (!is_same_surface(table_.normal_of(patch), sheet.normal)) continue;
             sheet.shown = middle.light;
             any = true;
@@ -68,7 +69,7 @@ private:
 
 std::vector<PatchLight> light_corners(const SceneView& scene, const PatchTree& tree, std::span<const Rgb> irradiance) {
     CornerTable table(scene, tree, irradiance);
-    table.for_each_place(show_means);
+    table.for_each_position(show_means);
     // Large ones first: what lies on their edges is then settled before it is an end of smaller ones.
     std::vector<uint32_t> by_area(tree.patches.size());
     for (uint32_t i = 0; i < by_area.size(); ++i) by_area[i] = i;

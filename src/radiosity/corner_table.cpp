@@ -14,7 +14,7 @@ namespace {
 constexpr uint32_t kDirections = 17;      // along an edge of a cube; normals of one of its cells are one sheet
 constexpr uint64_t kCornersOfBucket = 64; // about
 
-std::tuple<float, float, float> key_of(Vec3 place) { return {place.x, place.y, place.z}; }
+std::tuple<float, float, float> key_of(Vec3 position) { return {position.x, position.y, position.z}; }
 
 uint32_t direction_of(Vec3 normal) {
     const Vec3 size = abs(normal);
@@ -31,7 +31,7 @@ uint32_t direction_of(Vec3 normal) {
 
 /// A place on an edge has the same bits whichever triangle's edge it is: the third term is 0, a product depends on the
 /// vertex and its weight alone, and the sum of two does not depend on their order.
-Vec3 place_between(const Vec3 (&corner)[3], double u, double v) {
+Vec3 position_between(const Vec3 (&corner)[3], double u, double v) {
     const double w = 1 - u - v;
     const auto between = [&](float a, float b, float c) {
         const double sum = (w * static_cast<double>(a) + u * static_cast<double>(b)) + v * static_cast<double>(c);
@@ -47,7 +47,7 @@ CornerTable::CornerTable(const SceneView& scene, const PatchTree& tree, std::spa
     : tree_(tree), vertices_(scene), normals_(tree.patches.size()), sheet_of_(3 * tree.patches.size()) {
     parallel_for(normals_.size(), 256, [&](uint64_t i) {
         const Patch& patch = tree.patches[i];
-        normals_[i] = pertev::normal_of(scene, patch, place_on(scene, patch, patch.corners.middle()));
+        normals_[i] = pertev::normal_of(scene, patch, world_triangle(scene, patch, patch.corners.middle()));
     });
     const uint64_t count = std::bit_ceil(sheet_of_.size() / kCornersOfBucket + 1);
     first_corner_.assign(count + 1, 0);
@@ -58,7 +58,8 @@ CornerTable::CornerTable(const SceneView& scene, const PatchTree& tree, std::spa
         const std::span<Corner> here = {corners.data() + first_corner_[bucket],
                                         first_corner_[bucket + 1] - first_corner_[bucket]};
         std::ranges::sort(here, [](const Corner& a, const Corner& b) {
-            return std::tuple(key_of(a.place), a.direction, a.id) < std::tuple(key_of(b.place), b.direction, b.id);
+            return std::tuple(key_of(a.position), a.direction, a.id) <
+                   std::tuple(key_of(b.position), b.direction, b.id);
         });
         made[bucket] = sheets_of(here, irradiance);
     });
@@ -82,9 +83,10 @@ std::vector<CornerTable::Corner> CornerTable::corners_by_bucket() {
         for (uint32_t k = 0; k < 3; ++k) {
             const Vec2 at = tree_.patches[i].corners.at[k];
             const auto id = static_cast<uint32_t>(3 * i + k);
-            const Vec3 place = place_of(static_cast<uint32_t>(i), static_cast<double>(at.x), static_cast<double>(at.y));
-            corners[id] = {place, direction_of(normals_[i]), id};
-            bucket[id] = static_cast<uint32_t>(bucket_of(place));
+            const Vec3 position =
+                position_of(static_cast<uint32_t>(i), static_cast<double>(at.x), static_cast<double>(at.y));
+            corners[id] = {position, direction_of(normals_[i]), id};
+            bucket[id] = static_cast<uint32_t>(bucket_of(position));
         }
     });
     for (const uint32_t i : bucket) ++first_corner_[i + 1];
@@ -100,8 +102,8 @@ std::vector<CornerSheet> CornerTable::sheets_of(std::span<const Corner> corners,
     const Corner* before = nullptr;
     for (const Corner& corner : corners) {
         const uint32_t patch = corner.id / 3;
-        if (before == nullptr || before->place != corner.place || before->direction != corner.direction) {
-            sheets.push_back({.place = corner.place});
+        if (before == nullptr || before->position != corner.position || before->direction != corner.direction) {
+            sheets.push_back({.position = corner.position});
         }
         before = &corner;
         CornerSheet& sheet = sheets.back();
@@ -118,18 +120,18 @@ std::vector<CornerSheet> CornerTable::sheets_of(std::span<const Corner> corners,
     return sheets;
 }
 
-std::size_t CornerTable::bucket_of(Vec3 place) const {
-    const uint32_t x = std::bit_cast<uint32_t>(place.x), y = std::bit_cast<uint32_t>(place.y),
-                   z = std::bit_cast<uint32_t>(place.z);
+std::size_t CornerTable::bucket_of(Vec3 position) const {
+    const uint32_t x = std::bit_cast<uint32_t>(position.x), y = std::bit_cast<uint32_t>(position.y),
+                   z = std::bit_cast<uint32_t>(position.z);
     return hash_word(hash_words(x, y, z).x) & (buckets() - 1);
 }
 
-std::span<CornerSheet> CornerTable::at(Vec3 place) {
-    const std::size_t bucket = bucket_of(place);
+std::span<CornerSheet> CornerTable::at(Vec3 position) {
+    const std::size_t bucket = bucket_of(position);
     const std::span<CornerSheet> here = {sheets_.data() + first_sheet_[bucket],
                                          first_sheet_[bucket + 1] - first_sheet_[bucket]};
     const auto range =
-        std::ranges::equal_range(here, key_of(place), {}, [](const CornerSheet& s) { return key_of(s.place); });
+        std::ranges::equal_range(here, key_of(position), {}, [](const CornerSheet& s) { return key_of(s.position); });
     return {range.begin(), range.end()};
 }
 
@@ -138,17 +140,17 @@ std::size_t CornerTable::most_bytes(uint64_t patches) {
            patches * sizeof(uint32_t);
 }
 
-Vec3 CornerTable::place_of(uint32_t patch, double u, double v) const {
+Vec3 CornerTable::position_of(uint32_t patch, double u, double v) const {
     Vec3 corner[3];
     vertices_.corners(tree_.patches[patch].instance, tree_.patches[patch].primitive, corner);
-    return place_between(corner, u, v);
+    return position_between(corner, u, v);
 }
 
-void CornerTable::for_each_place(const std::function<void(std::span<CornerSheet>)>& body) {
+void CornerTable::for_each_position(const std::function<void(std::span<CornerSheet>)>& body) {
     parallel_for(buckets(), 16, [&](uint64_t bucket) {
         for (uint32_t first = first_sheet_[bucket]; first < first_sheet_[bucket + 1];) {
             uint32_t end = first + 1;
-            while (end < first_sheet_[bucket + 1] && sheets_[end].place == sheets_[first].place) ++end;
+            while (end < first_sheet_[bucket + 1] && sheets_[end].position == sheets_[first].position) ++end;
             body({sheets_.data() + first, end - first});
             first = end;
         }

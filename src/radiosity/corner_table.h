@@ -16,7 +16,7 @@
 namespace pertev {
 
 struct CornerSheet {
-    Vec3 place;           // metres
+    Vec3 position;        // metres
     Vec3 normal;          // unit
     double areas = 0;     // total area of its patches, m2
     double light[3] = {}; // irradiance by area, W
@@ -34,24 +34,24 @@ public:
         return sheets_[sheet_of_[3 * uint64_t(patch) + number]];
     }
     /// All sheets at a position, in a fixed order.
-    std::span<CornerSheet> at(Vec3 place);
+    std::span<CornerSheet> at(Vec3 position);
     /// Position with these weights of the second and third corner of a patch's triangle.
-    Vec3 place_of(uint32_t patch, double u, double v) const;
+    Vec3 position_of(uint32_t patch, double u, double v) const;
     Vec3 normal_of(uint32_t patch) const { return normals_[patch]; }
 
     /// Calls body(sheets) for the sheets of each position, from any thread.
-    void for_each_place(const std::function<void(std::span<CornerSheet>)>& body);
+    void for_each_position(const std::function<void(std::span<CornerSheet>)>& body);
 
     /// Maximum bytes for a number of patches.
     static std::size_t most_bytes(uint64_t patches);
 
 private:
     struct Corner {
-        Vec3 place;
+        Vec3 position;
         uint32_t direction, id; // direction of its normal; 3 patch + number
     };
     std::size_t buckets() const { return first_sheet_.size() - 1; }
-    std::size_t bucket_of(Vec3 place) const;
+    std::size_t bucket_of(Vec3 position) const;
     std::vector<Corner> corners_by_bucket();
     std::vector<CornerSheet> sheets_of(std::span<const Corner> corners, std::span<const Rgb> irradiance);
 

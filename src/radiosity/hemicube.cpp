@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kNearestShare = 1e-9; // relative to the triangle; anything nearer to the face's plane sets no bound
 
-uint32_t pixel_within(double place, double lowest, double extent, uint32_t pixels) {
-    const double at = (place - lowest) / extent * pixels;
+uint32_t pixel_within(double coordinate, double lowest, double extent, uint32_t pixels) {
+    const double at = (coordinate - lowest) / extent * pixels;
     if (!(at > 0)) return 0;
     return at >= pixels ? pixels : static_cast<uint32_t>(at);
 }
@@ -22,14 +22,15 @@ HemicubePixels::HemicubePixels(uint32_t resolution) : resolution_(resolution) {
     std::vector<double> top, side;
     for (uint32_t row = 0; row < resolution; ++row) {
         for (uint32_t column = 0; column < resolution; ++column) {
-            const double x = place_of_pixel(column, resolution, -1, 2), y = place_of_pixel(row, resolution, -1, 2);
+            const double x = pixel_coordinate(column, resolution, -1, 2), y = pixel_coordinate(row, resolution, -1, 2);
             const double r = x * x + y * y + 1;
             top.push_back(pixel * pixel / (static_cast<double>(kPi) * r * r));
         }
     }
     for (uint32_t row = 0; row < resolution / 2; ++row) {
         for (uint32_t column = 0; column < resolution; ++column) {
-            const double x = place_of_pixel(column, resolution, -1, 2), z = place_of_pixel(row, resolution / 2, 0, 1);
+            const double x = pixel_coordinate(column, resolution, -1, 2),
+                         z = pixel_coordinate(row, resolution / 2, 0, 1);
             const double r = x * x + z * z + 1;
             side.push_back(z * pixel * (1.0 / (resolution / 2)) / (static_cast<double>(kPi) * r * r));
         }

@@ -64,7 +64,7 @@ struct HemicubeTriangle {
 bool project_to_face(const HemicubePixels::Face& face, const Vec3 (&corners)[3], HemicubeTriangle& seen);
 
 /// Coordinate of a pixel's column or row on a face, at distance 1.
-inline double place_of_pixel(uint32_t pixel, uint32_t pixels, double lowest, double extent) {
+inline double pixel_coordinate(uint32_t pixel, uint32_t pixels, double lowest, double extent) {
     return lowest + extent * ((pixel + 0.5) / pixels);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using PlacedCorners = HemicubeScene::PlacedCorners;
 
-constexpr uint64_t kWorkOfTriangle = 8, kWorkOfLook = 1u << 17; // at whether to go on
+constexpr uint64_t kWorkOfTriangle = 8, kWorkOfCheck = 1u << 17; // at whether to go on
 
 std::vector<PlacedCorners> all_triangles(const SceneView& scene) {
     std::vector<PlacedCorners> all;
@@ -24,8 +24,10 @@ std::vector<PlacedCorners> all_triangles(const SceneView& scene) {
         const MeshView& mesh = scene.meshes[placed.mesh];
         for (uint32_t primitive = 0; primitive < count; ++primitive) {
             const TriangleIndices i = triangle_indices(mesh, primitive);
-            const auto place = [&](uint32_t v) { return transform_point(placed.world_from_local, mesh.positions[v]); };
-            all.push_back({{place(i.a), place(i.b), place(i.c)}, instance, primitive});
+            const auto world_position = [&](uint32_t v) {
+                return transform_point(placed.world_from_local, mesh.positions[v]);
+            };
+            all.push_back({{world_position(i.a), world_position(i.b), world_position(i.c)}, instance, primitive});
         }
     }
     return all;
@@ -46,7 +48,7 @@ public:
     void make(const Patch& patch, uint32_t number, FormFactorRow& row) override {
         row.clear();
         const SceneView& view = scene_.scene.view();
-        const PlacedTriangle triangle = place_on(view, patch, patch.corners.middle());
+        const WorldTriangle triangle = world_triangle(view, patch, patch.corners.middle());
         const Frame frame = make_frame(normal_of(view, patch, triangle));
         const SampleKey key = {number, 0, seed_};
         for (uint32_t face = 0; face < HemicubePixels::kFaces; ++face) {
@@ -65,7 +67,7 @@ private:
         seen_.resize(depths_.size());
         uint64_t work = 0; // pixels, about
         for (const PlacedCorners& placed : hemicube_.triangles) {
-            if (work > kWorkOfLook) {
+            if (work > kWorkOfCheck) {
                 if (scene_.is_over()) return;
                 work = 0;
             }
@@ -83,8 +85,8 @@ private:
             const SeenAt& at = seen_[pixel];
             const auto row_of = static_cast<uint32_t>(pixel / face.width);
             const auto column = static_cast<uint32_t>(pixel % face.width);
-            const auto x = static_cast<float>(place_of_pixel(column, face.width, -1, 2));
-            const auto y = static_cast<float>(place_of_pixel(row_of, face.height, face.lowest, 1 - face.lowest));
+            const auto x = static_cast<float>(pixel_coordinate(column, face.width, -1, 2));
+            const auto y = static_cast<float>(pixel_coordinate(row_of, face.height, face.lowest, 1 - face.lowest));
             const uint32_t side =
                 side_met(view, at.instance, at.primitive, face.forward + x * face.right + y * face.up);
             Vec3 weights = {1.0f - at.u - at.v, at.u, at.v};
@@ -98,11 +100,11 @@ private:
               SampleKey key) {
         const SceneView& view = scene_.scene.view();
         for (uint32_t row = seen.y0; row < seen.y1; ++row) {
-            const double y = place_of_pixel(row, face.height, face.lowest, 1 - face.lowest);
+            const double y = pixel_coordinate(row, face.height, face.lowest, 1 - face.lowest);
             for (uint32_t column = seen.x0; column < seen.x1; ++column) {
                 const std::size_t pixel = std::size_t(row) * face.width + column;
                 double weights[3], depth;
-                if (!seen.covers(place_of_pixel(column, face.width, -1, 2), y, weights, depth)) continue;
+                if (!seen.covers(pixel_coordinate(column, face.width, -1, 2), y, weights, depth)) continue;
                 if (!(depth < depths_[pixel])) continue;
                 const auto u = static_cast<float>(weights[1]), v = static_cast<float>(weights[2]);
                 if (view.any_alpha != 0) {

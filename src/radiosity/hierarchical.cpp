@@ -31,10 +31,10 @@ public:
     /// Divides links until each is as good as it has to be or waits for a patch to be divided: links of one size after
     /// the other, so that many are at hand from the start. Where the watch is over links stay as they are.
     void refine(std::vector<Link>& links) {
-        wishes_.assign(nodes_.tree().patches.size(), 0);
-        for (uint32_t i = 0; i < wishes_.size(); ++i) {
+        divides_.assign(nodes_.tree().patches.size(), 0);
+        for (uint32_t i = 0; i < divides_.size(); ++i) {
             const bool is_seen = !is_black(nodes_.tree().patches[i].reflectance);
-            if (is_seen && nodes_.can_divide(kIsPatch | i) && nodes_.direct_changes(i, limit_)) wishes_[i] = 1;
+            if (is_seen && nodes_.can_divide(kIsPatch | i) && nodes_.direct_changes(i, limit_)) divides_[i] = 1;
         }
         std::vector<Link> open = std::move(links);
         links = {};
@@ -63,10 +63,10 @@ public:
         links.insert(links.end(), open.begin(), open.end());
     }
 
-    bool any_wish() const {
-        return std::ranges::any_of(wishes_, [](uint8_t wish) { return wish != 0; });
+    bool needs_division() const {
+        return std::ranges::any_of(divides_, [](uint8_t divide) { return divide != 0; });
     }
-    std::span<const uint8_t> wishes() const { return wishes_; }
+    std::span<const uint8_t> divides() const { return divides_; }
 
 private:
     struct Sorted {
@@ -166,7 +166,7 @@ private:
         if (!(most * share(link) > limit_) || divided == kNoPatch) {
             sorted.kept.push_back(link);
         } else if (is_patch(divided)) {
-            std::atomic_ref(wishes_[number_of(divided)]).store(1, std::memory_order_relaxed);
+            std::atomic_ref(divides_[number_of(divided)]).store(1, std::memory_order_relaxed);
             sorted.kept.push_back(link);
         } else {
             split(link, divided, sorted.open);
@@ -191,8 +191,8 @@ private:
     WorkWatch& watch_;
     uint32_t seed_;
     uint64_t max_links_;
-    float limit_;                 // maximum light that a link may represent, W/m2
-    std::vector<uint8_t> wishes_; // [patches] whether to divide
+    float limit_;                  // maximum light that a link may represent, W/m2
+    std::vector<uint8_t> divides_; // [patches] whether to divide
 };
 
 HierarchicalSolution solve_by_links(const SolvedScene& scene, PatchTree coarse, float patch_size,
@@ -205,8 +205,8 @@ HierarchicalSolution solve_by_links(const SolvedScene& scene, PatchTree coarse, 
     std::vector<Link> links = {{nodes.root(), nodes.root()}};
     bool is_done = false;
     while (!is_done && !watch.is_over() && solution.passes < kMaxPasses) {
-        if (solution.passes > 0 && refiner.any_wish()) {
-            nodes.divide(refiner.wishes());
+        if (solution.passes > 0 && refiner.needs_division()) {
+            nodes.divide(refiner.divides());
             for (Link& link : links) link = nodes.after_division(link);
         }
         watch.begin(fmt::format("links, pass {}", solution.passes + 1), 0);
@@ -215,7 +215,7 @@ HierarchicalSolution solve_by_links(const SolvedScene& scene, PatchTree coarse, 
         nodes.sort(links);
         for (uint32_t k = 0; k < kSweeps; ++k) solution.left = nodes.sweep(links);
         ++solution.passes;
-        is_done = !refiner.any_wish() && !(solution.left > static_cast<double>(settings.tolerance));
+        is_done = !refiner.needs_division() && !(solution.left > static_cast<double>(settings.tolerance));
     }
     solution.links = links.size();
     solution.bytes = links.size() * sizeof(Link) + nodes.bytes();
@@ -242,12 +242,12 @@ HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree co
             return solve_by_links(scene, coarse, patch_size, tried, watch, max_links);
         } catch (const TooManyLinks&) {
             if (tried.link_error > kLargestLinkError / 2) break;
-            watch.set_note(fmt::format(", anew by `link_error={}`", 2 * tried.link_error));
+            watch.set_note(fmt::format(", again with `link_error={}`", 2 * tried.link_error));
         }
     }
-    throw Error(
-        ErrorCode::OverLimit, "solver", "hierarchical",
-        fmt::format("more than {} links by any `link_error` (a larger `patch_size`, or another `solver`)", max_links));
+    throw Error(ErrorCode::OverLimit, "solver", "hierarchical",
+                fmt::format("more than {} links with any `link_error` (use a larger `patch_size` or another `solver`)",
+                            max_links));
 }
 
 } // namespace pertev

@@ -55,8 +55,8 @@ void check_light_ends(const RadiositySystem& system) {
         const uint64_t endless = count_endless(system, k);
         if (endless == 0) continue;
         throw Error(ErrorCode::BadInput,
-                    fmt::format("radiosity: light has no end: {} of {} patches reflect all of it, to each other alone "
-                                "(reflectances below 1 let it end; `integrator=path` follows it as far as `max_depth`)",
+                    fmt::format("radiosity: light never ends: {} of {} patches reflect all light to each other (lower "
+                                "their reflectances below 1; `integrator=path` follows light up to `max_depth`)",
                                 endless, system.patches.size()));
     }
 }

@@ -32,8 +32,8 @@ float LightRays::weight_of_hemisphere(float light_pdf, float cosine) const {
                            static_cast<float>(count) * light_pdf);
 }
 
-PatchPlace place_on_patch(const SceneView& scene, const Patch& patch, Vec2 u) {
-    const PlacedTriangle triangle = place_on(scene, patch, patch.corners.place(sample_uniform_triangle(u)));
+PatchPoint point_on_patch(const SceneView& scene, const Patch& patch, Vec2 u) {
+    const WorldTriangle triangle = world_triangle(scene, patch, patch.corners.uv_at(sample_uniform_triangle(u)));
     return {triangle.position, triangle.error, normal_of(scene, patch, triangle)};
 }
 
@@ -51,11 +51,11 @@ void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, co
         for (uint32_t k = first; k < min(rays.count, first + kRaysAtOnce); ++k) {
             const SampleKey of_ray = {key.pixel, k, key.seed};
             const Vec2 on_patch = sample_2d(SamplerKind::Sobol, of_ray, kGroupLights);
-            const PatchPlace place = place_on_patch(view, patch, on_patch);
+            const PatchPoint point = point_on_patch(view, patch, on_patch);
             const SampleBits u = sample_bits(SamplerKind::Sobol, of_ray, kGroupLights, Pair::Last);
             LightSample light;
-            if (!sample_light(lights, place.position, u, light)) continue;
-            const float cosine = dot(light.wi, place.normal);
+            if (!sample_light(lights, point.position, u, light)) continue;
+            const float cosine = dot(light.wi, point.normal);
             if (!(cosine > 0)) continue;
             const bool is_emitter = light.instance != kNoLight;
             if (is_emitter && !rays.finds_emitters) continue;
@@ -76,7 +76,7 @@ void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, co
                 const float weight = is_sky && !rays.finds_sky_alone ? rays.weight_of_light(light.pdf, cosine) : 1.0f;
                 to.irradiance = (weight * each * cosine / light.pdf) * light.radiance;
             }
-            to.ray = ray_to_light(light, place.position, place.error, place.normal);
+            to.ray = ray_to_light(light, point.position, point.error, point.normal);
             if (!light.is_delta) to.target = {light.instance, light.primitive};
             ++count;
         }

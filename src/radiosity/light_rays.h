@@ -25,11 +25,11 @@ struct LightRays {
 enum RowGroup : uint32_t { kGroupHemisphere, kGroupLights };
 
 /// A point on a patch where its rays start.
-struct PatchPlace {
+struct PatchPoint {
     Vec3 position, error; // metres
     Vec3 normal;          // unit, out of the patch's side
 };
-PatchPlace place_on_patch(const SceneView& scene, const Patch& patch, Vec2 u);
+PatchPoint point_on_patch(const SceneView& scene, const Patch& patch, Vec2 u);
 
 /// Adds the direct light to `row`.
 void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, const LightRays& rays,

@@ -10,17 +10,17 @@ constexpr uint32_t kDraws = 4; // samples of a pair of points, for each ray betw
 constexpr float kFar = 8;      // distance, in radii of a source, from which on its middle represents it
 
 /// From a point to a patch, which may face it or not.
-float form_factor_at(const PatchPlace& place, const LinkedPatch& source) {
-    const Vec3 way = source.ball.centre - place.position;
-    if (!(dot(source.normal, source.corner[0] - place.position) < 0)) return 0;
+float form_factor_at(const PatchPoint& point, const LinkedPatch& source) {
+    const Vec3 way = source.ball.centre - point.position;
+    if (!(dot(source.normal, source.corner[0] - point.position) < 0)) return 0;
     const float squared = length_squared(way);
     if (squared > square(kFar * source.ball.radius)) {
-        const float cosines = dot(way, place.normal) * -dot(way, source.normal);
+        const float cosines = dot(way, point.normal) * -dot(way, source.normal);
         return cosines > 0 ? cosines * source.area / (kPi * square(squared)) : 0.0f;
     }
-    const Vec3 corner[] = {source.corner[0] - place.position, source.corner[1] - place.position,
-                           source.corner[2] - place.position};
-    return triangle_form_factor(corner, place.normal);
+    const Vec3 corner[] = {source.corner[0] - point.position, source.corner[1] - point.position,
+                           source.corner[2] - point.position};
+    return triangle_form_factor(corner, point.normal);
 }
 
 } // namespace
@@ -54,10 +54,11 @@ void LinkFactors::queue_patches(const Link& link, uint32_t rays, uint32_t key, Q
         const SampleKey of_ray = {key, k, seed_};
         const Vec2 on_receiver = sample_2d(SamplerKind::Sobol, of_ray, 0);
         const Vec2 on_source = sample_2d(SamplerKind::Sobol, of_ray, 0, Pair::Last);
-        const PatchPlace start = place_on_patch(scene_.view(), receiver, on_receiver);
+        const PatchPoint start = point_on_patch(scene_.view(), receiver, on_receiver);
         const float factor = each * form_factor_at(start, shape);
         if (!(factor > 0)) continue;
-        if (look(receiver, start, source, place_on_patch(scene_.view(), source, on_source), factor)) continue;
+        if (test_visibility(receiver, start, source, point_on_patch(scene_.view(), source, on_source), factor))
+            continue;
         queued.known += factor; // the place drawn lies below the horizon
         ++queued.seen;
     }
@@ -85,21 +86,21 @@ void LinkFactors::queue_clusters(const Link& link, uint32_t rays, uint32_t key, 
         const Vec2 on_receiver = sample_2d(SamplerKind::Sobol, of_ray, 0);
         const Vec2 on_source = sample_2d(SamplerKind::Sobol, of_ray, 0, Pair::Last);
         const Patch &receiver = nodes_.patch(receiving), &source = nodes_.patch(sending);
-        const PatchPlace start = place_on_patch(scene_.view(), receiver, on_receiver);
-        const PatchPlace target = place_on_patch(scene_.view(), source, on_source);
+        const PatchPoint start = point_on_patch(scene_.view(), receiver, on_receiver);
+        const PatchPoint target = point_on_patch(scene_.view(), source, on_source);
         const Vec3 way = target.position - start.position;
         const float squared = length_squared(way);
         const float cosines = dot(way, start.normal) * -dot(way, target.normal);
         if (!(squared > 0) || !(dot(way, start.normal) > 0) || !(cosines > 0)) continue;
         const float weight = is_even ? cosines / (squared * (kPi * squared + area)) : cosines / squared;
-        if (look(receiver, start, source, target, weight)) weights += weight;
+        if (test_visibility(receiver, start, source, target, weight)) weights += weight;
     }
     if (is_even) {
         queued.rays = max(queued.rays, 1u);
         queued.scale = 1.0f / static_cast<float>(queued.rays);
     } else {
-        const uint32_t looked = static_cast<uint32_t>(visibility_rays_.size()) - queued.first;
-        queued.rays = looked > 0 ? looked : rays; // none faces the other
+        const uint32_t tested = static_cast<uint32_t>(visibility_rays_.size()) - queued.first;
+        queued.rays = tested > 0 ? tested : rays; // none faces the other
         const Vec3 way = there.centre - here.centre;
         const float squared = length_squared(way);
         float cosine = 1;
@@ -111,8 +112,8 @@ void LinkFactors::queue_clusters(const Link& link, uint32_t rays, uint32_t key, 
 }
 
 /// False where the two do not face each other.
-bool LinkFactors::look(const Patch& from, const PatchPlace& start, const Patch& to, const PatchPlace& target,
-                       float weight) {
+bool LinkFactors::test_visibility(const Patch& from, const PatchPoint& start, const Patch& to, const PatchPoint& target,
+                                  float weight) {
     const Vec3 way = target.position - start.position;
     const float squared = length_squared(way);
     if (!(squared > 0)) return false;

@@ -41,7 +41,8 @@ private:
     void queue_patches(const Link& link, uint32_t rays, uint32_t key, QueuedLink& queued);
     void queue_clusters(const Link& link, uint32_t rays, uint32_t key, QueuedLink& queued);
     PatchCode triangle_of(NodeCode code, double u) const;
-    bool look(const Patch& from, const PatchPlace& start, const Patch& to, const PatchPlace& target, float weight);
+    bool test_visibility(const Patch& from, const PatchPoint& start, const Patch& to, const PatchPoint& target,
+                         float weight);
 
     const SolvedScene& scene_;
     const LinkNodes& nodes_;

@@ -3,7 +3,7 @@
 namespace pertev {
 
 LinkedPatch linked_patch(const SceneView& scene, const Patch& patch) {
-    const PlacedTriangle triangle = place_on(scene, patch, patch.corners.middle());
+    const WorldTriangle triangle = world_triangle(scene, patch, patch.corners.middle());
     LinkedPatch linked;
     for (int k = 0; k < 3; ++k) linked.corner[k] = triangle.at(patch.corners.at[k].x, patch.corners.at[k].y);
     linked.normal = normal_of(scene, patch, triangle);

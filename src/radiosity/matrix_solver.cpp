@@ -62,12 +62,10 @@ SolvedSystem solve_direct_light(const RadiositySystem& system) {
 
 void check_matrix_size(std::size_t patches) {
     if (patches <= kMaxMatrixPatches) return;
-    throw Error(
-        ErrorCode::OverLimit, "solver", "matrix",
-        fmt::format(
-            "{} patches; at most {} (`solver=gauss-seidel` or southwell solves more, a larger `patch_size` makes "
-            "fewer)",
-            patches, kMaxMatrixPatches));
+    throw Error(ErrorCode::OverLimit, "solver", "matrix",
+                fmt::format("{} patches; the limit is {} (`solver=gauss-seidel` or southwell solves more, and a larger "
+                            "`patch_size` makes fewer)",
+                            patches, kMaxMatrixPatches));
 }
 
 SolvedSystem solve_by_matrix(const RadiositySystem& system, const KeepSolving& keep_going) {

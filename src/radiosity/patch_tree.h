@@ -76,8 +76,8 @@ struct PatchCorners {
         }
     }
     /// `b`: weights of the second and third corner of the patch.
-    HD Vec2 place(Vec2 b) const { return at[0] + (b.x * (at[1] - at[0]) + b.y * (at[2] - at[0])); }
-    HD Vec2 middle() const { return place({1.0f / 3, 1.0f / 3}); }
+    HD Vec2 uv_at(Vec2 b) const { return at[0] + (b.x * (at[1] - at[0]) + b.y * (at[2] - at[0])); }
+    HD Vec2 middle() const { return uv_at({1.0f / 3, 1.0f / 3}); }
 };
 
 } // namespace pertev

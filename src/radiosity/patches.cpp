@@ -9,27 +9,27 @@
 namespace pertev {
 namespace {
 
-PlacedTriangle place_at(const SceneView& scene, uint32_t instance, uint32_t primitive, Vec2 place) {
+WorldTriangle world_triangle(const SceneView& scene, uint32_t instance, uint32_t primitive, Vec2 uv) {
     const InstanceView& placed = scene.instances[instance];
-    return place_triangle(placed, scene.meshes[placed.mesh], {0, place.x, place.y, instance, primitive});
+    return world_triangle(placed, scene.meshes[placed.mesh], {0, uv.x, uv.y, instance, primitive});
 }
 
-Vec3 front_of(const SceneView& scene, uint32_t instance, const PlacedTriangle& triangle) {
+Vec3 front_of(const SceneView& scene, uint32_t instance, const WorldTriangle& triangle) {
     const InstanceView& placed = scene.instances[instance];
     return front_normal(placed, scene.meshes[placed.mesh], triangle);
 }
 
 /// How often a triangle is divided so that no edge is longer than `size`.
-uint32_t levels_of(const PlacedTriangle& triangle, float size) {
+uint32_t levels_of(const WorldTriangle& triangle, float size) {
     const float longest = max(length(triangle.ab), max(length(triangle.ac), length(triangle.ac - triangle.ab)));
     uint32_t levels = 0;
     for (float edge = longest; edge > size && levels < 16; edge *= 0.5f) ++levels;
     return levels;
 }
 
-float area_of(const PlacedTriangle& triangle) { return 0.5f * length(cross(triangle.ab, triangle.ac)); }
+float area_of(const WorldTriangle& triangle) { return 0.5f * length(cross(triangle.ab, triangle.ac)); }
 
-bool has_area(const PlacedTriangle& triangle) {
+bool has_area(const WorldTriangle& triangle) {
     const float area = area_of(triangle);
     return area > 0 && is_finite(area);
 }
@@ -38,10 +38,10 @@ bool has_area(const PlacedTriangle& triangle) {
 void set_surface(const SceneView& scene, Patch& patch) {
     Rgb reflectance, exitance;
     for (uint32_t child = 0; child < 4; ++child) {
-        const Vec2 place = patch.corners.child(child).middle();
-        const PlacedTriangle triangle = place_on(scene, patch, place);
-        const Surface surface = make_surface(scene, {0, place.x, place.y, patch.instance, patch.primitive},
-                                             -normal_of(scene, patch, triangle));
+        const Vec2 uv = patch.corners.child(child).middle();
+        const WorldTriangle triangle = world_triangle(scene, patch, uv);
+        const Surface surface =
+            make_surface(scene, {0, uv.x, uv.y, patch.instance, patch.primitive}, -normal_of(scene, patch, triangle));
         if (surface.is_unlit) continue; // visible only to the camera
         reflectance += 0.25f * surface.bsdf.diffuse_albedo();
         exitance += (0.25f * kPi) * surface.emission;
@@ -59,8 +59,8 @@ struct DividedScene {
 PatchCode divide(const DividedScene& divided, PatchTree& tree, Patch patch, uint32_t levels) {
     if (levels == 0) {
         if (divided.watch != nullptr && divided.watch->is_over()) {
-            throw Error(ErrorCode::Interrupted, "interrupted while surfaces were divided into patches: nothing is "
-                                                "written, as there is no light yet");
+            throw Error(ErrorCode::Interrupted, "interrupted while surfaces were divided into patches; nothing is "
+                                                "written, because there is no light yet");
         }
         set_surface(divided.scene, patch);
         tree.patches.push_back(patch);
@@ -93,7 +93,7 @@ void for_each_triangle(const SceneView& scene, const Body& body) {
         if (placed.is_hidden != 0 || !may_count(scene.materials[placed.material])) continue;
         const uint32_t triangles = scene.first_triangle[instance + 1] - scene.first_triangle[instance];
         for (uint32_t primitive = 0; primitive < triangles; ++primitive) {
-            const PlacedTriangle triangle = place_at(scene, instance, primitive, {1.0f / 3, 1.0f / 3});
+            const WorldTriangle triangle = world_triangle(scene, instance, primitive, {1.0f / 3, 1.0f / 3});
             if (has_area(triangle)) body(instance, primitive, triangle);
         }
     }
@@ -101,17 +101,17 @@ void for_each_triangle(const SceneView& scene, const Body& body) {
 
 } // namespace
 
-PlacedTriangle place_on(const SceneView& scene, const Patch& patch, Vec2 place) {
-    return place_at(scene, patch.instance, patch.primitive, place);
+WorldTriangle world_triangle(const SceneView& scene, const Patch& patch, Vec2 uv) {
+    return world_triangle(scene, patch.instance, patch.primitive, uv);
 }
 
-Vec3 normal_of(const SceneView& scene, const Patch& patch, const PlacedTriangle& triangle) {
+Vec3 normal_of(const SceneView& scene, const Patch& patch, const WorldTriangle& triangle) {
     const Vec3 front = front_of(scene, patch.instance, triangle);
     return patch.side() == 0 ? front : -front;
 }
 
 uint32_t side_met(const SceneView& scene, uint32_t instance, uint32_t primitive, Vec3 direction) {
-    const PlacedTriangle triangle = place_at(scene, instance, primitive, {1.0f / 3, 1.0f / 3});
+    const WorldTriangle triangle = world_triangle(scene, instance, primitive, {1.0f / 3, 1.0f / 3});
     return dot(front_of(scene, instance, triangle), direction) < 0 ? 0 : 1;
 }
 
@@ -141,7 +141,7 @@ void PatchTree::split(const SceneView& scene, uint32_t number) {
 
 uint64_t count_patches(const SceneView& scene, float patch_size) {
     uint64_t count = 0;
-    for_each_triangle(scene, [&](uint32_t, uint32_t, const PlacedTriangle& triangle) {
+    for_each_triangle(scene, [&](uint32_t, uint32_t, const WorldTriangle& triangle) {
         count += uint64_t(2) << (2 * levels_of(triangle, patch_size));
     });
     return count;
@@ -150,7 +150,7 @@ uint64_t count_patches(const SceneView& scene, float patch_size) {
 void check_patch_count(uint64_t patches, float patch_size) {
     if (patches <= kMaxPatches) return;
     throw Error(ErrorCode::OverLimit, "patch_size", fmt::format("{}", patch_size),
-                fmt::format("it divides this scene into {} patches; at most {}", patches, kMaxPatches));
+                fmt::format("it divides this scene into {} patches; the limit is {}", patches, kMaxPatches));
 }
 
 PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watch) {
@@ -162,7 +162,7 @@ PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watc
     tree.quads.reserve(most / 3);
     tree.roots.assign(2 * scene.triangle_count, kNoPatch);
     bool any_reflects = false;
-    for_each_triangle(scene, [&](uint32_t instance, uint32_t primitive, const PlacedTriangle& triangle) {
+    for_each_triangle(scene, [&](uint32_t instance, uint32_t primitive, const WorldTriangle& triangle) {
         for (uint32_t side = 0; side < 2; ++side) {
             Patch patch;
             patch.instance = instance;
@@ -186,8 +186,8 @@ PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watc
     });
     if (!any_reflects) {
         throw Error(ErrorCode::BadInput,
-                    "radiosity: no surface of this scene reflects diffusely, so that there is "
-                    "nothing to solve (`integrator=path` knows mirrors, glass and unlit surfaces)");
+                    "radiosity: no surface of this scene reflects diffusely, so that there is nothing to solve "
+                    "(`integrator=path` supports mirrors, glass and unlit surfaces)");
     }
     return tree;
 }

@@ -40,9 +40,9 @@ struct PatchTree {
 };
 
 /// The triangle of a patch, with a point on it.
-PlacedTriangle place_on(const SceneView& scene, const Patch& patch, Vec2 place);
+WorldTriangle world_triangle(const SceneView& scene, const Patch& patch, Vec2 uv);
 /// Unit normal of the patch's side.
-Vec3 normal_of(const SceneView& scene, const Patch& patch, const PlacedTriangle& triangle);
+Vec3 normal_of(const SceneView& scene, const Patch& patch, const WorldTriangle& triangle);
 /// Side of a triangle at which a ray along `direction` arrives.
 uint32_t side_met(const SceneView& scene, uint32_t instance, uint32_t primitive, Vec3 direction);
 /// Number of the face of a hit.

@@ -54,7 +54,7 @@ Hash128 content_hash(const RadiositySolution& solution) {
 }
 
 [[noreturn]] void refuse_file(const std::filesystem::path& path, const std::string& why) {
-    throw Error(ErrorCode::BadInput, Place{path.string()}, why);
+    throw Error(ErrorCode::BadInput, FileLocation{path.string()}, why);
 }
 
 /// Copies the next of `bytes` and leaves the rest.
@@ -102,15 +102,15 @@ std::string describe(const SolvedExtent& extent) {
     case SolvedPart::All:
         return {};
     case SolvedPart::SomeDirectLight:
-        return fmt::format("direct light alone, and {:.3g} % of the patches are without", 100 * extent.left);
+        return fmt::format("only direct light, which {:.3g} % of the patches lack", 100 * extent.left);
     case SolvedPart::DirectLight:
-        return "direct light alone, nothing that surfaces pass on";
+        return "only direct light";
     case SolvedPart::SomeBounces:
-        return fmt::format("light whose solution was ended early: its last step changed {:.3g} % of it, or left that "
-                           "much unsent, and patches are not divided as far as was asked for",
+        return fmt::format("light of an unfinished solution: its last step changed or left unshot {:.3g} % of it, and "
+                           "patches are not divided as requested",
                            100 * extent.left);
     case SolvedPart::SomeDivided:
-        return "all light, in patches that are not divided as far as was asked for";
+        return "all light, in patches that are not divided as requested";
     }
     return {};
 }
@@ -209,7 +209,7 @@ RadiositySolution read_any_solution(const std::filesystem::path& path) {
                                      : before + header.text + header.roots * sizeof(PatchCode) +
                                            header.quads * sizeof(PatchQuad) + header.patches * sizeof(PatchLight);
     if (!has_sizes || size != bytes.size()) {
-        refuse_file(path, fmt::format("a radiosity solution that was cut short or damaged: {} bytes, it says {}",
+        refuse_file(path, fmt::format("a radiosity solution that is truncated or damaged: {} bytes, but it states {}",
                                       file.size(), sizeof header + size));
     }
     RadiositySolution solution;
@@ -227,7 +227,7 @@ RadiositySolution read_any_solution(const std::filesystem::path& path) {
     take(bytes, std::span(solution.patches));
     if (content_hash(solution) != header.content || !is_sound(solution.extent) || !is_sound(solution) ||
         !has_light_alone(solution)) {
-        refuse_file(path, "a radiosity solution that was damaged: what it holds is not what was written");
+        refuse_file(path, "a radiosity solution that is damaged: its content is invalid");
     }
     return solution;
 }
@@ -236,16 +236,13 @@ RadiositySolution read_solution(const std::filesystem::path& path, const Scene& 
     RadiositySolution solution = read_any_solution(path);
     check_scene(path, solution, scene);
     if (!solution.light) {
-        messages.warn(
-            {Place{path.string()},
-             "made by an earlier version, which did not write down what light it was solved for: where lights "
-             "or materials have changed since, it shows those of then (pertev solve radiosity makes a new "
-             "one)"});
+        messages.warn({FileLocation{path.string()},
+                       "an earlier version made it and did not record its light; if lights or materials have changed "
+                       "since, it shows the old ones (pertev solve radiosity makes a new one)"});
     }
     if (solution.extent.part != SolvedPart::All) {
-        messages.warn({Place{path.string()},
-                       fmt::format("was ended while it was solved, and holds {} (pertev solve radiosity makes a whole "
-                                   "one)",
+        messages.warn({FileLocation{path.string()},
+                       fmt::format("it is unfinished and holds {} (pertev solve radiosity makes a complete one)",
                                    describe(solution.extent))});
     }
     return solution;

@@ -54,11 +54,11 @@ private:
             const SampleKey of_ray = {key.pixel, first + i, key.seed};
             const Vec2 on_patch = sample_2d(SamplerKind::Sobol, of_ray, kGroupHemisphere);
             const Vec2 direction = sample_2d(SamplerKind::Sobol, of_ray, kGroupHemisphere, Pair::Last);
-            const PatchPlace place = place_on_patch(view, patch, on_patch);
+            const PatchPoint point = point_on_patch(view, patch, on_patch);
             const Vec3 local = sample_cosine_hemisphere(direction);
             Ray& ray = sent_[i];
-            ray.direction = normalize(make_frame(place.normal).to_world(local));
-            ray.origin = offset_ray_origin(place.position, place.error, place.normal, ray.direction);
+            ray.direction = normalize(make_frame(point.normal).to_world(local));
+            ray.origin = offset_ray_origin(point.position, point.error, point.normal, ray.direction);
             ray.t_min = 0;
             ray.t_max = kInfinity;
             cosines_[i] = local.z;

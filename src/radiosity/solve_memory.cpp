@@ -128,15 +128,14 @@ void check_memory(const SolveMemory& memory, const RadiositySettings& settings, 
     for (std::size_t i = 0; i < std::min<std::size_t>(memory.parts.size(), 5); ++i) {
         list += fmt::format("\n  {:10.1f} MiB  {}", mebibytes(memory.parts[i].bytes), memory.parts[i].name);
     }
-    const char* fewer = ", fewer `patch_rays` a smaller system";
+    const char* fewer = ", fewer `patch_rays` make a smaller system";
     if (settings.solver == RadiositySolver::Hierarchical) {
         fewer = memory.by_rows > 0 && memory.by_rows <= limit ? ", and `solver=gauss-seidel` takes less" : "";
     }
     throw Error(
         ErrorCode::OutOfMemory,
-        fmt::format("radiosity: may take {:.1f} MiB of this machine's memory, of which {:.1f} MiB are to be used "
-                    "(`max_memory`); a larger `patch_size` or fewer `subdivisions` make fewer patches{}. The "
-                    "largest parts:{}",
+        fmt::format("radiosity: may take {:.1f} MiB of this machine's memory; the limit is {:.1f} MiB (`max_memory`); "
+                    "a larger `patch_size` or fewer `subdivisions` make fewer patches{}. The largest parts:{}",
                     mebibytes(memory.bytes), mebibytes(limit), fewer, list));
 }
 

@@ -19,8 +19,9 @@ namespace {
 constexpr uint64_t kRowsOfThread = 4; // at least, one after the other
 
 [[noreturn]] void interrupt() {
-    throw Error(ErrorCode::Interrupted, "interrupted while form factors were made: nothing is written, as no light is "
-                                        "solved before all of them are there");
+    throw Error(
+        ErrorCode::Interrupted,
+        "interrupted while form factors were made; nothing is written, because no light is solved before all are done");
 }
 
 /// Makes `count` rows, each given to take(k, row), from any thread. False where the watch was over before all were
@@ -305,18 +306,16 @@ void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, 
     if (stats.link_error > settings.link_error) {
         messages.warn(
             {"link_error", fmt::format("{}", settings.link_error),
-             fmt::format("radiosity has more than {} links, which is the most there may be; {} by "
-                         "`link_error={}` (which, given at once, takes less time)",
-                         kMaxLinks, stats.was_interrupted ? "it was ended while it was solved" : "it is solved",
-                         stats.link_error)});
+             fmt::format("radiosity has more than {} links, the limit; {} with `link_error={}` (set that to save time)",
+                         kMaxLinks, stats.was_interrupted ? "it is unfinished" : "it is solved", stats.link_error)});
     }
     if (!stats.reached_limit) return;
     const bool is_ambient = settings.solver == RadiositySolver::Southwell;
-    messages.warn(
-        {"tolerance", fmt::format("{}", settings.tolerance),
-         fmt::format("radiosity: after {} steps, which is where it ends, {:.2g} of the light {}, which is more "
-                     "(next to nothing absorbs it; lower reflectances, or a larger tolerance)",
-                     stats.steps, stats.left, is_ambient ? "is unsent, and shown as ambient light" : "still changes")});
+    messages.warn({"tolerance", fmt::format("{}", settings.tolerance),
+                   fmt::format("radiosity: after {} steps, the limit, {:.2g} of the light {}, which exceeds it (almost "
+                               "nothing absorbs light; lower reflectances, or use a larger tolerance)",
+                               stats.steps, stats.left,
+                               is_ambient ? "is unshot and displayed as ambient light" : "still changes")});
 }
 
 std::string json_of(const RadiositySettings& s) {

@@ -114,7 +114,7 @@ Hash128 lights_hash(const Scene& scene) {
         hasher.add_value(static_cast<uint32_t>(light.kind));
         add_bytes(hasher, light.intensity);
         const LightParts parts = parts_of(light.kind);
-        if (parts.place) {
+        if (parts.position) {
             add_bytes(hasher, light.position);
             hasher.add_value(light.range);
         }

@@ -8,11 +8,10 @@ namespace pertev {
 
 SolvedScene::SolvedScene(const PreparedScene& prepared) : queue_(Queue::make_cpu()) {
     if (!prepared.poses.empty()) {
-        throw Error(
-            ErrorCode::BadInput,
-            fmt::format("radiosity: skins or morph targets move the vertices of this scene's meshes ({} of them), "
-                        "and patches stay where they are; `integrator=path` knows such scenes",
-                        prepared.poses.size()));
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("radiosity: skins or morph targets move vertices of {} of this scene's meshes, but "
+                                "patches cannot move; `integrator=path` supports such scenes",
+                                prepared.poses.size()));
     }
     scene_.emplace(queue_, prepared);
     if (scene_->view().first_triangle == nullptr || scene_->view().triangle_count >= 1u << 30) {

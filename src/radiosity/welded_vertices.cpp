@@ -26,9 +26,9 @@ int32_t cell_of(double coordinate, int level) {
 }
 
 /// Places of their own, by the cells of a grid that is as fine as their coordinates are.
-class Places {
+class WeldedPositions {
 public:
-    explicit Places(std::size_t most) : heads_(std::bit_ceil(most + 1), kNone) {}
+    explicit WeldedPositions(std::size_t most) : heads_(std::bit_ceil(most + 1), kNone) {}
 
     /// The first one that is as good as here; else `here`, which is kept.
     Vec3 find_or_keep(Vec3 here) {
@@ -44,11 +44,11 @@ public:
                 }
             }
         }
-        if (best != kNone) return places_[best];
+        if (best != kNone) return positions_[best];
         const std::size_t slot = slot_of(corner(here, 0, level_of(largest)));
         next_.push_back(heads_[slot]);
-        heads_[slot] = static_cast<uint32_t>(places_.size());
-        places_.push_back(here);
+        heads_[slot] = static_cast<uint32_t>(positions_.size());
+        positions_.push_back(here);
         return here;
     }
 
@@ -66,13 +66,13 @@ private:
     uint32_t find(Cell cell, Vec3 here, float near) const {
         uint32_t best = kNone;
         for (uint32_t i = heads_[slot_of(cell)]; i != kNone; i = next_[i]) {
-            if (max_component(abs(places_[i] - here)) <= near) best = std::min(best, i);
+            if (max_component(abs(positions_[i] - here)) <= near) best = std::min(best, i);
         }
         return best;
     }
 
     std::vector<uint32_t> heads_, next_;
-    std::vector<Vec3> places_;
+    std::vector<Vec3> positions_;
 };
 
 } // namespace
@@ -90,13 +90,13 @@ WeldedVertices::WeldedVertices(const SceneView& scene) : scene_(scene) {
         count += uint64_t(*std::max_element(all, all + indices)) + 1;
     }
     at_.resize(count);
-    Places places(count);
+    WeldedPositions welded(count);
     for (uint32_t instance = 0; instance < scene.instance_count; ++instance) {
         const uint64_t end = instance + 1 < scene.instance_count ? first_[instance + 1] : count;
         const InstanceView& placed = scene.instances[instance];
         for (uint64_t i = first_[instance]; i < end; ++i) {
             const Vec3 local = scene.meshes[placed.mesh].positions[i - first_[instance]];
-            at_[i] = places.find_or_keep(transform_point(placed.world_from_local, local));
+            at_[i] = welded.find_or_keep(transform_point(placed.world_from_local, local));
         }
     }
 }

@@ -10,18 +10,18 @@ void WorkWatch::begin(std::string what, uint64_t pieces, double first, double la
     first_ = first, last_ = last;
     done_ = 0;
     share_ = 0;
-    tell();
+    report();
 }
 
 bool WorkWatch::is_over() {
     if (is_over_.load(std::memory_order_relaxed)) return true;
     if (!progress_ || Clock::now().time_since_epoch().count() < next_.load(std::memory_order_relaxed)) return false;
     const std::unique_lock lock(telling_, std::try_to_lock);
-    if (lock && Clock::now().time_since_epoch().count() >= next_.load(std::memory_order_relaxed)) tell();
+    if (lock && Clock::now().time_since_epoch().count() >= next_.load(std::memory_order_relaxed)) report();
     return is_over_.load(std::memory_order_relaxed);
 }
 
-void WorkWatch::tell() {
+void WorkWatch::report() {
     if (!progress_ || is_over_) return;
     const double share = pieces_ > 0 ? static_cast<double>(done_.load()) / static_cast<double>(pieces_) : share_.load();
     if (!progress_(what_.c_str(), first_ + (last_ - first_) * std::clamp(share, 0.0, 1.0))) is_over_ = true;

@@ -37,7 +37,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    void tell();
+    void report();
 
     SolveProgress progress_;
     std::string what_, note_;

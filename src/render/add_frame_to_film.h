@@ -15,10 +15,10 @@ struct AddFrameToFilm {
     bool is_first; // sample 0, which writes the ids
 
     HD void operator()(uint32_t pixel) const {
-        const Float4 light = frame.light[pixel], place = frame.place[pixel];
+        const Float4 light = frame.light[pixel], stored = frame.hit[pixel];
         if (light.w != 0) add_radiance(film, pixel, {light.x, light.y, light.z});
         const Hit hit = {
-            .t = 0, .u = place.z, .v = place.w, .instance = bits_of(place.x), .primitive = bits_of(place.y)};
+            .t = 0, .u = stored.z, .v = stored.w, .instance = bits_of(stored.x), .primitive = bits_of(stored.y)};
         const bool is_background = shows_background(scene, hit.instance);
         if (!is_background) add_hit(pixel, hit);
         if ((film.aovs & kAovIds) != 0 && is_first) {
@@ -46,7 +46,7 @@ private:
         if ((film.aovs & kAovPosition) != 0) { // a frame stores the hit, not its position
             const InstanceView& instance = scene.instances[hit.instance];
             const uint32_t channel = channel_offset(film.aovs, kAovPosition);
-            add_channels(film, pixel, channel, place_triangle(instance, scene.meshes[instance.mesh], hit).position);
+            add_channels(film, pixel, channel, world_triangle(instance, scene.meshes[instance.mesh], hit).position);
             add_channels(film, pixel, channel, scene.position_shift);
         }
     }

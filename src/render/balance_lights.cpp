@@ -71,8 +71,8 @@ struct KindMoments {
     double near_mean = 0, far_mean = 0, near_square = 0, far_square = 0;
 };
 
-KindMoments look_from(const SurfacePoint& point, uint32_t i, float offset, const LightSetView& lights,
-                      const SceneBvhView& bvh) {
+KindMoments moments_at(const SurfacePoint& point, uint32_t i, float offset, const LightSetView& lights,
+                       const SceneBvhView& bvh) {
     KindMoments moments;
     const auto accept_all = [](uint32_t, uint32_t, float, float) { return true; };
     for (uint32_t k = 0; k < kDrawsPerPoint; ++k) {
@@ -125,7 +125,7 @@ void balance_lights(PreparedScene& prepared, const float* linear_from_srgb) {
         const auto number = static_cast<uint32_t>(i);
         const SurfacePoint point = draw_point(triangles, number);
         if (dot(point.normal, point.normal) > 0) {
-            moments[i] = look_from(point, number, offset, lights, bvh);
+            moments[i] = moments_at(point, number, offset, lights, bvh);
         }
     });
     // Relative variance for a share q of far samples: sum over points of (near / (1 - q) + far / q) / mean^2.

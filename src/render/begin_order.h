@@ -16,9 +16,9 @@ namespace pertev {
 /// consecutive pixels form an approximate square.
 inline constexpr uint32_t kBandRows = 16;
 
-/// The pixel at position `place` of the order.
-HD inline uint32_t ordered_pixel(uint32_t place, uint32_t width, uint32_t height) {
-    return tiled_pixel(place, width, height, kBandRows);
+/// The pixel at `index` of the order.
+HD inline uint32_t ordered_pixel(uint32_t index, uint32_t width, uint32_t height) {
+    return tiled_pixel(index, width, height, kBandRows);
 }
 
 /// A sample of a pixel; the pixel is counted row by row in a film.
@@ -26,16 +26,16 @@ struct PixelSample {
     uint32_t pixel, sample;
 };
 
-/// Samples [first_sample, + samples) of the pixels at positions [first_place, + pixels) of ordered_pixel.
+/// Samples [first_sample, + samples) of the pixels at positions [first_index, + pixels) of ordered_pixel.
 struct BeginOrder {
-    uint32_t first_place, pixels, first_sample, samples;
+    uint32_t first_index, pixels, first_sample, samples;
 
     HD uint64_t count() const { return uint64_t(pixels) * samples; }
     /// The sample with the index `number` < count(), in a picture of width x height.
     HD PixelSample at(uint64_t number, uint32_t width, uint32_t height) const {
-        const uint32_t place = static_cast<uint32_t>(number / samples);
-        const uint32_t sample = static_cast<uint32_t>(number - uint64_t(place) * samples);
-        return {ordered_pixel(first_place + place, width, height), first_sample + sample};
+        const uint32_t index = static_cast<uint32_t>(number / samples);
+        const uint32_t sample = static_cast<uint32_t>(number - uint64_t(index) * samples);
+        return {ordered_pixel(first_index + index, width, height), first_sample + sample};
     }
 };
 

@@ -28,9 +28,9 @@ struct CameraRays {
     HD Ray ray(uint32_t pixel, Vec2 in_filter, Vec2 on_lens) const {
         const Vec2 offset = sample_filter(filter, in_filter);
         const uint32_t row = pixel / width;
-        const Vec2 place = {static_cast<float>(pixel % width) + 0.5f + offset.x,
-                            static_cast<float>(row) + 0.5f + offset.y};
-        return make_camera_ray(view, place, on_lens);
+        const Vec2 position = {static_cast<float>(pixel % width) + 0.5f + offset.x,
+                               static_cast<float>(row) + 0.5f + offset.y};
+        return make_camera_ray(view, position, on_lens);
     }
     /// Ray of the sample at `time`, as time() draws it.
     HD Ray ray(uint32_t pixel, Vec2 in_filter, Vec2 on_lens, float time) const {

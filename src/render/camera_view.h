@@ -29,7 +29,7 @@ struct CameraView {
 CameraView make_camera_view(const Camera& camera, uint32_t width, uint32_t height, Vec3 centre = {0, 0, 0});
 
 /// Position of `pixel` in the view, x to the right and y up, in the unit of half_width.
-HD inline Vec2 place_in_view(const CameraView& camera, Vec2 pixel) {
+HD inline Vec2 view_position(const CameraView& camera, Vec2 pixel) {
     return {(2.0f * (pixel.x * camera.inv_width) - 1.0f) * camera.half_width,
             (1.0f - 2.0f * (pixel.y * camera.inv_height)) * camera.half_height};
 }
@@ -41,7 +41,7 @@ HD inline float growth_at(const CameraView& camera, float depth) {
 
 /// Ray through `pixel` from the point `lens` (unit square) of the lens. Its direction is unit.
 HD inline Ray make_camera_ray(const CameraView& camera, Vec2 pixel, Vec2 lens) {
-    const Vec2 at = place_in_view(camera, pixel);
+    const Vec2 at = view_position(camera, pixel);
     Vec3 origin = {0, 0, 0}, direction = {at.x, at.y, -1};
     switch (camera.projection) {
     case Projection::Perspective:
@@ -84,7 +84,7 @@ HD inline ProjectedPoint project_point(const CameraView& camera, Vec3 point) {
 
 /// The point in camera space that a pinhole sees at `pixel` and `depth`.
 HD inline Vec3 unproject_point(const CameraView& camera, Vec2 pixel, float depth) {
-    const Vec2 at = place_in_view(camera, pixel);
+    const Vec2 at = view_position(camera, pixel);
     const float scale = growth_at(camera, depth);
     return {scale * at.x, scale * at.y, -depth};
 }

@@ -33,9 +33,9 @@ struct FilmView {
     /// Whether it takes sums of every pixel of the picture, which is all that most integrators can fill.
     bool is_whole_picture() const { return !frame.is_there() && window.picture_width == 0; }
 
-    HD FixedSum* pixel(uint32_t index) const { return at_place(window.place_of(index)); }
-    HD FixedSum* at_place(uint32_t place) const { return sums + static_cast<uint64_t>(place) * channels; }
-    HD void set_ids(uint32_t pixel, const PixelIds& of_pixel) const { ids[window.place_of(pixel)] = of_pixel; }
+    HD FixedSum* pixel(uint32_t index) const { return at_slot(window.slot_of(index)); }
+    HD FixedSum* at_slot(uint32_t slot) const { return sums + static_cast<uint64_t>(slot) * channels; }
+    HD void set_ids(uint32_t pixel, const PixelIds& of_pixel) const { ids[window.slot_of(pixel)] = of_pixel; }
 };
 
 HD inline bool is_valid_sample(float x) { return abs(x) <= kMaxSampleValue; } // false for NaN

@@ -14,19 +14,19 @@ double hidden_back_share(Queue& queue, SceneTracer& tracer, const PictureView& p
     std::vector<Ray> rays;
     std::vector<uint32_t> keys;
     for (uint32_t i = 0; i < kRays; ++i) {
-        const Vec2 place = {(static_cast<float>(i % kSide) + 0.5f) * (width / kSide),
-                            (static_cast<float>(i / kSide) + 0.5f) * (height / kSide)};
-        rays.push_back(make_camera_ray(picture.camera.view, place, {0.5f, 0.5f})); // through the middle of the lens
+        const Vec2 position = {(static_cast<float>(i % kSide) + 0.5f) * (width / kSide),
+                               (static_cast<float>(i / kSide) + 0.5f) * (height / kSide)};
+        rays.push_back(make_camera_ray(picture.camera.view, position, {0.5f, 0.5f})); // through the middle of the lens
         keys.push_back(hash_words(i, 0, 0, 0).x);
     }
     const Buffer<Ray> rays_there(queue, std::span<const Ray>(rays), "rays of a look at backs");
     const Buffer<uint32_t> keys_there(queue, std::span<const uint32_t>(keys), "keys of a look at backs");
-    const Buffer<Float4> places(queue, kRays, "hits of a look at backs");
+    const Buffer<Float4> records(queue, kRays, "hits of a look at backs");
     const auto find = [&](RayKind kind) {
         const Buffer<uint32_t> instances(queue, kRays, "hits of a look at backs");
         tracer.find_hits(kind, {.rays = rays_there.data(), .keys = keys_there.data()}, kRays,
-                         {places.data(), instances.data()});
-        return std::pair(places.download(), instances.download());
+                         {records.data(), instances.data()});
+        return std::pair(records.download(), instances.download());
     };
     const auto [met, met_instances] = find(RayKind::Bounce); // bounce rays hit back faces
     const auto [seen, seen_instances] = find(RayKind::Camera);

@@ -22,7 +22,7 @@ NoisyFrame::NoisyFrame(Queue& queue, uint32_t width, uint32_t height, bool split
     : queue_(&queue), width_(width), height_(height), invalid_(queue, 1, "invalid samples") {
     const std::size_t pixels = std::size_t(width) * height;
     Float4* next = numbers;
-    for (Float4** array : {&view_.light, &view_.emission, &view_.place, &view_.normal, &view_.albedo, &view_.gloss}) {
+    for (Float4** array : {&view_.light, &view_.emission, &view_.hit, &view_.normal, &view_.albedo, &view_.gloss}) {
         *array = next;
         next += pixels;
     }

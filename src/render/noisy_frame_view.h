@@ -25,30 +25,36 @@ struct FirstBounceView {
 
     // These are null unless the light from the point that the first bounce hit is needed too (the samples include
     // it):
-    Float4* place = nullptr;   // bits of instance (kNoHit: no hit) and primitive, u, v of the point that the first
+    Float4* hit = nullptr;     // bits of instance (kNoHit: no hit) and primitive, u, v of the point that the first
                                // bounce hit
     Float4* way = nullptr;     // rgb throughput of the path on arrival; density of the first bounce, 1/sr
     Float4* sent = nullptr;    // rgb, the part of the sample that diffuse lobes there send
     Float4* onwards = nullptr; // rgb, share of the light of the rest of the path that passes through these lobes
 
     HD bool leaves_direct_light() const { return light != nullptr; }
-    HD bool tells_bounce() const { return sent != nullptr; }
+    HD bool records_bounce() const { return sent != nullptr; }
     HD void add_sent(uint32_t pixel, Rgb more) const {
         const Float4 s = sent[pixel];
         sent[pixel] = {s.x + more.r, s.y + more.g, s.z + more.b, 0};
     }
 };
 
-/// G-buffer and light of a frame: arrays with one element per pixel, row by row.
-struct NoisyFrameView {
+/// First hits of a frame: arrays with one element per pixel, row by row.
+struct GBufferView {
+    Float4* hit = nullptr;    // bits of instance (kNoHit: no hit) and primitive, u, v
+    Float4* normal = nullptr; // unit shading normal on the camera's side; depth along the camera's axis, metres
+    Float4* albedo = nullptr; // rgb of diffuse lobes; GGX width of the sharpest other lobe, or 1 without one
+    Float4* gloss = nullptr;  // rgb, approximate reflectance of the other lobes; metres from the first surface to the
+                              // path's next hit, kFarAway without one
+};
+
+/// G-buffer and light of a frame.
+struct NoisyFrameView : GBufferView {
     Float4* light = nullptr;    // rgb of the sample, W/(sr m2); w is 1, or 0 for an invalid sample, which counts as
                                 // black
     Float4* diffuse = nullptr;  // rgb, the part of `light` that the first surface scatters by diffuse lobes. Null:
                                 // all of `light` but `emission`, in scenes without other lobes
-    Float4* emission = nullptr; // rgb, the part of `light` that the camera ray hits directly; Gloss::passage
-    Float4* place = nullptr;    // bits of instance (kNoHit: no hit) and primitive, u, v
-    Float4* normal = nullptr;   // unit shading normal on the camera's side; depth along the camera's axis, metres
-    Float4* albedo = nullptr;   // rgb of diffuse lobes; GGX width of the sharpest other lobe, or 1 without one
+    Float4* emission = nullptr; // rgb, the part of `light` that the camera ray hits directly; Gloss::transmittance
     Float4* gloss = nullptr;    // rgb, approximate reflectance of the other lobes; metres from the first surface to
                                 // the path's next hit, kFarAway without one
     FirstBounceView first_bounce;

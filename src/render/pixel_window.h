@@ -16,11 +16,11 @@ struct PixelWindow {
 
     bool operator==(const PixelWindow&) const = default;
 
-    HD uint32_t pixel_at(uint32_t place) const {
-        return picture_width == 0 ? place : (y + place / width) * picture_width + x + place % width;
+    HD uint32_t pixel_at(uint32_t slot) const {
+        return picture_width == 0 ? slot : (y + slot / width) * picture_width + x + slot % width;
     }
     /// Index in the film of `pixel`, which must lie in the window.
-    HD uint32_t place_of(uint32_t pixel) const {
+    HD uint32_t slot_of(uint32_t pixel) const {
         return picture_width == 0 ? pixel : (pixel / picture_width - y) * width + pixel % picture_width - x;
     }
 };

@@ -22,9 +22,9 @@ void warn_of_indices(const Scene& scene, Messages& messages) {
         if (material.kind != MaterialKind::Dielectric) continue;
         const float used = DielectricLobe::usable_ior(material.ior, alpha_from_roughness(material.roughness));
         if (used == material.ior) continue;
-        messages.warn(
-            fmt::format("{}: rough glass of index {} is rendered with {}; its energy is tabulated for 1.1 to 3",
-                        numbered("material", i, material.name, material.origin), material.ior, used));
+        messages.warn(fmt::format(
+            "{}: rough glass of index {} is rendered with {}, because its energy is tabulated only from 1.1 to 3",
+            numbered("material", i, material.name, material.origin), material.ior, used));
     }
 }
 
@@ -52,10 +52,9 @@ PreparedScene prepare_scene(const Scene& scene, const PrepareOptions& options, M
     const MeshPlacement placement = place_meshes(scene, prepared.centre);
     prepared.is_baked = placement.is_baked;
     if (placement.copied_triangles > kManyCopiedTriangles) {
-        messages.warn(
-            fmt::format("{} of shared meshes squeezed too much for a tree of their own: copied into world space, "
-                        "which takes memory for {} triangles more",
-                        counted(placement.copies, "instance"), placement.copied_triangles));
+        messages.warn(fmt::format("{} of shared meshes squeezed too much for a tree in their own space are copied into "
+                                  "world space, which takes memory for {} more triangles",
+                                  counted(placement.copies, "instance"), placement.copied_triangles));
     }
 
     const SceneTriangles triangles(scene, placement);

@@ -36,23 +36,23 @@ struct Reprojection {
     float depth; // expected depth of the same surface, metres
 };
 
-/// World-space point at `place` (NoisyFrameView).
-HD inline Vec3 point_at(const InstanceView* instances, const MeshView* meshes, Float4 place) {
-    const InstanceView& instance = instances[bits_of(place.x)];
+/// World-space point of `hit` (GBufferView::hit).
+HD inline Vec3 point_at(const InstanceView* instances, const MeshView* meshes, Float4 hit) {
+    const InstanceView& instance = instances[bits_of(hit.x)];
     const MeshView& mesh = meshes[instance.mesh];
-    const Vec3 local = interpolate(mesh.positions, triangle_indices(mesh, bits_of(place.y)), place.z, place.w);
+    const Vec3 local = interpolate(mesh.positions, triangle_indices(mesh, bits_of(hit.y)), hit.z, hit.w);
     return transform_point(instance.world_from_local, local);
 }
 
 /// Reprojects `pixel`, whose sample hit the surface at `place`. The sample lies somewhere in the pixel; the centre is
 /// assumed to move with it.
 HD inline Reprojection reproject_surface(const FrameCameras& cameras, const SceneView& scene,
-                                         const PreviousScene& before, Vec2 centre, Float4 place) {
-    const Vec3 point = point_at(scene.instances, scene.meshes, place);
+                                         const PreviousScene& before, Vec2 centre, Float4 hit) {
+    const Vec3 point = point_at(scene.instances, scene.meshes, hit);
     const bool is_still = before.instances == scene.instances && before.meshes == scene.meshes;
     const ProjectedPoint now = project_point(cameras.now, point);
     const ProjectedPoint then =
-        project_point(cameras.before, is_still ? point : point_at(before.instances, before.meshes, place));
+        project_point(cameras.before, is_still ? point : point_at(before.instances, before.meshes, hit));
     return {centre + (then.pixel - now.pixel), then.depth};
 }
 
@@ -60,7 +60,7 @@ HD inline Reprojection reproject_surface(const FrameCameras& cameras, const Scen
 inline constexpr float kSeenAlike = 0.5f;
 HD inline bool is_depth_alike(float seen, float depth) { return abs(seen - depth) <= 0.05f * depth; }
 
-/// Whether a pixel with this normal and depth (NoisyFrameView::normal) shows approximately the surface at `depth`
+/// Whether a pixel with this normal and depth (GBufferView::normal) shows approximately the surface at `depth`
 /// with this normal; otherwise it is disoccluded.
 HD inline bool is_seen_alike(Float4 seen, float depth, Vec3 normal) {
     return is_depth_alike(seen.w, depth) && dot(vec3_of(seen), normal) > kSeenAlike;

@@ -9,13 +9,13 @@
 
 namespace pertev {
 
-struct PixelPlace {
+struct PixelPosition {
     uint32_t x, y; // column, row
 };
 
 /// The pixel with index `i`. Bands of `band` rows of tiles are processed column by column; with 1, tiles come row by
 /// row. Columns and rows that do not fill a tile come last.
-HD inline PixelPlace tiled_place(uint32_t i, uint32_t width, uint32_t height, uint32_t band = 1) {
+HD inline PixelPosition tiled_position(uint32_t i, uint32_t width, uint32_t height, uint32_t band = 1) {
     const uint32_t tiles_x = width / 8, tiles_y = height / 4, tiled = tiles_x * tiles_y * 32;
     if (i < tiled) {
         const uint32_t tile = i / 32, within = i % 32;
@@ -31,8 +31,8 @@ HD inline PixelPlace tiled_place(uint32_t i, uint32_t width, uint32_t height, ui
     return {i % width, tiles_y * 4 + i / width};
 }
 HD inline uint32_t tiled_pixel(uint32_t i, uint32_t width, uint32_t height, uint32_t band = 1) {
-    const PixelPlace place = tiled_place(i, width, height, band);
-    return place.y * width + place.x;
+    const PixelPosition position = tiled_position(i, width, height, band);
+    return position.y * width + position.x;
 }
 
 } // namespace pertev

@@ -20,7 +20,7 @@ struct AddDirectLight {
         const Surface surface = make_surface(scene, here.hit(pixel), direction);
         LightSample light;
         float measure = 1;
-        if (!find_light(scene.lights, reservoir.place, surface.light_context(wo), light, measure)) return;
+        if (!find_light(scene.lights, reservoir.point, surface.light_context(wo), light, measure)) return;
         const Rgb scattered = (reservoir.weight * measure) * (surface.evaluate(wo, light.wi).f * light.radiance);
         const Rgb share = film.frame.splits_light() ? surface.diffuse_share(wo, light.wi) : grey(1);
         add_to_sample(film, pixel, scattered, share * scattered);

@@ -18,7 +18,7 @@ struct AddIndirectLight {
         if (!(reservoir.weight > 0)) return;
         const Vec3 direction = here.direction(pixel), wo = -direction;
         const Surface surface = make_surface(scene, here.hit(pixel), direction);
-        const Reconnection seen = reconnect(place_of(scene, reservoir), surface.position);
+        const Reconnection seen = reconnect(world_triangle(scene, reservoir), surface.position);
         if (!seen.is_there) return;
         const Surface there = make_surface(scene, reservoir.hit(), seen.wi);
         const float factor = reservoir.weight * diffuse_transmittance(there, -seen.wi);

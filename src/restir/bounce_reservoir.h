@@ -39,7 +39,7 @@ struct Reconnection {
     bool is_there;
 };
 
-HD inline Reconnection reconnect(const PlacedTriangle& triangle, Vec3 from) {
+HD inline Reconnection reconnect(const WorldTriangle& triangle, Vec3 from) {
     const Vec3 way = triangle.position - from;
     const float distance_squared = length_squared(way);
     const Vec3 wi = way / sqrt(distance_squared), normal = cross(triangle.ab, triangle.ac);
@@ -47,9 +47,9 @@ HD inline Reconnection reconnect(const PlacedTriangle& triangle, Vec3 from) {
     return {wi, measure, facing < 0 ? 1.0f : -1.0f, measure > 0 && is_finite(measure)};
 }
 
-HD inline PlacedTriangle place_of(const SceneView& scene, const BounceReservoir& reservoir) {
+HD inline WorldTriangle world_triangle(const SceneView& scene, const BounceReservoir& reservoir) {
     const InstanceView& instance = scene.instances[reservoir.instance];
-    return place_triangle(instance, scene.meshes[instance.mesh], reservoir.hit());
+    return world_triangle(instance, scene.meshes[instance.mesh], reservoir.hit());
 }
 
 /// A(wo) of a surface, times its colours' luminance; 0 if it has no diffuse lobes.
@@ -62,18 +62,18 @@ HD inline float diffuse_transmittance(const Surface& surface, Vec3 wo) {
 /// not need.
 HD inline Rgb light_scattered(const SceneView& scene, const Surface& surface, Vec3 wo,
                               const BounceReservoir& reservoir) {
-    const Reconnection seen = reconnect(place_of(scene, reservoir), surface.position);
+    const Reconnection seen = reconnect(world_triangle(scene, reservoir), surface.position);
     if (!seen.is_there || seen.side != reservoir.side) return {};
     return seen.measure * (surface.evaluate(wo, seen.wi, only(LobeClass::Diffuse)).f * reservoir.sent);
 }
 
-HD inline bool make_visibility_ray(const SceneView& scene, const BounceReservoir& reservoir, const PlacedTriangle& from,
+HD inline bool make_visibility_ray(const SceneView& scene, const BounceReservoir& reservoir, const WorldTriangle& from,
                                    uint32_t coin, Ray& ray, TriangleId& target) {
-    const PlacedTriangle place = place_of(scene, reservoir);
-    const Reconnection seen = reconnect(place, from.position);
+    const WorldTriangle triangle = world_triangle(scene, reservoir);
+    const Reconnection seen = reconnect(triangle, from.position);
     if (!seen.is_there || seen.side != reservoir.side) return false;
     ray.origin = offset_ray_origin(from.position, from.error, from.normal, seen.wi);
-    ray.direction = offset_ray_origin(place.position, place.error, place.normal, -seen.wi) - ray.origin;
+    ray.direction = offset_ray_origin(triangle.position, triangle.error, triangle.normal, -seen.wi) - ray.origin;
     ray.t_max = 1;
     target = {reservoir.instance, reservoir.primitive};
     return scene.any_alpha == 0 || AcceptHit{scene, {}, {}, coin}.passes_alpha(reservoir.instance, reservoir.primitive,

@@ -23,22 +23,21 @@ struct FindBefore {
     SceneView scene;
     PreviousScene scene_before;
     FrameCameras cameras;
-    const Float4 *place, *normal;               // arrays of NoisyFrameView
-    const Float4 *place_before, *normal_before; // arrays of the previous frame
+    GBufferView now, last; // of this frame; hits and normals of the previous one
     Neighbours* to;
 
     HD void operator()(uint32_t pixel) const {
         Neighbours found;
-        const uint32_t object = bits_of(place[pixel].x), width = cameras.width, height = cameras.height;
+        const uint32_t object = bits_of(now.hit[pixel].x), width = cameras.width, height = cameras.height;
         if (object != kNoHit) {
             const Vec2 centre = {static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f};
-            const Reprojection at = reproject_surface(cameras, scene, scene_before, centre, place[pixel]);
+            const Reprojection at = reproject_surface(cameras, scene, scene_before, centre, now.hit[pixel]);
             const Vec2 p = at.pixel;
             if (p.x >= 0 && p.y >= 0 && p.x < static_cast<float>(width) && p.y < static_cast<float>(height)) {
                 const uint32_t there = static_cast<uint32_t>(to_int(p.y, 0, static_cast<int>(height) - 1)) * width +
                                        static_cast<uint32_t>(to_int(p.x, 0, static_cast<int>(width) - 1));
-                if (bits_of(place_before[there].x) == object && at.depth > 0 &&
-                    is_seen_alike(normal_before[there], at.depth, vec3_of(normal[pixel]))) {
+                if (bits_of(last.hit[there].x) == object && at.depth > 0 &&
+                    is_seen_alike(last.normal[there], at.depth, vec3_of(now.normal[pixel]))) {
                     found.pixels[0] = there;
                 }
             }
@@ -48,9 +47,8 @@ struct FindBefore {
 };
 
 /// Spatial neighbours: pixels of the same frame.
-struct FindBeside {
+struct FindNeighbours {
     PixelSurfaces here;
-    const Float4* normal; // array of NoisyFrameView
     uint32_t neighbours;
     float radius;
     Neighbours* to;
@@ -60,6 +58,7 @@ struct FindBeside {
         if (here.is_there(pixel)) {
             const int width = static_cast<int>(here.camera.width), height = static_cast<int>(here.camera.height);
             const int x = static_cast<int>(pixel) % width, y = static_cast<int>(pixel) / width;
+            const Float4* const normal = here.g_buffer.normal;
             const Float4 own = normal[pixel];
             uint32_t count = 0;
             for (uint32_t k = 0; k < neighbours && k < kMaxNeighbours; ++k) {

@@ -40,17 +40,17 @@ struct SampleInitialCandidates {
             const BsdfValue value = surface.evaluate(wo, light.wi);
             const float density = drawn * light.pdf + (light.is_delta ? 0.0f : value.pdf);
             if (pick.takes(luminance(value.f * light.radiance) / density)) {
-                reservoir.place = place_of(light);
+                reservoir.point = point_of(light);
                 reservoir.source = 1; // visibility unknown
             }
         }
         LightSample light;
         float measure = 1;
-        const EmitterPoint place = met[pixel];
-        if (find_light(scene.lights, place, surface.light_context(wo), light, measure)) {
+        const EmitterPoint point = met[pixel];
+        if (find_light(scene.lights, point, surface.light_context(wo), light, measure)) {
             const BsdfValue value = surface.evaluate(wo, light.wi);
             if (pick.takes(luminance(value.f * light.radiance) / (drawn * light.pdf + value.pdf))) {
-                reservoir.place = place;
+                reservoir.point = point;
                 reservoir.source = 0;
             }
         }

@@ -22,17 +22,17 @@ struct MakeInitialGiReservoirs {
         if (!here.is_there(pixel)) return;
         reservoir.count = 1;
         const FirstBounceView& left = film.frame.first_bounce;
-        const Float4 place = left.place[pixel], sent = left.sent[pixel], way = left.way[pixel];
+        const Float4 hit = left.hit[pixel], sent = left.sent[pixel], way = left.way[pixel];
         const Rgb found = {sent.x, sent.y, sent.z};
-        if (bits_of(place.x) == kNoHit || is_black(found) || film.frame.light[pixel].w == 0) return;
+        if (bits_of(hit.x) == kNoHit || is_black(found) || film.frame.light[pixel].w == 0) return;
         const Vec3 direction = here.direction(pixel);
         const Surface surface = make_surface(scene, here.hit(pixel), direction);
         BounceReservoir taken = {};
-        taken.instance = bits_of(place.x);
-        taken.primitive = bits_of(place.y);
-        taken.u = place.z;
-        taken.v = place.w;
-        const Reconnection seen = reconnect(place_of(scene, taken), surface.position);
+        taken.instance = bits_of(hit.x);
+        taken.primitive = bits_of(hit.y);
+        taken.u = hit.z;
+        taken.v = hit.w;
+        const Reconnection seen = reconnect(world_triangle(scene, taken), surface.position);
         if (!seen.is_there) return; // stays in the sample
         const Surface there = make_surface(scene, taken.hit(), seen.wi);
         const float transmittance = diffuse_transmittance(there, -seen.wi);

@@ -8,7 +8,7 @@
 namespace pertev {
 
 struct alignas(16) LightReservoir {
-    EmitterPoint place;
+    EmitterPoint point;
     float weight = 0;    // contribution weight W: the integral over points is about W times the integrand; 0 if empty
     float count = 0;     // number of candidates that it represents (M, confidence)
     float seen = 0;      // while reservoirs are combined: sum of the shares of pixels that see the point
@@ -22,17 +22,17 @@ HD inline Rgb light_scattered(const SceneView& scene, const Surface& surface, Ve
                               const LightReservoir& reservoir) {
     LightSample light;
     float measure = 1;
-    if (!find_light(scene.lights, reservoir.place, surface.light_context(wo), light, measure)) return {};
+    if (!find_light(scene.lights, reservoir.point, surface.light_context(wo), light, measure)) return {};
     return measure * (surface.evaluate(wo, light.wi).f * light.radiance);
 }
 
 /// Makes the shadow ray from a surface's triangle to the reservoir's point, which ends before `target`. Returns false
 /// if nothing can arrive. `coin` belongs to the surface's pixel.
-HD inline bool make_visibility_ray(const SceneView& scene, const LightReservoir& reservoir, const PlacedTriangle& from,
+HD inline bool make_visibility_ray(const SceneView& scene, const LightReservoir& reservoir, const WorldTriangle& from,
                                    uint32_t coin, Ray& ray, TriangleId& target) {
     LightSample light;
     float measure = 1;
-    if (!find_light(scene.lights, reservoir.place, from.position, light, measure)) return false;
+    if (!find_light(scene.lights, reservoir.point, from.position, light, measure)) return false;
     ray = ray_to_light(light, from.position, from.error, from.normal);
     target = {light.instance, light.primitive};
     const bool may_be_hole = light.instance != kNoLight && scene.any_alpha != 0;

@@ -4,31 +4,31 @@
 // which follows from the pixel's and the frame's number. Points move with instances that have moved since.
 
 #include "device_scene/surface.h"
-#include "math/float4.h"
 #include "render/camera_rays.h"
+#include "render/noisy_frame_view.h"
 
 namespace pertev {
 
 struct PixelSurfaces {
-    const Float4* place; // array of NoisyFrameView
+    GBufferView g_buffer;
     CameraRays camera;
     SamplerKind sampler;
     uint32_t sample, seed; // the frame's sample number and seed
 
-    HD bool is_there(uint32_t pixel) const { return bits_of(place[pixel].x) != kNoHit; }
+    HD bool is_there(uint32_t pixel) const { return bits_of(g_buffer.hit[pixel].x) != kNoHit; }
     HD SampleKey key(uint32_t pixel) const { return {pixel, sample, seed}; }
     /// Coin of blended surfaces between the pixel's surface and what it sees, equal to that of its path's next ray.
     HD uint32_t coin(uint32_t pixel) const { return coin_key(key(pixel), 1, false); }
     HD Hit hit(uint32_t pixel) const {
-        const Float4 p = place[pixel];
+        const Float4 p = g_buffer.hit[pixel];
         return {0, p.z, p.w, bits_of(p.x), bits_of(p.y)};
     }
     /// Direction of the camera ray, unit.
     HD Vec3 direction(uint32_t pixel) const { return camera.ray(pixel, sampler, key(pixel)).direction; }
-    HD PlacedTriangle triangle(const SceneView& scene, uint32_t pixel) const {
+    HD WorldTriangle triangle(const SceneView& scene, uint32_t pixel) const {
         const Hit at = hit(pixel);
         const InstanceView& instance = scene.instances[at.instance];
-        return place_triangle(instance, scene.meshes[instance.mesh], at);
+        return world_triangle(instance, scene.meshes[instance.mesh], at);
     }
 };
 

@@ -50,9 +50,9 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
     const NoisyFrameView& noisy = frame.view();
     const FilmView film = frame.film_view();
     const SceneView& scene = picture.scene;
-    Float4 *const place_before = seen_before_.data(), *const normal_before = place_before + pixels_;
-    const PixelSurfaces here = {noisy.place, picture.camera, numbers.sampler, numbers.sample, numbers.seed};
-    const PixelSurfaces there = {place_before, camera_before_, numbers_before_.sampler, numbers_before_.sample,
+    const GBufferView last = {seen_before_.data(), seen_before_.data() + pixels_};
+    const PixelSurfaces here = {noisy, picture.camera, numbers.sampler, numbers.sample, numbers.seed};
+    const PixelSurfaces there = {last, camera_before_, numbers_before_.sampler, numbers_before_.sample,
                                  numbers_before_.seed};
     LightReservoir *const fresh = reservoirs_.data(), *const kept = fresh + pixels_;
     ray_counts_.zero();
@@ -67,9 +67,7 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
     test_visibility(scene, here, fresh, tracer, 0);
     if (has_history_ && settings.history > 0) {
         const FrameCameras cameras = {picture.camera.view, camera_before_.view, width_, height_};
-        launch(*queue_, "find_before", pixels_,
-               FindBefore{scene, before, cameras, noisy.place, noisy.normal, place_before, normal_before,
-                          neighbours_.data()});
+        launch(*queue_, "find_before", pixels_, FindBefore{scene, before, cameras, noisy, last, neighbours_.data()});
         const auto most = static_cast<float>(settings.history);
         reuse(scene, here, there, fresh, kept, fresh, most, 2, tracer, kGroupReuse);
         if (has_bounces) {
@@ -77,7 +75,7 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
         }
     }
     launch(*queue_, "find_beside", pixels_,
-           FindBeside{here, noisy.normal, settings.neighbours, settings.radius, neighbours_.data()});
+           FindNeighbours{here, settings.neighbours, settings.radius, neighbours_.data()});
     reuse(scene, here, here, fresh, fresh, kept, kInfinity, kMaxEntries, tracer, kGroupReuse + 2);
     launch(*queue_, "add_direct_light", pixels_, AddDirectLight{scene, here, kept, film});
     if (has_bounces) {
@@ -86,8 +84,8 @@ void Restir::add(const NoisyFrame& frame, const PictureView& picture, const Samp
         launch(*queue_, "add_indirect_light", pixels_, AddIndirectLight{scene, here, kept_bounces, film});
     }
 
-    queue_->copy_on_device(place_before, noisy.place, pixels_ * sizeof(Float4));
-    queue_->copy_on_device(normal_before, noisy.normal, pixels_ * sizeof(Float4));
+    queue_->copy_on_device(last.hit, noisy.hit, pixels_ * sizeof(Float4));
+    queue_->copy_on_device(last.normal, noisy.normal, pixels_ * sizeof(Float4));
     camera_before_ = picture.camera;
     numbers_before_ = numbers;
     has_history_ = true;

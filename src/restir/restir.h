@@ -69,7 +69,7 @@ private:
                                         // the next frame begins
     Buffer<BounceReservoir> bounces_;   // two arrays like `reservoirs_`, for indirect light
     Buffer<Float4> bounce_numbers_;     // arrays of FirstBounceView
-    Buffer<Float4> seen_before_;        // place and normal of the previous frame (NoisyFrameView)
+    Buffer<Float4> seen_before_;        // hit and normal of the previous frame (GBufferView)
     Buffer<Neighbours> neighbours_;
     Buffer<Shares> shares_;
     Buffer<Ray> rays_;

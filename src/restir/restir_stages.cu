@@ -10,7 +10,7 @@ namespace pertev {
 template void launch(Queue&, const char*, WorkCount, const SampleInitialCandidates&);
 template void launch(Queue&, const char*, WorkCount, const MakeInitialGiReservoirs&);
 template void launch(Queue&, const char*, WorkCount, const FindBefore&);
-template void launch(Queue&, const char*, WorkCount, const FindBeside&);
+template void launch(Queue&, const char*, WorkCount, const FindNeighbours&);
 template void launch(Queue&, const char*, WorkCount, const ReuseReservoirs<LightReservoir>&);
 template void launch(Queue&, const char*, WorkCount, const QueueVisibilityRays<LightReservoir>&);
 template void launch(Queue&, const char*, WorkCount, const CountVisible<LightReservoir>&);

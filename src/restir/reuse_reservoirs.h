@@ -113,7 +113,7 @@ struct QueueVisibilityRays {
         if (!(reservoir.weight > 0) || reservoir.source == entry) return;
         if (entry > 0 && !(shares[pixel].of[entry] > 0)) return;
         const uint32_t from = entry == 0 ? pixel : neighbours[pixel].pixels[entry - 1];
-        const PlacedTriangle triangle = surfaces.triangle(scene, from);
+        const WorldTriangle triangle = surfaces.triangle(scene, from);
         const uint32_t coin = surfaces.coin(from);
         Ray ray;
         TriangleId target;

@@ -33,7 +33,7 @@ std::vector<bool> moving_nodes(const Scene& scene) {
 std::vector<bool> may_move(const Scene& scene) {
     std::vector<bool> moving(scene.instances.size());
     if (scene.animations.empty()) return moving;
-    const std::vector<bool> is_placed_anew = moving_nodes(scene);
+    const std::vector<bool> is_repositioned = moving_nodes(scene);
     std::vector<bool> is_reshaped(scene.nodes.size());
     for (const Animation& animation : scene.animations) {
         for (const AnimationChannel& channel : animation.channels) {
@@ -42,14 +42,14 @@ std::vector<bool> may_move(const Scene& scene) {
     }
     std::vector<bool> skin_moves;
     for (const Skin& skin : scene.skins) {
-        skin_moves.push_back(std::ranges::any_of(skin.joints, [&](uint32_t joint) { return is_placed_anew[joint]; }));
+        skin_moves.push_back(std::ranges::any_of(skin.joints, [&](uint32_t joint) { return is_repositioned[joint]; }));
     }
     for (std::size_t i = 0; i < moving.size(); ++i) {
         const uint32_t index = scene.instances[i].node;
         if (index == kNoNode) continue;
         const uint32_t skin = scene.nodes[index].skin; // a skinned mesh moves with its joints, not with the node that
                                                        // shows it
-        moving[i] = is_reshaped[index] || (skin == kNoSkin ? is_placed_anew[index] : skin_moves[skin]);
+        moving[i] = is_reshaped[index] || (skin == kNoSkin ? is_repositioned[index] : skin_moves[skin]);
     }
     return moving;
 }

@@ -66,16 +66,16 @@ void warn_of_invisible_materials(const Scene& scene, const std::string& file, Me
         if (unseen[i] == 0 || seen[i] > 0 || invisible++ >= kMaxNamed) continue;
         const Material& material = scene.materials[i];
         messages.warn(
-            {Place{file},
-             fmt::format("the material {} is invisible{}: it lets all light through, by an alpha of 0 or below its "
-                         "cutoff (in MTL d 0 or Tr 1); {} with it cannot be seen",
-                         material.name.empty() ? fmt::format("{}", i) : material.name,
-                         material.origin.empty() ? "" : fmt::format(" ({})", material.origin),
-                         counted(unseen[i], "surface"))});
+            {FileLocation{file}, fmt::format("the material {} is invisible{}, because its alpha is 0 or below its "
+                                             "cutoff (in MTL d 0 or Tr 1); {} with it cannot be seen",
+                                             material.name.empty() ? fmt::format("{}", i) : material.name,
+                                             material.origin.empty() ? "" : fmt::format(" ({})", material.origin),
+                                             counted(unseen[i], "surface"))});
     }
     if (invisible > kMaxNamed) {
-        messages.warn({Place{file}, fmt::format("{} {} invisible", counted(invisible - kMaxNamed, "further material"),
-                                                is_or_are(invisible - kMaxNamed))});
+        messages.warn(
+            {FileLocation{file}, fmt::format("{} {} invisible", counted(invisible - kMaxNamed, "further material"),
+                                             is_or_are(invisible - kMaxNamed))});
     }
 }
 

@@ -30,18 +30,18 @@ struct Light {
 
 /// Properties that a kind of light has besides its strength.
 struct LightParts {
-    bool place, direction, cone;
+    bool position, direction, cone;
 };
 HD constexpr LightParts parts_of(LightKind kind) {
     switch (kind) {
     case LightKind::Point:
-        return {.place = true, .direction = false, .cone = false};
+        return {.position = true, .direction = false, .cone = false};
     case LightKind::Spot:
-        return {.place = true, .direction = true, .cone = true};
+        return {.position = true, .direction = true, .cone = true};
     case LightKind::Directional:
         break;
     }
-    return {.place = false, .direction = true, .cone = false};
+    return {.position = false, .direction = true, .cone = false};
 }
 
 /// For a light with a position: its flux divided by 2 pi times its intensity. The edge of a cone is the square of a

@@ -66,7 +66,7 @@ std::string some_names(const std::vector<Names>& things) {
     for (const std::string_view name : names) {
         if (shown.size() < kMost) shown.push_back(fmt::format("'{}'", name));
     }
-    if (shown.empty()) return "none there has a name";
+    if (shown.empty()) return "none has a name";
     return fmt::format("there are {}{}", fmt::join(shown, ", "), names.size() > kMost ? ", ..." : "");
 }
 

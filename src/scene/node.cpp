@@ -20,58 +20,58 @@ double length_of(const std::array<double, 4>& q) {
 
 } // namespace
 
-NodePlace place_of(const NodePose& pose) {
-    NodePlace place;
+NodeTransform transform_of(const NodePose& pose) {
+    NodeTransform transform;
     const std::array<double, 4>& r = pose.rotation;
     const double size = length_of(r);
-    place.world_from_node = turned_and_scaled(r[0] / size, r[1] / size, r[2] / size, r[3] / size, pose.scale);
-    place.world_from_node.translation = pose.translation;
+    transform.world_from_node = turned_and_scaled(r[0] / size, r[1] / size, r[2] / size, r[3] / size, pose.scale);
+    transform.world_from_node.translation = pose.translation;
 
     std::array<double, 4> rounded; // the linear part is computed from floats
     for (std::size_t i = 0; i < 4; ++i) rounded[i] = static_cast<double>(static_cast<float>(r[i]));
     const double length = length_of(rounded);
     const auto unit = [&](std::size_t i) { return static_cast<float>(rounded[i] / length); };
-    place.linear = make_rotation(unit(0), unit(1), unit(2), unit(3));
+    transform.linear = make_rotation(unit(0), unit(1), unit(2), unit(3));
     const Vec3 scale = to_float(pose.scale);
-    Transform& m = place.linear;
+    Transform& m = transform.linear;
     for (Vec3* row : {&m.row0, &m.row1, &m.row2}) *row = {row->x * scale.x, row->y * scale.y, row->z * scale.z};
-    return place;
+    return transform;
 }
 
-NodePlace place_of(const DoubleTransform& matrix) {
-    NodePlace place = {matrix, to_float(matrix)};
-    place.linear.translation = {};
-    return place;
+NodeTransform transform_of(const DoubleTransform& matrix) {
+    NodeTransform transform = {matrix, to_float(matrix)};
+    transform.linear.translation = {};
+    return transform;
 }
 
-NodePlace place_of(const Node& node) {
-    return std::visit([](const auto& pose) { return place_of(pose); }, node.pose);
+NodeTransform transform_of(const Node& node) {
+    return std::visit([](const auto& pose) { return transform_of(pose); }, node.pose);
 }
 
-NodePlace compose(const NodePlace& a, const NodePlace& b) {
+NodeTransform compose(const NodeTransform& a, const NodeTransform& b) {
     return {compose(a.world_from_node, b.world_from_node), compose(a.linear, b.linear)};
 }
 
-Transform world_from_node(const NodePlace& place, DoubleVec3 origin) {
-    Transform world = place.linear;
-    world.translation = to_float(place.world_from_node.translation - origin);
+Transform world_from_node(const NodeTransform& transform, DoubleVec3 origin) {
+    Transform world = transform.linear;
+    world.translation = to_float(transform.world_from_node.translation - origin);
     return world;
 }
 
-std::vector<NodePlace> places_of(std::span<const Node> nodes, std::span<const uint32_t> parents_first) {
-    std::vector<NodePlace> places(nodes.size());
+std::vector<NodeTransform> transforms_of(std::span<const Node> nodes, std::span<const uint32_t> parents_first) {
+    std::vector<NodeTransform> transforms(nodes.size());
     for (const uint32_t node : parents_first) {
-        const NodePlace local = place_of(nodes[node]);
+        const NodeTransform local = transform_of(nodes[node]);
         const uint32_t parent = nodes[node].parent;
-        places[node] = parent == kNoNode ? local : compose(places[parent], local);
+        transforms[node] = parent == kNoNode ? local : compose(transforms[parent], local);
     }
-    return places;
+    return transforms;
 }
 
-std::vector<Transform> world_from_nodes(std::span<const NodePlace> places, DoubleVec3 origin) {
+std::vector<Transform> world_from_nodes(std::span<const NodeTransform> transforms, DoubleVec3 origin) {
     std::vector<Transform> world;
-    world.reserve(places.size());
-    for (const NodePlace& place : places) world.push_back(world_from_node(place, origin));
+    world.reserve(transforms.size());
+    for (const NodeTransform& transform : transforms) world.push_back(world_from_node(transform, origin));
     return world;
 }
 

@@ -44,23 +44,23 @@ struct Skin {
 
 /// Transform of a node to another space. Its `linear` part is rounded to floats after each node of a chain; the
 /// position stays in double throughout.
-struct NodePlace {
+struct NodeTransform {
     DoubleTransform world_from_node;
     Transform linear; // without a translation
 };
 
 /// Parent-from-local transform of a pose.
-NodePlace place_of(const NodePose& pose);
-NodePlace place_of(const DoubleTransform& matrix);
-NodePlace place_of(const Node& node);
+NodeTransform transform_of(const NodePose& pose);
+NodeTransform transform_of(const DoubleTransform& matrix);
+NodeTransform transform_of(const Node& node);
 /// The transform `b` followed by `a`.
-NodePlace compose(const NodePlace& a, const NodePlace& b);
+NodeTransform compose(const NodeTransform& a, const NodeTransform& b);
 /// World-from-local transform relative to `origin`, which is subtracted in double.
-Transform world_from_node(const NodePlace& place, DoubleVec3 origin);
+Transform world_from_node(const NodeTransform& transform, DoubleVec3 origin);
 
 /// Transform of each node in the coordinates of the file. `parents_first` is such an order of all nodes.
-std::vector<NodePlace> places_of(std::span<const Node> nodes, std::span<const uint32_t> parents_first);
-std::vector<Transform> world_from_nodes(std::span<const NodePlace> places, DoubleVec3 origin);
+std::vector<NodeTransform> transforms_of(std::span<const Node> nodes, std::span<const uint32_t> parents_first);
+std::vector<Transform> world_from_nodes(std::span<const NodeTransform> transforms, DoubleVec3 origin);
 
 /// All nodes, each after its parent; fewer if there is a cycle. Every parent is in range. Takes linear time, without
 /// recursion.

@@ -12,10 +12,10 @@ Vec3 corner_of(const Bounds3& box, int number) {
 
 } // namespace
 
-Transform placed_in(const NodePlace& place, const Transform& node_from_local, DoubleVec3 origin) {
-    if (node_from_local == Transform()) return world_from_node(place, origin);
-    Transform world = compose(place.linear, node_from_local);
-    const DoubleVec3 at = transform_point(place.world_from_node, to_double(node_from_local.translation));
+Transform placed_in(const NodeTransform& transform, const Transform& node_from_local, DoubleVec3 origin) {
+    if (node_from_local == Transform()) return world_from_node(transform, origin);
+    Transform world = compose(transform.linear, node_from_local);
+    const DoubleVec3 at = transform_point(transform.world_from_node, to_double(node_from_local.translation));
     world.translation = to_float(at - origin);
     return world;
 }

@@ -72,7 +72,7 @@ struct Scene {
 
 /// World-from-local transform of an object with this transform within a node; relative to `origin`, in the
 /// coordinates of the file.
-Transform placed_in(const NodePlace& place, const Transform& node_from_local, DoubleVec3 origin);
+Transform placed_in(const NodeTransform& transform, const Transform& node_from_local, DoubleVec3 origin);
 
 /// JSON pointer of the node that an instance comes from; empty if there is none.
 std::string origin_of(const Instance& instance);

@@ -24,15 +24,16 @@ DoubleBounds3 box_in_file(const Scene& scene) {
 }
 
 /// Places everything that belongs to nodes, relative to the scene's origin.
-void place_anew(Scene& scene) {
-    const std::vector<NodePlace> places = places_of(scene.nodes, parents_first(scene.nodes));
-    const std::vector<Transform> world_from_node = world_from_nodes(places, scene.origin_in_file);
+void update_world_transforms(Scene& scene) {
+    const std::vector<NodeTransform> transforms = transforms_of(scene.nodes, parents_first(scene.nodes));
+    const std::vector<Transform> world_from_node = world_from_nodes(transforms, scene.origin_in_file);
     for (Instance& instance : scene.instances) {
         if (instance.node == kNoNode || scene.nodes[instance.node].skin != kNoSkin) continue;
-        instance.world_from_local = placed_in(places[instance.node], instance.node_from_local, scene.origin_in_file);
+        instance.world_from_local =
+            placed_in(transforms[instance.node], instance.node_from_local, scene.origin_in_file);
     }
     for (Camera& camera : scene.cameras)
-        camera.world_from_camera.translation = told_in_file(scene, world_from_node[camera.node].translation);
+        camera.world_from_camera.translation = rounded_to_file(scene, world_from_node[camera.node].translation);
     for (Light& light : scene.lights) light.position = world_from_node[light.node].translation;
     for (MeshShape& shape : scene.shapes) {
         if (shape.skin == kNoSkin) continue;
@@ -91,7 +92,7 @@ void take_off_centre(Scene& scene) {
         const DoubleVec3 before = scene.origin_in_file;
         set_origin(box_in_file(scene), scene);
         if (scene.origin_in_file == before) return;
-        place_anew(scene);
+        update_world_transforms(scene);
     }
 }
 

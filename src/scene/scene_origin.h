@@ -36,7 +36,7 @@ inline Vec3 in_scene(const Scene& scene, DoubleVec3 p) { return to_float(p - sce
 
 /// The position that results if `p` is stated in the coordinates of the file, in double: in_scene(in_file(p)). The
 /// function is idempotent.
-inline Vec3 told_in_file(const Scene& scene, Vec3 p) {
+inline Vec3 rounded_to_file(const Scene& scene, Vec3 p) {
     return scene.origin_in_file == DoubleVec3{0, 0, 0} ? p : in_scene(scene, in_file(scene, p));
 }
 

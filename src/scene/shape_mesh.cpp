@@ -87,7 +87,7 @@ bool shape_mesh(MeshShape& shape, std::span<const float> morph_weights, std::spa
 void shape_at_rest(Scene& scene, std::span<MeshShape* const> shapes) {
     if (shapes.empty()) return;
     const std::vector<Transform> world_from_node =
-        world_from_nodes(places_of(scene.nodes, parents_first(scene.nodes)), scene.origin_in_file);
+        world_from_nodes(transforms_of(scene.nodes, parents_first(scene.nodes)), scene.origin_in_file);
     for (MeshShape* shape : shapes) {
         std::vector<Transform> joints;
         if (shape->skin != kNoSkin) joints = joint_transforms(scene.skins[shape->skin], world_from_node);

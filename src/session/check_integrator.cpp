@@ -72,29 +72,27 @@ void check_integrator(const RenderSettings& settings) {
     const std::string_view name = integrator_name(settings);
     const bool is_denoised = settings.denoise != Denoise::None;
     refuse(is_denoised && !makes_frames(settings.integrator), "denoise", name_of(settings.denoise),
-           fmt::format("reconstructs pictures of `integrator=path` and hybrid, not of {}", name));
+           fmt::format("supports `integrator=path` and hybrid, not {}", name));
     if (settings.light_paths) {
-        refuse(!has_light_path_layers(settings.integrator), "lpe", "",
-               fmt::format("light paths are told apart by `integrator=path`, direct, indirect and hybrid, not by {}",
-                           name));
+        refuse(
+            !has_light_path_layers(settings.integrator), "lpe", "",
+            fmt::format("`integrator=path`, direct, indirect and hybrid distinguish light paths, {} does not", name));
         refuse(is_denoised, "lpe", "",
-               fmt::format("layers are means of samples, and `denoise={}` makes one picture of them; leave out one of "
-                           "them",
+               fmt::format("layers are means of samples, which `denoise={}` does not have; leave out one of them",
                            name_of(settings.denoise)));
     }
     refuse(settings.irradiance && (is_denoised || !has_light_path_layers(settings.integrator)), "false_color",
            "illuminance",
-           fmt::format("it is found by `integrator=path`, direct, indirect and hybrid, undenoised; not by {}{}", name,
+           fmt::format("only `integrator=path`, direct, indirect and hybrid without denoising find it, not {}{}", name,
                        is_denoised ? ", denoised" : ""));
     if (settings.path.max_depth > most_depth(settings.integrator)) {
         throw Error(ErrorCode::OverLimit, "max_depth", fmt::format("{}", settings.path.max_depth),
-                    fmt::format("with `integrator={}` at most {}", name, most_depth(settings.integrator)));
+                    fmt::format("the limit with `integrator={}` is {}", name, most_depth(settings.integrator)));
     }
     const PhotonMapSettings& photons = settings.photon_map;
-    if (settings.integrator == IntegratorKind::PhotonMap &&
-        !has_room_for_photons(photons.photons, settings.path.max_depth)) {
+    if (settings.integrator == IntegratorKind::PhotonMap && !photons_fit(photons.photons, settings.path.max_depth)) {
         throw Error(ErrorCode::OverLimit, "photons", fmt::format("{}", photons.photons),
-                    fmt::format("with `max_depth={}` a pass may leave more than {} photons; at most {}",
+                    fmt::format("with `max_depth={}` a pass may store more than {} photons; the limit is {}",
                                 settings.path.max_depth, kMaxStored,
                                 kMaxStored / (2 * uint64_t(settings.path.max_depth - 1))));
     }
@@ -102,12 +100,11 @@ void check_integrator(const RenderSettings& settings) {
 
 void check_shutter(const RenderSettings& settings) {
     refuse(!has_shutter(settings.integrator), "shutter", "",
-           fmt::format("rays have a time in `integrator=path`, direct, indirect, distributed, whitted and cast, not in "
-                       "{}",
-                       integrator_name(settings)));
+           fmt::format(
+               "`integrator=path`, direct, indirect, distributed, whitted and cast support motion blur, {} does not",
+               integrator_name(settings)));
     refuse(settings.denoise != Denoise::None, "shutter", "",
-           fmt::format("`denoise={}` takes what a pixel sees for one surface, which it is not where something moves; "
-                       "leave out one of them",
+           fmt::format("`denoise={}` needs one surface per pixel, and motion blur shows several; leave out one of them",
                        name_of(settings.denoise)));
 }
 
@@ -122,15 +119,16 @@ std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scen
         return Remark("integrator", std::string(integrator_name(settings)), std::move(text));
     };
     if (settings.integrator == IntegratorKind::PhotonMap && settings.path.max_depth > 0 && !has_any_light(scene)) {
-        return why("photons leave lights, and this scene has none: " + no_lights_of(scene));
+        return why("photons need lights, and this scene has none: " + no_lights_of(scene));
     }
     if (settings.integrator == IntegratorKind::Radiosity && !has_any_light(scene)) {
-        return Remark("radiosity: surfaces pass light on, and this scene has none: " + no_lights_of(scene));
+        return Remark("radiosity needs light, and this scene has none: " + no_lights_of(scene));
     }
     if (!lacks_lights(settings, scene) || has_own_ambient(settings, scene)) return {};
-    return why(fmt::format("point, spot and directional lights alone light its surfaces, and {}: "
-                           "`integrator=distributed` or path knows all lights, `ambient=0.5` lights all surfaces alike",
-                           lights_of(scene)));
+    return why(
+        fmt::format("only point, spot and directional lights light its surfaces, and {}: `integrator=distributed` and "
+                    "path support all lights, and `ambient=0.5` lights all surfaces equally",
+                    lights_of(scene)));
 }
 
 void check_light(const RenderSettings& settings, const Scene& scene, Messages& messages) {

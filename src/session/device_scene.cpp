@@ -64,10 +64,10 @@ void DeviceScene::fit_trees() {
     }
 }
 
-void DeviceScene::keep_places() {
+void DeviceScene::keep_instances() {
     PERTEV_CHECK(scene_.has_value());
-    if (places_before_.size() != instance_count_) places_before_ = {queue_, instance_count_, "instances before"};
-    queue_.copy_on_device(places_before_.data(), scene_->view().instances, instance_count_ * sizeof(InstanceView));
+    if (instances_before_.size() != instance_count_) instances_before_ = {queue_, instance_count_, "instances before"};
+    queue_.copy_on_device(instances_before_.data(), scene_->view().instances, instance_count_ * sizeof(InstanceView));
     scene_->keep_positions();
 }
 

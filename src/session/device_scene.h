@@ -32,9 +32,9 @@ public:
     bool set_tracer(const RenderSettings& settings);
 
     /// Remembers the places of instances and vertices as they are now, for before(). Throws Error(OutOfMemory).
-    void keep_places();
-    /// Returns the places that the last keep_places() has remembered.
-    PreviousScene before() const { return {places_before_.data(), scene_->meshes_before()}; }
+    void keep_instances();
+    /// Returns the places that the last keep_instances() has remembered.
+    PreviousScene before() const { return {instances_before_.data(), scene_->meshes_before()}; }
 
     bool is_there() const { return scene_.has_value(); }
     /// A scene and a tracer must be there.
@@ -55,7 +55,7 @@ private:
     std::vector<DeformedMesh> deformed_; // meshes whose vertices were moved on the device
     std::optional<SceneOnDevice> scene_;
     std::optional<SceneTracer> tracer_;
-    Buffer<InstanceView> places_before_;
+    Buffer<InstanceView> instances_before_;
     uint32_t instance_count_ = 0;
     bool has_poses_ = false;
     double upload_seconds_ = 0;

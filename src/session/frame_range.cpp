@@ -51,7 +51,7 @@ std::optional<Shutter> shutter(const PictureOptions& options) {
     if (open && close) {
         if (std::fabs(*open) <= kMaxShutter && std::fabs(*close) <= kMaxShutter) return Shutter{*open, *close};
         throw Error(ErrorCode::BadInput, "shutter", options.shutter,
-                    fmt::format("OPEN and CLOSE are {:g} s at most, either way", kMaxShutter));
+                    fmt::format("OPEN and CLOSE must be within {:g} s of the picture's time", kMaxShutter));
     }
     throw Error(ErrorCode::BadInput, "shutter", options.shutter,
                 "expected SECONDS, or OPEN,CLOSE, both counted from the picture's time");
@@ -72,8 +72,7 @@ std::optional<FrameRange> frame_range(const PictureOptions& options) {
     const auto last = dash == std::string::npos ? first : parse_whole_number(options.frames.substr(dash + 1));
     if (!first || !last || *first > *last || *last > kMaxFrames) {
         throw Error(ErrorCode::BadInput, "frames", options.frames,
-                    fmt::format("expected A-B, two whole numbers of which the second is not the smaller, up to {}",
-                                kMaxFrames));
+                    fmt::format("expected A-B, two whole numbers with A <= B <= {}", kMaxFrames));
     }
     sequence.first = static_cast<uint32_t>(*first);
     sequence.last = static_cast<uint32_t>(*last);

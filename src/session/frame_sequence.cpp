@@ -18,7 +18,7 @@ void FrameSequence::cut() {
 void FrameSequence::scene_changes() {
     scene_has_changed_ = true;
     if (!reconstruction_ || reconstruction_->frames() == 0 || has_moved_ || camera_before_) return;
-    pictures_.scene().keep_places();
+    pictures_.scene().keep_instances();
     has_moved_ = true;
 }
 
@@ -48,10 +48,10 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
     DeviceScene& scene = pictures_.scene();
     if (!makes_frames(settings.integrator)) {
         throw Error(ErrorCode::BadInput, "integrator", std::string(integrator_name(settings)),
-                    "only path's samples can be reconstructed");
+                    "only path tracing's samples can be reconstructed");
     }
     if (!camera.motion.empty() || scene.view().motions.is_there()) {
-        throw Error(ErrorCode::BadInput, "shutter", "", "frames that are reconstructed are of one moment each");
+        throw Error(ErrorCode::BadInput, "shutter", "", "reconstructed frames do not support an open shutter");
     }
     RenderSettings of_light = settings_of_frames(settings);
     of_light.width = scaled_side(settings.width, reconstruction);
@@ -64,7 +64,7 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
         reconstruction_.reset(); // freed before the new one, so that two need not fit
         reconstruction_.emplace(pictures_.queue(), of_light.width, of_light.height);
         temporal_gradients_.emplace(pictures_.queue(), of_light.width, of_light.height, frame.splits_light(),
-                                    reconstruction_->room_for_change());
+                                    reconstruction_->gradients_memory());
     }
     if (camera_before_) { // belongs to another sequence
         camera_before_.reset();
@@ -73,7 +73,7 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
     Restir* const shared = restir_for(restir, of_light);
     rays_ = {};
     kind_seconds_ = {};
-    const TemporalGradientsView change = look_for_change(of_light, reconstruction);
+    const TemporalGradientsView change = measure_gradients(of_light, reconstruction);
     frame.leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
     take_sample(number, camera, of_light, frame, pictures_.abandon_flag());
     if (pictures_.is_abandoned()) { // parts of the sample may be missing
@@ -125,8 +125,8 @@ void FrameSequence::take_sample(uint32_t number, const Camera& camera, RenderSet
 }
 
 /// Returns the change of light since the previous frame, if that has left a small picture of its scene.
-TemporalGradientsView FrameSequence::look_for_change(const RenderSettings& of_light,
-                                                     const ReconstructionSettings& settings) {
+TemporalGradientsView FrameSequence::measure_gradients(const RenderSettings& of_light,
+                                                       const ReconstructionSettings& settings) {
     // The picture can be used once, because the frame reuses its memory.
     const std::optional<LightBefore> before = std::exchange(light_before_, {});
     const bool is_known = settings.follow_light && scene_has_changed_ && before && reconstruction_->frames() > 0 &&
@@ -155,12 +155,12 @@ RenderResult FrameSequence::result(const Camera& camera, const RenderSettings& s
     of_layers.samples = 1;
     of_layers.light_paths = nullptr;
     of_layers.path.max_depth = 0;
-    RenderResult seen = pictures_.render_aside(camera, of_layers, number_);
+    RenderResult seen = pictures_.render_separately(camera, of_layers, number_);
     result.layers = std::move(seen.layers);
     result.ids = std::move(seen.ids);
     if (number_ == 0 || (settings.aovs & kAovIds) == 0) return result;
     of_layers.aovs = kAovIds; // ids are those of sample 0
-    result.ids = pictures_.render_aside(camera, of_layers).ids;
+    result.ids = pictures_.render_separately(camera, of_layers).ids;
     return result;
 }
 
@@ -170,7 +170,7 @@ FrameTones FrameSequence::tones() const {
 
 void FrameSequence::keep_as_before(const Camera& camera) {
     if (reconstruction_) reconstruction_->cut();
-    pictures_.scene().keep_places();
+    pictures_.scene().keep_instances();
     has_moved_ = true;
     camera_before_ = camera;
 }

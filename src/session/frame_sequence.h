@@ -56,7 +56,7 @@ public:
 private:
     void take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
                      const std::atomic<bool>* abandon = nullptr);
-    TemporalGradientsView look_for_change(const RenderSettings& of_light, const ReconstructionSettings& settings);
+    TemporalGradientsView measure_gradients(const RenderSettings& of_light, const ReconstructionSettings& settings);
     void keep_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on);
     Restir* restir_for(const RestirSettings& settings, const RenderSettings& of_light);
 

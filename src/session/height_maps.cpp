@@ -65,7 +65,7 @@ Image read_heights(const HeightMapText& map, Messages* messages) {
 void check_coordinates(const HeightMapText& map, const Scene& scene, uint32_t material) {
     for (const Instance& instance : scene.instances) {
         if (instance.material != material || !scene.meshes[instance.mesh].uv[0].empty()) continue;
-        refuse(map, fmt::format("'{}' is on a mesh without texture coordinates, which heights are looked up by",
+        refuse(map, fmt::format("'{}' is on a mesh without texture coordinates, which height maps need",
                                 scene.materials[material].name));
     }
 }
@@ -88,7 +88,7 @@ HeightMapText parse_height_map(std::string_view text) {
     map.file = rest;
     if (map.file.empty()) fail();
     if (!(std::abs(map.scale) <= kMaxScale && std::abs(map.middle) <= kMaxScale)) {
-        refuse(map, fmt::format("SCALE and MIDDLE are within {} and {}", -kMaxScale, kMaxScale));
+        refuse(map, fmt::format("SCALE and MIDDLE must be between {} and {}", -kMaxScale, kMaxScale));
     }
     return map;
 }
@@ -108,7 +108,7 @@ std::shared_ptr<const HeightMaps> read_height_maps(std::span<const HeightMapText
             check_coordinates(map, scene, i);
             of_material[i] = {i, *heights, map.scale, map.middle, map.text};
         }
-        if (!heights) refuse(map, "no material of the scene has this name; " + some_names(all));
+        if (!heights) refuse(map, "there is no material of the scene with this name; " + some_names(all));
     }
     if (of_material.empty()) return nullptr;
     HeightMaps maps;

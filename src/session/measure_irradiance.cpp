@@ -37,13 +37,13 @@ Measured mean_of(std::span<const double> estimates) {
 
 } // namespace
 
-Camera meter_camera(const Scene& scene, const MeterPlace& place) {
-    PERTEV_CHECK(length_squared(place.normal) > 0);
+Camera meter_camera(const Scene& scene, const MeterPoint& meter) {
+    PERTEV_CHECK(length_squared(meter.normal) > 0);
     const Bounds3 bounds = bounds_of(scene);
-    const Vec3 point = in_scene(scene, place.point);
+    const Vec3 point = in_scene(scene, meter.point);
     float largest = max_component(abs(point));
     if (!bounds.is_empty()) largest = max(largest, max_component(max(abs(bounds.lo), abs(bounds.hi))));
-    const Frame frame = make_frame(normalize(place.normal));
+    const Frame frame = make_frame(normalize(meter.normal));
     Camera camera;
     camera.projection = Projection::Cosine;
     // The camera looks along -z, so its x and y are swapped relative to the frame's.
@@ -53,11 +53,11 @@ Camera meter_camera(const Scene& scene, const MeterPlace& place) {
     return camera;
 }
 
-Irradiance measure_irradiance(Queue& queue, const PreparedScene& scene, const MeterPlace& place,
+Irradiance measure_irradiance(Queue& queue, const PreparedScene& scene, const MeterPoint& meter,
                               const RenderSettings& requested, const std::function<bool(double)>& keep_going) {
     PERTEV_CHECK(requested.path.seed <= kMaxMeterSeed);
     RenderSettings settings = probe_settings(requested);
-    Session session(queue, scene, meter_camera(*scene.scene, place), settings);
+    Session session(queue, scene, meter_camera(*scene.scene, meter), settings);
     Irradiance result;
     double estimates[4][kMeterRepeats];
     for (uint32_t repeat = 0; repeat < kMeterRepeats; ++repeat) {

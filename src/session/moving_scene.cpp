@@ -76,17 +76,18 @@ std::shared_ptr<const MotionKeys> MovingScene::motions_at(double time_s) {
     }
     const auto places_at = [&](double share) {
         const double then_s = shutter_->time_at(time_s, share);
-        const PosedScene::Places places = posed_.places_at(then_s);
+        const PosedScene::Placements placements = posed_.placements_at(then_s);
         std::vector<std::optional<Transform>> of_things;
         for (const uint32_t i : instances) {
-            const std::optional<Transform>& place = places.instances[i];
-            if (place && !lies_near(*place, bounds_of(now.meshes[now.instances[i].mesh]))) {
-                throw Error(ErrorCode::OverLimit,
-                            fmt::format("instance {} lies further out than 2^40 metres at {} s, while the shutter is "
-                                        "open; scale the scene down",
-                                        i, then_s));
+            const std::optional<Transform>& placement = placements.instances[i];
+            if (placement && !lies_near(*placement, bounds_of(now.meshes[now.instances[i].mesh]))) {
+                throw Error(
+                    ErrorCode::OverLimit,
+                    fmt::format(
+                        "instance {} lies beyond 2^40 metres at {} s, while the shutter is open; scale the scene down",
+                        i, then_s));
             }
-            of_things.push_back(place ? std::optional(moved_to(*place, *options_.centre)) : std::nullopt);
+            of_things.push_back(placement ? std::optional(moved_to(*placement, *options_.centre)) : std::nullopt);
         }
         return of_things;
     };

@@ -37,7 +37,7 @@ public:
     uint32_t set_time(double time_s, Messages& messages);
 
     /// The cameras of the scene at a time, without moving the scene there.
-    std::vector<Camera> cameras_at(double time_s) { return posed_.places_at(time_s).cameras; }
+    std::vector<Camera> cameras_at(double time_s) { return posed_.placements_at(time_s).cameras; }
 
 private:
     std::shared_ptr<const MotionKeys> motions_at(double time_s);

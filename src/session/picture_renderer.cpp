@@ -40,7 +40,7 @@ PictureView PictureRenderer::view_of(const Camera& camera, const RenderSettings&
 MotionTrack PictureRenderer::motion_of(const Camera& camera, Vec3 centre) {
     if (camera.motion.empty()) return {};
     std::vector<MotionKey> keys = camera.motion;
-    for (MotionKey& key : keys) key.place = key.place - centre;
+    for (MotionKey& key : keys) key.position = key.position - centre;
     if (camera_motion_.size() != keys.size()) camera_motion_ = {queue(), keys.size(), "camera"};
     queue().wait();
     camera_motion_.upload(std::span<const MotionKey>(keys));
@@ -55,7 +55,7 @@ Integrator& PictureRenderer::begin(const Camera& camera, const RenderSettings& s
     if (picture.camera.is_open) {
         check_shutter(settings);
         if (is_light_meter(camera.projection)) {
-            throw Error(ErrorCode::BadInput, "shutter", "", "light is measured at one moment");
+            throw Error(ErrorCode::BadInput, "shutter", "", "irradiance does not support an open shutter");
         }
     }
     const IntegratorSettings& wanted = settings;
@@ -81,7 +81,7 @@ Integrator& PictureRenderer::begin(const Camera& camera, const RenderSettings& s
     return integrator;
 }
 
-RenderResult PictureRenderer::render_aside(const Camera& camera, const RenderSettings& settings, uint32_t first) {
+RenderResult PictureRenderer::render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first) {
     Film film(queue(), settings.width, settings.height, settings.aovs, light_layers_of(settings));
     Integrator& integrator = begin(camera, settings, settings.samples);
     integrator.render(first, settings.samples, film.view());

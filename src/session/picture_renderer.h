@@ -39,7 +39,7 @@ public:
     uint64_t new_number() { return ++last_number_; }
 
     /// Renders `settings.samples` samples from `first` on into a separate film. Throws as begin().
-    RenderResult render_aside(const Camera& camera, const RenderSettings& settings, uint32_t first = 0);
+    RenderResult render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first = 0);
 
     /// Lets films and frames abort in the middle of a sample while `*flag` is true, on the CPU only. Null: never.
     /// `flag` outlives this.

@@ -30,7 +30,7 @@ std::string amount(std::size_t bytes, std::size_t other = 0) {
 std::string limit_text(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit) {
     if (limit.is_requested) return fmt::format("`max_memory` allows {}", amount(limit.bytes, bytes));
     return fmt::format("{} has {}, and the finished picture takes {}",
-                       is_memory_of_group() ? "the container or service that this runs in" : "this machine",
+                       is_memory_of_group() ? "this container or service" : "this machine",
                        amount(machine_memory_bytes(), bytes), amount(result_bytes(settings)));
 }
 
@@ -46,12 +46,12 @@ std::string advice(const RenderSettings& settings, bool is_cuda) {
                                              .traverses_on_host = !is_cuda},
                                             is_cuda);
     if (settings.integrator == IntegratorKind::PhotonMap && own > film) {
-        return fmt::format("Photons take {} (`photons={}`, `max_depth={}`): a smaller one of either takes less",
+        return fmt::format("Photons take {} (`photons={}`, `max_depth={}`); a smaller value of either takes less",
                            amount(own), settings.photon_map.photons, settings.path.max_depth);
     }
     if (settings.integrator == IntegratorKind::IrradianceCache && own > film) {
         const bool has_traversals = is_cuda || settings.body == PathBody::Wavefront;
-        return fmt::format("Records of {}x{} pixels{} take {}: a smaller `size`{} takes less", settings.width,
+        return fmt::format("Records of {}x{} pixels{} take {}; a smaller `size`{} takes less", settings.width,
                            settings.height, has_traversals ? " and their rays" : "", amount(own),
                            has_traversals ? ", or fewer `hemisphere_rays`," : "");
     }

@@ -97,9 +97,9 @@ public:
     void keep_as_before() { frames_.keep_as_before(camera()); }
     Image motion() { return frames_.motion(camera(), settings()); }
 
-    /// Renders another picture of the scene by PictureRenderer::render_aside. The film stays as it is.
-    RenderResult look_aside(const Camera& camera, const RenderSettings& settings, uint32_t first = 0) {
-        return pictures_.render_aside(camera, settings, first);
+    /// Renders another picture of the scene by PictureRenderer::render_separately. The film stays as it is.
+    RenderResult render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first = 0) {
+        return pictures_.render_separately(camera, settings, first);
     }
     /// Returns the nodes and triangles that the ray through the middle of each pixel tests, by the tracer of camera
     /// rays; nothing for packets. Throws Error(OutOfMemory, DeviceFault).

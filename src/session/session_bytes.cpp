@@ -31,10 +31,10 @@ public:
         size.has_times = scene.motions != nullptr;
         integrator_->reserve(size);
         take_deforming_trees(scene, tracers);
-        if (queue.is_cuda()) beside_ += scene.structures->device_bytes(tracers);
-        if (!queue.is_cuda()) beside_ += integrator_->max_host_bytes(size);
+        if (queue.is_cuda()) other_bytes_ += scene.structures->device_bytes(tracers);
+        if (!queue.is_cuda()) other_bytes_ += integrator_->max_host_bytes(size);
     }
-    std::size_t bytes() const { return queue_.allocated_bytes() + beside_; }
+    std::size_t bytes() const { return queue_.allocated_bytes() + other_bytes_; }
 
 private:
     /// Allocates the device's trees of meshes whose vertices move. The top level over them is added separately.
@@ -44,9 +44,9 @@ private:
         const auto may_deform = [&](TreeLayout layout) { return can_deform(layout, queue_.is_cuda()); };
         if (scene.poses.empty() || !std::ranges::all_of(layouts, may_deform)) return;
         for (const TreeLayout layout : layouts) {
-            beside_ += scene.tlas.nodes.size() * sizeof(BvhNode) +
-                       scene.tlas.instances.size() * sizeof(InstanceRecord) +
-                       scene.trees.parts.size() * sizeof(CompressedBvhView) + 3 * 256;
+            other_bytes_ += scene.tlas.nodes.size() * sizeof(BvhNode) +
+                            scene.tlas.instances.size() * sizeof(InstanceRecord) +
+                            scene.trees.parts.size() * sizeof(CompressedBvhView) + 3 * 256;
             if (layout != TreeLayout::Compressed) continue; // the host's other trees are not counted
             for (std::size_t i = 0; i < scene.poses.size(); ++i) {
                 const uint32_t mesh = scene.scene->shapes[i].mesh;
@@ -60,7 +60,7 @@ private:
     SceneOnDevice scene_;
     std::unique_ptr<Integrator> integrator_;
     std::vector<DeformingCompressed> trees_;
-    std::size_t beside_ = 0; // known without a dry run: copies of trees, host memory
+    std::size_t other_bytes_ = 0; // known without a dry run: copies of trees, host memory
 };
 
 } // namespace
@@ -94,7 +94,7 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
     const uint32_t of_light[] = {scaled_side(width, reconstruction), scaled_side(height, reconstruction)};
     const bool splits = splits_light(scene);
     const Tracing tracing(queue, scene, settings,
-                          {.splits_light = splits, .tells_bounce = restir.light == RestirLight::Indirect});
+                          {.splits_light = splits, .records_bounce = restir.light == RestirLight::Indirect});
     const NoisyFrame frame(queue, of_light[0], of_light[1], splits);
     const Reconstruction frames(queue, of_light[0], of_light[1]);
     std::optional<Restir> sharing;

@@ -36,7 +36,7 @@ Rgb with_luminance(const EmitterStrength& emitter, Rgb colour, double luminance)
     if (is_black(colour)) colour = {1, 1, 1};
     const double factor = luminance / luminance_of(colour);
     const Rgb result = static_cast<float>(factor) * colour;
-    if (!is_finite(result) || max_component(result) > 0x1p40f) refuse(emitter, "more light than there are numbers for");
+    if (!is_finite(result) || max_component(result) > 0x1p40f) refuse(emitter, "the amount of light is too large");
     return result;
 }
 
@@ -50,7 +50,7 @@ void set_light(const EmitterStrength& emitter, double lumens_per_watt, Light& li
         light.intensity = with_luminance(emitter, light.intensity, photometric / lumens_per_watt);
     };
     const LightParts parts = parts_of(light.kind);
-    const bool is_far = !parts.place;
+    const bool is_far = !parts.position;
     switch (emitter.unit) {
     case EmitterUnit::Watt:
     case EmitterUnit::Lumen:
@@ -65,7 +65,7 @@ void set_light(const EmitterStrength& emitter, double lumens_per_watt, Light& li
     case EmitterUnit::Nit:
         break;
     }
-    refuse(emitter, fmt::format("{} is a {}, which has {}", light.name.empty() ? "the light" : "'" + light.name + "'",
+    refuse(emitter, fmt::format("{} is a {}, which needs {}", light.name.empty() ? "the light" : "'" + light.name + "'",
                                 is_far       ? "directional light"
                                 : parts.cone ? "spot light"
                                              : "point light",
@@ -91,16 +91,17 @@ void set_surface(const EmitterStrength& emitter, double lumens_per_watt, Scene& 
     const Material& before = scene.materials[instance.material];
     double nits = emitter.value;
     if (emitter.unit == EmitterUnit::Lux)
-        refuse(emitter, "a lamp with an area has W, lm, cd or nits; lx are of directional lights");
+        refuse(emitter, "a lamp with an area needs W, lm, cd or nits; lx are for directional lights");
     if (emitter.unit != EmitterUnit::Nit) {
         if (instance.is_hidden) return; // it emits nothing, and has no size now
         const EmitterSurface size = emitter_surface(scene, instance);
         if (before.alpha_mode != AlphaMode::Opaque) {
-            refuse(emitter, "its surface has holes or lets light pass, so its area is not what shines; say nits");
+            refuse(emitter,
+                   "its surface has holes or transmits light, so that its area is not the emitting one; use nits");
         }
         if (!(size.area > 0)) refuse(emitter, "its object has no area");
         if (emitter.unit == EmitterUnit::Candela && !size.is_flat) {
-            refuse(emitter, "its object is not flat, so it has no one intensity; say W, lm or nits");
+            refuse(emitter, "its object is not flat, so that it has no single intensity; use W, lm or nits");
         }
         const double faces = before.two_sided_emission ? 2 : 1;
         nits = emitter.unit == EmitterUnit::Candela ? emitter.value / size.area
@@ -110,7 +111,7 @@ void set_surface(const EmitterStrength& emitter, double lumens_per_watt, Scene& 
         const double textured =
             luminance_of(static_cast<double>(unit.r) * size.texture[0], static_cast<double>(unit.g) * size.texture[1],
                          static_cast<double>(unit.b) * size.texture[2]);
-        if (!(textured > 0)) refuse(emitter, "the texture of its emission is black all over");
+        if (!(textured > 0)) refuse(emitter, "its emission texture is completely black");
         nits = nits / textured;
     }
     Material& material = own_material(scene, index, users);
@@ -118,11 +119,9 @@ void set_surface(const EmitterStrength& emitter, double lumens_per_watt, Scene& 
 }
 
 void set_environment(const EmitterStrength& emitter, double lumens_per_watt, Environment& environment) {
-    if (emitter.unit != EmitterUnit::Nit) refuse(emitter, "an environment has nits");
+    if (emitter.unit != EmitterUnit::Nit) refuse(emitter, "an environment needs nits");
     if (!environment.image.pixels.empty()) {
-        refuse(emitter,
-               "the environment is a panorama, with another luminance everywhere; `environment_scale` multiplies "
-               "it");
+        refuse(emitter, "the environment is a panorama without a single luminance; `environment_scale` multiplies it");
     }
     environment.scale = with_luminance(emitter, environment.scale, emitter.value / lumens_per_watt);
 }
@@ -170,7 +169,7 @@ void set_emitters(Scene& scene, std::span<const EmitterStrength> emitters, doubl
         if (scene.environment && is_called_so({kEnvironmentName})) {
             set_environment(emitter, lumens_per_watt, *scene.environment);
         }
-        if (!is_found) refuse(emitter, "no lamp of the scene has this name; " + some_names(all));
+        if (!is_found) refuse(emitter, "there is no lamp of the scene with this name; " + some_names(all));
     }
 }
 

@@ -16,7 +16,7 @@ public:
     /// Collects warnings and notices. Names of settings are in backquotes in their texts (base/phrase_settings.h).
     Messages& messages() { return messages_; }
     /// Called when something long begins, so that the messages so far can be shown.
-    virtual void say_messages() {}
+    virtual void report_messages() {}
     /// `work`, such as "building trees", begins.
     virtual void set_work(const std::string& work) { static_cast<void>(work); }
     /// `share` in [0, 1] of the current work is done; `detail` says more.

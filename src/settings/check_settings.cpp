@@ -96,7 +96,7 @@ void take_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& option
         const Setting* const setting = find_setting(suggested.name);
         try {
             if (setting == nullptr || !setting->is_kept || setting->opens_scene) {
-                throw Error(ErrorCode::BadInput, "no setting that a scene's file can suggest");
+                throw Error(ErrorCode::BadInput, "not a setting that a scene file can suggest");
             }
             if ((setting->verbs & verbs) == 0) continue;
             PictureOptions with = options;

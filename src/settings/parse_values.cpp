@@ -107,8 +107,8 @@ Vec3 parse_vec3(const std::string& what, const std::string& text) { return to_fl
 DoubleVec3 parse_position(const std::string& what, const std::string& text) {
     const DoubleVec3 position = parse_doubles(what, text);
     if (max_component(abs(to_float(position))) <= kMaxCoordinate) return position;
-    throw Error(ErrorCode::OverLimit, fmt::format("{}: farther than the limit of {:.4g} m from the origin",
-                                                  named(what, text), kMaxCoordinate));
+    throw Error(ErrorCode::OverLimit,
+                fmt::format("{}: beyond the limit of {:.4g} m from the origin", named(what, text), kMaxCoordinate));
 }
 
 bool parse_rgb(const std::string& text, Rgb& color) {

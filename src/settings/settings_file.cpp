@@ -51,7 +51,7 @@ void compare_scene(const JsonValue& root, const std::filesystem::path& file, con
     const std::string name = source->string_or("name", ""), hash = source->string_or("hash", "");
     const std::string here = hash.empty() ? "" : scene_hash(scene);
     if (here.empty() || here == hash) return;
-    messages.warn(fmt::format("{}: these are settings for {}, whose hash is {}; {} is another scene (hash {})",
+    messages.warn(fmt::format("{}: the settings are for {} with hash {}; {} is a different scene (hash {})",
                               file.string(), name, hash, scene, here));
 }
 
@@ -90,7 +90,7 @@ void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<
         const Setting* const setting = find_setting(name);
         if (setting != nullptr && std::ranges::find(overruled, setting->name) != overruled.end()) continue;
         if (setting == nullptr || !setting->is_kept || (setting->verbs & verbs) == 0) {
-            messages.leave_out(fmt::format("{}: {}", text_of(value.place()),
+            messages.leave_out(fmt::format("{}: {}", text_of(value.location()),
                                            setting == nullptr ? "unknown setting" : "not a setting of this verb"));
             continue;
         }
@@ -103,7 +103,7 @@ void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<
     }
     for (const auto& [name, value] : root.members()) {
         if (name != "version" && name != "scene" && name != "settings") {
-            messages.leave_out(fmt::format("{}: unknown name in a file of settings", text_of(value.place())));
+            messages.leave_out(fmt::format("{}: unknown name in a file of settings", text_of(value.location())));
         }
     }
 }

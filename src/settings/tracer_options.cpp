@@ -28,7 +28,7 @@ void apply(const std::string& setting, const std::vector<std::string>& values, T
         throw Error(
             ErrorCode::BadInput, setting, value,
             any ? "expected " + known
-                : fmt::format("rays are of the kinds camera, bounce and shadow, as in `{}=shadow={}`", setting, name));
+                : fmt::format("expected a kind of ray: camera, bounce or shadow, as in `{}=shadow={}`", setting, name));
     }
 }
 

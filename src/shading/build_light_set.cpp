@@ -53,8 +53,8 @@ double triangle_power(const LightSetData& data, const Pyramids& pyramids, const 
 double punctual_power(const PunctualLight& light, double radius) {
     const double intensity = mean_of_channels(light.intensity);
     const LightParts parts = parts_of(light.kind);
-    return parts.place ? 2 * kPiDouble * intensity * breadth_of_beam(parts, light.cos_inner, light.cos_outer)
-                       : kPiDouble * radius * radius * intensity;
+    return parts.position ? 2 * kPiDouble * intensity * breadth_of_beam(parts, light.cos_inner, light.cos_outer)
+                          : kPiDouble * radius * radius * intensity;
 }
 
 double environment_power(const EnvironmentData& environment, double radius) {
@@ -73,7 +73,7 @@ void add_triangles(const Scene& scene, Vec3 centre, LightSetData& data) {
             {.first_triangle = static_cast<uint32_t>(count), .triangle_count = static_cast<uint32_t>(triangles)});
         count += triangles;
         if (count + scene.lights.size() + 1 > kMaxLights) {
-            throw Error(ErrorCode::OverLimit, "scene: more than 2^30 lights; an emissive triangle counts as one");
+            throw Error(ErrorCode::OverLimit, "scene: more than 2^30 lights; each emissive triangle is one");
         }
     }
     data.triangles.resize(count);
@@ -180,11 +180,11 @@ void order_emitters(LightSetData& data) {
 /// Sorts punctual lights spatially, those without a position last.
 void order_punctual_lights(LightSetData& data) {
     const auto first_far = std::ranges::stable_partition(
-        data.punctual, [](const PunctualLight& light) { return parts_of(light.kind).place; });
-    std::vector<Vec3> places;
-    for (auto light = data.punctual.begin(); light != first_far.begin(); ++light) places.push_back(light->position);
+        data.punctual, [](const PunctualLight& light) { return parts_of(light.kind).position; });
+    std::vector<Vec3> positions;
+    for (auto light = data.punctual.begin(); light != first_far.begin(); ++light) positions.push_back(light->position);
     std::vector<PunctualLight> ordered;
-    for (const uint32_t i : order_in_space(places)) ordered.push_back(data.punctual[i]);
+    for (const uint32_t i : order_in_space(positions)) ordered.push_back(data.punctual[i]);
     std::ranges::copy(ordered, data.punctual.begin());
 }
 
@@ -267,7 +267,7 @@ LightSetData build_light_set(const Scene& scene, const float* linear_from_srgb, 
     };
     data.near_count = static_cast<uint32_t>(data.source_powers.size());
     for (const PunctualLight& light : data.punctual) {
-        add_source(punctual_power(light, radius), !parts_of(light.kind).place);
+        add_source(punctual_power(light, radius), !parts_of(light.kind).position);
     }
     if (data.environment) add_source(environment_power(*data.environment, radius), true);
     share_draws(data, kEvenShare);

@@ -34,7 +34,7 @@ HD inline EmitterPoint environment_point(Vec3 direction) {
     return {kInEnvironment, bits_of(direction.x), direction.y, direction.z};
 }
 /// Sample point of a result of sample_light.
-HD inline EmitterPoint place_of(const LightSample& sample) {
+HD inline EmitterPoint point_of(const LightSample& sample) {
     if (sample.instance != kNoLight) return {sample.instance, sample.primitive, sample.b1, sample.b2};
     if (sample.is_delta) return {kPunctualPoint, sample.primitive, 0, 0};
     return environment_point(sample.wi);
@@ -43,14 +43,14 @@ HD inline EmitterPoint place_of(const LightSample& sample) {
 /// Light that arrives at `context` from `place`, as sample_light returns it, except for the pdf of punctual lights,
 /// which is 1. `measure` is the ratio of the point's solid angle to its own measure. Returns false if nothing
 /// arrives; occlusion and alpha are up to the caller.
-HD inline bool find_light(const LightSetView& view, const EmitterPoint& place, const LightContext& context,
+HD inline bool find_light(const LightSetView& view, const EmitterPoint& point, const LightContext& context,
                           LightSample& sample, float& measure) {
     measure = 1;
-    if (!place.is_there()) return false;
-    switch (place.kind()) {
+    if (!point.is_there()) return false;
+    switch (point.kind()) {
     case SourceKind::Environment: {
         sample = {};
-        sample.wi = {float_of(place.index), place.u, place.v};
+        sample.wi = {float_of(point.index), point.u, point.v};
         const EnvironmentHit hit = find_environment(view, context, sample.wi, true);
         if (!(hit.pdf > 0)) return false;
         sample.pdf = hit.pdf;
@@ -59,18 +59,18 @@ HD inline bool find_light(const LightSetView& view, const EmitterPoint& place, c
         return true;
     }
     case SourceKind::Punctual: {
-        if (place.index >= view.punctual_count) return false; // from another scene
-        const bool arrives = sample_punctual_light(view.punctual[place.index], 1.0f, context.point, sample);
-        sample.primitive = place.index;
+        if (point.index >= view.punctual_count) return false; // from another scene
+        const bool arrives = sample_punctual_light(view.punctual[point.index], 1.0f, context.point, sample);
+        sample.primitive = point.index;
         return arrives;
     }
     case SourceKind::Triangle:
         break;
     }
-    const uint32_t light = light_of(view, place.instance, place.index);
+    const uint32_t light = light_of(view, point.instance, point.index);
     if (light == kNoLight) return false;
     const float pmf = ChosenByPower::pmf_of_triangle(view, context, light);
-    if (!triangle_light_at<true>(view, light, pmf, context.point, {place.u, place.v}, sample)) return false;
+    if (!triangle_light_at<true>(view, light, pmf, context.point, {point.u, point.v}, sample)) return false;
     measure = 2.0f * pmf / sample.pdf; // in weights, a triangle has the area 1/2
     return true;
 }

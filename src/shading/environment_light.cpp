@@ -53,7 +53,7 @@ std::vector<Rgb> clean_pixels(const Environment& environment, Messages& messages
     });
     const auto warn = [&](uint64_t times, const char* what, const char* became) {
         if (times == 0) return;
-        messages.warn("environment: " + std::to_string(times) + " pixel values are " + what + "; taken as " + became);
+        messages.warn("environment: " + std::to_string(times) + " pixel values are " + what + "; read as " + became);
     };
     warn(negative, "negative", "0");
     warn(not_a_number, "not a number", "0");

@@ -39,7 +39,7 @@ struct EnvironmentView {
 };
 
 /// Position in the image in texels: x in [0, width], y in [0, height], (0, 0) is the upper left corner.
-HD inline Vec2 environment_place(const EnvironmentView& view, Vec3 direction) {
+HD inline Vec2 environment_uv(const EnvironmentView& view, Vec3 direction) {
     const float longitude = atan2(direction.x, -direction.z); // 0 along -z
     const float from_north = atan2(sqrt(square(direction.x) + square(direction.z)), direction.y);
     const float turns = longitude * (0.5f * kInvPi) + 0.5f + view.rotation_turns;
@@ -50,14 +50,14 @@ HD inline Vec2 environment_place(const EnvironmentView& view, Vec3 direction) {
 /// Position of a direction among the patches. Patch (column, row) extends from the centre of texel column `column` to
 /// that of the next one, which wraps, and from the centre of texel row `row` - 1 to that of row `row`; at the poles
 /// both are the last row.
-struct PanoramaPlace {
+struct PanoramaPoint {
     uint32_t column, row; // column < width, row <= height
     Vec2 at;              // [0, 1], from the left and the upper edge; linear in the angles
 };
 
-HD inline PanoramaPlace panorama_place(const EnvironmentView& view, Vec2 place) {
+HD inline PanoramaPoint panorama_point(const EnvironmentView& view, Vec2 uv) {
     const int last_x = static_cast<int>(view.width) - 1, last_y = static_cast<int>(view.height) - 1;
-    const float x = place.x - 0.5f, y = place.y - 0.5f;
+    const float x = uv.x - 0.5f, y = uv.y - 0.5f;
     const float x_below = floor(x), y_below = floor(y);
     const int column = to_int(x_below, -1, last_x);
     return {static_cast<uint32_t>(column < 0 ? last_x : column),
@@ -134,15 +134,15 @@ HD inline float sine_squared_of_half(Vec3 direction, bool is_south) {
 }
 
 /// Density of a direction in a patch, 1/sr; 0 if the patch is black.
-HD inline float panorama_pdf(const EnvironmentView& view, const PanoramaPlace& place, const PanoramaCorners& corners,
+HD inline float panorama_pdf(const EnvironmentView& view, const PanoramaPoint& point, const PanoramaCorners& corners,
                              Vec3 direction) {
-    const float pmf = cdf_pmf(view.rows, place.row) * cdf_pmf(environment_columns(view, place.row), place.column);
+    const float pmf = cdf_pmf(view.rows, point.row) * cdf_pmf(environment_columns(view, point.row), point.column);
     if (!(pmf > 0)) return 0;
-    const PanoramaRow row = panorama_row(view, place.row);
+    const PanoramaRow row = panorama_row(view, point.row);
     float greatest;
     const BilinearPatch density = panorama_density(corners, greatest);
     const float share = row.share(sine_squared_of_half(direction, row.is_south));
-    return pmf * patches_per_steradian(view, row) * density.pdf({place.at.x, share});
+    return pmf * patches_per_steradian(view, row) * density.pdf({point.at.x, share});
 }
 
 /// Environment light of a direction.
@@ -155,9 +155,9 @@ struct EnvironmentHit {
 HD inline EnvironmentHit find_environment(const EnvironmentView& view, Vec3 direction, bool wants_pdf) {
     const bool is_drawn = wants_pdf && view.rows.starts != nullptr;
     if (view.is_constant) return {view.constant, is_drawn ? 0.25f * kInvPi : 0.0f};
-    const PanoramaPlace place = panorama_place(view, environment_place(view, direction));
-    const PanoramaCorners corners = panorama_corners(view, place.column, place.row);
-    return {corners.radiance(place.at), is_drawn ? panorama_pdf(view, place, corners, direction) : 0.0f};
+    const PanoramaPoint point = panorama_point(view, environment_uv(view, direction));
+    const PanoramaCorners corners = panorama_corners(view, point.column, point.row);
+    return {corners.radiance(point.at), is_drawn ? panorama_pdf(view, point, corners, direction) : 0.0f};
 }
 
 /// Radiance that arrives from `direction`, W/(sr m2).

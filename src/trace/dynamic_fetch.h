@@ -4,7 +4,7 @@
 // as soon as fewer than Place::kRefillBelow of a warp's lanes are active. The loop of the traversal is the kernel, so
 // it works for traversals that can be suspended between two turns (WhileWhileTraversal, SpeculativeTraversal,
 // CompressedTraversal). In a scene with instances each lane proceeds from tree to tree independently
-// (trace/scene_place.h). Only .cu files include this (device/launch_body.h).
+// (trace/scene_traversal_state.h). Only .cu files include this (device/launch_body.h).
 //
 // Besides the common interface (trace/traverse_scene.h), such a traversal has
 //   Place(Place::Slot[Place::kSlots])                  the state of a ray, initially done; is_done(), stop()
@@ -24,7 +24,7 @@
 #include "base/host_device.h"
 #include "device/queue.h"
 #include "device/work_count.h"
-#include "trace/scene_place.h"
+#include "trace/scene_traversal_state.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
 #include "trace/warps/kernel_limits.h"
@@ -79,8 +79,8 @@ __global__ void __launch_bounds__(kTraversalThreads, kBlocksWanted<Scene>)
     constexpr LaneMask kWarp = 0xffffffffu;
     constexpr uint32_t kNoRay = 0xffffffffu;
     uint32_t count = work.value(); // 0 once the pool is empty; equal in all lanes, like every exit of this loop
-    typename Traversal::Place::Slot slots[Traversal::Place::kSlots];
-    ScenePlace<Traversal, Scene> place(slots); // initially done, as whenever there is no ray
+    typename Traversal::State::Slot slots[Traversal::State::kSlots];
+    SceneTraversalState<Traversal, Scene> state(slots); // initially done, as whenever there is no ray
     auto accept = rays.accept(kNoRay);
     // Number of the lane's ray. Closest-hit searches have no register for it beside accept.i; with a separate one
     // any-hit searches are 1 % faster.
@@ -101,18 +101,18 @@ __global__ void __launch_bounds__(kTraversalThreads, kBlocksWanted<Scene>)
                 index = accept.i = next;
                 ray = rays.load(index);
                 search.restart(ray.t_max);
-                place.start(scene, ray, search.visitor);
+                state.start(scene, ray, search.visitor);
             }
         }
         if (ballot(kWarp, index != kNoRay) == 0) return; // the pool is empty too then
-        const auto count_working = [&] { return count_lanes(ballot(kWarp, !place.is_done())); };
+        const auto count_working = [&] { return count_lanes(ballot(kWarp, !state.is_done())); };
         for (int working = count_working(); working != 0;) { // by all lanes, because votes of a whole warp are
                                                              // cheapest
-            place.turn(scene, ray, search.visitor, counter, kWarp, working);
+            state.turn(scene, ray, search.visitor, counter, kWarp, working);
             working = count_working();
-            if (count != 0 && working < Traversal::Place::kRefillBelow) break;
+            if (count != 0 && working < Traversal::State::kRefillBelow) break;
         }
-        if (index != kNoRay && place.is_done()) {
+        if (index != kNoRay && state.is_done()) {
             rays.store(index, search.hit());
             index = kNoRay;
         }

@@ -51,37 +51,37 @@ std::optional<TraversalKind> only_traversal_of(StructureKind structure) {
 std::optional<std::string> why_not(StructureKind structure, TraversalKind traversal) {
     if ((traversal == TraversalKind::Kd) != is_kd(structure)) {
         return traversal == TraversalKind::Kd
-                   ? "the kd traversal goes over a kd-tree's planes; the structures for it are kd-median and kd-sah"
-                   : "a kd-tree has planes in place of boxes; the traversal for it is kd";
+                   ? "the kd traversal needs a kd-tree; choose the structure kd-median or kd-sah"
+                   : "a kd-tree needs the traversal kd";
     }
     if ((traversal == TraversalKind::Octree) != (structure == StructureKind::Octree)) {
-        return traversal == TraversalKind::Octree
-                   ? "the octree traversal goes over an octree's cells; the structure for it is octree"
-                   : "an octree has eight cells a node; the traversal for it is octree";
+        return traversal == TraversalKind::Octree ? "the octree traversal needs the structure octree"
+                                                  : "an octree needs the traversal octree";
     }
     return std::nullopt;
 }
 
 std::optional<std::string> why_not(const Combination& c, bool on_cuda) {
     if (auto reason = why_not(c.structure, c.traversal)) return reason;
-    if (!c.options.near_first && !has_order(c.traversal)) return "there is no order of children to switch off";
+    if (!c.options.near_first && !has_order(c.traversal))
+        return "this traversal has no order of children to switch off";
     if (!c.options.rta && c.traversal == TraversalKind::BruteForce)
-        return "without nodes there is no redundant traversal";
+        return "brute force has no nodes, and thus no redundant traversal to avoid";
     if (!c.options.rta_at_pops && c.traversal != TraversalKind::Compressed) {
-        return "RTA at nodes alone is for the compressed traversal; the stacks of the others hold distances anyway";
+        return "RTA at nodes only is for the compressed traversal; the stacks of others always hold distances";
     }
     if (c.options.tests == TestKind::Woop && c.traversal != TraversalKind::WhileWhile &&
         c.traversal != TraversalKind::Speculative) {
-        return "Woop's triangle test is for the traversals of Aila and Laine: while-while and speculative";
+        return "Woop's triangle test works only with the traversals while-while and speculative";
     }
     if (c.traversal == TraversalKind::Wide8Simd && on_cuda)
-        return "eight boxes at once by the CPU's vector unit; on a GPU take wide8";
+        return "wide8-simd uses the CPU's vector unit; choose wide8 on a GPU";
     if (c.distribution != Distribution::OneAThread && !on_cuda) {
-        return "threads of a CPU take rays from a pool anyway";
+        return "a CPU's threads always take rays from a pool";
     }
     if (c.distribution == Distribution::DynamicFetch && c.traversal != TraversalKind::WhileWhile &&
         c.traversal != TraversalKind::Speculative && c.traversal != TraversalKind::Compressed) {
-        return "rays are refilled inside the traversal: while-while, speculative and compressed are made for that";
+        return "fetching rays inside the traversal works only with while-while, speculative and compressed";
     }
     return std::nullopt;
 }

@@ -19,9 +19,9 @@ SceneTriangles triangles_of(const BinaryTrees& trees) {
     for (std::size_t part = 0; part < trees.parts.size(); ++part) {
         std::vector<BvhTriangle> list = trees.parts[part]->triangles;
         for (BvhTriangle& triangle : list) triangle.flags = 0;
-        const auto place = [](const BvhTriangle& t) { return std::pair(t.instance, t.primitive); };
-        std::ranges::sort(list, {}, place);
-        const auto copies = std::ranges::unique(list, {}, place);
+        const auto key_of = [](const BvhTriangle& t) { return std::pair(t.instance, t.primitive); };
+        std::ranges::sort(list, {}, key_of);
+        const auto copies = std::ranges::unique(list, {}, key_of);
         list.erase(copies.begin(), copies.end());
         if (part == 0) {
             triangles.baked = std::move(list);
@@ -42,8 +42,7 @@ Tlas tlas_over(std::span<const PlacedBvh> placed, const std::map<uint32_t, Bound
         tree.local_bounds = bounds->second;
         if (tree.local_bounds.is_empty() || lies_near(tree.world_from_local, tree.local_bounds)) continue;
         throw Error(ErrorCode::OverLimit,
-                    fmt::format("instance {} lies further out than 2^40 metres, as its vertices are moved; scale the "
-                                "scene down",
+                    fmt::format("instance {} lies beyond 2^40 metres with its moved vertices; scale the scene down",
                                 tree.instance));
     }
     return build_tlas(now);

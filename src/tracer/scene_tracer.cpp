@@ -17,7 +17,7 @@ std::shared_ptr<const BuiltStructure> structure_for(const Combination& c, SceneS
     const uint64_t triangles = structures.triangle_count();
     if (c.traversal != TraversalKind::BruteForce || triangles <= kMaxBruteForceTriangles) return structures.get(c);
     throw Error(ErrorCode::OverLimit,
-                fmt::format("{}: each ray would test all {} triangles of the scene; pictures of at most {} are made so",
+                fmt::format("{}: each ray would test all {} triangles of the scene; the limit for pictures is {}",
                             name_of(c), triangles, kMaxBruteForceTriangles));
 }
 

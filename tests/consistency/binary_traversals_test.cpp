@@ -14,9 +14,9 @@
 #include "accel/bvh/skip_bvh.h"
 #include "tests/support/check_traversal.h"
 #include "tests/support/instanced_scene.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/split_bvh.h"
+#include "tests/support/stress_meshes.h"
 #include "trace/binary/if_if_traversal.h"
 #include "trace/binary/octant_traversal.h"
 #include "trace/binary/parent_links_traversal.h"
@@ -142,9 +142,9 @@ void check_rta_saves(const std::string& name, const Tree& tree, const std::vecto
 
 TEST_CASE(
     "every traversal with every switch gives the hits of testing every triangle, over meshes that break traversals") {
-    for (const NastyMesh& c : nasty_meshes(static_cast<uint32_t>(effort(3000, 50'000)))) {
+    for (const StressMesh& c : stress_meshes(static_cast<uint32_t>(effort(3000, 50'000)))) {
         CAPTURE(std::string(c.name));
-        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(100, 1000)), c, 29);
+        const std::vector<Ray> rays = stress_rays(static_cast<uint32_t>(effort(100, 1000)), c, 29);
         for (const bool all : {true, false}) {
             const AcceptSomeOrAll accept = {all};
             const std::vector<Hit> expected = hits_by_brute_force(c.triangles, rays, accept);
@@ -157,10 +157,10 @@ TEST_CASE(
 }
 
 TEST_CASE("every traversal matches brute force over trees with spatial splits") {
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(std::string(c.name));
         const Bvh bvh = with_parent_links(build_split_bvh(c.triangles, 6));
-        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(70, 1000)), c, 37);
+        const std::vector<Ray> rays = stress_rays(static_cast<uint32_t>(effort(70, 1000)), c, 37);
         const AcceptSomeOrAll accept = {true};
         check_all_traversals(bvh, rays, hits_by_brute_force(c.triangles, rays, accept), accept);
     }
@@ -241,7 +241,8 @@ TEST_CASE("redundant traversal avoidance never visits more nodes and saves some"
     check_rta_saves<SkipLinksTraversal>("skip links", view_of(skip), rays);
 }
 
-TEST_CASE("traversals with a stack visit equally many nodes, those without one more, brute force all") {
+TEST_CASE(
+    "traversals with a stack visit equally many nodes, those without one visit more, and brute force visits all") {
     constexpr TraversalOptions kAll = {};
     const Bvh bvh = with_parent_links(build_bvh(shells()));
     uint64_t by_stack = 0, by_short_stack = 0, by_trail = 0, far_first = 0, near_first = 0, wrong = 0;
@@ -269,7 +270,7 @@ TEST_CASE("traversals with a stack visit equally many nodes, those without one m
     CHECK(near_first < far_first);
 }
 
-TEST_CASE("with the laboratory's fast tests every traversal finds the same surfaces, but for rays at edges") {
+TEST_CASE("with the laboratory's fast tests every traversal finds the same surfaces, except for rays at edges") {
     constexpr TraversalOptions kFast = {.tests = TestKind::Fast};
     const Bvh bvh = with_parent_links(build_bvh(shells()));
     const SkipBvh skip = make_skip_bvh(bvh);

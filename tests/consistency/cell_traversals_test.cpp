@@ -10,8 +10,8 @@
 #include "accel/kd_tree/build_kd_tree.h"
 #include "accel/octree/build_octree.h"
 #include "tests/support/check_traversal.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
+#include "tests/support/stress_meshes.h"
 #include "trace/cells/kd_tree_traversal.h"
 #include "trace/cells/octree_traversal.h"
 
@@ -40,9 +40,9 @@ void check_all_options(const SceneTrees<Tree>& scene, const std::vector<Ray>& ra
 } // namespace
 
 TEST_CASE("kd-trees of all build settings match brute force bit for bit") {
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(c.name);
-        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(600, 20000)), c, 41);
+        const std::vector<Ray> rays = stress_rays(static_cast<uint32_t>(effort(600, 20000)), c, 41);
         const std::vector<Hit> all = hits_by_brute_force(c.triangles, rays, AcceptAll{});
         const std::vector<Hit> some = hits_by_brute_force(c.triangles, rays, AcceptSome{});
         for (const KdTreeSettings& settings : kKdSettings) {
@@ -56,9 +56,9 @@ TEST_CASE("kd-trees of all build settings match brute force bit for bit") {
 }
 
 TEST_CASE("octrees of all build settings match brute force bit for bit") {
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(c.name);
-        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(600, 20000)), c, 43);
+        const std::vector<Ray> rays = stress_rays(static_cast<uint32_t>(effort(600, 20000)), c, 43);
         const std::vector<Hit> all = hits_by_brute_force(c.triangles, rays, AcceptAll{});
         const std::vector<Hit> some = hits_by_brute_force(c.triangles, rays, AcceptSome{});
         for (const OctreeSettings& settings : kOctreeSettings) {
@@ -97,7 +97,7 @@ struct PlacedMeshes {
             for (const BvhTriangle& t : meshes[mesh]) bounds.extend(t.a), bounds.extend(t.b), bounds.extend(t.c);
             placed.push_back({place, bounds, mesh, i * 3 + 1});
         }
-        rays = nasty_rays(static_cast<uint32_t>(effort(1500, 30000)), {"torus", baked, {}, 1}, 47);
+        rays = stress_rays(static_cast<uint32_t>(effort(1500, 30000)), {"torus", baked, {}, 1}, 47);
         expected = hits_by_brute_force(baked, rays, AcceptSome{});
         for (std::size_t i = 0; i < rays.size(); ++i) {
             for (const PlacedBvh& p : placed) {

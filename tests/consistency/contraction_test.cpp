@@ -59,7 +59,7 @@ TEST_CASE("the dot product of vectors is not contracted") {
     CHECK(compare(dot_of).differ_from_two == 0);
 }
 
-TEST_CASE("products and sums round twice also on parallel_for's threads and in vectorised loops") {
+TEST_CASE("products and sums round twice on parallel_for's threads and in vectorised loops") {
     constexpr uint32_t count = 4096;
     float a[count], b[count], c[count], got[count];
     for (uint32_t i = 0; i < count; i++) a[i] = value(i), b[i] = value(i + count), c[i] = -value(i + 2 * count);

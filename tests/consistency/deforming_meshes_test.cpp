@@ -109,7 +109,7 @@ constexpr double kTimes[] = {0.5, 2, 1.25, 0};
 
 } // namespace
 
-TEST_CASE("vertices that are made on the device give the picture of those made on the host, by every layout") {
+TEST_CASE("vertices deformed on the device give the picture of vertices deformed on the host, with every layout") {
     const Scene rest = make_bending_scene();
     RenderSettings settings = test::layered_settings();
     std::vector<Hash128> expected;
@@ -140,7 +140,7 @@ TEST_CASE("vertices that are made on the device give the picture of those made o
     }
 }
 
-TEST_CASE("a step in time uploads joints and weights, not vertices, and takes no memory") {
+TEST_CASE("a step in time uploads joints and weights, not vertices, and allocates no memory") {
     Messages messages;
     Queue queue = test::requested_queue();
     RenderSettings settings = test::layered_settings();
@@ -179,7 +179,7 @@ TEST_CASE("memory of deforming meshes equals its prediction") {
     tree.start(deformed[0]);
     tree.finish();
     Queue dry = Queue::make_dry_run(false);
-    const DeformingCompressed said(dry, deformed[0].triangles);
+    const DeformingCompressed predicted(dry, deformed[0].triangles);
     CHECK(queue.allocated_bytes() - before == dry.allocated_bytes());
 }
 
@@ -282,7 +282,7 @@ Hash128 hash_of_frames(Queue& queue, const RenderSettings& settings) {
 
 } // namespace
 
-TEST_CASE("frames of bending meshes have the same bytes on every device, by every body and every tree") {
+TEST_CASE("frames of deforming meshes have the same bytes on every device, in every schedule and with every tree") {
     RenderSettings settings;
     settings.width = 96, settings.height = 54;
     Queue cpu = Queue::make_cpu();
@@ -318,7 +318,7 @@ Image motion_of_frame(Queue& queue, const RenderSettings& settings, int first, i
 
 } // namespace
 
-TEST_CASE("motion vectors follow skins and morph targets, and are a function of the frame alone") {
+TEST_CASE("motion vectors follow skins and morph targets and depend only on the frame") {
     RenderSettings settings;
     settings.width = 96, settings.height = 54;
     Queue cpu = Queue::make_cpu();
@@ -380,7 +380,7 @@ TEST_CASE("vertices of emissive, mirrored or baked meshes are computed on the ho
     }
 }
 
-TEST_CASE("vertices that are moved further than a scene may reach are refused, and the next scene is whole") {
+TEST_CASE("vertices that move beyond the scene's limit are refused, and the next scene is complete") {
     Scene rest = make_bending_scene();
     rest.animations[0].channels.push_back(
         {3, AnimatedPart::Translation, Interpolation::Step, {0, 1, 2}, {0, 0, 0, 1e13f, 0, 0, 0, 0, 0}});

@@ -45,7 +45,8 @@ double mean_difference(const Image& a, const Image& b) {
 
 } // namespace
 
-TEST_CASE("a denoised picture has the same bytes on every device, by every body, in parts and after another one") {
+TEST_CASE(
+    "a denoised picture has the same bytes on every device, in every schedule, in parts and after another picture") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -115,7 +116,7 @@ TEST_CASE("denoising does not change the film and its layers") {
     }
 }
 
-TEST_CASE("a denoised picture has less error than its samples and equal brightness") {
+TEST_CASE("a denoised picture has less error than its samples and the same brightness") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

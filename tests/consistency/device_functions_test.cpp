@@ -128,7 +128,7 @@ TEST_CASE("light samples have the same bits on both devices") {
                     });
 }
 
-TEST_CASE("hits have the same bits on both devices: instances, and a mesh of uneven triangles") {
+TEST_CASE("hits on instances and on a mesh of uneven triangles have the same bits on both devices") {
     check_same_hits(test::make_mixed_scene(), static_cast<uint32_t>(effort_of_two(100'000, 10'000'000)));
     const test::TriangleMesh torus = test::make_torus(400, 200);
     Scene scene;
@@ -171,7 +171,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("ray setup has the same bits on both devices, also along axes and nearly so") {
+TEST_CASE("ray setup has the same bits on both devices, even along axes and close to them") {
     check_same_bits(
         static_cast<uint32_t>(effort_of_two(1 << 12, 1 << 20)),
         [&](Queue& queue, uint32_t* out, uint32_t count) { launch(queue, "shear_rays", count, test::ShearRays{out}); });

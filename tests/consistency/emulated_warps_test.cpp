@@ -14,8 +14,8 @@
 #include "tests/support/check_traversal.h"
 #include "tests/support/emulated_traversals.h"
 #include "tests/support/instanced_scene.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
+#include "tests/support/stress_meshes.h"
 #include "trace/binary/while_while_traversal.h"
 #include "trace/warps/lane_counter.h"
 #include "trace/wide/compressed_traversal.h"
@@ -140,15 +140,15 @@ struct HostHits {
 
 } // namespace
 
-TEST_CASE("on warps, every traversal by every way of handing out rays gives each ray its hit, once") {
+TEST_CASE("on warps, every traversal with every distribution of rays finds each ray's hit once") {
     const uint32_t rounds = static_cast<uint32_t>(effort(1, 40));
     uint32_t seed = 0;
-    for (const NastyMesh& c : nasty_meshes(500)) {
+    for (const StressMesh& c : stress_meshes(500)) {
         CAPTURE(std::string(c.name));
         const bool has_ties = c.extent != 1 || std::string(c.name).find("soup") != 0;
         const TestTrees trees(c.triangles);
         for (uint32_t round = 0; round < rounds; ++round) {
-            const std::vector<Ray> rays = nasty_rays(kRays, c, 7 + round);
+            const std::vector<Ray> rays = stress_rays(kRays, c, 7 + round);
             const HostHits host(trees, rays);
             for (const EmulatedTraversal& traversal : emulated_traversals()) {
                 // By tests that leak what is hit at a tie depends on what was skipped before.
@@ -162,8 +162,8 @@ TEST_CASE("on warps, every traversal by every way of handing out rays gives each
     }
 }
 
-TEST_CASE("on warps, every ray gets its hit once for any number of rays and warps") {
-    const NastyMesh mesh = nasty_meshes()[3];
+TEST_CASE("on warps, each ray's hit is found once for any number of rays and warps") {
+    const StressMesh mesh = stress_meshes()[3];
     const TestTrees trees(mesh.triangles);
     uint32_t seed = 0;
     struct Size {
@@ -171,7 +171,7 @@ TEST_CASE("on warps, every ray gets its hit once for any number of rays and warp
     };
     const Size sizes[] = {{0, 1}, {1, 1}, {1, 3}, {5, 2}, {31, 1}, {32, 1}, {33, 2}, {100, 4}, {257, 9}, {kMaxRays, 3}};
     for (const auto [count, blocks] : sizes) {
-        const std::vector<Ray> rays = nasty_rays(count, mesh, 3);
+        const std::vector<Ray> rays = stress_rays(count, mesh, 3);
         const HostHits host(trees, rays);
         for (const EmulatedTraversal& traversal : emulated_traversals()) {
             if (traversal.run == nullptr || traversal.counts_lanes) continue;
@@ -184,7 +184,7 @@ TEST_CASE("on warps, every ray gets its hit once for any number of rays and warp
     }
 }
 
-TEST_CASE("on warps, every ray gets its hit over instances where lanes diverge between meshes") {
+TEST_CASE("on warps, each ray's hit is found over instances where lanes diverge between meshes") {
     const InstancedScene s = make_instanced_scene(static_cast<uint32_t>(effort(kRays, 20'011)));
     std::vector<BvhView> views;
     std::vector<CompressedBvh> compressed;
@@ -209,7 +209,7 @@ TEST_CASE("on warps, every ray gets its hit over instances where lanes diverge b
     CHECK(runs == 26); // four traversals, two ways, and three by dynamic fetch too; closest and any
 }
 
-TEST_CASE("on warps, live lanes add up to the visits of the rays") {
+TEST_CASE("on warps, the active lanes add up to the visits of the rays") {
     const TestTrees trees(triangles_of(make_torus(40, 24)));
     Random random(4);
     std::vector<Ray> rays(static_cast<std::size_t>(effort(kRays, 20'011)));

@@ -7,9 +7,9 @@
 
 #include "base/error.h"
 #include "session/session.h"
+#include "tests/support/hang_guard.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
-#include "tests/support/tell_if_stuck.h"
 #include "tracer/traversal_kernels.h"
 
 using namespace pertev;
@@ -79,7 +79,7 @@ Tally check_all(const Scene& scene) {
                         tally.refused += reason->empty() ? 0 : 1;
                         continue;
                     }
-                    const test::TellIfStuck guard(name_of(c), 20);
+                    const test::HangGuard guard(name_of(c), 20);
                     settings.tracers = same_for_all(c);
                     session.set_settings(settings);
                     session.cut();
@@ -107,7 +107,7 @@ TEST_CASE("every tracer gives one picture: a scene with instances, cut-outs, ble
     check(check_all(test::make_mixed_scene()));
 }
 
-TEST_CASE("every tracer gives one picture: the same as one tree") {
+TEST_CASE("every tracer gives one picture: the same scene in one tree") {
     check(check_all(make_single_tree(test::make_mixed_scene())));
 }
 

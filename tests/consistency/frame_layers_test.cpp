@@ -56,7 +56,7 @@ SeenLayers look_at_frames(Queue& queue) {
 
 } // namespace
 
-TEST_CASE("tones, layers and the exposure that follows the frames are the same on every device") {
+TEST_CASE("tones, layers and the adapted exposure are the same on every device") {
     Queue cpu = Queue::make_cpu();
     const SeenLayers expected = look_at_frames(cpu);
     CHECK(look_at_frames(cpu) == expected);
@@ -66,7 +66,7 @@ TEST_CASE("tones, layers and the exposure that follows the frames are the same o
     }
 }
 
-TEST_CASE("tones are the means of the shown picture; lamps that are seen do not count among what is scattered") {
+TEST_CASE("tones are the means of the displayed picture, and visible emitters do not count as scattered light") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -108,7 +108,7 @@ TEST_CASE("tones are the means of the shown picture; lamps that are seen do not 
     }
 }
 
-TEST_CASE("the exposure goes towards what a picture asks for, and has 1/e of the way left after 16 frames") {
+TEST_CASE("the exposure approaches the metered one and is 1/e of the difference away after 16 frames") {
     FrameTones tones = {{4, 4, 4, {}}, {4, 4, 3, {}}};
     for (int i = 0; i < 16; ++i) {
         tones.scattered.pixels.insert(tones.scattered.pixels.end(), {0.01f, 0.01f, 0.01f, 1});
@@ -128,7 +128,7 @@ TEST_CASE("the exposure goes towards what a picture asks for, and has 1/e of the
     CHECK(exposure.stops() == doctest::Approx(auto_exposure_stops(tones.all, ToneMap::Agx)).epsilon(1e-2));
 }
 
-TEST_CASE("motion is how far what a pixel shows has gone; a frame is the same with and without its layers") {
+TEST_CASE("the motion layer holds the motion of each pixel's surface, and layers do not change the frame") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -69,7 +69,7 @@ std::vector<Hash128> hashes_of_sequence(Queue& queue, const FrameRange& sequence
 
 } // namespace
 
-TEST_CASE("frames of a moving sequence have the same bytes by every body, on every device, and after a cut") {
+TEST_CASE("frames of a moving sequence have the same bytes in every schedule, on every device and after a cut") {
     Queue cpu = Queue::make_cpu();
     const FrameRange sequence = {.first = 3, .last = 7, .fps = 8.0};
     const RenderSettings settings = result_settings();
@@ -94,7 +94,7 @@ TEST_CASE("frames of a moving sequence have the same bytes by every body, on eve
     }
 }
 
-TEST_CASE("layers of a frame come from its own sample in any order of samples") {
+TEST_CASE("layers of a frame come from its own sample, in any order of samples") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -111,10 +111,10 @@ TEST_CASE("layers of a frame come from its own sample in any order of samples") 
     RenderSettings plain = settings_of_frames(settings);
     const auto albedo_of = [&](uint32_t samples) {
         plain.samples = samples;
-        return layer_named(session.look_aside(session.camera(), plain), "albedo");
+        return layer_named(session.render_separately(session.camera(), plain), "albedo");
     };
     plain.samples = 1;
-    const std::vector<PixelIds> ids = session.look_aside(session.camera(), plain).ids;
+    const std::vector<PixelIds> ids = session.render_separately(session.camera(), plain).ids;
     for (std::size_t i = 0; i < ids.size(); ++i) REQUIRE(frame.ids[i].primitive == ids[i].primitive);
     const Image five = albedo_of(kNumber), six = albedo_of(kNumber + 1), &seen = layer_named(frame, "albedo");
     for (std::size_t i = 0; i < seen.pixels.size(); ++i) {

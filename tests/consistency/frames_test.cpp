@@ -58,7 +58,7 @@ std::vector<Scenes> scenes() { return {{make_mixed_scene(), mixed_scene_camera()
 
 } // namespace
 
-TEST_CASE("frame 30 has the same bytes on every device, by every body and batch, and after a cut") {
+TEST_CASE("frame 30 has the same bytes on every device, in every schedule and batch size, and after a cut") {
     for (const Scenes& s : scenes()) {
         Messages messages;
         const PreparedScene prepared = prepare_scene(s.scene, {}, messages);
@@ -89,7 +89,7 @@ TEST_CASE("frame 30 has the same bytes on every device, by every body and batch,
     }
 }
 
-TEST_CASE("a change of size or scene restarts the history, and so does the change back") {
+TEST_CASE("a change of size or scene restarts the history, and so does changing it back") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const Scenes other = diffuse_scene();
@@ -145,7 +145,7 @@ Hash128 hash_of_motion(Queue& queue, const RenderSettings& settings, bool moves,
 
 } // namespace
 
-TEST_CASE("frames of moving scenes have the same bytes on every device and by every body") {
+TEST_CASE("frames of moving scenes have the same bytes on every device and in every schedule") {
     Queue cpu = Queue::make_cpu();
     const RenderSettings settings = frame_settings();
     for (const RestirLight light : {RestirLight::Off, RestirLight::Indirect}) {
@@ -162,7 +162,7 @@ TEST_CASE("frames of moving scenes have the same bytes on every device and by ev
     }
 }
 
-TEST_CASE("frames with ReSTIR have the same bytes on every device, by every body and batch, and after a cut") {
+TEST_CASE("frames with ReSTIR have the same bytes on every device, in every schedule and batch size, and after a cut") {
     Messages messages;
     const Scene mixed = make_mixed_scene();
     // In one all surfaces are diffuse, so that frames split no light.
@@ -234,7 +234,7 @@ TEST_CASE("a frame that is not reconstructed is the film's picture of the same s
     }
 }
 
-TEST_CASE("the mean of frames from a still camera is the picture, except for losses of biased parts") {
+TEST_CASE("the mean of frames from a still camera is the picture, except for the losses of biased parts") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -89,7 +89,7 @@ Camera camera_at(Vec3 eye, Vec3 target, float fov_y) {
 
 } // namespace
 
-TEST_CASE("hybrid has path's picture of all kinds of surfaces, for any threads, bodies and batches") {
+TEST_CASE("hybrid has the path tracer's picture of all kinds of surfaces, for any threads, schedule and batch size") {
     const Scene scene = test::make_mixed_scene(); // cut-outs, blended sheets, hidden backs, instances
     const Camera camera = test::mixed_scene_camera();
     RenderSettings settings = hybrid_settings();
@@ -118,7 +118,7 @@ TEST_CASE("hybrid has path's picture of all kinds of surfaces, for any threads, 
     }
 }
 
-TEST_CASE("hybrid is denoised as path is, and finds its irradiance") {
+TEST_CASE("hybrid is denoised as path tracing is and finds the same irradiance") {
     const Scene scene = test::make_mixed_scene();
     RenderSettings settings = hybrid_settings();
     settings.denoise = Denoise::Svgf;
@@ -128,7 +128,7 @@ TEST_CASE("hybrid is denoised as path is, and finds its irradiance") {
     check_as_path(scene, test::mixed_scene_camera(), settings);
 }
 
-TEST_CASE("hybrid has path's picture through any pixel filter and any angle of view, at any place") {
+TEST_CASE("hybrid has the path tracer's picture with any pixel filter, field of view and position") {
     const Scene scene = soup_scene(150, 1);
     for (const auto& [filter, radius] : {std::pair(PixelFilter::Box, 0.5f), std::pair(PixelFilter::Tent, 3.0f),
                                          std::pair(PixelFilter::Gaussian, 17.0f)}) {
@@ -148,7 +148,7 @@ TEST_CASE("hybrid has path's picture through any pixel filter and any angle of v
 }
 
 // Triangles at the very border of a tile: fails if tiles are widened by less than the filter, or not by rounding.
-TEST_CASE("hybrid misses no triangle that a sample reaches beyond its tile") {
+TEST_CASE("hybrid misses no triangle that a sample meets outside its tile") {
     RenderSettings settings = hybrid_settings();
     settings.width = 96, settings.height = 64;
     settings.samples = 4;
@@ -173,7 +173,7 @@ TEST_CASE("hybrid misses no triangle that a sample reaches beyond its tile") {
     }
 }
 
-TEST_CASE("hybrid has path's picture of triangles that come near the eye, lie in its plane or touch it") {
+TEST_CASE("hybrid has the path tracer's picture of triangles close to the camera, in its plane or touching it") {
     test::Random random(3);
     for (int i = 0; i < 12; ++i) {
         Scene scene = soup_scene(60, 100 + static_cast<uint32_t>(i));
@@ -187,7 +187,7 @@ TEST_CASE("hybrid has path's picture of triangles that come near the eye, lie in
     }
 }
 
-TEST_CASE("hybrid has path's picture of instances that are turned, mirrored, squeezed and far away") {
+TEST_CASE("hybrid has the path tracer's picture of rotated, mirrored, squeezed and distant instances") {
     Scene scene = soup_scene(12, 5);
     const Mesh mesh = soup(25, 6);
     scene.meshes.push_back(mesh);
@@ -215,7 +215,7 @@ TEST_CASE("hybrid has path's picture of instances that are turned, mirrored, squ
     check_as_path(scene, camera_at({1e5f, 0, -1e5f + 9}, {1e5f, 0, -1e5f}, 1), hybrid_settings());
 }
 
-TEST_CASE("where tiles' lists do not fit their memory tiles are larger, and the picture stays") {
+TEST_CASE("where the lists of tiles exceed their memory, tiles become larger and the picture stays the same") {
     Scene scene;
     scene.environment = Environment{};
     Mesh sheets;
@@ -232,7 +232,7 @@ TEST_CASE("where tiles' lists do not fit their memory tiles are larger, and the 
     check_as_path(Scene{.environment = Environment{}}, Camera{}, hybrid_settings()); // nothing at all
 }
 
-TEST_CASE("hybrid has path's picture of public scenes") {
+TEST_CASE("hybrid has the path tracer's picture of public scenes") {
     for (const char* name :
          {"crytek-sponza/sponza.obj", "sibenik/sibenik.obj", "gltf/SimpleInstancing/SimpleInstancing.glb",
           "gltf/NegativeScaleTest/NegativeScaleTest.glb", "gltf/AlphaBlendModeTest/AlphaBlendModeTest.glb",
@@ -250,7 +250,7 @@ TEST_CASE("hybrid has path's picture of public scenes") {
     }
 }
 
-TEST_CASE("hybrid's memory equals its prediction, and other cameras and sizes give new pictures") {
+TEST_CASE("memory of hybrid equals its prediction, and other cameras and sizes give new pictures") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

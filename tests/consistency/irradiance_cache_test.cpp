@@ -39,8 +39,7 @@ Scene scene_with_mirror() {
 
 } // namespace
 
-TEST_CASE(
-    "pictures by irradiance caching do not depend on threads, passes, bodies, or how many subpaths are in flight") {
+TEST_CASE("pictures by irradiance caching do not depend on threads, passes, schedules or subpaths in flight") {
     for (const bool shows_records : {false, true}) {
         RenderSettings settings = cache_settings();
         settings.irradiance_cache.show_records = shows_records;
@@ -75,7 +74,7 @@ TEST_CASE("irradiance caching has path tracing's first-surface layers and direct
     }
 }
 
-TEST_CASE("a session that switches to irradiance caching and back renders whole pictures") {
+TEST_CASE("a session that switches to irradiance caching and back renders complete pictures") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -110,7 +109,7 @@ uint64_t rays_of_a_sample(Session& session) {
 
 } // namespace
 
-TEST_CASE("records are made once per picture and anew for another picture") {
+TEST_CASE("records are made once per picture and again for another picture") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -140,15 +139,15 @@ TEST_CASE("records are made once per picture and anew for another picture") {
         check_made(false);
         RenderSettings aside_settings = settings;
         aside_settings.width = 9;
-        session.look_aside(test::mixed_scene_camera(), aside_settings); // has records of its own
+        session.render_separately(test::mixed_scene_camera(), aside_settings); // has records of its own
         check_made(false);
         aside_settings.path.max_depth = 0;
-        session.look_aside(test::camera_with_lens(), aside_settings);
+        session.render_separately(test::camera_with_lens(), aside_settings);
         session.meter(ToneMap::Aces);
         check_made(false);
         check_picture(settings, test::camera_with_lens());
         session.cut();
-        session.look_aside(test::camera_with_lens(), settings);
+        session.render_separately(test::camera_with_lens(), settings);
         check_made(true);
         session.update_scene(prepared, kPartInstances);
         check_made(true);
@@ -168,7 +167,7 @@ TEST_CASE("records are made once per picture and anew for another picture") {
     }
 }
 
-TEST_CASE("a meter and looks aside trace no ray of the picture that goes on, and leave its bytes as they are") {
+TEST_CASE("metering and separate renders trace no ray of the picture in progress and do not change its bytes") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -186,7 +185,7 @@ TEST_CASE("a meter and looks aside trace no ray of the picture that goes on, and
             RenderSettings one_pixel = settings;
             one_pixel.width = one_pixel.height = one_pixel.samples = 1;
             one_pixel.path.max_depth = 0;
-            session.look_aside(test::mixed_scene_camera(), one_pixel);
+            session.render_separately(test::mixed_scene_camera(), one_pixel);
         }
         const RenderResult wanted = undisturbed.result(), result = session.result();
         CHECK(result.rays.total() == wanted.rays.total());
@@ -205,25 +204,25 @@ TEST_CASE("an overture's progress rises monotonically from 0 to 1") {
         settings.body = body;
         settings.batch = 2000; // many parts
         Session session(queue, prepared, test::camera_with_lens(), settings);
-        std::vector<RenderProgress> told;
+        std::vector<RenderProgress> reported;
         session.render(2, [&](const RenderProgress& now) {
-            told.push_back(now);
+            reported.push_back(now);
             return true;
         });
         const auto is_of_samples = [](const RenderProgress& now) { return now.samples_done > 0; };
-        const auto samples = std::ranges::find_if(told, is_of_samples);
-        REQUIRE(samples - told.begin() > 12);
+        const auto samples = std::ranges::find_if(reported, is_of_samples);
+        REQUIRE(samples - reported.begin() > 12);
         const auto all_rays = static_cast<double>(samples[-1].rays.total());
-        CHECK(told.front().made_share == 0);
+        CHECK(reported.front().made_share == 0);
         CHECK(samples[-1].made_share > 0.9);
-        for (auto now = told.begin(); now < samples; ++now) {
+        for (auto now = reported.begin(); now < samples; ++now) {
             const double share = now->made_share, done = static_cast<double>(now->rays.total()) / all_rays;
-            if (now > told.begin()) CHECK(share >= now[-1].made_share);
+            if (now > reported.begin()) CHECK(share >= now[-1].made_share);
             CHECK(pertev::abs(static_cast<float>(share - done)) < 0.35f);
             CHECK(share < 1);
             CHECK(now->made_seconds == now->seconds);
         }
-        for (auto now = samples; now < told.end(); ++now) {
+        for (auto now = samples; now < reported.end(); ++now) {
             CHECK(now->made_share == 1);
             CHECK(now->made_seconds >= samples[-1].seconds);
             CHECK(now->made_seconds <= now->seconds);
@@ -232,7 +231,7 @@ TEST_CASE("an overture's progress rises monotonically from 0 to 1") {
     }
 }
 
-TEST_CASE("invalid values of records are reported with sample 0, whatever was rendered before") {
+TEST_CASE("invalid values in records are reported with sample 0, whatever was rendered before") {
     Queue queue = test::requested_queue();
     Scene scene = test::make_mixed_scene();
     test::add(scene, test::sheet({0, 3, 0}, {1, 0, 0}, {0, 0, 1}),
@@ -246,7 +245,7 @@ TEST_CASE("invalid values of records are reported with sample 0, whatever was re
     in_parts.render(1);
     in_parts.render(2);
     CHECK(in_parts.stats().invalid_samples == at_once.stats().invalid_samples);
-    in_parts.look_aside(test::camera_with_lens(), settings, 1); // makes records, too
+    in_parts.render_separately(test::camera_with_lens(), settings, 1); // makes records, too
     in_parts.cut();
     in_parts.render(3);
     CHECK(in_parts.stats().invalid_samples == at_once.stats().invalid_samples);
@@ -256,7 +255,7 @@ TEST_CASE("invalid values of records are reported with sample 0, whatever was re
     CHECK(in_parts.stats().invalid_samples + 100 < at_once.stats().invalid_samples);
 }
 
-TEST_CASE("an overture is broken off by who watches, by the time and by abandoning, and leaves no trace") {
+TEST_CASE("an overture can be stopped by its callback, a time limit or abandonment, and leaves no trace") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();

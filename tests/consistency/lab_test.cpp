@@ -13,9 +13,9 @@
 #include "lab/record_scenes.h"
 #include "lab/run_lab.h"
 #include "session/survey/default_camera.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/stress_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -120,11 +120,11 @@ void check_file(std::size_t number, Queue& queue, uint64_t rays) {
 }
 
 /// The mesh's triangles as one instance a given number.
-Scene scene_of(const NastyMesh& nasty) {
+Scene scene_of(const StressMesh& stress) {
     Scene scene;
     scene.materials.resize(1);
     scene.meshes.resize(1);
-    for (const BvhTriangle& t : nasty.triangles) {
+    for (const BvhTriangle& t : stress.triangles) {
         for (const Vec3 corner : {t.a, t.b, t.c}) {
             scene.meshes[0].indices.push_back(static_cast<uint32_t>(scene.meshes[0].positions.size()));
             scene.meshes[0].positions.push_back(corner);
@@ -134,23 +134,24 @@ Scene scene_of(const NastyMesh& nasty) {
     return scene;
 }
 
-void check_nasty_meshes(Queue& queue, uint32_t side) {
-    for (const NastyMesh& nasty : nasty_meshes()) {
-        if (nasty.triangles.empty()) continue;
-        CAPTURE(nasty.name);
-        const Scene scene = scene_of(nasty);
+void check_stress_meshes(Queue& queue, uint32_t side) {
+    for (const StressMesh& stress : stress_meshes()) {
+        if (stress.triangles.empty()) continue;
+        CAPTURE(stress.name);
+        const Scene scene = scene_of(stress);
         LabSettings settings = all_combinations(queue.is_cuda(), true);
         settings.width = settings.height = side;
         settings.depth = 3;
         Camera camera;
-        camera.world_from_camera = look_at(nasty.centre + nasty.extent * Vec3{1.5f, 0.7f, 3}, nasty.centre, {0, 1, 0});
+        camera.world_from_camera =
+            look_at(stress.centre + stress.extent * Vec3{1.5f, 0.7f, 3}, stress.centre, {0, 1, 0});
         check(run_lab(queue, scene, camera, settings, {}));
     }
 }
 
 } // namespace
 
-TEST_CASE("every combination gives the same hits in the mixed scene, which has instances") {
+TEST_CASE("every combination gives the same hits in the mixed scene with instances") {
     Queue queue = Queue::make_cpu();
     const Scene scene = make_mixed_scene();
     LabSettings settings = all_combinations(false, true);
@@ -159,9 +160,9 @@ TEST_CASE("every combination gives the same hits in the mixed scene, which has i
     check(report);
 }
 
-TEST_CASE("every combination gives the same hits in meshes made to break them") {
+TEST_CASE("every combination gives the same hits in stress meshes") {
     Queue queue = Queue::make_cpu();
-    check_nasty_meshes(queue, static_cast<uint32_t>(effort(12, 48)));
+    check_stress_meshes(queue, static_cast<uint32_t>(effort(12, 48)));
 }
 
 TEST_CASE("every combination gives the same hits on 50,000 rays of each kind in Sponza, Sibenik or both") {
@@ -174,7 +175,7 @@ TEST_CASE("every combination gives the same hits on 50,000 rays of each kind in 
 TEST_CASE("CUDA: every combination gives the same hits") {
     if (!cuda_requested()) return;
     Queue queue = make_cuda_queue();
-    check_nasty_meshes(queue, static_cast<uint32_t>(effort(64, 256)));
+    check_stress_meshes(queue, static_cast<uint32_t>(effort(64, 256)));
     const Scene mixed = make_mixed_scene(); // has instances
     LabSettings settings = all_combinations(true, true);
     settings.width = 64, settings.height = 48, settings.depth = 3;
@@ -251,7 +252,7 @@ TEST_CASE("an interrupted laboratory keeps what it has measured") {
     CHECK(static_cast<std::size_t>(measured) < report.combinations.size());
 }
 
-TEST_CASE("the laboratory can be stopped inside each stage of long work, and says how far that is") {
+TEST_CASE("the laboratory can be stopped inside each stage of long work and reports its progress") {
     Queue queue = Queue::make_cpu();
     const Scene scene = scene_of({"torus", triangles_of(make_torus(20, 10), 0), {}});
     LabSettings settings = all_combinations(false, false);
@@ -281,7 +282,7 @@ TEST_CASE("the laboratory can be stopped inside each stage of long work, and say
     set_thread_count(0);
 }
 
-TEST_CASE("a scene without triangles is refused by a clear line") {
+TEST_CASE("a scene without triangles is refused with a clear message") {
     Queue queue = Queue::make_cpu();
     const LabSettings settings = all_combinations(false, false);
     CHECK_THROWS_WITH(run_lab(queue, Scene{}, Camera{}, settings, {}), "the scene has no triangles: nothing to trace");

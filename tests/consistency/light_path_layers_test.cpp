@@ -67,7 +67,7 @@ const Hash128& reference_layers_hash() {
 
 } // namespace
 
-TEST_CASE("layers do not depend on threads, passes, bodies and batches") {
+TEST_CASE("layers do not depend on threads, passes, schedules and batch sizes") {
     const RenderSettings settings = with_light_layers(test::make_mixed_scene());
     for (const int threads : {1, 5}) {
         set_thread_count(threads);
@@ -107,7 +107,7 @@ TEST_CASE("layers change neither the picture nor the auxiliary layers") {
     CHECK(test::render_hash(with) == test::render_hash(without));
 }
 
-TEST_CASE("layers that partition all paths sum to the picture within 1e-6") {
+TEST_CASE("layers that partition all paths add up to the picture within 1e-6") {
     Queue queue = test::requested_queue();
     for (const LightStrategy strategy : test::kLightStrategies) {
         RenderSettings settings = with_light_layers(test::make_mixed_scene());
@@ -207,7 +207,7 @@ TEST_CASE("a session that changes its layers renders the pictures of new session
     CHECK(test::render_hash(session.result()) == reference_layers_hash());
 }
 
-TEST_CASE("memory of layers equals its prediction in both bodies") {
+TEST_CASE("memory of layers equals its prediction in both schedules") {
     const Scene scene = test::make_mixed_scene();
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -221,20 +221,22 @@ TEST_CASE("memory of layers equals its prediction in both bodies") {
         Queue queue = Queue::make_cpu();
         Session session(queue, prepared, test::mixed_scene_camera(), settings);
         session.render(settings.samples);
-        const std::size_t said = predicted_bytes(prepared, settings, false);
-        CHECK(queue.allocated_bytes() >= said);
-        CHECK(queue.allocated_bytes() <= said + 4096); // the filter's table, the scene's view
+        const std::size_t predicted = predicted_bytes(prepared, settings, false);
+        CHECK(queue.allocated_bytes() >= predicted);
+        CHECK(queue.allocated_bytes() <= predicted + 4096); // the filter's table, the scene's view
         RenderSettings without = settings;
         without.light_paths = nullptr;
         const std::size_t pixels = settings.width * settings.height, paths = pixels * settings.samples;
         const std::size_t layers = pixels * requested_layers->count() * 3 * sizeof(FixedSum);
         const std::size_t queues = body == PathBody::Wavefront ? paths * 48 : 0;
-        CHECK(said - predicted_bytes(prepared, without, false) == doctest::Approx(layers + queues).epsilon(0.01));
-        check_render_memory(said, settings, {said, true, false});
-        const auto error = test::thrown_error([&] { check_render_memory(said, settings, {said - 1, true, false}); });
+        CHECK(predicted - predicted_bytes(prepared, without, false) == doctest::Approx(layers + queues).epsilon(0.01));
+        check_render_memory(predicted, settings, {predicted, true, false});
+        const auto error = test::thrown_error([&] {
+            check_render_memory(predicted, settings, {predicted - 1, true, false});
+        });
         REQUIRE((error && error->code() == ErrorCode::OutOfMemory));
         CHECK(test::says(error, fmt::format("{} layers of `lpe`", requested_layers->count())));
-        CHECK(memory_to_render_in(queue, settings, said).bytes == said);
+        CHECK(memory_to_render_in(queue, settings, predicted).bytes == predicted);
         const std::size_t of_machine = memory_to_render_in(queue, settings, {}).bytes;
         const std::size_t channels = 4 + 3 + 1 + 3 * requested_layers->count(); // with albedo and depth
         CHECK(of_machine == machine_memory_bytes() - pixels * channels * sizeof(float));

@@ -48,7 +48,7 @@ bool same_bits(const Image& a, const Image& b) {
 
 } // namespace
 
-TEST_CASE("a scene moved in its file has the same picture and layers to the bit, and other positions") {
+TEST_CASE("a scene moved within its file has the same picture and layers to the bit, but other positions") {
     const Vec3 by = {8192, -4096, 2048};
     const Staged near({0, 0, 0}), far(by);
     REQUIRE(world_centre(near.scene) == Vec3{0, 0, 0});

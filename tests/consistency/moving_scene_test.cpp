@@ -120,7 +120,7 @@ void check_steps(const Scene& rest, const std::vector<double>& times, const Came
 
 } // namespace
 
-TEST_CASE("a step to a time renders like a scene newly prepared at that time") {
+TEST_CASE("a step to a time renders like a scene freshly prepared at that time") {
     // 1: an instance is hidden; 2 to 3: one of a shared mesh is so squeezed that it is baked, and others with it anew.
     check_steps(make_moving_scene(), {0, 0.5, 1, 1.5, 2, 2.5, 3.25, 1, 100, 0}, test::mixed_scene_camera(),
                 test::layered_settings());
@@ -167,7 +167,7 @@ TEST_CASE("a step without changes updates nothing") {
     CHECK(*moving.time_s() == 3);
 }
 
-TEST_CASE("a step after one that failed is whole") {
+TEST_CASE("a step after a failed one is complete") {
     Scene rest = make_moving_scene();
     rest.animations[0].channels[0].times = {0, 4, 5};
     rest.animations[0].channels[0].values.insert(rest.animations[0].channels[0].values.end(), {1e13f, 0, 0});
@@ -183,7 +183,7 @@ TEST_CASE("a step after one that failed is whole") {
     CHECK(test::render_hash(session.result()) == hash_at(rest, 1.5, camera, settings));
 }
 
-TEST_CASE("Khronos' animated models render the same after steps as when newly prepared") {
+TEST_CASE("Khronos' animated models render the same after steps as when freshly prepared") {
     for (const char* name : {"SimpleSkin/SimpleSkin.gltf", "InterpolationTest/InterpolationTest.glb",
                              "MorphPrimitivesTest/MorphPrimitivesTest.glb"}) {
         CAPTURE(name);

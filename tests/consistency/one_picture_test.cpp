@@ -63,7 +63,7 @@ TEST_CASE("the picture does not depend on how the samples are split into passes"
     }
 }
 
-TEST_CASE("the wavefront gives the bytes of the loop, for any number of paths in flight") {
+TEST_CASE("the wavefront gives the bytes of the loop for any number of paths in flight") {
     RenderSettings settings = odd_settings();
     settings.body = PathBody::Wavefront;
     for (const uint32_t batch : {777u, 5000u, 1u << 20}) { // less than a picture, two samples, all
@@ -107,7 +107,7 @@ ShadingVariant variant_of(const Scene& scene) {
 
 } // namespace
 
-TEST_CASE("bodies specialised for materials give the bytes of the general ones") {
+TEST_CASE("shading variants give the bytes of the general one") {
     Hash128 before = {};
     for (const ShadingVariant variant :
          {ShadingVariant::General, ShadingVariant::Diffuse, ShadingVariant::PlainDiffuse}) {
@@ -156,7 +156,7 @@ TEST_CASE("the picture does not depend on how the trees were built") {
     }
 }
 
-TEST_CASE("another seed or number of samples gives another hash") {
+TEST_CASE("a different seed or number of samples gives a different hash") {
     RenderSettings settings = odd_settings();
     settings.path.seed = 1;
     CHECK(cpu_hash(settings) != reference_hash());
@@ -165,7 +165,7 @@ TEST_CASE("another seed or number of samples gives another hash") {
     CHECK(cpu_hash(settings) != reference_hash());
 }
 
-TEST_CASE("pictures and frames that two wavefronts share, or one with the memory of two, have the bytes of the CPU") {
+TEST_CASE("pictures and frames of two wavefronts, or of one with the memory of two, have the bytes of the CPU") {
     if (!test::cuda_requested()) return;
     Queue gpu = test::make_cuda_queue(), cpu = Queue::make_cpu();
     const Scene scene = test::make_mixed_scene();
@@ -204,7 +204,7 @@ TEST_CASE("pictures and frames that two wavefronts share, or one with the memory
     CHECK(gpu.allocation_count() == allocations);
 }
 
-TEST_CASE("frames that split light after a large picture keep their bytes and the memory of queues") {
+TEST_CASE("frames that split light after a large picture keep their bytes and their queues' memory") {
     if (!test::cuda_requested()) return;
     Queue gpu = test::make_cuda_queue();
     Messages messages;

@@ -12,9 +12,9 @@
 #include "accel/builders/build_bvh.h"
 #include "tests/support/check_traversal.h"
 #include "tests/support/instanced_scene.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/split_bvh.h"
+#include "tests/support/stress_meshes.h"
 #include "trace/binary/while_while_traversal.h"
 
 using namespace pertev;
@@ -64,9 +64,9 @@ void check_all_options(const SceneBvhView& scene, const std::vector<Ray>& rays, 
 } // namespace
 
 TEST_CASE("packets match brute force") {
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(std::string(c.name));
-        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(400, 20000)), c, 41);
+        const std::vector<Ray> rays = stress_rays(static_cast<uint32_t>(effort(400, 20000)), c, 41);
         const std::vector<Hit> all = hits_by_brute_force(c.triangles, rays, AcceptAll{});
         const Bvh bvh = build_bvh(c.triangles), split = build_split_bvh(c.triangles, 6);
         check_all_options(scene_of(view_of(bvh)), rays, all, AcceptAll{});
@@ -86,7 +86,7 @@ TEST_CASE("packets match brute force over instances, with and without a baked tr
     }
 }
 
-TEST_CASE("a packet of one ray visits the ray's own nodes, and coherent rays share visits") {
+TEST_CASE("a packet of one ray visits that ray's nodes, and coherent rays share visits") {
     constexpr TraversalOptions kOptions = {};
     const Bvh bvh = build_bvh(triangles_of(make_torus(60, 40)));
     Random random(12);

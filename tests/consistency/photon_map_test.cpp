@@ -32,7 +32,8 @@ RenderSettings photon_settings(PhotonGather gather = PhotonGather::Final, uint32
 
 } // namespace
 
-TEST_CASE("pictures by photons do not depend on threads, passes, bodies, how many are in flight, or the structure") {
+TEST_CASE(
+    "pictures by photon mapping do not depend on threads, passes, schedules, photons in flight or the structure") {
     for (const auto& [gather, nearest] : {std::pair(PhotonGather::Final, 0u), std::pair(PhotonGather::Direct, 0u),
                                           std::pair(PhotonGather::Direct, 20u)}) {
         CAPTURE(static_cast<int>(gather));
@@ -55,7 +56,7 @@ TEST_CASE("pictures by photons do not depend on threads, passes, bodies, how man
     }
 }
 
-TEST_CASE("pictures by crowded photons do not depend on threads, passes, bodies or the structure") {
+TEST_CASE("pictures by crowded photons do not depend on threads, passes, schedules or the search structure") {
     Queue queue = Queue::make_cpu();
     for (const Material& ball : {test::white(0.6f), test::of_roughness(MaterialKind::Dielectric, 0)}) {
         const Scene scene = test::room_with_ball(ball, test::white(0.6f), false);
@@ -92,7 +93,7 @@ TEST_CASE("photon mapping has path tracing's first-surface layers and visible em
     CHECK(test::checked_picture(queue, test::make_mixed_scene(), settings).hash == seen);
 }
 
-TEST_CASE("a session that switches to photon mapping and back renders whole pictures") {
+TEST_CASE("a session that switches to photon mapping and back renders complete pictures") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();

@@ -14,7 +14,7 @@ using namespace pertev;
 
 namespace {
 
-RadiosityLook look_at_mixed_scene(float patch_size, uint32_t rays = 32) {
+RadiosityDisplay look_at_mixed_scene(float patch_size, uint32_t rays = 32) {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -25,7 +25,7 @@ RadiosityLook look_at_mixed_scene(float patch_size, uint32_t rays = 32) {
     return {std::make_shared<const RadiositySolution>(solve_radiosity(prepared, settings).solution), false};
 }
 
-RenderSettings shown(const RadiosityLook& look) {
+RenderSettings shown(const RadiosityDisplay& display) {
     RenderSettings settings;
     settings.width = 37; // odd on purpose: tiles do not fit
     settings.height = 21;
@@ -34,13 +34,13 @@ RenderSettings shown(const RadiosityLook& look) {
     settings.transparent = true;
     settings.integrator = IntegratorKind::Radiosity;
     settings.path.max_depth = 6;
-    settings.radiosity = look;
+    settings.radiosity = display;
     return settings;
 }
 
 } // namespace
 
-TEST_CASE("pictures of a radiosity solution do not depend on threads, passes, bodies or how many are in flight") {
+TEST_CASE("pictures of a radiosity solution do not depend on threads, passes, schedules or rays in flight") {
     RenderSettings settings = shown(look_at_mixed_scene(1));
     for (const bool is_flat : {false, true}) {
         settings.radiosity.is_flat = is_flat;
@@ -65,12 +65,12 @@ TEST_CASE("radiosity has path tracing's first-surface layers and visible emissio
     CHECK(test::checked_picture(queue, test::make_mixed_scene(), settings).hash == seen);
 }
 
-TEST_CASE("a session that switches to radiosity, another solution and back renders whole pictures") {
+TEST_CASE("a session that switches to radiosity, another solution and back renders complete pictures") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    const RadiosityLook looks[] = {look_at_mixed_scene(2), look_at_mixed_scene(1)};
+    const RadiosityDisplay looks[] = {look_at_mixed_scene(2), look_at_mixed_scene(1)};
     RenderSettings settings = shown(looks[0]);
     settings.pass_samples = 1;
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
@@ -93,7 +93,7 @@ TEST_CASE("a session that switches to radiosity, another solution and back rende
     other.roots.pop_back();
     settings.radiosity.solution = std::make_shared<const RadiositySolution>(std::move(other));
     session.set_settings(settings);
-    CHECK(test::bad_input_message([&] { session.render(1); }).find("of another scene") != std::string::npos);
+    CHECK(test::bad_input_message([&] { session.render(1); }).find("belongs to another scene") != std::string::npos);
 }
 
 TEST_CASE("memory of radiosity renders equals its prediction") {

@@ -38,7 +38,7 @@ Scene tree_scene() {
 
 } // namespace
 
-TEST_CASE("pictures of trees of rays do not depend on threads, passes, bodies or how many are in flight") {
+TEST_CASE("pictures of ray trees do not depend on threads, passes, schedules or trees in flight") {
     for (const IntegratorKind integrator : kTrees) {
         CAPTURE(static_cast<int>(integrator));
         const test::CheckedPicture reference = test::check_one_picture(tree_scene(), tree_settings(integrator));
@@ -77,7 +77,7 @@ TEST_CASE("a session that changes its integrator renders the pictures of new ses
     }
 }
 
-TEST_CASE("an abandoned picture of ray trees leaves no sample, and the next picture is whole") {
+TEST_CASE("an abandoned picture of ray trees leaves no sample, and the next picture is complete") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = tree_scene();

@@ -93,7 +93,7 @@ double error_at_edges(const Image& a, const Image& reference) {
 
 } // namespace
 
-TEST_CASE("frames at half the resolution have the same bytes on every device, by every body, and after a cut") {
+TEST_CASE("frames at half the resolution have the same bytes on every device, in every schedule and after a cut") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -124,7 +124,7 @@ TEST_CASE("frames at half the resolution have the same bytes on every device, by
     }
 }
 
-TEST_CASE("at edges a frame at half the resolution is nearer to the picture than one that is enlarged") {
+TEST_CASE("at edges a frame upsampled from half the resolution is closer to the picture than an enlarged one") {
     Messages messages;
     const Scene scene = make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

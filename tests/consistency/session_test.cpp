@@ -118,7 +118,7 @@ TEST_CASE("a session after changes of scene, camera, size and settings has the b
     }
 }
 
-TEST_CASE("samples that are added later give the bytes of samples rendered at once") {
+TEST_CASE("samples added later give the bytes of samples rendered at once") {
     const World world;
     Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     RenderSettings settings = changing_settings();
@@ -139,7 +139,7 @@ TEST_CASE("samples that are added later give the bytes of samples rendered at on
     }
 }
 
-TEST_CASE("changed machine settings continue the film of another body") {
+TEST_CASE("after a change of machine settings the film of another schedule continues") {
     const World world;
     Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     RenderSettings settings = changing_settings();
@@ -156,7 +156,7 @@ TEST_CASE("changed machine settings continue the film of another body") {
     CHECK(hash_of(session.result()) == at_once);
 }
 
-TEST_CASE("two sessions on one queue do not see each other") {
+TEST_CASE("two sessions on one queue do not affect each other") {
     const World world;
     Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     RenderSettings settings = changing_settings(), other = changing_settings();
@@ -172,7 +172,7 @@ TEST_CASE("two sessions on one queue do not see each other") {
     CHECK(hash_of(b.result()) == hash_of(render_picture(cpu, world.prepared[1], world.cameras[1], other)));
 }
 
-TEST_CASE("a session that updates parts of a scene renders the changed scene and copies only those parts") {
+TEST_CASE("a session that updates parts of a scene renders the changed scene and uploads only those parts") {
     const World world;
     Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     RenderSettings settings = changing_settings();
@@ -230,7 +230,7 @@ TEST_CASE("an integrator independent of the path tracer renders through the same
     CHECK(picture.at(7, 0)[1] > 0.55f); // up
 }
 
-TEST_CASE("a picture whose time ran out again and again is that of one render, whatever the integrator") {
+TEST_CASE("a picture interrupted repeatedly by its time limit is that of one render, for every integrator") {
     Queue queue = test::requested_queue();
     const Scene scene = test::make_mixed_scene();
     Messages messages;
@@ -287,7 +287,7 @@ void check_early_end(Queue& queue, const PreparedScene& prepared, RenderSettings
 
 } // namespace
 
-TEST_CASE("a render ends at a whole sample when it is told to, and goes on from there") {
+TEST_CASE("a render stops at a whole sample on request and resumes from there") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();

@@ -91,7 +91,7 @@ constexpr IntegratorKind kWithShutter[] = {IntegratorKind::Path, IntegratorKind:
 
 } // namespace
 
-TEST_CASE("blurred pictures do not depend on threads, bodies, how many are in flight, or the device") {
+TEST_CASE("pictures with motion blur do not depend on threads, schedules, paths in flight or the device") {
     Messages messages;
     MovingScene moving(make_rushing_scene(), 0.3, {}, messages, kHalfASecond);
     REQUIRE(moving.prepared().motions != nullptr);
@@ -121,7 +121,7 @@ TEST_CASE("blurred pictures do not depend on threads, bodies, how many are in fl
     }
 }
 
-TEST_CASE("a blur of the camera alone is the same by stages as by the loop, depth too") {
+TEST_CASE("blur by camera motion alone is the same in the wavefront and in the loop, including depth") {
     Messages messages;
     MovingScene still(make_rushing_scene(false), 0.3, {}, messages, kHalfASecond);
     REQUIRE(still.prepared().motions == nullptr);
@@ -137,7 +137,7 @@ TEST_CASE("a blur of the camera alone is the same by stages as by the loop, dept
     }
 }
 
-TEST_CASE("every tracer finds the same in a scene that moves") {
+TEST_CASE("every tracer finds the same hits in a moving scene") {
     Messages messages;
     MovingScene moving(make_rushing_scene(), 0.3, {}, messages, kHalfASecond);
     RenderSettings settings = blurred_settings(IntegratorKind::Path);
@@ -257,7 +257,7 @@ TEST_CASE("each sample of a blurred picture equals the still scene at the sample
     CHECK(wrong <= 3); // at edges of things and of their shadows
 }
 
-TEST_CASE("a shutter before which nothing moves changes nothing") {
+TEST_CASE("an open shutter changes nothing if nothing moves") {
     Messages messages;
     Queue queue = test::requested_queue();
     const Scene scene = make_rushing_scene(false);
@@ -270,7 +270,7 @@ TEST_CASE("a shutter before which nothing moves changes nothing") {
     }
 }
 
-TEST_CASE("frames with a shutter are the same whatever frames came before") {
+TEST_CASE("frames with an open shutter do not depend on earlier frames") {
     Messages messages;
     Queue queue = test::requested_queue();
     const RenderSettings settings = blurred_settings(IntegratorKind::Path);
@@ -286,7 +286,7 @@ TEST_CASE("frames with a shutter are the same whatever frames came before") {
     }
 }
 
-TEST_CASE("integrators whose rays have no time refuse an open shutter by name") {
+TEST_CASE("integrators whose rays have no time refuse an open shutter and name the setting") {
     Messages messages;
     MovingScene moving(make_rushing_scene(), 0.3, {}, messages, kHalfASecond);
     Queue queue = Queue::make_cpu();
@@ -300,7 +300,7 @@ TEST_CASE("integrators whose rays have no time refuse an open shutter by name") 
 }
 
 TEST_CASE(
-    "blurred layers of light paths are the same on the host's loop and by stages, and leave the picture as it is") {
+    "layers of light paths with motion blur are the same in the loop and the wavefront and do not change the picture") {
     Messages messages;
     MovingScene moving(make_rushing_scene(), 0.3, {}, messages, kHalfASecond);
     RenderSettings settings = blurred_settings(IntegratorKind::Path);

@@ -30,7 +30,7 @@ RenderSettings subpath_settings(IntegratorKind integrator) {
 
 } // namespace
 
-TEST_CASE("pictures of light subpaths do not depend on threads, passes, bodies or how many are in flight") {
+TEST_CASE("pictures of light subpaths do not depend on threads, passes, schedules or subpaths in flight") {
     for (const IntegratorKind integrator : kSubpaths) {
         CAPTURE(static_cast<int>(integrator));
         const test::CheckedPicture reference =
@@ -62,7 +62,7 @@ TEST_CASE("at depth 0 every integrator shows only directly visible emission") {
     }
 }
 
-TEST_CASE("a session that switches to light subpaths and back, stops and resumes renders whole pictures") {
+TEST_CASE("a session that switches to light subpaths and back, stops and resumes renders complete pictures") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();

@@ -56,7 +56,7 @@ Image last_frame(Queue& queue, bool follows, bool dims, Hash128* before_dimming 
 
 } // namespace
 
-TEST_CASE("frames follow a lamp that dims, from the frame on in which it does") {
+TEST_CASE("frames follow a dimming emitter from its first frame on") {
     Queue queue = requested_queue();
     const double still = mean_of(last_frame(queue, true, false));
     const double expected = still * std::pow(static_cast<double>(kStep), kDimming);
@@ -115,7 +115,7 @@ Halves halves_of_two(Queue& queue, bool follows, float step) {
 
 } // namespace
 
-TEST_CASE("with two emitters, frames follow a dimming one's loss and part of a brightening one's gain") {
+TEST_CASE("with two emitters, frames follow the loss of the dimming one and part of the gain of the brightening one") {
     Queue queue = requested_queue();
     const auto reference = [&](float left) {
         RenderSettings settings;
@@ -175,8 +175,8 @@ TEST_CASE("temporal gradients reuse the reconstruction's memory") {
         CAPTURE(height);
         const std::size_t pixels = std::size_t(width) * height, small = TemporalGradientsMemory::pixels(width, height);
         const Reconstruction frames(queue, width, height);
-        const TemporalGradientsMemory room = frames.room_for_change();
-        const auto apart = static_cast<std::size_t>(room.numbers - room.after);
+        const TemporalGradientsMemory memory = frames.gradients_memory();
+        const auto apart = static_cast<std::size_t>(memory.numbers - memory.after);
         CHECK(apart >= TemporalGradientsMemory::kPicture * small);
         CHECK(apart >= 2 * pixels); // the frame's own signals
     }
@@ -197,7 +197,7 @@ TEST_CASE("temporal gradients reuse the reconstruction's memory") {
     CHECK(held_by_frames(true) == held_by_frames(false));
 }
 
-TEST_CASE("a frame rendered aside does not change the following frames") {
+TEST_CASE("a frame rendered separately does not change the following frames") {
     Queue queue = requested_queue();
     const auto frames = [&](float scale, bool looks) {
         const ReconstructionSettings settings = {.follow_light = true, .keep_layers = true, .resolution_scale = scale};
@@ -219,13 +219,13 @@ TEST_CASE("temporal gradients do not change frames of constant light") {
     CHECK(with == without);
 }
 
-TEST_CASE("a dimming lamp's frames have the same bytes on every device") {
+TEST_CASE("frames of a dimming emitter have the same bytes on every device") {
     if (!cuda_requested()) return;
     Queue cpu = Queue::make_cpu(), cuda = make_cuda_queue();
     CHECK(picture_hash(last_frame(cpu, true, true)) == picture_hash(last_frame(cuda, true, true)));
 }
 
-TEST_CASE("a mean follows light by its ratio, and never up by more than the difference") {
+TEST_CASE("a mean follows light by its ratio and never rises by more than the difference") {
     CHECK(followed(4, 2, 1) == 2);    // half as bright
     CHECK(followed(1, 2, 3) == 1.5f); // darker than what is about it
     CHECK(followed(4, 2, 3) == 5);    // brighter
@@ -238,7 +238,7 @@ TEST_CASE("a mean follows light by its ratio, and never up by more than the diff
     CHECK(frames_in_change(32, 0, 0) == 32);
 }
 
-TEST_CASE("a change of light is that of the same object, near by, that faces alike") {
+TEST_CASE("a temporal gradient is taken from a nearby pixel of the same object and a similar normal") {
     constexpr uint32_t kWidth = 3, kHeight = 2;
     std::vector<Float4> guide(kWidth * kHeight, pack({{0, 0, 1}, 1, 2, 7})), was(guide.size(), Float4{2, 2, 2, 1}),
         is(guide.size(), Float4{1, 1, 1, 3});

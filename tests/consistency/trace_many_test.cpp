@@ -71,9 +71,9 @@ uint64_t count_coherent(const std::vector<Ray>& groups, const HostTrees& scene) 
 } // namespace
 
 TEST_CASE("tracing many rays at once matches brute force bit for bit") {
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(c.name);
-        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(1000, 10'000)), c, 7);
+        const std::vector<Ray> rays = stress_rays(static_cast<uint32_t>(effort(1000, 10'000)), c, 7);
         const WideBvh<8> tree = make_wide_bvh<8>(build_bvh(c.triangles), kSimdCollapse);
         const HostTrees scene = scene_of(view_of(tree));
         const std::vector<Ray> groups = groups_around(
@@ -90,14 +90,14 @@ TEST_CASE("tracing many rays at once matches brute force bit for bit") {
     }
 }
 
-TEST_CASE("any number of rays can be traced at once, and leaves may be of any length") {
-    const NastyMesh mesh = nasty_meshes()[3];
+TEST_CASE("any number of rays can be traced at once, with leaves of any length") {
+    const StressMesh mesh = stress_meshes()[3];
     const Bvh bvh = build_bvh(mesh.triangles, {.max_leaf = 30, .leaf_cost = 0.1f});
     const WideBvh<8> tree = make_wide_bvh<8>(bvh, {.max_leaf = 100});
     const HostTrees scene = scene_of(view_of(tree));
     for (const uint32_t count : {0u, 1u, 7u, 8u, 9u, 31u, 33u, 300u}) {
         CAPTURE(count);
-        std::vector<Ray> rays = count == 0 ? std::vector<Ray>{} : groups_around(nasty_rays(count, mesh, count), count);
+        std::vector<Ray> rays = count == 0 ? std::vector<Ray>{} : groups_around(stress_rays(count, mesh, count), count);
         rays.resize(count);
         const std::vector<Hit> expected = hits_by_brute_force(mesh.triangles, rays, AcceptAll{});
         check_many(scene, RayOrder::Scattered, rays, expected, AcceptAll{});
@@ -113,7 +113,7 @@ TEST_CASE("tracing many rays at once finds the nearest of baked triangles and in
     const std::vector<PlacedBvh> placed = {{place, mesh_tree.bounds, 0, 77}};
     const Tlas top = build_tlas(placed);
     const WideBvhView<8> meshes[] = {view_of(mesh_tree)};
-    const std::vector<Ray> rays = groups_around(nasty_rays(300, {"soup", baked, {}, 1}, 5), 9);
+    const std::vector<Ray> rays = groups_around(stress_rays(300, {"soup", baked, {}, 1}, 5), 9);
     for (const bool has_baked : {true, false}) {
         CAPTURE(has_baked);
         HostTrees scene = {{}, top.nodes.data(), top.instances.data(), meshes, top.root, top.reach, top.growth};

@@ -14,9 +14,9 @@
 #include "device/buffer.h"
 #include "tests/support/check_traversal.h"
 #include "tests/support/instanced_scene.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/stress_meshes.h"
 #include "tests/support/traversal_launches.h"
 #include "trace/binary/while_while_traversal.h"
 
@@ -93,11 +93,11 @@ uint64_t count_wrong(const std::vector<Hit>& hits, const std::vector<Hit>& expec
 
 } // namespace
 
-TEST_CASE("each way of distributing rays gives each ray its hit") {
+TEST_CASE("every distribution of rays to threads finds each ray's hit") {
     Queue queue = requested_queue();
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(std::string(c.name));
-        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(333, 20011)), c, 43);
+        const std::vector<Ray> rays = stress_rays(static_cast<uint32_t>(effort(333, 20011)), c, 43);
         const std::vector<Hit> expected = hits_by_brute_force(c.triangles, rays, AcceptAll{});
         const Bvh bvh = linked_bvh(c.triangles);
         const TreeOnDevice tree(queue, bvh);
@@ -116,7 +116,7 @@ TEST_CASE("each way of distributing rays gives each ray its hit") {
     }
 }
 
-TEST_CASE("each way of distributing rays gives each ray its hit over instances, also in divergent packets") {
+TEST_CASE("every distribution of rays to threads finds each ray's hit over instances, including divergent packets") {
     Queue queue = requested_queue();
     InstancedScene s = make_instanced_scene(static_cast<uint32_t>(effort(300, 20011)));
     std::vector<TreeOnDevice> trees;
@@ -169,7 +169,7 @@ TEST_CASE("each way of distributing rays gives each ray its hit over instances, 
     CHECK(launches == (queue.is_cuda() ? 42 : 18));
 }
 
-TEST_CASE("live lanes add up to the visits of the rays") {
+TEST_CASE("the active lanes add up to the visits of the rays") {
     Queue queue = requested_queue();
     const Bvh bvh = linked_bvh(triangles_of(make_torus(60, 40)));
     const TreeOnDevice tree(queue, bvh);

@@ -10,7 +10,7 @@
 #include "accel/bvh/wide_bvh.h"
 #include "tests/support/check_traversal.h"
 #include "tests/support/instanced_scene.h"
-#include "tests/support/nasty_meshes.h"
+#include "tests/support/stress_meshes.h"
 #include "trace/wide/traverse_wide.h"
 
 using namespace pertev;
@@ -28,9 +28,9 @@ using SimdTraversal = Wide8SimdTraversal<TraversalOptions{}>;
 } // namespace
 
 TEST_CASE("binary trees of all build settings match brute force bit for bit") {
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(c.name);
-        const std::vector<Ray> rays = nasty_rays(2000, c, 17);
+        const std::vector<Ray> rays = stress_rays(2000, c, 17);
         const std::vector<Hit> all = hits_by_brute_force(c.triangles, rays, AcceptAll{});
         const std::vector<Hit> some = hits_by_brute_force(c.triangles, rays, AcceptSome{});
         uint64_t hits = 0;
@@ -66,7 +66,7 @@ TEST_CASE("instances match brute force bit for bit") {
     }
 }
 
-TEST_CASE("the top level loses no rays at the edges of instances with tight boxes") {
+TEST_CASE("the TLAS loses no rays at the edges of instances with tight boxes") {
     const std::vector<BvhTriangle> quad = {{{0, 0, 0}, 0, {1, 0, 0}, 0, {1, 1, 0}, 0},
                                            {{0, 0, 0}, 1, {1, 1, 0}, 0, {0, 1, 0}, 0}};
     const Bvh bvh = build_bvh(quad);

@@ -90,7 +90,7 @@ Hash128 hash_alone(int which, const IntegratorSettings& settings = {}) {
 
 } // namespace
 
-TEST_CASE("two queues used in turns from one thread give the pictures of renders done alone") {
+TEST_CASE("two queues used alternately from one thread give the pictures of separate renders") {
     Queue first_queue = make_queue(0), second_queue = make_queue(1);
     Render first(first_queue, subject(0)), second(second_queue, subject(1));
     for (uint32_t sample = 0; sample < kSamples; ++sample) {
@@ -125,7 +125,7 @@ TEST_CASE("a picture whose samples are split between two queues equals that of o
     }
 }
 
-TEST_CASE("two queues used from two threads at once give the pictures of renders done alone") {
+TEST_CASE("two queues used from two threads at once give the pictures of separate renders") {
     Hash128 hashes[2];
     const auto render_on_its_queue = [&](int which) {
         Queue queue = make_queue(which);
@@ -141,7 +141,7 @@ TEST_CASE("two queues used from two threads at once give the pictures of renders
     CHECK(hashes[1] == hash_alone(1));
 }
 
-TEST_CASE("asking whether a device can be used disturbs no queue") {
+TEST_CASE("checking whether a device is available affects no queue") {
     Queue queue = make_queue(1);
     Render render(queue, subject(0));
     for (uint32_t sample = 0; sample < kSamples; ++sample) {

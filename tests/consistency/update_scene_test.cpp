@@ -61,7 +61,7 @@ std::vector<Step> steps() {
 
 } // namespace
 
-TEST_CASE("an updated scene renders like a newly prepared one with every structure and traversal") {
+TEST_CASE("an updated scene renders like a freshly prepared one with every structure and traversal") {
     Messages messages;
     Queue queue = test::requested_queue(), cpu = Queue::make_cpu();
     RenderSettings settings = test::layered_settings();
@@ -148,7 +148,7 @@ TEST_CASE("a change rebuilds only the trees of changed meshes") {
     }
 }
 
-TEST_CASE("a change of which instances are baked prepares the scene anew with the same centre") {
+TEST_CASE("a change of which instances are baked prepares the scene again with the same centre") {
     Messages messages;
     Scene scene = test::make_mixed_scene();
     const PreparedScene before = prepare_scene(scene, {}, messages);

@@ -63,10 +63,10 @@ void check_tree(const Tree& tree, const Expected& expected) {
 } // namespace
 
 TEST_CASE("traversals of wide and compressed trees match brute force bit for bit") {
-    for (const NastyMesh& c : nasty_meshes(static_cast<uint32_t>(effort(3000, 1'000'000)))) {
+    for (const StressMesh& c : stress_meshes(static_cast<uint32_t>(effort(3000, 1'000'000)))) {
         CAPTURE(c.name);
         const bool million = c.triangles.size() > 100'000; // brute force takes its time
-        const std::vector<Ray> rays = nasty_rays(million ? 40 : static_cast<uint32_t>(effort(1000, 10'000)), c, 91);
+        const std::vector<Ray> rays = stress_rays(million ? 40 : static_cast<uint32_t>(effort(1000, 10'000)), c, 91);
         const Expected expected = {rays, hits_by_brute_force(c.triangles, rays, AcceptAll{}),
                                    hits_by_brute_force(c.triangles, rays, AcceptSome{})};
         const Bvh bvh = build_bvh(c.triangles);
@@ -92,8 +92,8 @@ struct PostponingTraversal {
     static bool traverse(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                          const Counter& counter) {
         constexpr LaneMask kAlone = 1;
-        typename Traversal::Place::Slot slots[Traversal::Place::kSlots];
-        typename Traversal::Place place(slots);
+        typename Traversal::FileLocation::Slot slots[Traversal::FileLocation::kSlots];
+        typename Traversal::FileLocation place(slots);
         Traversal::start(bvh, ray, visitor, place);
         for (uint32_t turns = 0; !place.is_done(); ++turns) {
             const bool waits = place.nodes.is_empty();
@@ -112,9 +112,9 @@ using TraversalPostponedAlways = PostponingTraversal<kOptions, true>;
 } // namespace
 
 TEST_CASE("postponed triangle tests give the same hits") {
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(c.name);
-        const std::vector<Ray> rays = nasty_rays(static_cast<uint32_t>(effort(700, 20'000)), c, 17);
+        const std::vector<Ray> rays = stress_rays(static_cast<uint32_t>(effort(700, 20'000)), c, 17);
         const Expected expected = {rays, hits_by_brute_force(c.triangles, rays, AcceptAll{}),
                                    hits_by_brute_force(c.triangles, rays, AcceptSome{})};
         const CompressedBvh tree = make_compressed_bvh(build_bvh(c.triangles));
@@ -126,8 +126,8 @@ TEST_CASE("postponed triangle tests give the same hits") {
 }
 
 TEST_CASE("leaf sizes and costs of a collapse do not change hits") {
-    const NastyMesh mesh = nasty_meshes()[3];
-    const std::vector<Ray> rays = nasty_rays(1500, mesh, 12);
+    const StressMesh mesh = stress_meshes()[3];
+    const std::vector<Ray> rays = stress_rays(1500, mesh, 12);
     const Expected expected = {rays, hits_by_brute_force(mesh.triangles, rays, AcceptAll{}),
                                hits_by_brute_force(mesh.triangles, rays, AcceptSome{})};
     for (const int build_leaf : {1, 30}) {
@@ -201,7 +201,7 @@ TEST_CASE("traversals of wide and compressed trees over instances match brute fo
     for (const auto& mesh : meshes) trees.emplace_back(build_bvh(mesh));
     const PlacedMeshes placed(meshes, trees);
     const Tlas top = build_tlas(placed.placed);
-    const std::vector<Ray> rays = nasty_rays(1500, {"torus", meshes[0], {}, 1}, 29);
+    const std::vector<Ray> rays = stress_rays(1500, {"torus", meshes[0], {}, 1}, 29);
     std::vector<Hit> expected;
     uint64_t hits = 0;
     for (const Ray& ray : rays) {
@@ -215,10 +215,10 @@ TEST_CASE("traversals of wide and compressed trees over instances match brute fo
     check_instances<CompressedTraversal>(top, trees, &Trees::compressed, rays, expected);
 }
 
-TEST_CASE("RTA at pops saves the compressed traversal nodes, beyond what it saves at nodes, and changes no hit") {
+TEST_CASE("in the compressed traversal RTA at pops saves more nodes than RTA at nodes and changes no hit") {
     const std::vector<BvhTriangle> soup = make_soup(20'000, 0);
     const Trees trees(build_bvh(soup));
-    const std::vector<Ray> rays = nasty_rays(2000, {"soup", soup, {}, 1}, 31);
+    const std::vector<Ray> rays = stress_rays(2000, {"soup", soup, {}, 1}, 31);
     std::vector<Hit> expected;
     uint64_t at_pops = 0, at_nodes = 0, without = 0, triangles = 0, triangles_at_nodes = 0, unused = 0;
     for (const Ray& ray : rays) {
@@ -300,7 +300,7 @@ void check_nearly_equal(const typename Traversal::Tree& tree, const std::vector<
 
 } // namespace
 
-TEST_CASE("with the fast tests of the laboratory nearly all hits are the same") {
+TEST_CASE("with the laboratory's fast tests nearly all hits are the same") {
     const std::vector<BvhTriangle> torus = triangles_of(make_torus(40, 24));
     Random random(4);
     std::vector<Ray> rays(20'000);

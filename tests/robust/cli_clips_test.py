@@ -92,7 +92,7 @@ class Clips(CliTest):
         def said(*arguments, scene="m.gltf"):
             return self.succeed("render", scene, "-o", "x.png", *TINY, *arguments).stderr
 
-        self.assertIn("the file has 7 animations, of which the first plays, go; --animation (NAME, N or all)", said("--time", "1"))
+        self.assertIn("the file has 7 animations and plays the first, go; --animation (NAME, N or all)", said("--time", "1"))
         self.assertIn("2 (twin), 3 (twin), 4, 1, dim", said("--time", "1"))
         for text in [said("--time", "1", "--animation", "rise"), said("--time", "1", scene="alone-0.gltf")]:
             self.assertNotIn("--animation", text)
@@ -181,7 +181,7 @@ class FileScenes(CliTest):
 
     def test_which_is_shown_is_said_and_what_is_not_there_refused(self):
         shown = self.succeed("render", "second.gltf", "-o", "x.png", *TINY).stderr
-        self.assertIn("the file has 3 scenes, of which two is shown; --file-scene (NAME or N) shows another of one, two, 2", shown)
+        self.assertIn("the file has 3 scenes and shows two; --file-scene (NAME or N) shows another of one, two, 2", shown)
         self.assertNotIn("--file-scene", self.succeed("render", "m.gltf", "-o", "x.png", *TINY, "--file-scene", "0").stderr)
         self.refuse(2, "render", "m.gltf", "-o", "y.png", "--file-scene", "three", says=["m.gltf", 'no scene "three"', "one", "two"])
         self.refuse(2, "render", "cornell-box", "-o", "y.png", "--file-scene", "three", says=["cornell-box", 'no scene "three"'])

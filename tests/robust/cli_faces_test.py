@@ -72,7 +72,7 @@ class FacesTest(CliTest):
     def test_flags_of_faces_that_a_scene_makes_useless_are_warnings(self):
         self.assertIn("warning: --two-sided-lights: no surface of the scene emits light",
                       self.said("sheet.gltf", "--two-sided-lights"))
-        self.assertIn("warning: --show-back-faces: no surface of the scene hides its back",
+        self.assertIn("warning: --show-back-faces: no surface of the scene has a hidden back",
                       self.said("lamp.obj", "--show-back-faces"))
 
 

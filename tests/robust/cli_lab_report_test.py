@@ -175,7 +175,7 @@ class WhatIsWritten(LabTest):
                     for file in glob.glob(self.path("out/*")):
                         os.remove(file)
         outcome = self.succeed(*self.lab("--thesis", "box.obj", *INSIDE, "--depths", "1", "-o", "out"))
-        self.assertIn("no light in the scene", outcome.stderr)
+        self.assertIn("the scene has no light", outcome.stderr)
         self.assertTrue(os.path.exists(self.path("out/thesis-2.csv")))
         # One that is interrupted before it has measured anything leaves all as it is.
         self.check_interrupt_leaves_all("--thesis", "box.obj", *INSIDE)

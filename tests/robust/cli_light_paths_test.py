@@ -68,13 +68,13 @@ class Layers(CliTest):
             self.refuse(status, "render", "cornell-box", "-o", "x.exr", *flags, says=says)
 
         refuse(2, "--lpe", "a=L(DE", says=["--lpe a: character 2: this ( is not closed\n  L(DE\n   ^"])
-        refuse(2, "--lpe", "a=L<'none'>E", says=["character 4: no light of the scene has this name; there are"])
+        refuse(2, "--lpe", "a=L<'none'>E", says=["character 4: there is no light of the scene with this name; there are"])
         refuse(2, "--lpe", "LDE", says=["expected NAME=EXPRESSION"])
         refuse(2, "--lpe", "a=LE", "--lpe", "a=LDE", says=["two expressions have this name"])
         refuse(2, "--lpe", "depth=LE", says=["another layer of this name"])
-        refuse(2, "--lpe", "a=LE", "--integrator", "whitted", "--ambient", "0", says=["--lpe", "not by whitted"])
+        refuse(2, "--lpe", "a=LE", "--integrator", "whitted", "--ambient", "0", says=["--lpe", "whitted does not"])
         refuse(2, "--lpe", "a=LE", "--denoise", "svgf", says=["--lpe", "--denoise svgf"])
-        refuse(3, "--lpe", "a=L.{15}D.*E", says=["16384 states", "render some of the expressions apart"])
+        refuse(3, "--lpe", "a=L.{15}D.*E", says=["16384 states", "render some of the expressions separately"])
         many = {f"n{i}": f"L.{{{i}}}E" for i in range(100)}
         refuse(2, *lpe(many), "--lpe", "n57=LDE",
                says=["--lpe n57: two expressions have this name\n  n57=L.{57}E\n  n57=LDE"])
@@ -84,10 +84,10 @@ class Layers(CliTest):
         for unnamed in (" ", "=", "a", "=LE"):
             refuse(2, "--lpe", unnamed, says=["expected NAME=EXPRESSION, as caustics=LS+DE"])
         for empty in ("a=", "a= "):
-            refuse(2, "--lpe", empty, says=["--lpe a: character 1: an expression stands here: as LD*E"])
+            refuse(2, "--lpe", empty, says=["--lpe a: character 1: expected an expression, such as LD*E"])
         refuse(2, "--lpe=", says=["--lpe", "NAME=EXPRESSION missing"])
-        refuse(2, "--lpe", "a=CDL", says=["--lpe a: character 1: from the light to the eye: LD*E is what is CD*L elsewhere"])
-        refuse(2, "--lpe", "a=LDE,b=LE", says=["--lpe a: character 4: each expression has a --lpe"])
+        refuse(2, "--lpe", "a=CDL", says=["--lpe a: character 1: expressions go from the light to the eye: LD*E is CD*L elsewhere"])
+        refuse(2, "--lpe", "a=LDE,b=LE", says=["--lpe a: character 4: each expression needs its own --lpe"])
         self.refuse(2, "render", "cornell-box", "-o", "x.png", "--lpe", "a=LE", says=["EXR output"])
 
 

@@ -79,7 +79,7 @@ class Meshes(CliTest):
         self.assertIn("My Model.mtl is read", said)
         self.assertIn("Plain.PNG is read", said)
         write_png(self.path("plain.Png"), (0, 255, 0))
-        self.assertIn("2 files could be meant", self.said("a.obj"))
+        self.assertIn("2 files match", self.said("a.obj"))
 
     def test_colours_of_bytes_and_textures_of_ply(self):
         write(self.path("bytes.obj"), SQUARE.format(" 255 128 0") + "f 1 2 3 4\n")

@@ -145,7 +145,7 @@ class Radiosity(CliTest):
             self.assertEqual(program.returncode, 75)
             self.assertLess(seconds, 1)  # a row alone takes as long
             self.assertEqual([event["event"] for event in events if event["event"] != "progress"], ["error"])
-            self.assertIn("while form factors were made: nothing is written, as no light is solved before all of them",
+            self.assertIn("while form factors were made; nothing is written, because no light is solved before all",
                           events[-1]["text"])
         self.assertEqual([name for name in self.files() if name.startswith("long")], [])
 
@@ -162,7 +162,7 @@ class Radiosity(CliTest):
         self.assertEqual([events[-1][key] for key in ["event", "interrupted", "hash"]], ["done", True, solved["hash"]])
         self.assertIn("light", solved["holds"])
         outcome = self.succeed("render", "cornell-box", *SMALL, "-o", "x.png", "--solution", "ended.rad")
-        self.assertIn("ended.rad: was ended while it was solved, and holds " + solved["holds"], outcome.stderr)
+        self.assertIn("ended.rad: it is unfinished and holds " + solved["holds"], outcome.stderr)
 
     def test_what_is_ended_while_the_matrix_is_eliminated_is_its_direct_light(self):
         program = self.start("solve", "radiosity", "cornell-box", "-o", "ended.rad", "--solver", "matrix", "--threads", "1",
@@ -172,9 +172,9 @@ class Radiosity(CliTest):
         self.assertEqual(program.returncode, 75)
         (solved,) = [event for event in events if event["event"] == "radiosity_solved"]
         self.assertEqual((solved["interrupted"], solved["steps"]), (True, 0))
-        self.assertIn("direct light alone", solved["holds"])
+        self.assertIn("only direct light", solved["holds"])
         outcome = self.succeed("render", "cornell-box", *SMALL, "-o", "x.png", "--solution", "ended.rad")
-        self.assertIn("ended.rad: was ended while it was solved, and holds " + solved["holds"], outcome.stderr)
+        self.assertIn("ended.rad: it is unfinished and holds " + solved["holds"], outcome.stderr)
 
     def test_progress_says_each_step_and_the_last_object_what_came_of_it(self):
         keys = ["event", "seconds", "step", "share", "seconds_left"]
@@ -233,7 +233,7 @@ class Radiosity(CliTest):
             box += f"f {a} {d} {c} {b}\n"  # inwards
         write(self.path("white.mtl"), "newmtl a\nKd 1 1 1\nKe 1 1 1\n")
         write(self.path("white.obj"), "mtllib white.mtl\nusemtl a\n" + box)
-        self.refuse(2, "solve", "radiosity", "white.obj", "-o", "w.rad", "--patch-size", "0.5", says=["radiosity: light has no end"])
+        self.refuse(2, "solve", "radiosity", "white.obj", "-o", "w.rad", "--patch-size", "0.5", says=["radiosity: light never ends"])
 
     def test_what_cannot_be_is_one_line(self):
         write(self.path("mirror.mtl"), MIRROR)
@@ -259,12 +259,12 @@ class Radiosity(CliTest):
                 ("render nowhere.obj -o x.png --integrator radiosity --solution none.rad", 2, "--solution none.rad: there is no such"),
                 ("render nowhere.obj -o x.png --integrator radiosity --solution box.rad --patch-rays 64", 2,
                  "--patch-rays: cannot be combined with --solution"),
-                ("render nowhere.obj -o x.png --integrator radiosity --denoise svgf", 2, "--denoise svgf: reconstructs pictures"),
-                ("render nowhere.obj -o x.png --integrator radiosity --lpe seen=LE -o x.exr", 2, "--lpe: light paths are told apart"),
+                ("render nowhere.obj -o x.png --integrator radiosity --denoise svgf", 2, "--denoise svgf: supports"),
+                ("render nowhere.obj -o x.png --integrator radiosity --lpe seen=LE -o x.exr", 2, "distinguish light paths"),
                 ("render nowhere.obj -o x.png --integrator radiosity --max-depth 256", 3, "--max-depth 256: with --integrator radiosity"),
                 ("render cornell-box -o x.png --integrator radiosity --shutter 0.1", 2, "--shutter"),
                 ("render cornell-box -o x.png --integrator radiosity --solution text.rad", 2, "text.rad: no radiosity solution"),
-                ("render cornell-box -o x.png --integrator radiosity --solution cut.rad", 2, "cut.rad: a radiosity solution that was cut"),
+                ("render cornell-box -o x.png --integrator radiosity --solution cut.rad", 2, "cut.rad: a radiosity solution that is truncated"),
                 ("render floor.obj -o x.png --integrator radiosity --solution box.rad", 2, "box.rad: a radiosity solution of another scene")]:
             with self.subTest(arguments=arguments):
                 more = look if "render floor.obj" in arguments else []

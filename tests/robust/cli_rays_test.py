@@ -19,7 +19,7 @@ class RaysOnTheRecord(CliTest):
         for name in ["spnza", "nowhere.obj", "", "a" * 300 + ".obj"]:
             self.refuse(2, "bench", "rays", "--device", "cpu", "--scene", name, says=["--scene " + name])
         write(self.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
-        self.refuse(2, "bench", "rays", "--device", "cpu", "--scene", "flat.obj", says=["flat.obj", "no geometry"])
+        self.refuse(2, "bench", "rays", "--device", "cpu", "--scene", "flat.obj", says=["flat.obj", "no visible triangle"])
 
     def test_a_scene_of_the_record_without_its_file_ends_with_2_and_says_where_that_belongs(self):
         for folder in [None, "nowhere"]:

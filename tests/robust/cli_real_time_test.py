@@ -102,7 +102,7 @@ class RealTime(CliTest):
         self.assertEqual([entry["frame"] for entry in record["pictures"]], [0, 1, 2, 3])
         record["pictures"][2]["hash"] = "0" * 32
         write(self.path("x/f-##.json"), json.dumps(record))
-        self.refuse_to_render("x", *motion, "--continue", says=["x/f-##.json: frame 2 is another picture now", "0" * 32])
+        self.refuse_to_render("x", *motion, "--continue", says=["x/f-##.json: frame 2 is now a different picture", "0" * 32])
         self.assertFalse(os.path.exists(self.path("x/f-03.png")))
 
     def test_other_settings_of_the_reconstruction_are_refused(self):

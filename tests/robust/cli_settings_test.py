@@ -66,7 +66,7 @@ class SettingsFiles(CliTest):
         write(self.path("s.json"), '{"version": 1, "settings": {"sppp": 3}, "scene": {"name": "x", "hash": "0"}}')
         outcome = self.succeed("render", "cornell-box", "-o", "a.exr", "--settings", "s.json", *SMALL)
         self.assertIn("/settings/sppp", outcome.stderr)
-        self.assertIn("another scene", outcome.stderr)
+        self.assertIn("a different scene", outcome.stderr)
         self.refuse(2, "render", "cornell-box", "-o", "b.exr", "--settings", "s.json", "--strict", *SMALL, says=["sppp"])
 
     def test_a_file_that_is_none_is_refused(self):

@@ -23,13 +23,13 @@ class HowRaysAreTraced(CliTest):
                 self.assertEqual(self.hash_of(*line.split()), wanted)
 
     def test_what_cannot_be_says_why(self):
-        for line, why in [("--structure kd-sah --traversal if-if", "the traversal for it is kd"),
-                          ("--structure octree --traversal wide8", "the traversal for it is octree"),
-                          ("--traversal skip-links --order off", "there is no order of children"),
+        for line, why in [("--structure kd-sah --traversal if-if", "needs the traversal kd"),
+                          ("--structure octree --traversal wide8", "needs the traversal octree"),
+                          ("--traversal skip-links --order off", "this traversal has no order of children"),
                           ("--traversal if-if --rta nodes", "for the compressed traversal"),
-                          ("--traversal compressed --distribution dynamic-fetch", "threads of a CPU"),
+                          ("--traversal compressed --distribution dynamic-fetch", "a CPU's threads"),
                           ("--traversal camera=wide9", "expected one of if-if"),
-                          ("--traversal eye=kd", "camera, bounce and shadow")]:
+                          ("--traversal eye=kd", "camera, bounce or shadow")]:
             with self.subTest(line=line):
                 self.refuse(2, "render", "cornell-box", "-o", "x.png", "--device", "cpu", *line.split(), says=[why])
 

@@ -163,7 +163,7 @@ void check_black(Placement place, const LitPixels& lit_pixels_there) {
 // Where origins are moved along the normal alone, 72 of the 96 placings below have lit pixels, up to 401 of a box's
 // 4096.
 
-TEST_CASE("no light leaks into a closed box, wherever it stands, however small") {
+TEST_CASE("no light leaks into a closed box of any position and size") {
     for (const auto& [size_m, at] : {std::pair{2.0f, Vec3{0, 0, 0}},
                                      {2.0f, Vec3{1300, 0, 0}},
                                      {2.0f, Vec3{-700, 300, 1000}},
@@ -174,7 +174,7 @@ TEST_CASE("no light leaks into a closed box, wherever it stands, however small")
     }
 }
 
-TEST_CASE("no light leaks into a box beside something far away") {
+TEST_CASE("no light leaks into a box in a scene with a distant object") {
     for (const auto& [size_m, at, other_at] : {std::tuple{2.0f, Vec3{1300, 0, 0}, Vec3{-1300, 0, 0}},
                                                {2.0f, Vec3{0.3f, 0, 0}, Vec3{900, 10, 2600}},
                                                {0.002f, Vec3{10, 0, 0}, Vec3{-10, 0, 0}}}) {
@@ -182,7 +182,7 @@ TEST_CASE("no light leaks into a box beside something far away") {
     }
 }
 
-TEST_CASE("pictures of whole boxes, small or far away, have no lit pixel") {
+TEST_CASE("pictures of closed boxes, small or far away, have no lit pixel") {
     for (const auto& [size_m, at] : {std::pair{2.0f, Vec3{1300, 0, 0}}, {0.002f, Vec3{10, 0, 0}}}) {
         for (const Transform& turn : kTurns) {
             const Placement place = {size_m, at, turn};

@@ -85,7 +85,7 @@ std::string rich_document() {
 
 } // namespace
 
-TEST_CASE("every public malformed glTF file ends in an Error that names it, or in a scene, within 5 s of work") {
+TEST_CASE("every public malformed glTF file ends in an Error that names it, or in a scene, within 5 s") {
     const auto folder = test::test_scene("malformed/gltf");
     if (!folder) return;
     int files = 0;
@@ -105,7 +105,7 @@ TEST_CASE("every public malformed glTF file ends in an Error that names it, or i
     CHECK(files >= 20);
 }
 
-TEST_CASE("no change of one number of a document crashes the reader") {
+TEST_CASE("no change of a single number in a document crashes the reader") {
     const std::string good = rich_document();
     const fs::path path = test::scratch_folder() / "model.gltf";
     const auto is_complete = [&](const std::string& text) {

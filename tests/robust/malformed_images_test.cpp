@@ -118,7 +118,7 @@ TEST_CASE("a truncated picture is refused") {
     }
 }
 
-TEST_CASE("pictures with a few bits turned or bytes replaced end in an error or a picture, in little memory") {
+TEST_CASE("pictures with a few flipped bits or replaced bytes end in an error or a picture, in little memory") {
     const uint64_t before = peak_memory();
     uint64_t state = 1;
     for (const Sample& sample : samples()) {
@@ -146,7 +146,7 @@ TEST_CASE("pictures with a few bits turned or bytes replaced end in an error or 
     CHECK(peak_memory() - before < uint64_t(128) << 20);
 }
 
-TEST_CASE("the header suffices to read the size of whole and damaged pictures") {
+TEST_CASE("the size of intact and damaged pictures can be read from the header alone") {
     for (const Sample& sample : samples()) {
         CAPTURE(sample.name);
         const ImageHeader header = read_image_header(sample.bytes, "whole");

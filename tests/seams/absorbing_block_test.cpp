@@ -60,7 +60,7 @@ float column_of_block(uint32_t column) { return -3 + 0.2f * (static_cast<float>(
 
 } // namespace
 
-TEST_CASE("rays of the camera and shadow rays lose in a block what Beer's law says, on both devices") {
+TEST_CASE("camera rays and shadow rays are attenuated in a block by Beer's law on both devices") {
     const Scene scene = sunny_scene({1, -1, 0}, true);
     Queue cpu = Queue::make_cpu(), shadow_data = test::requested_queue();
     const Image picture = render_block<test::kAbsorbing>(shadow_data, scene, {}, 4);
@@ -84,7 +84,7 @@ TEST_CASE("rays of the camera and shadow rays lose in a block what Beer's law sa
     CHECK(in_shadow >= 2);
 }
 
-TEST_CASE("light that a block scatters once is the integral over the camera's ray, on both devices") {
+TEST_CASE("light scattered once in a block equals the integral along the camera ray on both devices") {
     const Scene scene = sunny_scene({0, -1, 0}, false);
     Queue cpu = Queue::make_cpu(), shadow_data = test::requested_queue();
     PathSettings settings;

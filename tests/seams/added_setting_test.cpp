@@ -9,7 +9,7 @@
 
 using namespace pertev;
 
-TEST_CASE("a setting that is added by one row appears as a flag, in help, JSON and metadata") {
+TEST_CASE("a setting added by one row appears as a flag and in help, JSON and metadata") {
     const std::vector<Setting> table = {row("roulette_depth", "Quality", "N",
                                             PERTEV_SETTING_FIELD(render.path.roulette_depth),
                                             "Russian roulette begins at this vertex.", Range{1, 99}, Recorded::Always)};

@@ -58,10 +58,10 @@ uint32_t differing_in_window(const Image& window, const Image& whole) {
 
 } // namespace
 
-TEST_CASE("a film of a window has the bytes that the whole picture has there") {
-    for (uint32_t i = 0; i < kWindow.width * kWindowHeight; ++i) REQUIRE(kWindow.place_of(kWindow.pixel_at(i)) == i);
+TEST_CASE("a film of a window has the bytes of that part of the whole picture") {
+    for (uint32_t i = 0; i < kWindow.width * kWindowHeight; ++i) REQUIRE(kWindow.slot_of(kWindow.pixel_at(i)) == i);
     CHECK(PixelWindow{}.pixel_at(1234) == 1234);
-    CHECK(PixelWindow{}.place_of(1234) == 1234);
+    CHECK(PixelWindow{}.slot_of(1234) == 1234);
 
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -97,7 +97,7 @@ TEST_CASE("a film of a window has the bytes that the whole picture has there") {
     }
 }
 
-TEST_CASE("a film of a window has the bytes that a light meter's whole picture has there") {
+TEST_CASE("a film of a window has the bytes of that part of a light meter's whole picture") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -110,7 +110,7 @@ TEST_CASE("a film of a window has the bytes that a light meter's whole picture h
     CHECK(*std::ranges::max_element(window.images[0].pixels) > 0);
 }
 
-TEST_CASE("integrators that fill whole pictures alone refuse a film of a window") {
+TEST_CASE("integrators that only fill whole pictures refuse a film of a window") {
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

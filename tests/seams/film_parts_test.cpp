@@ -63,7 +63,7 @@ Film film_of_bytes(Queue& queue, const RenderSettings& settings, const std::vect
 
 } // namespace
 
-TEST_CASE("two parts of a film that are kept as bytes add up to the film that was rendered whole, to the byte") {
+TEST_CASE("two parts of a film stored as bytes add up to the bytes of the film rendered at once") {
     const BlindingWorld world;
     Queue cpu = Queue::make_cpu(), shadow_data = test::requested_queue();
     FilmParts on_cpu(cpu, world), on_asked(shadow_data, world);

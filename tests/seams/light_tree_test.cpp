@@ -80,7 +80,7 @@ struct TwoEmitters {
 
 } // namespace
 
-TEST_CASE("a schedule of a test's own over the path tracer's functions gives the bytes of the path tracer") {
+TEST_CASE("a schedule defined by a test over the path tracer's functions gives the bytes of the path tracer") {
     Queue queue = test::requested_queue();
     TwoEmitters emitters(queue);
     const auto integrator = make_integrator(queue, {});
@@ -91,7 +91,7 @@ TEST_CASE("a schedule of a test's own over the path tracer's functions gives the
     CHECK(picture_hash(emitters.render<test::TableRounds>({}, 3)) == picture_hash(film.picture(false)));
 }
 
-TEST_CASE("a light tree gives the same bytes on both devices, and others than the table of lights") {
+TEST_CASE("a light tree gives the same bytes on both devices, which differ from those of the light table") {
     Queue cpu = Queue::make_cpu(), shadow_data = test::requested_queue();
     TwoEmitters on_cpu(cpu), emitters(shadow_data);
     const Hash128 hash = picture_hash(on_cpu.render<test::TreeRounds>({}, 4));
@@ -116,7 +116,7 @@ TEST_CASE("a light tree converges to the light table's picture under every strat
     }
 }
 
-TEST_CASE("light that a path runs into has the density by which a light tree draws it for the vertex before") {
+TEST_CASE("light that a path hits has the density by which the light tree samples it from the previous vertex") {
     Queue queue = test::requested_queue();
     TwoEmitters emitters(queue);
     const Film film(queue, kTreeWidth, kTreeHeight, 0);
@@ -132,7 +132,7 @@ TEST_CASE("light that a path runs into has the density by which a light tree dra
     CHECK(of_lights[1] == 0);
 }
 
-TEST_CASE("a light tree draws lights with the probabilities that it gives, by which a hit of a light is weighted") {
+TEST_CASE("a light tree samples lights with the probabilities that it reports") {
     const test::Lights lights(two_emitter_scene());
     const LightSetView& view = lights.view;
     REQUIRE(view.emitter_count == 2);

@@ -87,7 +87,7 @@ void check_parts(const PreparedScene& prepared) {
 
 } // namespace
 
-TEST_CASE("a film's target of a test's own ranks what pixels show, and its parts add up to the byte") {
+TEST_CASE("a film target defined by a test ranks the objects in each pixel, and its parts add up to the byte") {
     Messages messages;
     const Scene scene = striped_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -77,9 +77,9 @@ public:
 
     HD explicit DensityListener(const DensityJob& job) : job_(job) {}
     HD void take_up(const Kept& kept) { kept_ = kept; }
-    HD bool takes(const PathState& path, const EmitterPoint& place, float pdf) {
+    HD bool takes(const PathState& path, const EmitterPoint& point, float pdf) {
         if (path.bsdf_pdf > 0) {
-            const float off = abs(pdf - density_of(place)) / pdf;
+            const float off = abs(pdf - density_of(point)) / pdf;
             atomic_add(off < 1e-3f ? job_.right : job_.wrong, 1u);
         }
         return false;
@@ -92,16 +92,16 @@ public:
     HD void put_down(Kept& kept) const { kept = kept_; }
 
 private:
-    HD float density_of(const EmitterPoint& place) const {
+    HD float density_of(const EmitterPoint& point) const {
         const LightSetView& lights = job_.picture.scene.lights;
         const LightContext context = {kept_.point, kept_.normal, kept_.lets_through, kAtRest};
-        if (place.kind() == SourceKind::Environment) {
-            const Vec3 direction = {float_of(place.index), place.u, place.v};
+        if (point.kind() == SourceKind::Environment) {
+            const Vec3 direction = {float_of(point.index), point.u, point.v};
             return find_environment<TwoNodeTree>(lights, context, direction, true).pdf;
         }
-        const uint32_t light = light_of(lights, place.instance, place.index);
+        const uint32_t light = light_of(lights, point.instance, point.index);
         const EmissiveTriangle& triangle = lights.triangles[light];
-        const Vec3 point = triangle.a + (place.u * triangle.ab + place.v * triangle.ac);
+        const Vec3 point = triangle.a + (point.u * triangle.ab + point.v * triangle.ac);
         return pdf_light_hit<TwoNodeTree>(lights, light, context, point);
     }
 

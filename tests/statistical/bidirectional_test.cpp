@@ -30,7 +30,7 @@ void add_box(Scene& scene, Vec3 centre, Vec3 half, const Material& material) {
 }
 
 /// A room that is open to the camera: a lamp under its ceiling, and a box.
-Scene make_room(const Material& box, const Material& floor = test::white(0.6f), bool has_emitter = true) {
+Scene allocate(const Material& box, const Material& floor = test::white(0.6f), bool has_emitter = true) {
     Scene scene;
     const Material red = {{.base_color = {0.7f, 0.2f, 0.2f}}, "red"};
     test::add(scene, test::sheet({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), floor);
@@ -75,22 +75,22 @@ struct Case {
 
 std::vector<Case> cases() {
     std::vector<Case> all;
-    all.push_back({.name = "diffuse", .scene = make_room(test::white(0.8f))});
+    all.push_back({.name = "diffuse", .scene = allocate(test::white(0.8f))});
 
     Material metal = {
         {.kind = MaterialKind::MetallicRoughness, .base_color = {0.9f, 0.8f, 0.6f}, .metallic = 1, .roughness = 0.45f},
         "metal"};
-    all.push_back({.name = "glossy", .scene = make_room(metal, plastic(0.5f)), .filter = PixelFilter::Gaussian});
+    all.push_back({.name = "glossy", .scene = allocate(metal, plastic(0.5f)), .filter = PixelFilter::Gaussian});
 
     // A box: in the far tail of a filter particles of pixels beside the glass count, and a path is hardly ever drawn.
-    all.push_back({.name = "glass", .scene = make_room(glass()), .light_finds_all = false, .filter = PixelFilter::Box});
+    all.push_back({.name = "glass", .scene = allocate(glass()), .light_finds_all = false, .filter = PixelFilter::Box});
 
     all.push_back(
-        {.name = "frosted glass", .scene = make_room(glass(0.4f)), .light_is_even = false, .filter = PixelFilter::Box});
+        {.name = "frosted glass", .scene = allocate(glass(0.4f)), .light_is_even = false, .filter = PixelFilter::Box});
 
     // Room and camera lie in glass, to which the light comes from without: radiance is power over the square of the
     // index.
-    Case within = {.name = "within glass", .scene = make_room(plastic(0.6f), test::white(0.6f), false)};
+    Case within = {.name = "within glass", .scene = allocate(plastic(0.6f), test::white(0.6f), false)};
     within.scene.environment = test::make_mixed_scene().environment;
     add_box(within.scene, {0, 1, 0.5f}, {2, 2, 2}, glass());
     within.camera.world_from_camera = look_at({0.4f, 1.1f, 2}, {0, 0.7f, 0}, {0, 1, 0});
@@ -100,7 +100,7 @@ std::vector<Case> cases() {
     within.pixels = 6;
     all.push_back(within);
 
-    Case delta = {.name = "delta lights", .scene = make_room(plastic(0.6f), test::white(0.6f), false)};
+    Case delta = {.name = "delta lights", .scene = allocate(plastic(0.6f), test::white(0.6f), false)};
     delta.filter = PixelFilter::Tent;
     delta.scene.lights = test::make_mixed_scene().lights;
     delta.scene.lights[0].position = {0.6f, 1.5f, 0.8f};
@@ -109,7 +109,7 @@ std::vector<Case> cases() {
     delta.scene.lights[1].direction = normalize(Vec3{-1, -2, -1});
     all.push_back(delta);
 
-    Case environment = {.name = "environment", .scene = make_room(metal, test::white(0.6f), false)};
+    Case environment = {.name = "environment", .scene = allocate(metal, test::white(0.6f), false)};
     environment.scene.environment = test::make_mixed_scene().environment;
     environment.scene.materials[1].alpha = 0.5f; // the wall behind, seen through half of the time
     environment.scene.materials[1].alpha_mode = AlphaMode::Blend;
@@ -119,7 +119,7 @@ std::vector<Case> cases() {
     environment.filter_radius = 0.8f;
     all.push_back(environment);
 
-    Case lens = {.name = "depth of field", .scene = make_room(test::white(0.8f))};
+    Case lens = {.name = "depth of field", .scene = allocate(test::white(0.8f))};
     // The camera looks through its back; light does not.
     test::add(lens.scene, test::sheet({-0.3f, 0.5f, 0.8f}, {-0.3f, 0, 0}, {0, 0.3f, 0}), test::white(0.7f));
     lens.scene.materials.back().double_sided = false;
@@ -140,7 +140,8 @@ RenderSettings settings_of(const Case& c) {
 
 } // namespace
 
-TEST_CASE("bidirectional and light tracing give path tracing's picture where they find the same light") {
+TEST_CASE(
+    "bidirectional path tracing and light tracing give the path tracer's picture where they find the same light") {
     Queue queue = test::requested_queue();
     for (const Case& c : cases()) {
         CAPTURE(c.name);
@@ -176,7 +177,7 @@ TEST_CASE("bidirectional and light tracing give path tracing's picture where the
     }
 }
 
-TEST_CASE("distributed gives the light paths that it follows as bright as path tracing does") {
+TEST_CASE("distributed ray tracing gives its light paths the brightness that path tracing gives them") {
     Queue queue = test::requested_queue();
     for (const Case& c : cases()) {
         if (c.name == "within glass") continue; // but for the sky none of its light is followed
@@ -198,7 +199,7 @@ TEST_CASE("distributed gives the light paths that it follows as bright as path t
     }
 }
 
-TEST_CASE("light and bidirectional show a floor under a flat lamp as bright as the closed form, to 1 %") {
+TEST_CASE("light tracing and bidirectional path tracing match the closed form of a floor under an area light to 1 %") {
     constexpr double kHalf = 0.3; // half size of the visible patch of floor, metres
     Queue queue = test::requested_queue();
     const auto mean_of = [&](const Mesh& emitter, IntegratorKind integrator, uint32_t samples) {

@@ -153,7 +153,7 @@ TEST_CASE("every bsdf is reciprocal, refraction up to the squares of the indices
     CHECK(compared > count);
 }
 
-TEST_CASE("bases beneath layers lose little light, and sheen alone reflects at most all") {
+TEST_CASE("bases beneath layers lose little light, and sheen alone reflects at most all light") {
     const uint32_t points = furnace_points();
     const auto varnished = [](float r) { return make_coated(make_diffuse(grey(1)), 1, r, 1.5f); };
     const MeanWeight on_white = furnace_range(varnished, 1, points);
@@ -176,7 +176,7 @@ TEST_CASE("bases beneath layers lose little light, and sheen alone reflects at m
     CHECK(alone.b < 1.001);
 }
 
-TEST_CASE("diffuse and glossy light add up to all light, and each equals its lobe's") {
+TEST_CASE("diffuse and glossy light add up to all light, and each equals its lobe's light") {
     for (const BsdfCase& c : rough_bsdf_cases()) {
         CAPTURE(c.name);
         for (uint32_t i = 0; i < 200; ++i) {

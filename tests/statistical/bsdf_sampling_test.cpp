@@ -127,7 +127,7 @@ std::vector<double> jumps_of(const Bsdf& bsdf, Vec3 wo) {
 
 } // namespace
 
-TEST_CASE("every bsdf draws directions as its pdf says, with weight eval over pdf") {
+TEST_CASE("every bsdf samples directions by its pdf, with the weight eval over pdf") {
     const auto samples = static_cast<uint32_t>(effort(1'000'000, 10'000'000));
     const auto angles = effort(0, 1) != 0 ? std::vector<float>{1, 0.9f, 0.5f, 0.2f, 0.03f, -0.03f, -0.3f, -0.8f}
                                           : std::vector<float>{0.85f, -0.25f};
@@ -204,7 +204,7 @@ TEST_CASE("the sampling test notices a missing cosine, a forgotten lobe and brig
     CHECK(of_bright.weight_error > 1e-2);
 }
 
-TEST_CASE("the integrals over a chart's cells miss no sliver beside a jump") {
+TEST_CASE("the integrals over a chart's cells miss no sliver next to a discontinuity") {
     // The caps above the horizon and above a circle just below it.
     const std::vector<double> heights = {0, -0.1333};
     const auto caps = [&](Vec3 d) {

@@ -41,13 +41,13 @@ double floor_radiance(const Mesh& emitter, Vec3 at) {
 
 } // namespace
 
-TEST_CASE("irradiance under a rectangular lamp is that of the closed form") {
+TEST_CASE("irradiance under a rectangular light matches the closed form") {
     const Mesh emitter = test::sheet({0, 2, 0}, {1.5f, 0, 0}, {0, 0, 1});
     CHECK(floor_radiance(emitter, {0, 0, 0}) == doctest::Approx(4 * 4 * test::corner_factor(0.75, 0.5)).epsilon(2e-3));
     CHECK(floor_radiance(emitter, {1.5f, 0, 1}) == doctest::Approx(4 * test::corner_factor(1.5, 1)).epsilon(2e-3));
 }
 
-TEST_CASE("irradiance under a disc is that of the closed form") {
+TEST_CASE("irradiance under a disc light matches the closed form") {
     CHECK(floor_radiance(test::disc(2, 1), {0, 0, 0}) == doctest::Approx(4.0 / (1 + 4)).epsilon(2e-3));
     CHECK(floor_radiance(test::disc(0.5f, 1), {0, 0, 0}) == doctest::Approx(4.0 / (1 + 0.25)).epsilon(2e-3));
 }
@@ -102,7 +102,7 @@ std::pair<double, double> compare_with_path(const Scene& scene, float aperture, 
 
 } // namespace
 
-TEST_CASE("distributed is path tracing where no diffuse surface lights another") {
+TEST_CASE("distributed ray tracing equals path tracing where no diffuse surface lights another") {
     for (const auto& [scene, aperture, samples] :
          {std::tuple(make_metal_scene(), 0.0f, 64u), std::tuple(make_convex_scene(false), 0.3f, 16u),
           std::tuple(make_convex_scene(true), 0.0f, 16u)}) {
@@ -129,7 +129,7 @@ TEST_CASE("distributed ray tracing misses only interreflection between diffuse s
 }
 
 // The thin lens: 1 / f = 1 / o + 1 / i, for an object at distance o and its image at i behind the lens.
-TEST_CASE("a lens is sharp at its distance, and blurs a point elsewhere over its circle of confusion") {
+TEST_CASE("a lens is sharp at its focus distance and blurs other points over their circle of confusion") {
     constexpr uint32_t kSide = 33; // the lamp is in the middle of a pixel
     constexpr float kFocus = 4, kAperture = 0.6f;
     Camera camera;

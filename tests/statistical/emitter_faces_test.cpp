@@ -49,7 +49,7 @@ struct SeenFloor {
 };
 
 /// Renders a tiny patch of the scene, between lamp and floor: down at the floor, or up at the lamp from `y`.
-SeenFloor look(const Scene& scene, PathSettings path, bool up = false, float y = 0.5f) {
+SeenFloor render(const Scene& scene, PathSettings path, bool up = false, float y = 0.5f) {
     RenderSettings settings;
     settings.width = settings.height = 32;
     settings.samples = static_cast<uint32_t>(test::effort(64, 1024));
@@ -85,15 +85,15 @@ TEST_CASE("emitters emit from the front or both faces under every sampling strat
                 const bool is_lit = faces_down || is_two_sided;
                 for (const LightStrategy strategy : test::kLightStrategies) {
                     CAPTURE(static_cast<int>(strategy));
-                    const SeenFloor floor = look(scene, {.strategy = strategy});
+                    const SeenFloor floor = render(scene, {.strategy = strategy});
                     CAPTURE(floor.mean);
                     CAPTURE(floor.error);
                     CHECK(std::abs(floor.mean - (is_lit ? floor_radiance() : 0)) <= 4 * floor.error + 1e-3);
                 }
                 const double shown = static_cast<double>(kRadiance);
-                CHECK(look(scene, {}, true).mean == doctest::Approx(is_lit ? shown : 0));
+                CHECK(render(scene, {}, true).mean == doctest::Approx(is_lit ? shown : 0));
                 const bool shines_up = !faces_down || is_two_sided;
-                CHECK(look(scene, {}, false, 2).mean == doctest::Approx(shines_up ? shown : 0));
+                CHECK(render(scene, {}, false, 2).mean == doctest::Approx(shines_up ? shown : 0));
             }
         }
     }
@@ -104,7 +104,7 @@ TEST_CASE("clamping leaves light scattered once unchanged under every sampling s
     const Scene scene = emitter_over_floor(true, false, false);
     for (const LightStrategy strategy : test::kLightStrategies) {
         CAPTURE(static_cast<int>(strategy));
-        const SeenFloor floor = look(scene, {.strategy = strategy, .clamp = 5});
+        const SeenFloor floor = render(scene, {.strategy = strategy, .clamp = 5});
         CAPTURE(floor.mean);
         CAPTURE(floor.error);
         CHECK(std::abs(floor.mean - floor_radiance()) <= 4 * floor.error + 1e-3);

@@ -70,7 +70,7 @@ double integrate_sphere(int steps, const std::function<double(Vec3)>& f) {
 
 } // namespace
 
-TEST_CASE("environment: directions and columns, rows and rotation are as scene/light.h says") {
+TEST_CASE("environment: directions, columns, rows and rotation match scene/light.h") {
     Environment sky;
     sky.image = {8, 4, 3, std::vector<float>(8 * 4 * 3)};
     for (uint32_t x = 0; x < 8; ++x) {
@@ -138,7 +138,7 @@ TEST_CASE("environment: density and radiance of a direction equal those of its s
     }
 }
 
-TEST_CASE("environment: samples follow the density, within texels too") {
+TEST_CASE("environment: samples follow the density, even within texels") {
     constexpr uint32_t width = 16, height = 9, parts = 4, steps = 6;
     Environment sky = make_sky(width, height, 1.1f);
     const EnvironmentData data = build(sky);
@@ -196,7 +196,7 @@ TEST_CASE("environment: radiance over density averages to the integral of radian
     }
 }
 
-TEST_CASE("environment: a sun of one texel has hardly more variance than a constant") {
+TEST_CASE("environment: a sun of one texel has hardly more variance than a uniform sky") {
     // Drawn evenly over a texel its relative variance would be 0.888. A third sun stands at the seam, the last one at
     // the pole, where its texel is a triangle.
     for (const auto& [x, y] : {std::pair{20u, 10u}, {5u, 31u}, {63u, 16u}, {30u, 1u}, {30u, 0u}}) {

@@ -98,7 +98,7 @@ ReconstructionSettings history_alone() {
     return settings;
 }
 
-void say_bias(const std::string& scene, const std::string& part, const Bias& bias) {
+void print_bias(const std::string& scene, const std::string& part, const Bias& bias) {
     MESSAGE(scene, ", ", part, ": whole ", bias.whole, ", block ", bias.of_block, ", pixels ", bias.of_pixels,
             ", with lamps ", bias.with_emitters);
 }
@@ -121,7 +121,7 @@ void bound_bias(const ReconstructionSettings& without, const std::vector<Part>& 
             const Bias bias = bias_of(mean_of_frames(session, part.with), expected);
             CAPTURE(s.name);
             CAPTURE(part.name);
-            say_bias(s.name, part.name, bias);
+            print_bias(s.name, part.name, bias);
             CHECK(std::abs(bias.whole) <= part.most.whole);
             CHECK(bias.of_block <= part.most.of_block);
             CHECK(bias.of_pixels <= part.most.of_pixels);
@@ -213,13 +213,13 @@ TEST_CASE("shared bounces at bent normals lose little light at grazing angles") 
     for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
         const RestirSettings restir = {.light = light, .radius = 6, .history = 0};
         const Bias bias = bias_of(mean_of_frames(session, of_samples_alone({}), restir, 0, frames), expected);
-        say_bias(bent.name, light == RestirLight::Direct ? "di" : "gi", bias);
+        print_bias(bent.name, light == RestirLight::Direct ? "di" : "gi", bias);
         CHECK(std::abs(bias.whole) < 0.01);
         CHECK(bias.of_block < 0.04);
     }
 }
 
-TEST_CASE("light beneath a layer that reflects more of it from the side does not lag behind a camera that rises") {
+TEST_CASE("light beneath a layer with Fresnel reflection does not lag behind a rising camera") {
     Scene scene;
     add(scene, floor_at(0, 50),
         {{.kind = MaterialKind::MetallicRoughness, .base_color = grey(0.8f), .metallic = 0, .roughness = 0.7f},
@@ -249,12 +249,12 @@ TEST_CASE("light beneath a layer that reflects more of it from the side does not
         for (std::size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] += last.pixels[i] / kTimes;
     }
     const Bias bias = bias_of(mean, expected);
-    say_bias("layers", "a camera that rises", bias);
+    print_bias("layers", "a camera that rises", bias);
     CHECK(std::abs(bias.whole) < 0.005);
     CHECK(bias.of_block < 0.01);
 }
 
-TEST_CASE("clamped shared bounces have the light of clamped paths") {
+TEST_CASE("clamped shared bounces carry the light of clamped paths") {
     for (const BiasScene& s : bias_scenes()) {
         Messages messages;
         const PreparedScene prepared = prepare_scene(s.scene, {}, messages);

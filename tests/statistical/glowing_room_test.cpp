@@ -14,7 +14,7 @@ using namespace pertev;
 
 namespace {
 
-Scene make_room(float albedo) {
+Scene allocate(float albedo) {
     const test::TriangleMesh sphere = test::make_sphere(2, {0, 0, 0}, 2.0f);
     Scene scene;
     Mesh mesh;
@@ -41,7 +41,7 @@ Seen look_around(float albedo, const PathSettings& path) {
     camera.world_from_camera = look_at({0.3f, 0.2f, -0.5f}, {1, 0.4f, 0.1f}, {0, 1, 0});
     camera.fov_y = 2.0f;
     Queue queue = test::requested_queue();
-    const RenderResult result = test::render(queue, make_room(albedo), camera, settings);
+    const RenderResult result = test::render(queue, allocate(albedo), camera, settings);
     CHECK(result.invalid_samples == 0);
     double sum = 0, square_sum = 0;
     const double pixels = 24 * 24;
@@ -98,7 +98,7 @@ TEST_CASE("Russian roulette takes no light away and adds none") {
     }
 }
 
-TEST_CASE("direct light is emission and one scattering, indirect light the rest") {
+TEST_CASE("direct light is emission and one scattering, and indirect light is the rest") {
     PathSettings path;
     path.max_depth = 3;
     path.roulette_depth = 100;

@@ -77,7 +77,7 @@ double difference_of(const RadiositySolution& a, const RadiositySolution& b) {
 
 } // namespace
 
-TEST_CASE("links converge to the solution by form factor rows as their error bound shrinks") {
+TEST_CASE("links converge to the solution of form factor rows as their error bound shrinks") {
     const Scene scene = room_with_boxes();
     const SolvedRadiosity rows = solved_by(scene, RadiositySolver::GaussSeidel, 0.2f);
     double before = 1e9;
@@ -125,7 +125,7 @@ TEST_CASE("links lose no light to surfaces inside solids") {
     CHECK(by_links == doctest::Approx(by_rows).epsilon(0.03)); // 0.07 where clusters hold insides and outsides
 }
 
-TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) by links too") {
+TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) with links") {
     const float reflectance = 0.5f;
     const SolvedRadiosity solved =
         solved_by(test::closed_box(test::emitter_material(reflectance, 1)), RadiositySolver::Hierarchical, 0.4f, 0.02f);
@@ -139,7 +139,7 @@ TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) by
     CHECK(sum == doctest::Approx(known).epsilon(0.01));
 }
 
-TEST_CASE("links over the limit are refined again with a larger error, with the bytes of that error") {
+TEST_CASE("links over the limit are refined again with a larger error and give the bytes of that error") {
     const test::PatchedScene patched(room_with_boxes(), kInfinity);
     const auto solve = [&](float link_error, uint64_t max_links) {
         RadiositySettings settings;
@@ -172,26 +172,27 @@ TEST_CASE("a solution with an enlarged error warns and records that error") {
     settings.solver = RadiositySolver::Hierarchical;
     settings.patch_size = 0.2f, settings.subdivisions = 0;
     settings.link_error = 0.05f;
-    std::set<std::string> told;
-    const auto tell = [&](const char* what, double) { return told.insert(what), true; };
+    std::set<std::string> reported;
+    const auto report = [&](const char* what, double) { return reported.insert(what), true; };
     const uint64_t most = solve_radiosity(patched.prepared, settings, {}).stats.factors / 2;
-    const SolvedRadiosity solved = solve_radiosity(patched.prepared, settings, tell, most);
+    const SolvedRadiosity solved = solve_radiosity(patched.prepared, settings, report, most);
     REQUIRE(solved.stats.link_error >= 0.1f);
     CHECK(solved.solution.made.find(fmt::format(R"("link_error":{},)", solved.stats.link_error)) != std::string::npos);
-    CHECK(told.contains("links, pass 1"));
-    CHECK(told.contains(fmt::format("links, pass 1, anew by `link_error={}`", solved.stats.link_error)));
+    CHECK(reported.contains("links, pass 1"));
+    CHECK(reported.contains(fmt::format("links, pass 1, again with `link_error={}`", solved.stats.link_error)));
 }
 
 TEST_CASE("solutions with a larger error or fewer steps than requested warn") {
     RadiositySettings settings;
     settings.solver = RadiositySolver::Hierarchical;
-    const auto said = [&](const SolveStats& stats) {
+    const auto remark_of = [&](const SolveStats& stats) {
         Messages messages;
         warn_of_limits(stats, settings, messages);
         return messages.all().empty() ? Remark("") : messages.all().front().remark;
     };
-    CHECK(said({.link_error = settings.link_error}).reason.empty());
-    const Remark larger = said({.link_error = 0.4f}), limit = said({.steps = 24, .left = 0.5, .reached_limit = true});
+    CHECK(remark_of({.link_error = settings.link_error}).reason.empty());
+    const Remark larger = remark_of({.link_error = 0.4f}),
+                 limit = remark_of({.steps = 24, .left = 0.5, .reached_limit = true});
     CHECK(larger.setting == "link_error");
     CHECK(larger.value == "0.1");
     CHECK(larger.reason.find("`link_error=0.4`") != std::string::npos);
@@ -210,7 +211,7 @@ TEST_CASE("links do not depend on the number of threads") {
     CHECK(solved_by(scene, RadiositySolver::Hierarchical, 0.5f, 0.1f).solution.hash() != reference);
 }
 
-TEST_CASE("light that leaves a cluster depends on direction") {
+TEST_CASE("light leaving a cluster depends on its direction") {
     test::Random random(9);
     SentLight sent;
     std::vector<Vec3> normals;
@@ -258,7 +259,7 @@ TEST_CASE("clusters contain each face once, within their bounding spheres") {
     }
 }
 
-TEST_CASE("clusters of triangles are linked to each other, so that links grow as triangles do") {
+TEST_CASE("clusters of triangles are linked to each other, so that links grow linearly with triangles") {
     double links_a_triangle[2];
     for (int fine = 0; fine < 2; ++fine) {
         Scene scene = test::closed_box(test::white(0.6f));

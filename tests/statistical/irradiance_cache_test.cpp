@@ -222,7 +222,7 @@ std::vector<double> block_medians(const Image& picture, uint32_t side) {
 
 } // namespace
 
-TEST_CASE("records have no blotches of the lamps that later bounces see by way of glass") {
+TEST_CASE("records show no blotches of emitters that later bounces see through glass") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = room_with_caustic();

@@ -12,7 +12,7 @@ using namespace pertev;
 
 namespace {
 
-void ask_for_layers(RenderSettings& settings, std::initializer_list<const char*> texts, const Scene& scene) {
+void request_layers(RenderSettings& settings, std::initializer_list<const char*> texts, const Scene& scene) {
     std::vector<LightPathExpression> expressions;
     for (const char* text : texts) expressions.push_back(parse_light_path(text));
     settings.light_paths = std::make_shared<const LightPathLayers>(put_to_scene(std::move(expressions), scene));
@@ -50,11 +50,11 @@ Scene varnished_floor(float albedo) {
 
 } // namespace
 
-TEST_CASE("layers of at most n scatterings equal pictures of depth n") {
+TEST_CASE("layers of at most n scatterings equal pictures of max depth n") {
     Queue queue = test::requested_queue();
     const Scene scene = test::make_mixed_scene();
     RenderSettings settings = small_lpe_settings(4);
-    ask_for_layers(settings, {"d0=L.{0}E", "d1=L.{0,1}E", "d3=L.{0,3}E"}, scene);
+    request_layers(settings, {"d0=L.{0}E", "d1=L.{0,1}E", "d3=L.{0,3}E"}, scene);
     const RenderResult layers = test::render(queue, scene, test::mixed_scene_camera(), settings);
     settings.light_paths = nullptr;
     for (const auto& [name, depth] : {std::pair("d0", 0u), std::pair("d1", 1u), std::pair("d3", 3u)}) {
@@ -69,7 +69,7 @@ TEST_CASE("direct and indirect light equal their light path expressions") {
     Queue queue = test::requested_queue();
     const Scene scene = test::make_mixed_scene();
     RenderSettings settings = small_lpe_settings(4);
-    ask_for_layers(settings, {"direct=LS*[DG]?S*E", "indirect=L.*[DG].*[DG].*E"}, scene);
+    request_layers(settings, {"direct=LS*[DG]?S*E", "indirect=L.*[DG].*[DG].*E"}, scene);
     const RenderResult layers = test::render(queue, scene, test::mixed_scene_camera(), settings);
     settings.light_paths = nullptr;
     for (const auto& [name, part] :
@@ -93,7 +93,7 @@ TEST_CASE("each emitter's layer equals the picture with only that emitter") {
     settings.width = settings.height = 6;
     settings.filter = PixelFilter::Box;
     settings.filter_radius = 0x1p-20f;
-    ask_for_layers(settings, {"warm=L<'warm'>.*E", "cold=L<'c*'>.*E"}, both);
+    request_layers(settings, {"warm=L<'warm'>.*E", "cold=L<'c*'>.*E"}, both);
     const Camera camera = test::camera_down({0, 3, 0}, 4);
     const RenderResult layers = test::render(queue, both, camera, settings);
     settings.light_paths = nullptr;
@@ -109,13 +109,13 @@ TEST_CASE("each emitter's layer equals the picture with only that emitter") {
     }
 }
 
-TEST_CASE("a point light's diffuse and glossy parts are those of the lobes") {
+TEST_CASE("a point light's diffuse and glossy parts equal those of the lobes") {
     Queue queue = test::requested_queue();
     Scene scene = varnished_floor(0.6f), black = varnished_floor(0.0f);
     scene.lights.push_back(test::point_light({0.7f, 1.5f, -0.4f}, {3, 2, 1}));
     black.lights = scene.lights;
     RenderSettings settings = small_lpe_settings(2);
-    ask_for_layers(settings, {"diffuse=LDE", "glossy=LGE"}, scene);
+    request_layers(settings, {"diffuse=LDE", "glossy=LGE"}, scene);
     const Camera camera = test::camera_down({0, 3, 0}, 4);
     const RenderResult result = test::render(queue, scene, camera, settings);
     settings.light_paths = nullptr;
@@ -131,7 +131,7 @@ TEST_CASE("a point light's diffuse and glossy parts are those of the lobes") {
     CHECK(test::mean_of(glossy) > 0.01 * test::mean_of(diffuse));
 }
 
-TEST_CASE("randomly chosen lobe classes have the mean of split ones") {
+TEST_CASE("randomly chosen lobe classes have the same mean as split ones") {
     Queue queue = test::requested_queue();
     Scene scene = varnished_floor(0.6f);
     Material glow = test::white(0);
@@ -140,7 +140,7 @@ TEST_CASE("randomly chosen lobe classes have the mean of split ones") {
     RenderSettings settings = small_lpe_settings(static_cast<uint32_t>(test::effort(4096, 65536)));
     settings.width = settings.height = 4;
     settings.path.max_depth = 2;
-    ask_for_layers(settings, {"diffuse=LDE", "glossy=LGE"}, scene);
+    request_layers(settings, {"diffuse=LDE", "glossy=LGE"}, scene);
     const Camera camera = test::camera_down({0, 1, 0}, 1);
     double means[3][2];
     for (const LightStrategy strategy : test::kLightStrategies) {
@@ -172,7 +172,7 @@ TEST_CASE("an emitter within glass lights a floor only by caustics") {
     shell.indices = sphere.indices;
     test::add(scene, shell, glass);
     RenderSettings settings = small_lpe_settings(32);
-    ask_for_layers(settings, {"caustics=LS<T>S*DE", "first=L[DG]+E", "second=LDS*DE", "seen=LS*E", "all=L.*E"}, scene);
+    request_layers(settings, {"caustics=LS<T>S*DE", "first=L[DG]+E", "second=LDS*DE", "seen=LS*E", "all=L.*E"}, scene);
     Camera camera;
     camera.world_from_camera = look_at({0, 2, 5}, {0, 0.5f, 0}, {0, 1, 0});
     const RenderResult result = test::render(queue, scene, camera, settings);

@@ -100,7 +100,7 @@ TEST_CASE("lights: a square of few or many triangles, moved and stretched, gives
     }
 }
 
-TEST_CASE("lights: a triangle emits from its front, which a mirroring node leaves it, or from both faces") {
+TEST_CASE("lights: a triangle emits from its front, even under a mirroring node, or from both faces") {
     const double full = rectangle_irradiance(1, 1, 1, 1);
     for (const uint32_t bits : {0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u}) {
         const bool is_turned = (bits & 1) != 0, is_mirrored = (bits & 2) != 0, is_two_sided = (bits & 4) != 0;
@@ -149,7 +149,7 @@ TEST_CASE("lights: emission follows its texture") {
     }
 }
 
-TEST_CASE("lights: a triangle with one bright texel is sampled, and one without is not") {
+TEST_CASE("lights: a triangle with one bright texel is sampled, and a black one is not") {
     Random random(8);
     int drawn = 0, dark = 0;
     for (int i = 0; i < 400; ++i) {
@@ -254,7 +254,7 @@ TEST_CASE("lights: point, spot and directional lights match their definitions") 
     CHECK(std::isfinite(only(spot)));
 }
 
-TEST_CASE("lights: all kinds together add up, near and far") {
+TEST_CASE("lights: all kinds add up, near and far") {
     Scene scene;
     add_emitter(scene, make_square(1), {3, 1, 0}, make_translation({0, 1, 0}));
     add_emitter(scene, make_square(40), {1, 1, 1}, make_translation({0, 3, 0}));
@@ -286,7 +286,7 @@ TEST_CASE("lights: all kinds together add up, near and far") {
     }
 }
 
-TEST_CASE("lights: samples follow the density over eight decades of power, each triangle and the sky") {
+TEST_CASE("lights: samples follow the density over eight decades of power, for each triangle and the sky") {
     const auto draws = static_cast<uint32_t>(effort(1'000'000, 10'000'000));
     for (const uint32_t count : {100u, 3000u}) {
         Random random(count);

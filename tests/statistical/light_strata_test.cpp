@@ -66,7 +66,7 @@ Environment make_sky(uint32_t height) {
 
 } // namespace
 
-TEST_CASE("strata: a square lamp of few or many triangles") {
+TEST_CASE("strata: a square light of few or many triangles") {
     for (const uint32_t n : {1u, 8u}) {
         Scene scene;
         add_square_emitter(scene, {0.3f, 1, 0}, 1.5f, n, 1);
@@ -76,7 +76,7 @@ TEST_CASE("strata: a square lamp of few or many triangles") {
     }
 }
 
-TEST_CASE("strata: a row of lamps of different power") {
+TEST_CASE("strata: a row of emitters of different power") {
     Scene scene;
     for (int i = 0; i < 16; ++i) {
         const float x = static_cast<float>(i) - 7.5f;
@@ -87,7 +87,7 @@ TEST_CASE("strata: a row of lamps of different power") {
     CHECK(times > 100);
 }
 
-TEST_CASE("strata: a sphere of light, and lamps on a square grid") {
+TEST_CASE("strata: a spherical emitter, and emitters on a square grid") {
     Scene ball, square;
     add_square_emitter(ball, {0, 0, 0}, 2, 24, 1);
     ball.materials[0].two_sided_emission = true; // whichever way the wrapping turns it
@@ -108,7 +108,7 @@ TEST_CASE("strata: a sphere of light, and lamps on a square grid") {
     CHECK(in_square > 100);
 }
 
-TEST_CASE("strata: a sky, alone and beside a lamp") {
+TEST_CASE("strata: a sky, alone and with an emitter") {
     Scene scene;
     scene.environment = make_sky(64);
     const double alone = gain(Lights(scene).view);

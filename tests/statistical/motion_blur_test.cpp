@@ -144,7 +144,7 @@ test::PictureEstimate estimate_of_moments(Queue& queue, MovingScene& moving, con
 
 } // namespace
 
-TEST_CASE("a disc that moves is blurred by the share of the time that it covers a point") {
+TEST_CASE("a moving disc is blurred by the share of time in which it covers a point") {
     Messages messages;
     const Scene scene = unlit_scene(disc(1), AnimatedPart::Translation, {-1, 0, 0}, {1, 0, 0});
     const MovingScene moving(scene, 0, {}, messages, kASecond);
@@ -166,7 +166,7 @@ TEST_CASE("a disc that moves is blurred by the share of the time that it covers 
     });
 }
 
-TEST_CASE("half a disc that turns is blurred evenly over the angle") {
+TEST_CASE("a turning half disc is blurred evenly over the angle") {
     Messages messages;
     // A quarter turn about z: from 0 on it covers the angles [turn, turn + 180 degrees].
     const float half = 0.70710678f;
@@ -183,7 +183,7 @@ TEST_CASE("half a disc that turns is blurred evenly over the angle") {
     });
 }
 
-TEST_CASE("a blurred picture is the mean of the pictures of all moments") {
+TEST_CASE("a picture with motion blur is the mean of the pictures at all times") {
     Queue queue = test::requested_queue();
     Messages messages;
     const auto moments = static_cast<uint32_t>(test::effort(600, 4000));

@@ -68,7 +68,7 @@ std::vector<BsdfCase> cases_with_deltas() {
 
 } // namespace
 
-TEST_CASE("particles carry the power that paths carry, by every BSDF, flat and about a bent normal") {
+TEST_CASE("particles carry the power that paths carry for every BSDF, with flat and bent normals") {
     const std::vector<BsdfCase> cases = cases_with_deltas();
     constexpr float tilts[] = {0, 0.1f, 0.3f};
     const auto count = static_cast<uint32_t>(effort(100'000, 10'000'000));
@@ -103,7 +103,7 @@ TEST_CASE("the particle test notices missing cosines of the two normals") {
     CHECK(std::fabs(bare - by_path.mean) > 10 * by_path.error);
 }
 
-TEST_CASE("a particle's direction is drawn from the adjoint's density, and its weight is value over density") {
+TEST_CASE("a particle's direction is sampled by the adjoint's density, and its weight is value over density") {
     const std::vector<BsdfCase> cases = rough_bsdf_cases();
     constexpr float tilts[] = {0, 0.3f};
     const int tests = static_cast<int>(cases.size() * std::size(tilts));
@@ -132,7 +132,7 @@ TEST_CASE("a particle's direction is drawn from the adjoint's density, and its w
     }
 }
 
-TEST_CASE("on a flat surface the adjoint is the BSDF with its directions exchanged") {
+TEST_CASE("on a flat surface the adjoint is the BSDF with exchanged directions") {
     for (const BsdfCase& c : rough_bsdf_cases()) {
         const Surface surface = tilted_surface(c.bsdf, 0);
         for (uint32_t i = 0; i < 200; ++i) {

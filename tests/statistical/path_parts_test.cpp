@@ -64,7 +64,7 @@ TEST_CASE("direct and indirect light add up to the whole picture") {
     CHECK(indirect > 0.02 * direct); // most of the picture is sky
 }
 
-TEST_CASE("next-event estimation, BSDF sampling and both weighted converge to one picture") {
+TEST_CASE("next-event estimation, BSDF sampling and MIS of both converge to one picture") {
     const PictureEstimate mis = estimate(LightStrategy::Mis, 1);
     const PictureEstimate nee = estimate(LightStrategy::NeeOnly, 100'000);
     const PictureEstimate bsdf = estimate(LightStrategy::BsdfOnly, 200'000);
@@ -79,7 +79,7 @@ TEST_CASE("next-event estimation, BSDF sampling and both weighted converge to on
     }
 }
 
-TEST_CASE("a white sphere in a white furnace cannot be seen") {
+TEST_CASE("a white sphere in a white furnace is invisible") {
     Queue queue = test::requested_queue();
     RenderSettings settings;
     settings.width = settings.height = 24;

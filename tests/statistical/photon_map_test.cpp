@@ -99,7 +99,7 @@ TEST_CASE("photon mapping has at most a 60th of path tracing's error on a causti
     camera.world_from_camera = look_at({0, 0.6f, 2}, {-0.25f, 0, -0.1f}, {0, 1, 0});
     camera.fov_y = 0.14f;
     Queue queue = Queue::make_cpu();
-    const auto look = [&](IntegratorKind integrator, uint32_t samples, uint32_t seed) {
+    const auto render = [&](IntegratorKind integrator, uint32_t samples, uint32_t seed) {
         RenderSettings settings;
         settings.width = settings.height = 32;
         settings.path.max_depth = 8;
@@ -109,14 +109,14 @@ TEST_CASE("photon mapping has at most a 60th of path tracing's error on a causti
         settings.photon_map.photons = 1u << 12;
         return render_picture(queue, prepared, camera, settings).picture;
     };
-    const Image one = look(IntegratorKind::Bidirectional, 512, 101);
-    const Image other = look(IntegratorKind::Bidirectional, 512, 102);
+    const Image one = render(IntegratorKind::Bidirectional, 512, 101);
+    const Image other = render(IntegratorKind::Bidirectional, 512, 102);
     // Product of each picture's differences from two references, so that the references' noise cancels.
     const auto cost = [&](IntegratorKind integrator, uint32_t samples) {
         const double start = test::cpu_seconds();
         double error = 0;
         for (uint32_t seed = 0; seed < 4; ++seed) {
-            const Image picture = look(integrator, samples, seed);
+            const Image picture = render(integrator, samples, seed);
             double sum = 0;
             for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
                 const auto x = static_cast<double>(picture.pixels[i]), a = static_cast<double>(one.pixels[i]),
@@ -135,7 +135,7 @@ TEST_CASE("photon mapping has at most a 60th of path tracing's error on a causti
     CHECK(path > 60 * photons);
 }
 
-TEST_CASE("a lamp that stands on the floor is no noisier than by path tracing, from millimetres on") {
+TEST_CASE("an emitter standing on the floor is no noisier than with path tracing, from millimetres on") {
     const Material floors[] = {test::white(0.7f), test::of_roughness(MaterialKind::MetallicRoughness, 0.4f)};
     for (const Material& floor : floors) {
         CAPTURE(floor.name);
@@ -153,7 +153,7 @@ TEST_CASE("a lamp that stands on the floor is no noisier than by path tracing, f
         settings.path.max_depth = 1; // light of the lamp alone: no photons
         settings.photon_map.gather = PhotonGather::Direct;
         const Camera camera = test::camera_down({0, 0.05f, 0.006f}, 0.2f); // floor 1 to 11 mm in front of the wall
-        const auto look = [&](IntegratorKind integrator, VarianceOfPictures& variance) {
+        const auto render = [&](IntegratorKind integrator, VarianceOfPictures& variance) {
             settings.integrator = integrator;
             double mean = 0;
             for (settings.path.seed = 0; settings.path.seed < 64; ++settings.path.seed) {
@@ -164,8 +164,8 @@ TEST_CASE("a lamp that stands on the floor is no noisier than by path tracing, f
             return mean;
         };
         VarianceOfPictures of_path, of_photons;
-        const double by_path = look(IntegratorKind::Path, of_path),
-                     by_photons = look(IntegratorKind::PhotonMap, of_photons);
+        const double by_path = render(IntegratorKind::Path, of_path),
+                     by_photons = render(IntegratorKind::PhotonMap, of_photons);
         const double path = of_path.over(of_path.best_pixels(1)).rel_mse;
         const double photons = of_photons.over(of_photons.best_pixels(1)).rel_mse;
         CAPTURE(path);

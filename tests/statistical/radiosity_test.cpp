@@ -17,14 +17,14 @@ using namespace pertev;
 
 namespace {
 
-RadiosityLook solved(const PreparedScene& prepared, const RadiositySettings& settings) {
+RadiosityDisplay solved(const PreparedScene& prepared, const RadiositySettings& settings) {
     return {std::make_shared<const RadiositySolution>(solve_radiosity(prepared, settings).solution), false};
 }
 
 Image shown_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,
-                    const RadiosityLook& look) {
+                    const RadiosityDisplay& display) {
     settings.integrator = IntegratorKind::Radiosity;
-    settings.radiosity = look;
+    settings.radiosity = display;
     return render_picture(queue, prepared, camera, settings).picture;
 }
 
@@ -42,7 +42,7 @@ double mean_difference(const Image& a, const Image& b) {
 
 } // namespace
 
-TEST_CASE("all of a closed box that emits E and reflects r has radiosity E / (1 - r)") {
+TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) everywhere") {
     Messages messages;
     const float reflectance = 0.6f, radiance = 2;
     const Scene scene = test::closed_box(test::emitter_material(reflectance, radiance));
@@ -116,14 +116,14 @@ TEST_CASE("every row solver refuses a closed box that reflects all light") {
             return solve_radiosity(prepared, settings);
         };
         const Scene box = test::closed_box(test::emitter_material(1, 1));
-        CHECK(test::bad_input_message([&] { solve(box); }).find("radiosity: light has no end") == 0);
+        CHECK(test::bad_input_message([&] { solve(box); }).find("radiosity: light never ends") == 0);
         Scene open = box;
         open.instances.pop_back(); // a wall
         CHECK(solve(open).stats.left < 1e-3);
     }
 }
 
-TEST_CASE("a sphere in a furnace receives pi of the furnace's radiance, and shows its albedo") {
+TEST_CASE("a sphere in a furnace has the irradiance pi times the furnace's radiance and shows its albedo") {
     Messages messages;
     const Scene scene = test::make_furnace_scene(0.7f);
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -134,7 +134,7 @@ TEST_CASE("a sphere in a furnace receives pi of the furnace's radiance, and show
         settings.hemicube = 8;
         settings.form_factors = method;
         settings.subdivisions = 0;
-        const RadiosityLook look = solved(prepared, settings);
+        const RadiosityDisplay display = solved(prepared, settings);
         Camera camera;
         camera.world_from_camera = look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0});
         camera.fov_y = 0.1f; // within the sphere
@@ -142,7 +142,7 @@ TEST_CASE("a sphere in a furnace receives pi of the furnace's radiance, and show
         picture.width = picture.height = 8;
         picture.samples = 4;
         Queue queue = test::requested_queue();
-        const Image image = shown_picture(queue, prepared, camera, picture, look);
+        const Image image = shown_picture(queue, prepared, camera, picture, display);
         for (const float value : image.pixels) CHECK(static_cast<double>(value) == doctest::Approx(0.7).epsilon(0.01));
     }
 }

@@ -111,7 +111,7 @@ struct BlockMeans {
         RenderSettings settings = session.settings();
         settings.path.max_depth = 0;
         settings.samples = samples;
-        add(session.look_aside(session.camera(), settings).picture, -1);
+        add(session.render_separately(session.camera(), settings).picture, -1);
     }
 };
 
@@ -151,7 +151,7 @@ void check_equal_light(const BlockMeans& means, const BlockMeans& expected, doub
 
 } // namespace
 
-TEST_CASE("without history the mean over frames with ReSTIR is the path tracer's") {
+TEST_CASE("without history the mean over frames with ReSTIR equals the path tracer's") {
     for (const RestirCase& c : restir_cases()) {
         CAPTURE(c.name);
         Messages messages;
@@ -169,7 +169,7 @@ TEST_CASE("without history the mean over frames with ReSTIR is the path tracer's
     }
 }
 
-TEST_CASE("with history the mean over frames with ReSTIR stays near the path tracer's") {
+TEST_CASE("with history the mean over frames with ReSTIR stays close to the path tracer's") {
     for (const RestirCase& c : {builtin_case("cornell-box"), builtin_case("many-lights")}) {
         CAPTURE(c.name);
         Messages messages;
@@ -184,7 +184,7 @@ TEST_CASE("with history the mean over frames with ReSTIR stays near the path tra
     }
 }
 
-TEST_CASE("while a lamp moves the mean over frames with ReSTIR stays near the path tracer's") {
+TEST_CASE("while an emitter moves the mean over frames with ReSTIR stays close to the path tracer's") {
     constexpr uint32_t kMoving = 48;
     const auto mean_of_motion = [&](const RestirSettings& restir) {
         Messages messages;

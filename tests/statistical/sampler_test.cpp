@@ -88,7 +88,7 @@ TEST_CASE("successive samples of white noise are independent") {
     check_uniform([&](uint32_t i) { return Vec2{one(i), one(i + kPairs)}; }, "sample 2^20 later");
 }
 
-TEST_CASE("over a smooth product of two pairs a group has a thirtieth of the variance of white noise") {
+TEST_CASE("for a smooth product of two pairs a group has a thirtieth of the variance of white noise") {
     // The mean of x y z w over 64 samples, as a share of itself.
     double error[2] = {};
     for (const SamplerKind kind : kKinds) {
@@ -115,7 +115,8 @@ TEST_CASE("a stratified sequence integrates better than white noise") {
                 const Vec2 p = sample_2d(kind, {pixel, i, 0}, 2);
                 mean += (p.x * p.x + p.y * p.y <= 1 ? 1.0 : 0.0) / 256;
             }
-            error[kind == SamplerKind::Sobol ? 0 : 1] += (mean - 0.7853981633974483) * (mean - 0.7853981633974483) / 512;
+            error[kind == SamplerKind::Sobol ? 0 : 1] +=
+                (mean - 0.7853981633974483) * (mean - 0.7853981633974483) / 512;
         }
     }
     CHECK(std::sqrt(error[0]) < 0.35 * std::sqrt(error[1])); // a discontinuous integrand: N^-3/4 against N^-1/2

@@ -62,19 +62,19 @@ TEST_CASE("the chi-square test refuses a density that is tilted by 5 % or off by
     CHECK(chi_square_of_directions(failing, [](Vec3) { return 0.0795774715 * 0.999; }).passes(kWarpTests));
 }
 
-TEST_CASE("the incomplete gamma function is right") {
+TEST_CASE("the incomplete gamma function matches known values") {
     CHECK(test::upper_gamma(1, 2) == doctest::Approx(std::exp(-2.0)).epsilon(1e-12));
     CHECK(test::upper_gamma(0.5, 0.25) == doctest::Approx(std::erfc(0.5)).epsilon(1e-12));
     CHECK(test::upper_gamma(0.5, 9) == doctest::Approx(std::erfc(3.0)).epsilon(1e-12));
     CHECK(test::upper_gamma(400, 400) == doctest::Approx(0.49335).epsilon(1e-4)); // near 1/2 - 1/(3 sqrt(2 pi a))
 }
 
-TEST_CASE("points of the disk are uniform") {
+TEST_CASE("points on the disk are uniform") {
     check(chi_square_of_points([](Vec2 u) { return sample_uniform_disk_concentric(u); }, inside_disk, {-1, -1}, {1, 1},
                                {.cells_x = 30, .cells_y = 30}));
 }
 
-TEST_CASE("points of the triangle are uniform") {
+TEST_CASE("points on the triangle are uniform") {
     check(chi_square_of_points([](Vec2 u) { return sample_uniform_triangle(u); },
                                [](Vec2 p) { return p.x + p.y <= 1 ? 2.0 : 0.0; }, {0, 0}, {1, 1}, {.cells_y = 40}));
 }

@@ -117,7 +117,7 @@ double largest_step(int subdivisions) {
 
 } // namespace
 
-TEST_CASE("raised directions clear the horizon, and lowering takes them back") {
+TEST_CASE("raised directions clear the horizon, and lowering inverts raising") {
     for (const float tilt : {kMinTilt, 0.02f, 0.1f, 1.0f / 6, 0.2f, kLargestTilt}) {
         CAPTURE(tilt);
         float before = 0;
@@ -179,7 +179,7 @@ TEST_CASE("sampling a tilted surface follows its density for every BSDF") {
     }
 }
 
-TEST_CASE("raising loses no light: every sample of a BSDF leaves its triangle on the right side") {
+TEST_CASE("raising loses no light: every BSDF sample leaves its triangle on the correct side") {
     std::vector<BsdfCase> cases = rough_bsdf_cases();
     cases.push_back({"smooth glass", make_dielectric(1.5f, 0, grey(1))});
     cases.push_back({"mirror", make_conductor(kGoldEta, kGoldK, 0)});
@@ -210,7 +210,7 @@ TEST_CASE("raising loses no light: every sample of a BSDF leaves its triangle on
 }
 
 // So a particle's weight, value |wo . Ng| / |wi . Ng| (docs/conventions.md), is bounded. Without the raise it is not.
-TEST_CASE("the value over the triangle's own cosine stays bounded down to its horizon") {
+TEST_CASE("the value over the geometric cosine stays bounded down to the horizon") {
     for (const float tilt : kTilts) {
         CAPTURE(tilt);
         const Surface surface = tilted_surface(make_diffuse(grey(1)), tilt);
@@ -233,7 +233,7 @@ TEST_CASE("the value over the triangle's own cosine stays bounded down to its ho
     }
 }
 
-TEST_CASE("coarse smooth spheres cannot be seen in a white furnace, nor their rims") {
+TEST_CASE("coarse smooth spheres and their rims are invisible in a white furnace") {
     Material chalk{{.base_color = grey(1)}, "chalk"};
     Material glass{{.kind = MaterialKind::Dielectric, .base_color = grey(1), .roughness = 0}, "glass"};
     Material frosted = glass;
@@ -259,7 +259,7 @@ TEST_CASE("coarse smooth spheres cannot be seen in a white furnace, nor their ri
     }
 }
 
-TEST_CASE("a coarse smooth sphere beside a lamp ends softly in the dark") {
+TEST_CASE("a coarse smooth sphere next to an emitter has a soft terminator") {
     const double of_80 = largest_step(1), of_320 = largest_step(2);
     CHECK(of_80 < 0.12); // 0.21 and 0.10 where light is cut off at the triangles' horizons
     CHECK(of_320 < 0.06);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "accel/bvh/compressed_bvh.h"
-#include "tests/support/nasty_meshes.h"
+#include "tests/support/stress_meshes.h"
 
 namespace pertev::test {
 
@@ -22,8 +22,8 @@ inline bool are_same(const CompressedBvh& a, const CompressedBvh& b) {
 }
 
 /// Meshes that break builders, and sizes around the limits of warps and groups.
-inline std::vector<NastyMesh> builder_meshes() {
-    std::vector<NastyMesh> all = nasty_meshes(700);
+inline std::vector<StressMesh> builder_meshes() {
+    std::vector<StressMesh> all = stress_meshes(700);
     for (const uint32_t count : {2u, 3u, 4u, 15u, 16u, 17u, 31u, 32u, 33u, 34u, 63u, 65u, 129u, 300u}) {
         all.push_back({"a small soup", make_soup(count, 0), {}});
     }

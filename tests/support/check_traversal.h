@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "tests/support/nasty_meshes.h"
+#include "tests/support/stress_meshes.h"
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
 

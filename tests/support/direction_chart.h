@@ -20,11 +20,11 @@ struct DirectionChart {
         double x, y;
     };
     Point point_of(Vec3 direction) const;
-    struct Place {
+    struct ChartPoint {
         Vec3 direction;
         double area; // solid angle over dx dy
     };
-    Place place_of(Point p) const;
+    ChartPoint point_of(Point p) const;
 };
 
 struct ChartRectangle {

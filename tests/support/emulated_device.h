@@ -32,24 +32,24 @@ using namespace pertev::test::lane; // NOLINT: before the name means something e
 
 namespace pertev {
 
-using CodePlace = std::source_location;
+using CodeLocation = std::source_location;
 
 inline const lane::Index &threadIdx = lane::thread_index, &blockIdx = lane::block_index, &blockDim = lane::block_size;
 
-inline uint32_t __activemask(CodePlace at = CodePlace::current()) { return lane::active_mask(at); }
-inline uint32_t __ballot_sync(uint32_t mask, bool mine, CodePlace at = CodePlace::current()) {
+inline uint32_t __activemask(CodeLocation at = CodeLocation::current()) { return lane::active_mask(at); }
+inline uint32_t __ballot_sync(uint32_t mask, bool mine, CodeLocation at = CodeLocation::current()) {
     return lane::ballot(mask, mine, at);
 }
-inline int __all_sync(uint32_t mask, bool mine, CodePlace at = CodePlace::current()) {
+inline int __all_sync(uint32_t mask, bool mine, CodeLocation at = CodeLocation::current()) {
     return lane::all(mask, mine, at);
 }
-inline uint32_t __match_any_sync(uint32_t mask, unsigned long long key, CodePlace at = CodePlace::current()) {
+inline uint32_t __match_any_sync(uint32_t mask, unsigned long long key, CodeLocation at = CodeLocation::current()) {
     return lane::match_any(mask, key, at);
 }
-inline uint32_t __shfl_sync(uint32_t mask, uint32_t value, int source, CodePlace at = CodePlace::current()) {
+inline uint32_t __shfl_sync(uint32_t mask, uint32_t value, int source, CodeLocation at = CodeLocation::current()) {
     return lane::shuffle(mask, value, source, at);
 }
-inline void __syncwarp(uint32_t mask = 0xffffffffu, CodePlace at = CodePlace::current()) { lane::sync(mask, at); }
+inline void __syncwarp(uint32_t mask = 0xffffffffu, CodeLocation at = CodeLocation::current()) { lane::sync(mask, at); }
 /// In place of the assembler of trace/warps/warp_vote.h.
 inline uint32_t emulated_lanes_before() { return (1u << (threadIdx.x & 31u)) - 1; }
 

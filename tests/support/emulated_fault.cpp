@@ -26,7 +26,7 @@ std::string text_of_lanes(uint32_t mask) {
     return text;
 }
 
-std::string text_of_place(const std::source_location& at) {
+std::string text_of_location(const std::source_location& at) {
     std::string_view file = at.file_name();
     for (const char* folder : {"/src/", "/tests/"}) {
         const std::size_t from = file.rfind(folder);
@@ -79,14 +79,14 @@ std::string describe(const EmulatedWarp& warp) {
         for_each_lane(left, [&](unsigned k) {
             const Meeting& other = warp.lanes[k].meeting;
             const bool alike = other.kind == meeting.kind && other.mask == meeting.mask &&
-                               text_of_place(other.at) == text_of_place(meeting.at) &&
+                               text_of_location(other.at) == text_of_location(meeting.at) &&
                                describe_calls(warp.lanes[k]) == calls;
             same |= alike ? 1u << k : 0;
         });
         left &= ~same;
         text += "\n  lanes " + text_of_lanes(same) + " wait at " + kNames[static_cast<int>(meeting.kind)];
         if (meeting.kind != MeetingKind::ActiveMask) text += " of mask " + text_of_hex(meeting.mask);
-        text += ", " + text_of_place(meeting.at);
+        text += ", " + text_of_location(meeting.at);
         if (meeting.kind != MeetingKind::ActiveMask) text += describe_missing(warp, meeting);
         text += "\n    addr2line -Cfipe build/bin/pertev_tests" + calls;
     }

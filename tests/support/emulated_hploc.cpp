@@ -10,26 +10,26 @@
 namespace pertev {
 
 template <class T>
-T shuffled(T value, int source, CodePlace at) {
+T shuffled(T value, int source, CodeLocation at) {
     uint32_t words[sizeof(T) / 4];
     std::memcpy(words, &value, sizeof(T));
     for (uint32_t& word : words) word = lane::shuffle(0xffffffffu, word, source, at);
     std::memcpy(&value, words, sizeof(T));
     return value;
 }
-inline float __shfl_sync(uint32_t, float value, int source, CodePlace at = CodePlace::current()) {
+inline float __shfl_sync(uint32_t, float value, int source, CodeLocation at = CodeLocation::current()) {
     return shuffled(value, source, at);
 }
 template <class T>
-T __shfl_xor_sync(uint32_t, T value, uint32_t step, CodePlace at = CodePlace::current()) {
+T __shfl_xor_sync(uint32_t, T value, uint32_t step, CodeLocation at = CodeLocation::current()) {
     return shuffled(value, static_cast<int>((threadIdx.x & 31u) ^ step), at);
 }
 template <class T>
-T __shfl_up_sync(uint32_t, T value, uint32_t step, uint32_t width = 32, CodePlace at = CodePlace::current()) {
+T __shfl_up_sync(uint32_t, T value, uint32_t step, uint32_t width = 32, CodeLocation at = CodeLocation::current()) {
     const uint32_t of_group = threadIdx.x % width;
     return shuffled(value, static_cast<int>((threadIdx.x & 31u) - (of_group >= step ? step : 0)), at);
 }
-inline bool __any_sync(uint32_t mask, bool mine, CodePlace at = CodePlace::current()) {
+inline bool __any_sync(uint32_t mask, bool mine, CodeLocation at = CodeLocation::current()) {
     return lane::ballot(mask, mine, at) != 0;
 }
 inline void __threadfence() { lane::step(); }

@@ -29,7 +29,7 @@ Index thread_index, block_index, block_size;
 
 namespace {
 
-using lane::CodePlace;
+using lane::CodeLocation;
 
 constexpr std::size_t kStackBytes = 128 << 10, kGuardBytes = 4 << 10;
 constexpr uint32_t kMaxWarps = 8; // at once
@@ -315,7 +315,7 @@ void Machine::answer_active_mask(EmulatedWarp& warp) {
     warp.ready |= together;
 }
 
-uint64_t meet(MeetingKind kind, uint32_t mask, uint64_t value, int source, const CodePlace& at, void* frame) {
+uint64_t meet(MeetingKind kind, uint32_t mask, uint64_t value, int source, const CodeLocation& at, void* frame) {
     if (!machine().is_running()) std::abort(); // no lane calls
     const Meeting meeting = {kind, mask, value, source, at, static_cast<void* const*>(frame)};
     return kind == MeetingKind::ActiveMask ? machine().wait_for_active_mask(meeting) : machine().meet(meeting);
@@ -330,22 +330,22 @@ std::string run_warps(const EmulatedLaunch& launch, const std::function<void()>&
 namespace lane {
 
 // Each is a call of its own, whose frame says where it was called from.
-[[gnu::noinline]] uint32_t active_mask(CodePlace at) {
+[[gnu::noinline]] uint32_t active_mask(CodeLocation at) {
     return static_cast<uint32_t>(meet(MeetingKind::ActiveMask, 0, 0, 0, at, __builtin_frame_address(0)));
 }
-[[gnu::noinline]] uint32_t ballot(uint32_t mask, bool mine, CodePlace at) {
+[[gnu::noinline]] uint32_t ballot(uint32_t mask, bool mine, CodeLocation at) {
     return static_cast<uint32_t>(meet(MeetingKind::Ballot, mask, mine ? 1 : 0, 0, at, __builtin_frame_address(0)));
 }
-[[gnu::noinline]] bool all(uint32_t mask, bool mine, CodePlace at) {
+[[gnu::noinline]] bool all(uint32_t mask, bool mine, CodeLocation at) {
     return meet(MeetingKind::All, mask, mine ? 1 : 0, 0, at, __builtin_frame_address(0)) != 0;
 }
-[[gnu::noinline]] uint32_t match_any(uint32_t mask, uint64_t key, CodePlace at) {
+[[gnu::noinline]] uint32_t match_any(uint32_t mask, uint64_t key, CodeLocation at) {
     return static_cast<uint32_t>(meet(MeetingKind::MatchAny, mask, key, 0, at, __builtin_frame_address(0)));
 }
-[[gnu::noinline]] uint32_t shuffle(uint32_t mask, uint32_t value, int source, CodePlace at) {
+[[gnu::noinline]] uint32_t shuffle(uint32_t mask, uint32_t value, int source, CodeLocation at) {
     return static_cast<uint32_t>(meet(MeetingKind::Shuffle, mask, value, source & 31, at, __builtin_frame_address(0)));
 }
-[[gnu::noinline]] void sync(uint32_t mask, CodePlace at) {
+[[gnu::noinline]] void sync(uint32_t mask, CodeLocation at) {
     meet(MeetingKind::Sync, mask, 0, 0, at, __builtin_frame_address(0));
 }
 void step() { machine().step(); }

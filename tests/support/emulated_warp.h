@@ -31,20 +31,20 @@ std::string run_warps(const EmulatedLaunch& launch, const std::function<void()>&
 /// mask.
 namespace lane {
 
-using CodePlace = std::source_location;
+using CodeLocation = std::source_location;
 
 struct Index {
     uint32_t x;
 };
 extern Index thread_index, block_index, block_size; // indices of the running lane
 
-uint32_t active_mask(CodePlace at = CodePlace::current());
-uint32_t ballot(uint32_t mask, bool mine, CodePlace at = CodePlace::current());
-bool all(uint32_t mask, bool mine, CodePlace at = CodePlace::current());
-uint32_t match_any(uint32_t mask, uint64_t key, CodePlace at = CodePlace::current());
+uint32_t active_mask(CodeLocation at = CodeLocation::current());
+uint32_t ballot(uint32_t mask, bool mine, CodeLocation at = CodeLocation::current());
+bool all(uint32_t mask, bool mine, CodeLocation at = CodeLocation::current());
+uint32_t match_any(uint32_t mask, uint64_t key, CodeLocation at = CodeLocation::current());
 /// The value of lane `source`, one of the mask.
-uint32_t shuffle(uint32_t mask, uint32_t value, int source, CodePlace at = CodePlace::current());
-void sync(uint32_t mask, CodePlace at = CodePlace::current());
+uint32_t shuffle(uint32_t mask, uint32_t value, int source, CodeLocation at = CodeLocation::current());
+void sync(uint32_t mask, CodeLocation at = CodeLocation::current());
 /// Others may run before this lane goes on, as around an atomic operation.
 void step();
 

@@ -38,7 +38,7 @@ InstancedScene make_instanced_scene(uint32_t ray_count) {
         s.placed.push_back({place, s.trees[mesh].bounds, mesh, i * 3 + 1});
     }
     s.top = build_tlas(s.placed);
-    s.rays = nasty_rays(ray_count, {"torus", s.baked, {}, 1}, 23);
+    s.rays = stress_rays(ray_count, {"torus", s.baked, {}, 1}, 23);
     return s;
 }
 

@@ -58,7 +58,7 @@ struct AlphaScene {
 
 } // namespace
 
-TEST_CASE("a ray meets neither the triangle it leaves nor the one it is aimed at, and every other one") {
+TEST_CASE("a ray ignores the triangle that it leaves and its target, and hits every other one") {
     const AlphaScene test;
     const AcceptHit accept{test.device.view(), {kSolid, 1}, {kMasked, 0}, 5};
     CHECK_FALSE(accept(kSolid, 1, 0.2f, 0.2f));
@@ -69,7 +69,7 @@ TEST_CASE("a ray meets neither the triangle it leaves nor the one it is aimed at
     CHECK(from_nowhere(kSolid, 1, 0.2f, 0.2f));
 }
 
-TEST_CASE("opaque surfaces stop every ray, whatever their alpha") {
+TEST_CASE("opaque surfaces stop every ray, whatever their alpha is") {
     const AlphaScene test;
     CHECK(test.stopped(kSolid, 0.1f, 0.1f) == 1);
 }
@@ -80,7 +80,7 @@ TEST_CASE("a cut-out stops rays where its texture's alpha reaches the cutoff") {
     CHECK(test.stopped(kMasked, 0.5f, 0.3f) == 0);
 }
 
-TEST_CASE("a blended surface stops as large a share of the paths as its alpha says, vertex colours included") {
+TEST_CASE("a blended surface stops the share of paths that equals its alpha, including vertex colours") {
     const AlphaScene test;
     const double deviation = std::sqrt(0.25 / 20'000);
     CHECK(std::abs(test.stopped(kBlended, 0.3f, 0.3f) - 0.3) < 4 * deviation);
@@ -167,7 +167,7 @@ TEST_CASE("a cut-out stops rays where the alpha of vertices equals the cutoff") 
           0);
 }
 
-TEST_CASE("a cut-out stops rays where the alpha of texels equals the cutoff, whichever of 256 that is") {
+TEST_CASE("a cut-out stops rays where the alpha of texels equals the cutoff, for all 256 values") {
     for (uint32_t value = 1; value < 256; ++value) {
         Mesh mesh = triangle_of_alpha(1, 1, 1);
         mesh.colors.clear();
@@ -226,7 +226,7 @@ std::vector<Met> triangles_met(const Mesh& mesh, float x, float y) {
 
 } // namespace
 
-TEST_CASE("the triangles of a blended surface that a ray meets on their edge or corner count once") {
+TEST_CASE("triangles of a blended surface that a ray meets on a common edge or corner count once") {
     test::Random random(11);
     uint32_t on_edges = 0, at_corners = 0;
     for (uint32_t round = 0; round < 40; ++round) {

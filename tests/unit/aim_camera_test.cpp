@@ -23,7 +23,7 @@ Scene make_two_sheets() {
 
 } // namespace
 
-TEST_CASE("an eye without a target looks at the middle of the scene, from its middle along it") {
+TEST_CASE("an eye without a target looks at the middle of the scene, and from the middle along its length") {
     const Scene scene = make_two_sheets();
     const Target far = target_from(scene, {5, 6, 7});
     CHECK(far.is_middle);
@@ -33,7 +33,7 @@ TEST_CASE("an eye without a target looks at the middle of the scene, from its mi
     CHECK(near.position == Vec3{0, 1, -3});
 }
 
-TEST_CASE("the distance in the middle of the picture is that of the nearest surface there") {
+TEST_CASE("the distance in the middle of the picture is that of the nearest surface") {
     const Scene scene = make_two_sheets();
     Camera camera;
     camera.world_from_camera = look_at({0.3f, 1, 4}, {0.3f, 1, 0}, {0, 1, 0});
@@ -46,7 +46,7 @@ TEST_CASE("the distance in the middle of the picture is that of the nearest surf
     CHECK(!distance_in_the_middle(scene, camera).has_value());
 }
 
-TEST_CASE("backs that the camera looks through do not stand in the middle of the picture") {
+TEST_CASE("hidden backs do not count as the surface in the middle of the picture") {
     Scene scene = make_two_sheets();
     scene.instances[1].world_from_local = make_translation({0, 0, -3}); // both face +z
     Camera camera;

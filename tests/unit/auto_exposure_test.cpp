@@ -37,7 +37,7 @@ double burnt_share(const Image& image, ToneMap tone_map, float stops) {
 
 } // namespace
 
-TEST_CASE("an even grey becomes middle grey, and twice the light takes one stop off") {
+TEST_CASE("a uniform grey becomes middle grey, and twice the light lowers the exposure by one stop") {
     for (const ToneMap tone_map : kAll) {
         CHECK(stops_of(picture([](uint32_t, uint32_t) { return 0.36f; }), tone_map) == -1.0f);
         CHECK(stops_of(picture([](uint32_t, uint32_t) { return 0.72f; }), tone_map) == -2.0f);
@@ -50,7 +50,7 @@ TEST_CASE("noise does not change the exposure") {
     CHECK(stops_of(noisy) == 0.0f);
 }
 
-TEST_CASE("a dark room does not burn out the fifth of the picture that is lit") {
+TEST_CASE("a dark room does not clip the lit fifth of the picture") {
     const Image room = picture([](uint32_t x, uint32_t) { return x < 32 ? 0.5f : 1e-4f; });
     for (const ToneMap tone_map : kAll) {
         const float stops = stops_of(room, tone_map);
@@ -60,7 +60,7 @@ TEST_CASE("a dark room does not burn out the fifth of the picture that is lit") 
     }
 }
 
-TEST_CASE("of a few very bright pixels at most half a hundredth of the picture is burnt") {
+TEST_CASE("a few very bright pixels clip at most 0.5 % of the picture") {
     for (const uint32_t columns : {1u, 3u}) { // 0.6 and 1.9 % of the picture, at 300 to 3000 times the rest
         const Image image = picture(
             [&](uint32_t x, uint32_t y) { return x < columns ? 60.0f * static_cast<float>(1 + y / 8) : 0.18f; });
@@ -74,7 +74,7 @@ TEST_CASE("of a few very bright pixels at most half a hundredth of the picture i
     CHECK(stops_of(sparks) == 0.0f);
 }
 
-TEST_CASE("paint keeps its colour: its largest channel stays below four fifths, but for a tenth of the picture") {
+TEST_CASE("paint keeps its colour: its largest channel stays below 0.8 except in a tenth of the picture") {
     const Image plain = picture([](uint32_t, uint32_t) { return 0.0f; });
     for (const Rgb paint : {Rgb{0.8f, 0.02f, 0.02f}, Rgb{0.02f, 0.02f, 0.8f}}) {
         Image image = plain;
@@ -89,7 +89,7 @@ TEST_CASE("paint keeps its colour: its largest channel stays below four fifths, 
     }
 }
 
-TEST_CASE("the middle of the picture weighs more in the mean than a pale background around it") {
+TEST_CASE("the middle of the picture weighs more in the mean than a pale background") {
     const auto is_middle = [](uint32_t x, uint32_t y) { return x >= 40 && x < 120 && y >= 20 && y < 60; }; // a quarter
     const auto two_tones = [&](float middle, float around) {
         return picture([&](uint32_t x, uint32_t y) { return is_middle(x, y) ? middle : around; });
@@ -101,7 +101,7 @@ TEST_CASE("the middle of the picture weighs more in the mean than a pale backgro
     CHECK(stops_of(two_tones(0.18f, 0.045f), ToneMap::Agx) == doctest::Approx(-dark_thing).epsilon(0.05));
 }
 
-TEST_CASE("an object that fills a tenth of the picture clips no more than one that fills it") {
+TEST_CASE("an object that fills a tenth of the picture clips no more than one that fills the whole picture") {
     Image image{160, 80, 4, {}}; // bright: 4.7 % of the thing, 0.47 % of the picture
     for (uint32_t i = 0; i < 160 * 80; ++i) {
         const uint32_t x = i % 160;
@@ -112,7 +112,7 @@ TEST_CASE("an object that fills a tenth of the picture clips no more than one th
     CHECK(tone_map(grey(200), ToneMap::Srgb, exposure_scale(stops_of(image, ToneMap::Srgb))).g < 1);
 }
 
-TEST_CASE("pixels without alpha do not count, and partly covered ones count in part") {
+TEST_CASE("pixels without alpha do not count, and partly covered pixels count in part") {
     Image image{160, 80, 4, {}};
     for (uint32_t i = 0; i < 160 * 80; ++i) {
         const bool is_emitter = i % 160 >= 40, is_edge = i % 160 == 39; // half covered, its light is half as much
@@ -122,7 +122,7 @@ TEST_CASE("pixels without alpha do not count, and partly covered ones count in p
     CHECK(stops_of(image) == -2.0f);
 }
 
-TEST_CASE("stops are hundredths, as a flag says them, and stay within their limits") {
+TEST_CASE("stops are multiples of 0.01 and stay within their limits") {
     for (const float light : {1e-30f, 0.0123f, 0.777f, 31.4f, 1e30f}) {
         const float stops = stops_of(picture([&](uint32_t, uint32_t) { return light; }));
         CHECK(stops == floor(100 * stops + 0.5f) / 100.0f);
@@ -130,7 +130,7 @@ TEST_CASE("stops are hundredths, as a flag says them, and stay within their limi
     }
 }
 
-TEST_CASE("a picture without light, or without anything finite, is left as it is") {
+TEST_CASE("a picture without light or finite values is left unchanged") {
     CHECK(stops_of(picture([](uint32_t, uint32_t) { return 0.0f; })) == 0.0f);
     CHECK(stops_of(picture([](uint32_t, uint32_t) { return kInfinity; })) == 0.0f);
 }

@@ -41,7 +41,7 @@ double far_share_of(bool is_open, float emitter_radiance, float scale = 1) {
 
 } // namespace
 
-TEST_CASE("where a wall keeps them apart, each kind has its own surfaces to light") {
+TEST_CASE("kinds of lights separated by a wall are balanced by the surfaces that they light") {
     // Half of the points look at the box's outside, which the sky alone lights, the others at its inside and the lamp;
     // neither may starve.
     for (const float radiance : {30.0f, 300.0f}) {
@@ -52,7 +52,7 @@ TEST_CASE("where a wall keeps them apart, each kind has its own surfaces to ligh
     }
 }
 
-TEST_CASE("the share follows the lamp's strength, and neither kind is forgotten") {
+TEST_CASE("the share follows the emitter's power, and neither kind gets none") {
     double last = 1;
     for (const float radiance : {1e-6f, 0.1f, 10.0f, 1e3f, 1e9f}) {
         const double share = far_share_of(true, radiance);
@@ -66,7 +66,7 @@ TEST_CASE("the share follows the lamp's strength, and neither kind is forgotten"
     CHECK(far_share_of(true, 1e9f) < 0.3);
 }
 
-TEST_CASE("the share does not ask for the unit of length") {
+TEST_CASE("the share does not depend on the unit of length") {
     const double metres = far_share_of(true, 10), millimetres = far_share_of(true, 10, 1e-3f);
     CHECK(millimetres == doctest::Approx(metres).epsilon(0.02));
 }

@@ -16,14 +16,14 @@ struct Size {
     uint32_t width, height;
 };
 
-TEST_CASE("every pixel comes once, also where tiles and bands do not fill the picture") {
+TEST_CASE("every pixel occurs once, even where tiles and bands do not fill the picture") {
     const Size sizes[] = {{1, 1}, {7, 3}, {8, 4}, {64, 64}, {101, 67}, {16, 131}, {200, 9}, {24, 84}, {29, 87}};
     for (const Size size : sizes) {
         CAPTURE(size.width);
         CAPTURE(size.height);
         std::vector<uint32_t> times(std::size_t(size.width) * size.height);
-        for (uint32_t place = 0; place < times.size(); ++place) {
-            const uint32_t pixel = ordered_pixel(place, size.width, size.height);
+        for (uint32_t index = 0; index < times.size(); ++index) {
+            const uint32_t pixel = ordered_pixel(index, size.width, size.height);
             REQUIRE(pixel < times.size());
             ++times[pixel];
         }
@@ -31,13 +31,13 @@ TEST_CASE("every pixel comes once, also where tiles and bands do not fill the pi
     }
 }
 
-TEST_CASE("32 pixels that come together are one tile") {
+TEST_CASE("32 consecutive pixels are one tile") {
     for (const Size size : {Size{1920, 1080}, Size{101, 67}, Size{29, 87}}) {
         const uint32_t tiled = (size.width / 8) * (size.height / 4) * 32;
         uint32_t apart = 0;
-        for (uint32_t place = 0; place < tiled; ++place) {
-            const uint32_t first = ordered_pixel(place / 32 * 32, size.width, size.height);
-            const uint32_t pixel = ordered_pixel(place, size.width, size.height);
+        for (uint32_t index = 0; index < tiled; ++index) {
+            const uint32_t first = ordered_pixel(index / 32 * 32, size.width, size.height);
+            const uint32_t pixel = ordered_pixel(index, size.width, size.height);
             apart += first % size.width / 8 != pixel % size.width / 8 ? 1 : 0;
             apart += first / size.width / 4 != pixel / size.width / 4 ? 1 : 0;
         }
@@ -45,7 +45,7 @@ TEST_CASE("32 pixels that come together are one tile") {
     }
 }
 
-TEST_CASE("samples of a pixel come one after another, of the pixels and samples that are asked for") {
+TEST_CASE("samples of a pixel are consecutive and cover the requested pixels and samples") {
     const Size size = {101, 67};
     const BeginOrder order = {1000, 500, 7, 3};
     CHECK(order.count() == 1500);
@@ -56,17 +56,17 @@ TEST_CASE("samples of a pixel come one after another, of the pixels and samples 
     }
 }
 
-TEST_CASE("numbers beyond 32 bits keep their place") {
+TEST_CASE("indices beyond 32 bits keep their order") {
     const BeginOrder order = {0, 1920 * 1080, 0, 1u << 20};
     const PixelSample last = order.at(order.count() - 1, 1920, 1080);
     CHECK(last.pixel == ordered_pixel(1920 * 1080 - 1, 1920, 1080));
     CHECK(last.sample == (1u << 20) - 1);
 }
 
-TEST_CASE("pixels that come together lie in about a square") {
+TEST_CASE("consecutive pixels lie in an approximate square") {
     uint32_t left = 1920, right = 0, top = 1080, bottom = 0;
-    for (uint32_t place = 500'000; place < 504'096; ++place) {
-        const uint32_t pixel = ordered_pixel(place, 1920, 1080), x = pixel % 1920, y = pixel / 1920;
+    for (uint32_t index = 500'000; index < 504'096; ++index) {
+        const uint32_t pixel = ordered_pixel(index, 1920, 1080), x = pixel % 1920, y = pixel / 1920;
         left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
     }
     CHECK(right - left < 100);

@@ -4,7 +4,7 @@
 
 using namespace pertev;
 
-TEST_CASE("a picture of means over blocks has one pixel a block, the border's over what there is") {
+TEST_CASE("a picture of block means has one pixel per block, with partial blocks at the border") {
     Image image{5, 3, 3, {}};
     for (uint32_t y = 0; y < 3; ++y) {
         for (uint32_t x = 0; x < 5; ++x) {

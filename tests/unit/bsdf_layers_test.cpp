@@ -6,7 +6,7 @@
 
 using namespace pertev;
 
-TEST_CASE("a layer for which there is no room is left out") {
+TEST_CASE("a layer beyond the capacity is left out") {
     Bsdf bsdf{DiffuseLobe{{0.5f, 0.4f, 0.3f}, 1}};
     for (int i = 0; i < Bsdf::kMaxLayers; ++i) bsdf = make_coated(bsdf, 0.5f, 0.3f, 1.5f);
     const Bsdf full = bsdf;

@@ -44,7 +44,7 @@ void check(const char* name, const Bsdf& bsdf) {
 
 } // namespace
 
-TEST_CASE("both branches of delta lobes are the means of what is drawn of them, under layers too") {
+TEST_CASE("both branches of delta lobes equal the means of their samples, even under layers") {
     const Bsdf glass = make_dielectric(1.5f, 0, {0.9f, 0.8f, 0.7f});
     const Bsdf plastic = make_metallic_roughness({0.6f, 0.3f, 0.2f}, 0, 0, 1.5f);
     const Bsdf metal = make_conductor({0.2f, 0.9f, 1.1f}, {3.9f, 2.4f, 2.2f}, 0);

@@ -99,7 +99,7 @@ const BvhBuildSettings kSettings[] = {{},
 
 } // namespace
 
-TEST_CASE("every tree is sound, whatever the triangles and the settings") {
+TEST_CASE("every tree is valid for all triangles and settings") {
     for (const NamedTriangles& input : hard_inputs()) {
         CAPTURE(input.name);
         for (const BvhBuildSettings& settings : kSettings) {
@@ -126,7 +126,7 @@ TEST_CASE("every tree is sound, whatever the triangles and the settings") {
     }
 }
 
-TEST_CASE("flags that the builder does not own are kept") {
+TEST_CASE("the builder keeps flags that it does not own") {
     std::vector<BvhTriangle> triangles = random_triangles(100, 0.1f, 1);
     for (BvhTriangle& t : triangles) t.flags = (t.primitive << 1) | kLastInLeaf; // left over from another tree
     const Bvh bvh = build_bvh(triangles);
@@ -162,7 +162,7 @@ TEST_CASE("more triangles than a tree can hold are refused") {
     CHECK(build_bvh(random_triangles(32, 0.1f, 1), {.max_leaf = 4, .max_depth = 3}).depth == 3);
 }
 
-TEST_CASE("the checker finds what is wrong with a tree") {
+TEST_CASE("the checker finds faults in a tree") {
     const Bvh good = build_bvh(random_triangles(500, 0.1f, 1));
     REQUIRE(!find_fault(good));
     const auto broken = [&](auto&& change) {
@@ -183,7 +183,7 @@ TEST_CASE("the checker finds what is wrong with a tree") {
     CHECK(broken([](Bvh& b) { b.nodes[0].x[0] = kInfinity; }));
 }
 
-TEST_CASE("the top level's boxes hold every instance's triangles, and the reach every step of their way") {
+TEST_CASE("the TLAS boxes contain every instance's triangles, and its reach bounds their transforms") {
     Random random(2);
     const std::vector<BvhTriangle> mesh = triangles_of(make_torus(12, 8));
     const Bvh bvh = build_bvh(mesh);

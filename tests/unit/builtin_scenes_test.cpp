@@ -31,7 +31,7 @@ TEST_CASE("the built-in Cornell box is complete") {
     CHECK(std::ranges::count(builtin_scene_names(), "cornell-box") == 1);
 }
 
-TEST_CASE("the Cornell box reads without a warning, and its surfaces are Lambertian") {
+TEST_CASE("the Cornell box is read without a warning, and its surfaces are Lambertian") {
     Messages messages;
     const Scene scene = read_scene("cornell-box", {}, messages);
     CHECK(messages.all().empty());
@@ -86,7 +86,7 @@ TEST_CASE("the scenes with narrow light are built in with their materials") {
     CHECK_FALSE(builtin_materials("caustics"));
 }
 
-TEST_CASE("a name that is no built-in scene finds nothing") {
+TEST_CASE("an unknown name of a built-in scene is not found") {
     CHECK_FALSE(builtin_scene("cornell"));
     CHECK_FALSE(builtin_scene(""));
 }

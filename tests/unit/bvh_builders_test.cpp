@@ -17,8 +17,8 @@
 #include "base/stopwatch.h"
 #include "tests/support/bvh_bytes.h"
 #include "tests/support/check_traversal.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
+#include "tests/support/stress_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -34,8 +34,8 @@ std::optional<std::string> fault_of(BvhBuilder builder, const Bvh& bvh, const st
 
 } // namespace
 
-TEST_CASE("every builder gives a sound tree on every nasty mesh") {
-    for (const NastyMesh& mesh : nasty_meshes()) {
+TEST_CASE("every builder makes a valid tree of every stress mesh") {
+    for (const StressMesh& mesh : stress_meshes()) {
         CAPTURE(mesh.name);
         for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
             CAPTURE(name_of(builder));
@@ -52,7 +52,7 @@ TEST_CASE("every builder gives a sound tree on every nasty mesh") {
 
 TEST_CASE("no builder's tree depends on the number of threads") {
     std::vector<std::vector<BvhTriangle>> meshes;
-    for (NastyMesh& mesh : nasty_meshes()) meshes.push_back(std::move(mesh.triangles));
+    for (StressMesh& mesh : stress_meshes()) meshes.push_back(std::move(mesh.triangles));
     meshes.push_back(triangles_of(make_torus(110, 80))); // large enough for the builders to share the work
     for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
         CAPTURE(name_of(builder));
@@ -69,10 +69,10 @@ TEST_CASE("no builder's tree depends on the number of threads") {
     set_thread_count(0);
 }
 
-TEST_CASE("traversals find in the tree of any builder what testing every triangle finds, bit for bit") {
-    for (const NastyMesh& mesh : nasty_meshes()) {
+TEST_CASE("traversals of any builder's tree match brute force bit for bit") {
+    for (const StressMesh& mesh : stress_meshes()) {
         CAPTURE(mesh.name);
-        const std::vector<Ray> rays = nasty_rays(1000, mesh, 29);
+        const std::vector<Ray> rays = stress_rays(1000, mesh, 29);
         const std::vector<Hit> all = hits_by_brute_force(mesh.triangles, rays, AcceptAll{});
         const std::vector<Hit> some = hits_by_brute_force(mesh.triangles, rays, AcceptSome{});
         for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
@@ -84,9 +84,9 @@ TEST_CASE("traversals find in the tree of any builder what testing every triangl
     }
 }
 
-TEST_CASE("no builder's tree is deeper than traversals go, however long the line") {
+TEST_CASE("no builder's tree exceeds the traversals' depth, however long the line") {
     std::vector<BvhTriangle> line;
-    for (NastyMesh& mesh : nasty_meshes(static_cast<uint32_t>(effort(20'000, 1'000'000)))) {
+    for (StressMesh& mesh : stress_meshes(static_cast<uint32_t>(effort(20'000, 1'000'000)))) {
         if (std::string_view(mesh.name) == "a line") line = std::move(mesh.triangles);
     }
     REQUIRE(!line.empty());
@@ -109,7 +109,7 @@ TEST_CASE("no builder's tree is deeper than traversals go, however long the line
     }
 }
 
-TEST_CASE("a chain of clusters far too deep is brought to what traversals can go, and stays the same tree above") {
+TEST_CASE("a chain of clusters that is too deep is flattened to the traversals' depth and unchanged above") {
     const std::vector<BvhTriangle> triangles = make_soup(5000, 0);
     const std::vector<BuildReference> references = references_of(triangles);
     BinaryTree chain;
@@ -136,7 +136,7 @@ TEST_CASE("a chain of clusters far too deep is brought to what traversals can go
     CHECK(make_bvh(chain, triangles, {.max_leaf = 1}).depth == levels_needed(5000));
 }
 
-TEST_CASE("coincident triangles, however many, neither stall a builder nor make a chain") {
+TEST_CASE("any number of coincident triangles neither stalls a builder nor makes a chain") {
     const std::vector<BvhTriangle> one = triangles_of(make_sphere(0, {}, 1));
     std::vector<BvhTriangle> triangles;
     for (uint32_t i = 0; i < effort(20'000, 1'000'000); ++i) {
@@ -152,7 +152,7 @@ TEST_CASE("coincident triangles, however many, neither stall a builder nor make 
     }
 }
 
-TEST_CASE("a builder keeps flags of other owners and resets its own") {
+TEST_CASE("a builder keeps other owners' flags and resets its own") {
     std::vector<BvhTriangle> triangles = make_soup(500, 0);
     for (BvhTriangle& t : triangles) t.flags = (t.primitive << 1) | kLastInLeaf; // left over from another tree
     for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
@@ -163,8 +163,8 @@ TEST_CASE("a builder keeps flags of other owners and resets its own") {
     }
 }
 
-TEST_CASE("spatial splits keep to their bound on references, and without any allowance cut nothing") {
-    for (const NastyMesh& mesh : nasty_meshes()) {
+TEST_CASE("spatial splits respect their limit on references and split nothing with a limit of 0") {
+    for (const StressMesh& mesh : stress_meshes()) {
         CAPTURE(mesh.name);
         std::size_t most = 0;
         for (const float growth : {0.0f, 0.1f, 1.0f, 8.0f}) {
@@ -181,7 +181,7 @@ TEST_CASE("spatial splits keep to their bound on references, and without any all
     }
 }
 
-TEST_CASE("spatial splits separate what boxes cannot: a grating of long diagonal strips") {
+TEST_CASE("spatial splits separate a grating of long diagonal strips, which boxes cannot") {
     std::vector<BvhTriangle> strips;
     for (uint32_t i = 0; i < 200; ++i) {
         const Vec3 from = {static_cast<float>(i), 0, 0}, along = {300, 300, 0};
@@ -229,7 +229,7 @@ BvhTriangle random_triangle(Random& random, bool far, bool sliver) {
 
 } // namespace
 
-TEST_CASE("the parts of a triangle cut in two hold every point of it, those on the cut in both") {
+TEST_CASE("both parts of a split triangle together contain all of its points, and each contains those on the plane") {
     Random random(41);
     uint64_t lost = 0, lost_on_cut = 0, outside = 0, cuts = 0, wide = 0;
     for (int i = 0; i < 20000; ++i) {
@@ -270,10 +270,10 @@ TEST_CASE("the parts of a triangle cut in two hold every point of it, those on t
     CHECK(wide == 0);
 }
 
-TEST_CASE("reinsertion makes any builder's tree better, and leaves it sound") {
-    for (const NastyMesh& mesh : nasty_meshes()) {
+TEST_CASE("reinsertion improves any builder's tree and keeps it valid") {
+    for (const StressMesh& mesh : stress_meshes()) {
         CAPTURE(mesh.name);
-        const std::vector<Ray> rays = nasty_rays(500, mesh, 37);
+        const std::vector<Ray> rays = stress_rays(500, mesh, 37);
         const std::vector<Hit> all = hits_by_brute_force(mesh.triangles, rays, AcceptAll{});
         for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
             CAPTURE(name_of(builder));
@@ -318,18 +318,16 @@ void check_costs(const std::vector<BvhTriangle>& triangles) {
 
 } // namespace
 
-TEST_CASE("each builder's tree is as good as its kind should be, on a torus") {
-    check_costs(triangles_of(make_torus(120, 80)));
-}
+TEST_CASE("each builder's tree has the expected cost on a torus") { check_costs(triangles_of(make_torus(120, 80))); }
 
-TEST_CASE("each builder's tree is as good as its kind should be, in Sponza") {
+TEST_CASE("each builder's tree has the expected cost in Sponza") {
     const auto path = test_scene("crytek-sponza/sponza.obj");
     if (!path) return;
     check_costs(triangles_of(read_obj_geometry(*path)));
 }
 
 TEST_CASE("the checker notices faults of trees with spatial splits") {
-    const std::vector<BvhTriangle> mesh = nasty_meshes()[2].triangles; // slivers
+    const std::vector<BvhTriangle> mesh = stress_meshes()[2].triangles; // slivers
     const Bvh good = build_bvh(BvhBuilder::SpatialSplits, mesh);
     REQUIRE(!find_split_fault(good, mesh));
     REQUIRE(good.triangles.size() > mesh.size());

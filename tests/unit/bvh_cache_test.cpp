@@ -56,7 +56,7 @@ void seal(std::vector<std::byte>& bytes) {
 
 } // namespace
 
-TEST_CASE("a cached tree is the built one, byte for byte") {
+TEST_CASE("a cached tree equals the built one byte for byte") {
     const Stored stored;
     Messages messages;
     const auto loaded = load_cached_bvh(stored.key, stored.folder, stored.triangles, messages);
@@ -71,7 +71,7 @@ TEST_CASE("a cached tree is the built one, byte for byte") {
     CHECK(messages.all().empty());
 }
 
-TEST_CASE("the cache's key changes with any vertex, id, order and setting") {
+TEST_CASE("the cache's key changes with every vertex, id, order and setting") {
     std::vector<BvhTriangle> triangles = triangles_of(make_torus(8, 6));
     const Hash128 key = bvh_cache_key(triangles, {});
     CHECK(bvh_cache_key(triangles, {}) == key);
@@ -91,7 +91,7 @@ TEST_CASE("the cache's key changes with any vertex, id, order and setting") {
     CHECK_FALSE(bvh_cache_key(changed, {}) == key);
 }
 
-TEST_CASE("a flipped bit anywhere in a cached file is noticed") {
+TEST_CASE("a flipped bit anywhere in a cached file is detected") {
     const Stored stored;
     const std::vector<std::byte> good = read_file(stored.file);
     for (std::size_t at = 0; at < good.size(); at += at < 128 ? 1 : 97) {
@@ -107,7 +107,7 @@ TEST_CASE("a flipped bit anywhere in a cached file is noticed") {
     }
 }
 
-TEST_CASE("a cached file of any other length is noticed") {
+TEST_CASE("a cached file of another length is detected") {
     const Stored stored;
     std::vector<std::byte> bytes = read_file(stored.file);
     const std::size_t size = bytes.size();
@@ -122,7 +122,7 @@ TEST_CASE("a cached file of any other length is noticed") {
     }
 }
 
-TEST_CASE("a corrupt cached file with a right checksum never yields out-of-range indices") {
+TEST_CASE("a corrupt cached file with a correct checksum never yields indices out of range") {
     const Stored stored;
     const std::vector<std::byte> good = read_file(stored.file);
     Random random(9);
@@ -152,7 +152,7 @@ TEST_CASE("a corrupt cached file with a right checksum never yields out-of-range
     CHECK(taken > 0);      // changed boxes cannot be told from others
 }
 
-TEST_CASE("an invalid cached tree causes a warning, and the render goes on") {
+TEST_CASE("an invalid cached tree causes a warning, and the render continues") {
     const std::vector<BvhTriangle> triangles = triangles_of(make_torus(128, 80));
     REQUIRE(triangles.size() >= kMinCachedTriangles);
     const Bvh built = build_bvh(triangles);
@@ -186,7 +186,7 @@ TEST_CASE("an invalid cached tree causes a warning, and the render goes on") {
     }
 }
 
-TEST_CASE("a stored tree of any builder is read as it was built, triangles that are cut more than once included") {
+TEST_CASE("a stored tree of any builder is read as it was built, including triangles that were split several times") {
     const std::vector<BvhTriangle> triangles = triangles_of(make_torus(128, 80));
     for (const BvhBuilder builder : {BvhBuilder::Binned, BvhBuilder::SpatialSplits, BvhBuilder::SpatialReinsertion}) {
         const fs::path folder = scratch_folder();
@@ -204,7 +204,7 @@ TEST_CASE("a stored tree of any builder is read as it was built, triangles that 
     }
 }
 
-TEST_CASE("a better cached tree is used unless one structure is named") {
+TEST_CASE("a better cached tree is used unless a structure is named") {
     const std::vector<BvhTriangle> triangles = triangles_of(make_torus(128, 80));
     const BvhBuilder best[] = {BvhBuilder::SpatialReinsertion};
     const BvhBuilder any[] = {BvhBuilder::Binned, BvhBuilder::Reinsertion, BvhBuilder::SpatialReinsertion};
@@ -221,7 +221,7 @@ TEST_CASE("a better cached tree is used unless one structure is named") {
     CHECK(messages.all().empty());
 }
 
-TEST_CASE("the cache evicts the least recently used entries when it grows too large") {
+TEST_CASE("the cache evicts the least recently used entries when it is full") {
     const fs::path folder = scratch_folder();
     Messages messages;
     std::vector<fs::path> files;
@@ -248,7 +248,7 @@ TEST_CASE("the cache evicts the least recently used entries when it grows too la
     CHECK(messages.all().empty());
 }
 
-TEST_CASE("the cache lies where the user's caches do") {
+TEST_CASE("the cache is in the user's folder of caches") {
     const auto set = [](const char* name, const char* value) {
         value != nullptr ? ::setenv(name, value, 1) : ::unsetenv(name);
     };

@@ -20,7 +20,7 @@ CameraKey key(double time_s, float x, float fov_deg = 0) {
 
 } // namespace
 
-TEST_CASE("a path passes its keys at their times and stands still before and after") {
+TEST_CASE("a path passes its keys at their times and is constant before and after") {
     const CameraPath path = {{key(1, 0), key(2, 4), key(5, -2)}};
     for (const CameraKey& k : path.keys) {
         CHECK(sample_path(path, k.time_s).eye == k.eye);
@@ -33,7 +33,7 @@ TEST_CASE("a path passes its keys at their times and stands still before and aft
     CHECK(sample_path({{key(3, 1)}}, 3.5).eye == DoubleVec3{1, 0, 5});
 }
 
-TEST_CASE("a parabola over uneven times is followed exactly between inner keys, and a line everywhere") {
+TEST_CASE("a path follows a parabola exactly between inner keys with uneven times, and a line everywhere") {
     const auto parabola = [](double t) { return static_cast<float>(t * t); };
     CameraPath path, line;
     for (const double t : {0.0, 1.0, 3.0, 4.0, 8.0}) {
@@ -44,7 +44,7 @@ TEST_CASE("a parabola over uneven times is followed exactly between inner keys, 
     for (const double t : {0.5, 1.25, 3.5, 7.0}) CHECK(sample_path(line, t).target.y == doctest::Approx(2 * t));
 }
 
-TEST_CASE("speed does not jump at a key, and the angle of view stays one") {
+TEST_CASE("speed is continuous at a key, and the field of view stays constant") {
     const CameraPath path = {{key(0, 0, 10), key(1, 4, 178), key(3, -2, 178), key(4, -2, 1)}};
     for (const double t : {1.0, 3.0}) {
         const double h = 1e-3, at = sample_path(path, t).eye.x;
@@ -58,7 +58,7 @@ TEST_CASE("speed does not jump at a key, and the angle of view stays one") {
     }
 }
 
-TEST_CASE("a file's times are read as doubles, and numbers beyond doubles in it cost nothing") {
+TEST_CASE("a file's times are read as doubles, and unused numbers beyond doubles are accepted") {
     const auto read = [](const std::string& keys) {
         return read_camera_path(test::write_text(test::scratch_folder() / "path.json", "{\"keys\":[" + keys + "]}"));
     };

@@ -30,7 +30,7 @@ double distance(Vec3 a, Vec3 b) { return static_cast<double>(length(a - b)); }
 
 } // namespace
 
-TEST_CASE("a pinhole camera's rays start at the camera and are unit vectors without end") {
+TEST_CASE("a pinhole camera's rays start at the camera and have unit directions and no end") {
     const Camera camera = placed_camera();
     const CameraView view = make_camera_view(camera, 640, 360);
     for (const Vec2 pixel : {Vec2{0, 0}, Vec2{320, 180}, Vec2{640, 360}, Vec2{12.25f, 300.5f}}) {
@@ -42,7 +42,7 @@ TEST_CASE("a pinhole camera's rays start at the camera and are unit vectors with
     }
 }
 
-TEST_CASE("the middle of the picture looks along the camera's axis, up is up and right is right") {
+TEST_CASE("the middle of the picture looks along the camera's axis, with up and right as defined") {
     const Camera camera = placed_camera();
     const CameraView view = make_camera_view(camera, 640, 360);
     const Vec3 middle = make_camera_ray(view, {320, 180}, {}).direction;
@@ -51,7 +51,7 @@ TEST_CASE("the middle of the picture looks along the camera's axis, up is up and
     CHECK(direction_in_camera_space(camera, make_camera_ray(view, {600, 180}, {}).direction).x > 0.1f);
 }
 
-TEST_CASE("the angle of view is that of the height, whatever the picture's shape; pixels are square") {
+TEST_CASE("the field of view applies to the height for any aspect, and pixels are square") {
     Camera camera = placed_camera();
     camera.aspect = 2.5f; // the file's aspect determines the size of a picture, not the view of a given one
     const double tangent = std::tan(0.55);
@@ -73,7 +73,7 @@ TEST_CASE("the angle of view is that of the height, whatever the picture's shape
     }
 }
 
-TEST_CASE("through a thin lens all rays of a pixel meet on the plane in focus, and the lens is used to its rim") {
+TEST_CASE("with a thin lens all rays of a pixel meet in the focus plane and cover the whole lens") {
     Camera camera = placed_camera();
     camera.aperture_radius = 0.25f;
     camera.focus_distance = 4;
@@ -100,7 +100,7 @@ TEST_CASE("through a thin lens all rays of a pixel meet on the plane in focus, a
     }
 }
 
-TEST_CASE("orthographic rays are parallel, and the view has the height asked for") {
+TEST_CASE("orthographic rays are parallel, and the view has the requested height") {
     Camera camera = placed_camera();
     camera.projection = Projection::Orthographic;
     camera.ortho_height = 3;
@@ -116,7 +116,7 @@ TEST_CASE("orthographic rays are parallel, and the view has the height asked for
     }
 }
 
-TEST_CASE("an orthographic lens keeps the plane in focus sharp as well") {
+TEST_CASE("an orthographic lens keeps the focus plane sharp") {
     Camera camera = placed_camera();
     camera.projection = Projection::Orthographic;
     camera.ortho_height = 3;

@@ -51,7 +51,7 @@ void check_floor(const RenderResult& result, const Expected& expected) {
 
 } // namespace
 
-TEST_CASE("cast shows a floor under a point light as Lambert's law has it") {
+TEST_CASE("cast matches Lambert's law on a floor under a point light") {
     Scene scene;
     test::add(scene, wide_floor(), test::white(0.5f));
     const Vec3 light = {0.3f, 1, -0.4f};
@@ -66,7 +66,7 @@ TEST_CASE("cast shows a floor under a point light as Lambert's law has it") {
     CHECK(result.rays.shadow == kSide * kSide); // one light
 }
 
-TEST_CASE("cast shows the cone of a spot light, dark from its outer angle on") {
+TEST_CASE("cast shows the cone of a spot light, which is dark from its outer angle on") {
     Scene scene;
     test::add(scene, wide_floor(), test::white(1));
     Light spot = test::point_light({0, 2, 0}, {10, 10, 10});
@@ -89,7 +89,7 @@ TEST_CASE("cast shows the cone of a spot light, dark from its outer angle on") {
     CHECK(result.rays.shadow == kSide * kSide - dark); // unlit points trace no shadow rays
 }
 
-TEST_CASE("cast gives a hard shadow its edge where geometry has it") {
+TEST_CASE("cast puts the edge of a hard shadow at its geometric position") {
     Scene scene;
     test::add(scene, wide_floor(), test::white(1));
     test::add(scene, test::floor_at(0.5f, 0.32f), test::white(1)); // half way: its shadow is twice as large
@@ -110,7 +110,7 @@ TEST_CASE("cast gives a hard shadow its edge where geometry has it") {
     });
 }
 
-TEST_CASE("ambient light is what a diffuse surface reflects of a radiance from all around") {
+TEST_CASE("ambient light equals the reflection of a uniform radiance by a diffuse surface") {
     Scene scene;
     test::add(scene, wide_floor(), test::white(0.5f));
     RenderSettings settings = centre_settings();

@@ -12,7 +12,7 @@ using namespace pertev;
 namespace {
 
 /// Message about the scene: the error, the note, or an empty reason.
-Remark said(IntegratorKind integrator, const Scene& scene, std::optional<Rgb> ambient = {}, uint32_t depth = 4) {
+Remark message(IntegratorKind integrator, const Scene& scene, std::optional<Rgb> ambient = {}, uint32_t depth = 4) {
     RenderSettings settings;
     settings.integrator = integrator;
     settings.ambient = ambient;
@@ -36,46 +36,46 @@ TEST_CASE("a scene that cast or whitted would render black is refused with alter
     test::add(scene, test::floor_at(1, 1), {{.emission = {1, 1, 1}}, "lamp"});
     for (const auto& [kind, name] :
          {std::pair(IntegratorKind::Cast, "cast"), std::pair(IntegratorKind::Whitted, "whitted")}) {
-        const Remark dark = said(kind, scene);
+        const Remark dark = message(kind, scene);
         CHECK(dark.setting == "integrator");
         CHECK(dark.value == name);
         CHECK(names(dark, "only lamps"));
         CHECK((names(dark, "`integrator=distributed`") && names(dark, "`ambient=0.5`")));
-        CHECK(is_fine(said(kind, scene, Rgb{0, 0, 0}))); // asked for
-        CHECK(is_fine(said(kind, scene, {}, 0)));        // emission alone
+        CHECK(is_fine(message(kind, scene, Rgb{0, 0, 0}))); // asked for
+        CHECK(is_fine(message(kind, scene, {}, 0)));        // emission alone
     }
-    CHECK(is_fine(said(IntegratorKind::Distributed, scene)));
-    CHECK(is_fine(said(IntegratorKind::Path, scene)));
+    CHECK(is_fine(message(IntegratorKind::Distributed, scene)));
+    CHECK(is_fine(message(IntegratorKind::Path, scene)));
 
     scene.environment = Environment{};
-    CHECK(names(said(IntegratorKind::Cast, scene), "only lamps and an environment"));
-    CHECK(names(said(IntegratorKind::Whitted, scene), "surfaces show the environment's mean as ambient light"));
+    CHECK(names(message(IntegratorKind::Cast, scene), "only lamps and an environment"));
+    CHECK(names(message(IntegratorKind::Whitted, scene), "surfaces show the environment's mean as ambient light"));
 
     scene.lights.push_back(test::point_light({0, 2, 0}, {1, 1, 1}));
-    CHECK(is_fine(said(IntegratorKind::Cast, scene)));
-    CHECK(is_fine(said(IntegratorKind::Whitted, scene)));
+    CHECK(is_fine(message(IntegratorKind::Cast, scene)));
+    CHECK(is_fine(message(IntegratorKind::Whitted, scene)));
     scene.lights.front().intensity = {0, 0, 0};
-    CHECK_FALSE(is_fine(said(IntegratorKind::Cast, scene)));
+    CHECK_FALSE(is_fine(message(IntegratorKind::Cast, scene)));
 }
 
 TEST_CASE(
-    "an environment that is black is no light: what needs some refuses the scene, the others say that it is dark") {
+    "a black environment is no light: integrators that need light refuse the scene, and others warn that it is dark") {
     Scene scene;
     test::add(scene, test::floor_at(0, 1), test::white());
     const std::string none = "no lamp, no point, spot or directional light, and the environment is black";
     const auto check_dark = [&] {
-        CHECK(said(IntegratorKind::PhotonMap, scene).value == "photon_map");
-        CHECK(names(said(IntegratorKind::PhotonMap, scene), none));
-        CHECK(names(said(IntegratorKind::Radiosity, scene), none));
+        CHECK(message(IntegratorKind::PhotonMap, scene).value == "photon_map");
+        CHECK(names(message(IntegratorKind::PhotonMap, scene), none));
+        CHECK(names(message(IntegratorKind::Radiosity, scene), none));
         for (const IntegratorKind kind :
              {IntegratorKind::Path, IntegratorKind::Hybrid, IntegratorKind::Light, IntegratorKind::Bidirectional,
               IntegratorKind::Distributed, IntegratorKind::IrradianceCache}) {
-            CHECK(names(said(kind, scene), "nothing in this scene emits light: " + none));
+            CHECK(names(message(kind, scene), "nothing in this scene emits light: " + none));
         }
         for (const IntegratorKind kind :
              {IntegratorKind::Cast, IntegratorKind::Whitted, IntegratorKind::Raster, IntegratorKind::Reyes}) {
-            CHECK(names(said(kind, scene), "this scene has none"));
-            CHECK(is_fine(said(kind, scene, Rgb{1, 1, 1}))); // asked for
+            CHECK(names(message(kind, scene), "this scene has none"));
+            CHECK(is_fine(message(kind, scene, Rgb{1, 1, 1}))); // asked for
         }
     };
     scene.environment = Environment{.image = {}, .scale = {0, 0, 0}, .rotation = 0};
@@ -83,11 +83,11 @@ TEST_CASE(
     scene.environment = Environment{.image = {2, 1, 3, std::vector<float>(6)}, .scale = {1, 1, 1}, .rotation = 0};
     check_dark();
     scene.environment->image.pixels[5] = 1e-6f;
-    CHECK(is_fine(said(IntegratorKind::Path, scene)));
-    CHECK(is_fine(said(IntegratorKind::PhotonMap, scene)));
+    CHECK(is_fine(message(IntegratorKind::Path, scene)));
+    CHECK(is_fine(message(IntegratorKind::PhotonMap, scene)));
     scene.environment->scale.b = 0; // which is all that it has
     check_dark();
     test::add(scene, test::floor_at(1, 1), {{.emission = {1, 1, 1}}, "lamp"});
-    CHECK(is_fine(said(IntegratorKind::Path, scene)));
-    CHECK(is_fine(said(IntegratorKind::Radiosity, scene)));
+    CHECK(is_fine(message(IntegratorKind::Path, scene)));
+    CHECK(is_fine(message(IntegratorKind::Radiosity, scene)));
 }

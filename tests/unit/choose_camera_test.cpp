@@ -35,7 +35,7 @@ Camera choose(const CameraChoice& choice, const Scene& scene = make_scene()) {
 
 } // namespace
 
-TEST_CASE("the scene's first camera is taken, or the one that is named by name or number") {
+TEST_CASE("the scene's first camera is used, or the one chosen by name or number") {
     CHECK(choose({}).name == "first");
     CHECK(choose({.camera = "second"}).name == "second");
     CHECK(choose({.camera = "1"}).name == "second");
@@ -44,7 +44,7 @@ TEST_CASE("the scene's first camera is taken, or the one that is named by name o
     CHECK(test::says(error, "\n  0  first\n  1  second"));
 }
 
-TEST_CASE("an eye without a target looks at the scene's centre, as the notice says") {
+TEST_CASE("an eye without a target looks at the scene's centre, with a notice") {
     Messages messages;
     const Camera camera = choose_camera({.eye = DoubleVec3{0, 0, -3}}, make_scene(), 1, messages);
     CHECK(camera.world_from_camera == look_at({0, 0, -3}, {0, 0, 0}, {0, 1, 0}));
@@ -54,14 +54,14 @@ TEST_CASE("an eye without a target looks at the scene's centre, as the notice sa
     CHECK(messages.all()[0].text.ends_with("(`eye=0,0,-3` `target=0,0,0`)"));
 }
 
-TEST_CASE("a lens without a focus is sharp at what is in the middle of the picture, unless a target is said") {
+TEST_CASE("a lens without a focus distance focuses on the middle of the picture unless a target is given") {
     CHECK(choose({.eye = DoubleVec3{0, 0, 4}, .aperture = 0.1f}).focus_distance == 4);
     CHECK(choose({.camera = "second", .aperture = 0.1f}).focus_distance == 9);
     CHECK(choose({.eye = DoubleVec3{0, 0, 4}, .target = DoubleVec3{0, 0, 2}, .aperture = 0.1f}).focus_distance == 2);
     CHECK(choose({.aperture = 0.1f, .focus = 7.0f}).focus_distance == 7);
 }
 
-TEST_CASE("a perspective camera made orthographic shows as much of what it looks at") {
+TEST_CASE("an orthographic view of a perspective camera shows as much at its target") {
     CameraChoice choice = {.eye = DoubleVec3{0, 0, 4}, .target = DoubleVec3{0, 0, 0}, .fov_deg = 90.0f};
     choice.projection = Projection::Orthographic;
     CHECK(choose(choice).projection == Projection::Orthographic);
@@ -70,7 +70,7 @@ TEST_CASE("a perspective camera made orthographic shows as much of what it looks
     CHECK(choose(choice).ortho_height == 3);
 }
 
-TEST_CASE("parts of a choice that exclude each other are refused before a scene is read") {
+TEST_CASE("camera settings that exclude each other are refused before a scene is read") {
     CHECK_NOTHROW(check_camera_choice({}));
     CameraChoice choice = {.view_height = 2.0f};
     choice.projection = Projection::Perspective;
@@ -78,7 +78,7 @@ TEST_CASE("parts of a choice that exclude each other are refused before a scene 
     CHECK_THROWS_AS(check_camera_choice({.aperture = 0.0f, .focus = 1.0f}), Error);
 }
 
-TEST_CASE("open_scene gives a scene without light a sky, or the environment it is told") {
+TEST_CASE("open_scene gives a scene without light a sky or the requested environment") {
     const std::filesystem::path file =
         test::write_text(test::scratch_folder() / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     Messages messages;

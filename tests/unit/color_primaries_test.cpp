@@ -77,7 +77,7 @@ void check_pixel(const Image& image, std::array<double, 3> right) {
 const Image kPicture = {2, 1, 3, {0.39735f, 0.26587f, 0.14643f, 0.39735f, 0.26587f, 0.14643f}};
 constexpr std::array<double, 3> kRight = {0.5, 0.25, 0.125};
 
-TEST_CASE("matrices of ACEScg, P3, ACES 2065-1 and XYZ are those that are published, with Bradford's adaptation") {
+TEST_CASE("matrices of ACEScg, P3, ACES 2065-1 and XYZ match the published ones with Bradford's adaptation") {
     check_matrix(kAcesCg,
                  {{{1.70505, -0.62179, -0.08326}, {-0.13026, 1.14080, -0.01055}, {-0.02400, -0.12897, 1.15297}}});
     check_matrix(kP3, {{{1.22494, -0.22494, 0}, {-0.04206, 1.04206, 0}, {-0.01964, -0.07864, 1.09828}}});
@@ -90,7 +90,7 @@ TEST_CASE("matrices of ACEScg, P3, ACES 2065-1 and XYZ are those that are publis
     CHECK_FALSE(is_rec709(kP3));
 }
 
-TEST_CASE("white stays white whatever the primaries, and degenerate primaries have no matrix") {
+TEST_CASE("white stays white for all primaries, and degenerate primaries have no matrix") {
     for (const ColorPrimaries& primaries : {kAcesCg, kP3, kAces, kXyz}) {
         const ColorMatrix matrix = *rec709_from(primaries);
         for (const auto& row : matrix) CHECK(row[0] + row[1] + row[2] == doctest::Approx(1).epsilon(1e-12));
@@ -105,8 +105,7 @@ TEST_CASE("white stays white whatever the primaries, and degenerate primaries ha
     CHECK(!rec709_from({{1e30, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0.3290}}));
 }
 
-TEST_CASE(
-    "an EXR picture is converted to Rec. 709 where it is a picture, and kept as stored where it is decoded alone") {
+TEST_CASE("an EXR picture is converted to Rec. 709 when it is used, and kept as stored when it is only decoded") {
     const std::vector<std::byte> plain = encode_exr(kPicture);
     const std::vector<std::byte> bytes = with_chromaticities(plain, kAcesCg);
     Messages messages;
@@ -128,7 +127,7 @@ TEST_CASE(
     CHECK(read_image(with_chromaticities(encode_exr(bright), kAcesCg), "t.exr").pixels == bright.pixels);
 }
 
-TEST_CASE("a Radiance HDR's line PRIMARIES counts like an EXR's chromaticities, and zeros like none") {
+TEST_CASE("the line PRIMARIES of a Radiance HDR works like an EXR's chromaticities, and zeros like none") {
     const auto read = [](const std::string& line, Messages& messages) {
         std::string text = "#?RADIANCE\n" + line + "FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n";
         for (const int byte : {64, 128, 32, 129}) text += static_cast<char>(byte); // (.5, 1, .25)
@@ -146,13 +145,13 @@ TEST_CASE("a Radiance HDR's line PRIMARIES counts like an EXR's chromaticities, 
     CHECK(messages.all().empty());
     for (const char* line : {"PRIMARIES=0.64 0.33 x\n", "PRIMARIES=\n", "PRIMARIES=0.6 0.3 0.6 0.3 0.1 0 0.3 0.3\n"}) {
         CAPTURE(line);
-        Messages said;
-        CHECK(read(line, said).pixels == std::vector<float>{0.5f, 1, 0.25f});
-        CHECK(said.all().size() == (std::string(line) == "PRIMARIES=\n" ? 0 : 1));
+        Messages messages;
+        CHECK(read(line, messages).pixels == std::vector<float>{0.5f, 1, 0.25f});
+        CHECK(messages.all().size() == (std::string(line) == "PRIMARIES=\n" ? 0 : 1));
     }
 }
 
-TEST_CASE("degenerate chromaticities, and some of another type, are left out with a warning") {
+TEST_CASE("degenerate chromaticities, and those of another type, are left out with a warning") {
     const std::vector<std::byte> plain = encode_exr(kPicture);
     for (const auto& bytes : {with_chromaticities(plain, {}), with_chromaticities(plain, kAcesCg, "string")}) {
         Messages messages;
@@ -163,7 +162,7 @@ TEST_CASE("degenerate chromaticities, and some of another type, are left out wit
     }
 }
 
-TEST_CASE("of textures colours are converted by an EXR's chromaticities and data is not") {
+TEST_CASE("an EXR's chromaticities convert textures of colours, but not of data") {
     const std::vector<std::byte> bytes = with_chromaticities(encode_exr(kPicture), kAcesCg);
     const fs::path folder = test::scratch_folder();
     const FileAccess access(folder / "a.obj", {});

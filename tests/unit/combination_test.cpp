@@ -7,7 +7,7 @@
 
 using namespace pertev;
 
-TEST_CASE("every structure and traversal of the laboratory has a name of its own, by which it is found") {
+TEST_CASE("every structure and traversal of the laboratory has a unique name, by which it is found") {
     std::set<std::string_view> names;
     for (const StructureKind kind : kValuesOf<StructureKind>) {
         CHECK(value_named<StructureKind>(name_of(kind)) == kind);
@@ -28,7 +28,7 @@ TEST_CASE("every structure and traversal of the laboratory has a name of its own
     CHECK(!value_named<Distribution>("persist"));
 }
 
-TEST_CASE("RTA is switched by its names, and by nothing else") {
+TEST_CASE("RTA is switched only by its names") {
     const TraversalOptions others = {.near_first = false, .tests = TestKind::Fast};
     for (const char* name : {"on", "nodes", "off"}) {
         const auto options = rta_named(name, others);
@@ -40,7 +40,7 @@ TEST_CASE("RTA is switched by its names, and by nothing else") {
     CHECK(!rta_named("both", others));
 }
 
-TEST_CASE("names of combinations differ wherever their switches do, those refused included") {
+TEST_CASE("names of combinations differ wherever their switches do, including refused ones") {
     std::set<std::string> names;
     for (const TraversalKind traversal : kValuesOf<TraversalKind>) {
         for (const bool near_first : {true, false}) {
@@ -66,8 +66,7 @@ TEST_CASE("names of combinations differ wherever their switches do, those refuse
     }
 }
 
-TEST_CASE(
-    "each structure has a traversal and each traversal a structure; kd-trees and octrees have none but their own") {
+TEST_CASE("each structure has a traversal and each traversal a structure; kd-trees and octrees have only their own") {
     for (const StructureKind structure : kValuesOf<StructureKind>) {
         const auto traversals = std::ranges::count_if(
             kValuesOf<TraversalKind>, [&](TraversalKind traversal) { return !why_not(structure, traversal); });
@@ -81,7 +80,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("an invalid combination says why") {
+TEST_CASE("an invalid combination is refused with its reason") {
     constexpr bool cpu = false, gpu = true;
     const TraversalOptions on;
     const auto reason = [](const Combination& c, bool on_cuda) { return why_not(c, on_cuda).value_or(""); };

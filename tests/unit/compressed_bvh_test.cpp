@@ -13,7 +13,7 @@
 #include "base/limits.h"
 #include "tests/support/check_traversal.h"
 #include "tests/support/meshes.h"
-#include "tests/support/nasty_meshes.h"
+#include "tests/support/stress_meshes.h"
 #include "trace/intersect/compressed_boxes.h"
 #include "trace/wide/compressed_traversal.h"
 
@@ -47,7 +47,7 @@ Bounds3 random_box(Random& random, int scale) {
 
 } // namespace
 
-TEST_CASE("decoded boxes hold the exact ones, by less than a quantum too much, at every size of coordinate") {
+TEST_CASE("decoded boxes contain the exact ones and exceed them by less than a quantum at every scale") {
     Random random(2);
     uint32_t least = 255, greatest = 0;
     for (int i = 0; i < 20'000; ++i) {
@@ -92,8 +92,8 @@ TEST_CASE("decoded boxes hold the exact ones, by less than a quantum too much, a
     CHECK(greatest == kMaxQuantumExponent);
 }
 
-TEST_CASE("compressed trees of all nasty meshes, huge and tiny, are sound and lose no triangle") {
-    for (const NastyMesh& mesh : nasty_meshes()) {
+TEST_CASE("compressed trees of all stress meshes, huge and tiny, are valid and lose no triangle") {
+    for (const StressMesh& mesh : stress_meshes()) {
         CAPTURE(mesh.name);
         for (const int build_leaf : {1, 4, 40}) {
             const Bvh bvh = build_bvh(mesh.triangles, {.max_leaf = build_leaf, .leaf_cost = 0.1f});
@@ -115,11 +115,11 @@ TEST_CASE("compressed trees of all nasty meshes, huge and tiny, are sound and lo
     }
 }
 
-TEST_CASE("meshes whose grids are at the ends of their range give the hits of testing every triangle") {
+TEST_CASE("meshes with grids at the ends of their range match brute force") {
     for (const int scale : {-90, -81, -70, 39}) {
         CAPTURE(scale);
-        NastyMesh mesh = {"scaled soup", make_soup(400, 0), {}, 1};
-        std::vector<Ray> rays = nasty_rays(1500, mesh, 3);
+        StressMesh mesh = {"scaled soup", make_soup(400, 0), {}, 1};
+        std::vector<Ray> rays = stress_rays(1500, mesh, 3);
         const auto shrink = [&](Vec3 p) { return Vec3{scaled(p.x, scale), scaled(p.y, scale), scaled(p.z, scale)}; };
         for (BvhTriangle& t : mesh.triangles) t.a = shrink(t.a), t.b = shrink(t.b), t.c = shrink(t.c);
         for (Ray& ray : rays) { // directions as they are
@@ -136,7 +136,7 @@ TEST_CASE("meshes whose grids are at the ends of their range give the hits of te
     }
 }
 
-TEST_CASE("a slot's child is early for rays of the slot's octant") {
+TEST_CASE("a child is visited early by rays of its slot's octant") {
     // Eight boxes at the corners of a cube, in any order: each finds its own octant's slot.
     std::vector<int> corners(8);
     std::iota(corners.begin(), corners.end(), 0);
@@ -165,7 +165,7 @@ TEST_CASE("a slot's child is early for rays of the slot's octant") {
     }
 }
 
-TEST_CASE("slots come in the order of the ray's octant, or the other way round") {
+TEST_CASE("slots are visited in the order of the ray's octant or in reverse") {
     for (uint32_t mask = 1; mask < 256; ++mask) {
         for (uint32_t octant = 0; octant < 8; ++octant) {
             const Vec3 inv = {octant & 1 ? -1.0f : 2.0f, octant & 2 ? -0x1p-40f : 0x1p72f, octant & 4 ? -3.0f : 1.0f};
@@ -179,7 +179,7 @@ TEST_CASE("slots come in the order of the ray's octant, or the other way round")
     }
 }
 
-TEST_CASE("a ray along an axis meets few boxes of a compressed tree") {
+TEST_CASE("a ray along an axis enters few boxes of a compressed tree") {
     const CompressedBvh tree = make_compressed_bvh(build_bvh(triangles_of(make_torus(200, 100))));
     REQUIRE(tree.nodes.size() > 2000);
     Random random(1);
@@ -199,7 +199,7 @@ TEST_CASE("a ray along an axis meets few boxes of a compressed tree") {
     CHECK(most < 150);
 }
 
-TEST_CASE("the checker of compressed trees notices what is wrong") {
+TEST_CASE("the checker of compressed trees detects faults") {
     const CompressedBvh sound = make_compressed_bvh(build_bvh(make_soup(2000, 0)));
     REQUIRE(!find_fault(sound));
     const auto with = [&](auto&& change) {

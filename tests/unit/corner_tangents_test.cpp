@@ -70,7 +70,7 @@ std::vector<T> take(const std::vector<std::byte>& bytes, std::size_t& at, std::s
     return values;
 }
 
-TEST_CASE("tangents of stored meshes are MikkTSpace's, and the same corners share them") {
+TEST_CASE("tangents of stored meshes equal MikkTSpace's and are shared by the same corners") {
     for (const Case& stored : kStored) {
         CAPTURE(stored.name);
         const std::vector<Vec4> tangents = tangents_of(stored.mesh());
@@ -80,7 +80,7 @@ TEST_CASE("tangents of stored meshes are MikkTSpace's, and the same corners shar
     }
 }
 
-TEST_CASE("tangents of the meshes that PERTEV_TANGENT_MESHES names are MikkTSpace's") {
+TEST_CASE("tangents of the meshes in PERTEV_TANGENT_MESHES equal MikkTSpace's") {
     const char* path = std::getenv("PERTEV_TANGENT_MESHES"); // tools/compare_tangents.py
     if (path == nullptr) return;
     const std::vector<std::byte> bytes = read_file(path);
@@ -128,7 +128,7 @@ TEST_CASE("tangents do not depend on which vertices the file shares") {
     }
 }
 
-TEST_CASE("a vertex of very many triangles takes no more than its share of time") {
+TEST_CASE("a vertex of very many triangles takes time linear in their number") {
     Case fan;
     const uint32_t sides = 50'000;
     fan.positions.push_back({0, 0, 0});
@@ -149,7 +149,7 @@ TEST_CASE("a vertex of very many triangles takes no more than its share of time"
     CHECK(tangents[6 * (sides / 2 - sides / 8)].x < -0.9f);
 }
 
-TEST_CASE("tangents of any numbers are unit and finite") {
+TEST_CASE("tangents of arbitrary numbers are unit and finite") {
     Random random(7);
     const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
     const auto number = [&] {

@@ -10,8 +10,8 @@
 
 #include "accel/builders/builders.h"
 #include "tests/support/built_trees.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
+#include "tests/support/stress_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -30,9 +30,9 @@ CompressedBvh build(Queue& queue, const std::vector<BvhTriangle>& triangles, boo
 
 } // namespace
 
-TEST_CASE("trees that are built on the device are sound, and hold each triangle once") {
+TEST_CASE("trees built on the device are valid and contain each triangle once") {
     Queue queue = Queue::make_cpu();
-    for (const NastyMesh& mesh : builder_meshes()) {
+    for (const StressMesh& mesh : builder_meshes()) {
         for (const bool balanced : {false, true}) {
             CAPTURE(mesh.name);
             CAPTURE(mesh.triangles.size());
@@ -55,9 +55,9 @@ TEST_CASE("trees that are built on the device are sound, and hold each triangle 
     }
 }
 
-TEST_CASE("trees that are built on the device cost rays little more than those by PLOC on the host") {
+TEST_CASE("trees built on the device cost rays little more than those of PLOC on the host") {
     Queue queue = Queue::make_cpu();
-    for (const NastyMesh& mesh : nasty_meshes()) {
+    for (const StressMesh& mesh : stress_meshes()) {
         if (mesh.triangles.size() < 1000) continue;
         CAPTURE(mesh.name);
         const float by_host = make_compressed_bvh(build_ploc_bvh(mesh.triangles)).sah_cost;
@@ -103,17 +103,17 @@ CompressedBvh refit(Queue& queue, const std::vector<BvhTriangle>& triangles, con
 
 } // namespace
 
-TEST_CASE("a tree that is fitted to where its triangles are has the bytes of the build") {
+TEST_CASE("a tree refitted to unmoved triangles has the bytes of the build") {
     Queue queue = Queue::make_cpu();
-    for (const NastyMesh& mesh : builder_meshes()) {
+    for (const StressMesh& mesh : builder_meshes()) {
         CAPTURE(mesh.name);
         CHECK(are_same(refit(queue, mesh.triangles, mesh.triangles), build(queue, mesh.triangles)));
     }
 }
 
-TEST_CASE("a tree that is fitted to triangles that moved is sound, its boxes tight and its leaves the same") {
+TEST_CASE("a tree refitted to moved triangles is valid, with tight boxes and the same leaves") {
     Queue queue = Queue::make_cpu();
-    for (const NastyMesh& mesh : builder_meshes()) {
+    for (const StressMesh& mesh : builder_meshes()) {
         CAPTURE(mesh.name);
         const std::vector<BvhTriangle> moved = bent(mesh.triangles);
         const CompressedBvh bvh = refit(queue, mesh.triangles, moved), built = build(queue, mesh.triangles);
@@ -132,12 +132,12 @@ TEST_CASE("a tree that is fitted to triangles that moved is sound, its boxes tig
     }
 }
 
-TEST_CASE("a GPU makes the bytes that the CPU makes") {
+TEST_CASE("a GPU builds the bytes that the CPU builds") {
     if (!cuda_requested()) return;
     Queue cpu = Queue::make_cpu(), gpu = Queue::make_cuda(0);
-    std::vector<NastyMesh> all = builder_meshes();
+    std::vector<StressMesh> all = builder_meshes();
     all.push_back({"a large soup", make_soup(100001, 0), {}});
-    for (const NastyMesh& mesh : all) {
+    for (const StressMesh& mesh : all) {
         CAPTURE(mesh.name);
         CAPTURE(mesh.triangles.size());
         for (const bool balanced : {false, true}) {

@@ -43,7 +43,7 @@ bool says(const Messages& messages, bool is_warning, const std::string& text) {
 
 } // namespace
 
-TEST_CASE("a notice names one-sided lamps of an OBJ file once, with the setting for both sides") {
+TEST_CASE("a notice names the one-sided emitters of an OBJ file once, with the setting for both sides") {
     const Messages one = read(room(1.99f, kDown));
     REQUIRE(one.all().size() == 1);
     CHECK(says(one, false, "1 lamp with light on the front only: bulb;"));
@@ -54,7 +54,7 @@ TEST_CASE("a notice names one-sided lamps of an OBJ file once, with the setting 
     CHECK(read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").all().empty());
 }
 
-TEST_CASE("a lamp whose front faces a wall, with room behind it, is a warning that says what to do") {
+TEST_CASE("an emitter whose front faces a wall, with space behind it, causes a warning with advice") {
     const Messages turned = read(room(1.99f, kUp));
     CHECK(says(turned, true, "the lamp bulb shines at a surface 0.01 m before its front and has 1.99 m behind it"));
     CHECK(says(turned, true, "`two_sided_lights`"));
@@ -65,7 +65,7 @@ TEST_CASE("a lamp whose front faces a wall, with room behind it, is a warning th
     CHECK(read(room(1.99f, kUp), true).all().empty());
 }
 
-TEST_CASE("a lamp over an open floor is no warning") {
+TEST_CASE("an emitter over an open floor causes no warning") {
     const std::string floor = "mtllib a.mtl\nv -4 0 -4\nv 4 0 -4\nv 4 0 4\nv -4 0 4\nusemtl wall\nf 4 3 2 1\n";
     for (const char* height : {"2", "0.1"}) {
         const std::string y = height;
@@ -78,7 +78,7 @@ TEST_CASE("a lamp over an open floor is no warning") {
     CHECK_FALSE(says(read(room(2.01f, kDown)), true, "behind it")); // on the roof, with nothing above
 }
 
-TEST_CASE("a lamp whose front faces a wall, with most of the scene behind it but no surface, is a warning too") {
+TEST_CASE("an emitter whose front faces a wall, with most of the scene but no surface behind it, causes a warning") {
     const std::string no_floor = "mtllib a.mtl\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\nv -1 0 1\nv 1 0 1\n"
                                  "v -.2 1.99 -.2\nv .2 1.99 -.2\nv .2 1.99 .2\nv -.2 1.99 .2\n"
                                  "usemtl wall\nf 1 2 3 4\nf 4 3 6 5\nusemtl bulb\nf ";

@@ -25,7 +25,7 @@ Scene make_kept_emitters() {
 
 } // namespace
 
-TEST_CASE("a light that is found again at its place is the one that was drawn") {
+TEST_CASE("a light evaluated again at its emitter point equals its sample") {
     const Lights lights(make_kept_emitters());
     Random random(3);
     uint32_t triangles = 0, punctual = 0, sky = 0;
@@ -34,7 +34,7 @@ TEST_CASE("a light that is found again at its place is the one that was drawn") 
         LightSample drawn, found;
         if (!sample_light(lights.view, from, random_bits(random), drawn)) continue;
         float measure = 0;
-        REQUIRE(find_light(lights.view, place_of(drawn), from, found, measure));
+        REQUIRE(find_light(lights.view, point_of(drawn), from, found, measure));
         CHECK(length(found.wi - drawn.wi) < 1e-6f);
         CHECK(found.radiance.r == doctest::Approx(as_double(drawn.radiance.r)).epsilon(1e-3));
         CHECK(found.distance == drawn.distance);
@@ -46,7 +46,7 @@ TEST_CASE("a light that is found again at its place is the one that was drawn") 
             // The density over weights is the same wherever it is asked from.
             float elsewhere = 0;
             LightSample other;
-            if (find_light(lights.view, place_of(drawn), Vec3{1, 0.5f, 1}, other, elsewhere)) {
+            if (find_light(lights.view, point_of(drawn), Vec3{1, 0.5f, 1}, other, elsewhere)) {
                 CHECK(other.pdf * elsewhere == doctest::Approx(as_double(drawn.pdf * measure)));
             }
         } else if (drawn.is_delta) {

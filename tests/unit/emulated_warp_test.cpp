@@ -25,12 +25,12 @@ uint32_t seeds() { return static_cast<uint32_t>(effort(100, 5000)); }
 /// Result of run_warps for a kernel of one warp, which must be equal for each schedule.
 template <class Kernel>
 std::set<std::string> headlines(const Kernel& kernel) {
-    std::set<std::string> said;
+    std::set<std::string> faults;
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
         const std::string fault = run_warps({.seed = seed, .max_steps = 10'000}, kernel);
-        said.insert(fault.substr(0, fault.find('\n')));
+        faults.insert(fault.substr(0, fault.find('\n')));
     }
-    return said;
+    return faults;
 }
 
 /// Whether each run's fault holds all of these words.
@@ -64,7 +64,7 @@ TEST_CASE("a launch of no threads runs none") {
     CHECK(run_warps({.blocks = 0}, [] { FAIL("ran"); }) == "");
 }
 
-TEST_CASE("meetings give each lane what CUDA says, whoever comes first") {
+TEST_CASE("warp operations give each lane CUDA's result, whichever lane arrives first") {
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
         std::vector<int> wrong(32);
         const std::string fault = run_warps({.seed = seed}, [&] {
@@ -86,7 +86,7 @@ TEST_CASE("meetings give each lane what CUDA says, whoever comes first") {
     }
 }
 
-TEST_CASE("no lane passes a meeting before the last one has come to it") {
+TEST_CASE("no lane passes a warp operation before the last one has reached it") {
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
         int here = 0, early = 0;
         const std::string fault = run_warps({.seed = seed}, [&] {
@@ -100,8 +100,7 @@ TEST_CASE("no lane passes a meeting before the last one has come to it") {
     }
 }
 
-TEST_CASE(
-    "an active mask is a group of lanes at one call that all get the same; all or some, and not the same always") {
+TEST_CASE("lanes at one call get the same active mask, which holds all or some of them and varies") {
     bool once_whole = false, once_single = false, once_between = false;
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
         std::vector<uint32_t> first(32), second(32);
@@ -133,7 +132,7 @@ TEST_CASE(
     CHECK(once_between);
 }
 
-TEST_CASE("warps take turns in some runs and follow each other in others") {
+TEST_CASE("warps alternate in some runs and follow each other in others") {
     bool mixed = false, in_a_row = false;
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
         std::vector<uint32_t> order;
@@ -168,7 +167,7 @@ TEST_CASE("equal seeds give equal runs") {
     CHECK(run(7) != run(8));
 }
 
-TEST_CASE("a lane that has ended while others wait for it is a fault that names it") {
+TEST_CASE("a lane that ended while others wait for it is a fault that names it") {
     const auto kernel = [] {
         if (me() == 3) return;
         lane::ballot(kWarp, true);
@@ -178,7 +177,7 @@ TEST_CASE("a lane that has ended while others wait for it is a fault that names 
                         "lanes 3 of it have ended"}));
 }
 
-TEST_CASE("a lane that waits elsewhere while others wait for it is a fault") {
+TEST_CASE("a lane that waits at another operation while others wait for it is a fault") {
     CHECK(says(
         [] {
             if (me() < 30) {
@@ -191,19 +190,19 @@ TEST_CASE("a lane that waits elsewhere while others wait for it is a fault") {
          "lanes 30-31 wait at __syncwarp"}));
 }
 
-TEST_CASE("lanes of one mask that name different masks are a fault") {
+TEST_CASE("lanes of one mask that pass different masks are a fault") {
     CHECK(says([] { lane::ballot(me() == 9 ? 0x00000300u : kWarp, true); },
                {"no lane can go on", "of mask 0xffffffff", "lanes 9 of it name another mask", "of mask 0x300",
                 "lanes 8 of it name another mask"}));
 }
 
-TEST_CASE("a lane that names a mask without itself is a fault, and one that asks a lane outside of it") {
+TEST_CASE("a lane that passes a mask without itself, or reads a lane outside of it, is a fault") {
     CHECK(says([] { lane::sync(me() == 31 ? 0x7fffffffu : kWarp); }, {"a lane names a mask without itself"}));
     CHECK(says([] { lane::shuffle(me() < 16 ? 0xffffu : 0xffff0000u, 1, 16); },
                {"a lane asks for the value of one that its mask does not name"}));
 }
 
-TEST_CASE("a mask that was asked for before lanes parted is a fault where they meet") {
+TEST_CASE("a mask read before lanes diverged is a fault where it is used") {
     // Some orders of things let it pass, as on a GPU; some must not.
     bool noticed = false;
     for (uint32_t seed = 0; seed < seeds(); ++seed) {
@@ -215,7 +214,7 @@ TEST_CASE("a mask that was asked for before lanes parted is a fault where they m
     CHECK(noticed);
 }
 
-TEST_CASE("lanes that wait for each other in a loop without end are a fault") {
+TEST_CASE("lanes that wait for each other in an endless loop are a fault") {
     CHECK(says(
         [] {
             while (lane::ballot(kWarp, true) != 0) {
@@ -224,7 +223,7 @@ TEST_CASE("lanes that wait for each other in a loop without end are a fault") {
         {"no end after 10000 steps", "__ballot_sync"}));
 }
 
-TEST_CASE("a run after a fault is as good as a first one") {
+TEST_CASE("a run after a fault behaves like the first one") {
     CHECK(run_warps({.blocks = 5, .threads = 64}, [] {
               if (me() != 3) lane::sync(kWarp);
           }) != "");

@@ -12,9 +12,9 @@
 using namespace pertev;
 using namespace pertev::test;
 
-TEST_CASE("warps make the bytes that single threads make") {
+TEST_CASE("warps build the bytes that single threads build") {
     Queue queue = Queue::make_cpu();
-    for (const NastyMesh& mesh : builder_meshes()) {
+    for (const StressMesh& mesh : builder_meshes()) {
         const auto n = static_cast<uint32_t>(mesh.triangles.size());
         if (n == 0 || n > 1000) continue;
         CAPTURE(mesh.name);

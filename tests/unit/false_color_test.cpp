@@ -22,7 +22,7 @@ bool has_color(const Rgba8Image& image, uint32_t x, uint32_t y, float t) {
 
 } // namespace
 
-TEST_CASE("false colours go by the logarithm from the least to the most of the scale") {
+TEST_CASE("false colours follow the logarithm from the minimum to the maximum of the scale") {
     const Image row = grey_row({0.0f, -1.0f, 0.5f, 5.0f, 50.0f, 500.0f, 5000.0f});
     const Rgba8Image image = draw_false_colors(row, 2, {1, 1000, "lx"});
     REQUIRE(image.width == 7);
@@ -31,7 +31,7 @@ TEST_CASE("false colours go by the logarithm from the least to the most of the s
     for (uint32_t x = 0; x < 7; ++x) CHECK(has_color(image, x, 0, places[x]));
 }
 
-TEST_CASE("a wide picture has the scale with numbers and the unit beneath") {
+TEST_CASE("a wide picture has the scale with numbers and the unit below") {
     Image wide{400, 1, 3, {}};
     wide.pixels.assign(1200, 1.0f);
     const Rgba8Image image = draw_false_colors(wide, 1, {1, 1000, "cd/m2"});
@@ -47,7 +47,7 @@ TEST_CASE("a wide picture has the scale with numbers and the unit beneath") {
     CHECK(small.width == 1);
 }
 
-TEST_CASE("a scale fits its picture: one pixel in two hundred may be beyond a round number") {
+TEST_CASE("the scale ends at a round number that at most one pixel in two hundred exceeds") {
     Image image{400, 1, 3, {}};
     image.pixels.assign(1200, 3.0f);
     image.pixels[0] = image.pixels[1] = image.pixels[2] = 1e6f;

@@ -24,11 +24,11 @@ struct Folders {
     }
 };
 
-Place at(const fs::path& file) { return {file.string()}; }
+FileLocation at(const fs::path& file) { return {file.string()}; }
 
 } // namespace
 
-TEST_CASE("files in the scene's folder and below are resolved, also with backslashes, dots and spaces") {
+TEST_CASE("files in the scene's folder and below are resolved, including names with backslashes, dots and spaces") {
     const Folders f;
     const FileAccess access(f.file, {});
     CHECK(access.resolve(at(f.file), "textures/t.png") == f.scene / "textures/t.png");
@@ -62,7 +62,7 @@ TEST_CASE("a file outside the scene's folder is refused, with a message that nam
     CHECK_THROWS_AS((void)access.resolve(at(f.file), std::string(10000, 'x') + "/a"), Error);
 }
 
-TEST_CASE("an allowed folder may be read, one beside it that begins alike may not") {
+TEST_CASE("an allowed folder may be read, but not a sibling whose name begins alike") {
     const Folders f;
     const FileAccess access(f.file, {f.other});
     CHECK(access.resolve(at(f.file), "../scene2/t.png") == f.other / "t.png");
@@ -71,7 +71,7 @@ TEST_CASE("an allowed folder may be read, one beside it that begins alike may no
     CHECK_THROWS_AS(FileAccess(f.file, {f.top / "missing"}), Error);
 }
 
-TEST_CASE("a file named with a path of another machine is found beside the file that names it, or below it") {
+TEST_CASE("a file named with a path of another machine is found in the folder of the file that names it or below") {
     const Folders f;
     const FileAccess access(f.file, {});
     Messages messages;
@@ -85,15 +85,14 @@ TEST_CASE("a file named with a path of another machine is found beside the file 
     CHECK(access.find(at(f.file), "D:/t.png", messages) == f.scene / "textures/t.png");
     CHECK(access.find(at(f.file), "t.png", messages) == f.scene / "textures/t.png");
     REQUIRE(messages.all().size() == 5);
-    CHECK(messages.all()[2].text.find("\"C:/models/textures\", which are not there") != std::string::npos);
+    CHECK(messages.all()[2].text.find("\"C:/models/textures\" are missing") != std::string::npos);
     CHECK(messages.all()[2].text.find("in \"textures\" are read") != std::string::npos);
-    CHECK(messages.all()[4].text.find("\"t.png\" is not there: " + (f.scene / "textures/t.png").string() +
-                                      " is read") != std::string::npos);
+    CHECK(messages.all()[4].text.find("there is no \"t.png\"; " + (f.scene / "textures/t.png").string() + " is read") !=
+          std::string::npos);
     for (const Message& message : messages.all()) CHECK(message.is_warning);
 }
 
-TEST_CASE(
-    "of the files whose path ends like a name the one with the longest end is found, nearest to where it is named") {
+TEST_CASE("the file whose path has the longest common end with a name is found, nearest to where it is named") {
     const Folders f;
     for (const char* folder : {"a/wood", "b/wood", "b/stone", "c"}) fs::create_directories(f.scene / folder);
     for (const char* file : {"a/wood/x.png", "b/wood/x.png", "b/stone/x.png", "c/y.png", "a/y.png", "y.png"}) {
@@ -108,10 +107,10 @@ TEST_CASE(
     const std::size_t before = messages.all().size();
     CHECK(!access.find(at(f.file), "C:/p/wood/x.png", messages)); // a's or b's
     REQUIRE(messages.all().size() == before + 1);
-    CHECK(messages.all().back().text.find("2 files could be meant") != std::string::npos);
+    CHECK(messages.all().back().text.find("2 files match") != std::string::npos);
 }
 
-TEST_CASE("a name in another case is found where one file alone has it, and the message tells which") {
+TEST_CASE("a name in another case is found if only one file matches, with a message that names it") {
     const Folders f;
     for (const char* file : {"Wood.PNG", "one.png", "ONE.png", "deep name.Png"}) test::write_text(f.scene / file, "");
     fs::create_directories(f.scene / "Maps");
@@ -130,7 +129,7 @@ TEST_CASE("a name in another case is found where one file alone has it, and the 
     CHECK(!access.find(at(f.file), "W\xc3\xb6od.png", messages));
 }
 
-TEST_CASE("a file that is looked for is never found outside, through links or in hidden folders") {
+TEST_CASE("a search never finds files outside, through links or in hidden folders") {
     const Folders f;
     fs::create_directories(f.scene / ".hidden");
     test::write_text(f.scene / ".hidden" / "h.png", "");
@@ -148,7 +147,7 @@ TEST_CASE("a file that is looked for is never found outside, through links or in
     CHECK(allowed.find(at(f.file), "link.png", messages) == f.other / "outside.png");
 }
 
-TEST_CASE("a file outside is replaced by one of that name below, with a warning, and refused where there is none") {
+TEST_CASE("a file outside is replaced by one of that name below with a warning, or refused") {
     const Folders f;
     test::write_text(f.other / "u.png", "");
     const FileAccess access(f.file, {});
@@ -160,7 +159,7 @@ TEST_CASE("a file outside is replaced by one of that name below, with a warning,
     REQUIRE(messages.all().size() == 2);
     CHECK(messages.all()[0].text.find("\"/no such home/artist\", outside") != std::string::npos);
     const auto error = test::thrown_error([&] {
-        (void)access.find(Place{f.file.string(), 7}, "../scene2/u.png", messages);
+        (void)access.find(FileLocation{f.file.string(), 7}, "../scene2/u.png", messages);
     });
     CHECK(test::says(error, "a.obj:7: refers to"));
     CHECK(test::says(error, "`allow_path=" + f.other.string() + "`"));

@@ -37,7 +37,7 @@ std::vector<Clip> clips(const Names& names, const std::vector<bool>& plays) {
     return all;
 }
 
-TEST_CASE("a name chooses before a number does, and the first plays without a choice") {
+TEST_CASE("a name takes precedence over a number, and without a choice the first plays") {
     const Names names = {"walk", "run", "0", ""};
     CHECK(chosen(names, "") == 0);
     CHECK(chosen(names, "run") == 1);
@@ -52,7 +52,7 @@ TEST_CASE("a name chooses before a number does, and the first plays without a ch
     CHECK(choose_file_scene("a.glb", Names{"walk", "all"}, "all") == 1);
 }
 
-TEST_CASE("each of several can be chosen, also where the number of one is the name of another") {
+TEST_CASE("each of several can be chosen, even if the number of one is the name of another") {
     for (const Names& names : {Names{"walk", "walk", "1"}, Names{"2", "", "1", "0"}, Names{"1", "1", "0", "3"}}) {
         std::vector<bool> plays(names.size());
         for (std::size_t i = 0; i < names.size(); ++i) {
@@ -64,7 +64,7 @@ TEST_CASE("each of several can be chosen, also where the number of one is the na
     CHECK(chosen({"walk", "walk", "1"}, "1") == 1); // which no name stands for
 }
 
-TEST_CASE("a choice that stands for none, or for two, is an error that lists what there is") {
+TEST_CASE("a choice that matches none or two is an error that lists all") {
     CHECK(refusal({"walk", "run"}, "jump") == "a.glb: no animation \"jump\"; the file has:\n  walk\n  run");
     CHECK(refusal({"walk", "", "walk"}, "walk") ==
           "a.glb: 2 animations are called \"walk\"; choose one by its number:\n  0 (walk)\n  1\n  2 (walk)");
@@ -74,7 +74,7 @@ TEST_CASE("a choice that stands for none, or for two, is an error that lists wha
     CHECK_THROWS_WITH_AS(choose_file_scene("a.glb", {}, "x"), "a.glb: no scene \"x\"; the file has no scenes", Error);
 }
 
-TEST_CASE("what plays and what is shown are told by words that choose them again") {
+TEST_CASE("the animation and scene in use are reported by words that choose them again") {
     const Names names = {"walk", "twin", "twin", "", "all"};
     for (std::size_t i = 0; i < names.size(); ++i) {
         std::vector<bool> plays(names.size());

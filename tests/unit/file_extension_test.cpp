@@ -10,7 +10,7 @@
 
 using namespace pertev;
 
-TEST_CASE("an extension is the same in letters of either case, for all who ask for it") {
+TEST_CASE("extensions are compared without case everywhere") {
     CHECK(lower_case_extension("folder.X/Leaf.PnG") == ".png");
     CHECK(lower_case_extension("a.b.GLB") == ".glb");
     CHECK(lower_case_extension("folder.X/leaf").empty());
@@ -18,7 +18,7 @@ TEST_CASE("an extension is the same in letters of either case, for all who ask f
     CHECK(is_picture_name("A.EXR"));
     CHECK(image_format_for("A.JPEG") == ImageFormat::Jpeg);
     CHECK(is_scene_name("A.GLTF"));
-    CHECK_FALSE(tells_emitter_sides("A.OBJ"));
+    CHECK_FALSE(defines_emitter_sides("A.OBJ"));
     CHECK(lumens_per_watt("A.GlB") == 1);
     CHECK(lumens_per_watt("A.OBJ") == kLumensPerWatt);
 }

@@ -47,7 +47,7 @@ TEST_CASE("coordinates of a file become metres with y up, without mirroring") {
     }
 }
 
-TEST_CASE("coordinates far from the origin keep their digits when they are turned and scaled") {
+TEST_CASE("coordinates far from the origin keep their digits when they are rotated and scaled") {
     Messages messages;
     ReadOptions options;
     options.space = {UpAxis::Z, 0.001};
@@ -64,7 +64,7 @@ TEST_CASE("coordinates far from the origin keep their digits when they are turne
     CHECK(hi.z - lo.z == doctest::Approx(0));
 }
 
-TEST_CASE("units have names or are metres, axes are x, y and z, and other words are refused") {
+TEST_CASE("units are names or numbers of metres, axes are x, y and z, and other words are refused") {
     CHECK(file_space("", "") == FileSpace{});
     CHECK(file_space("z", "mm") == FileSpace{UpAxis::Z, 0.001});
     CHECK(file_space("X", "in") == FileSpace{UpAxis::X, 0.0254});
@@ -82,14 +82,14 @@ TEST_CASE("units have names or are metres, axes are x, y and z, and other words 
     }
 }
 
-TEST_CASE("files that tell their unit and their axis keep both, with a warning") {
+TEST_CASE("files that define their unit and axis keep both, with a warning") {
     Messages messages;
     ReadOptions options;
     options.space = {UpAxis::Z, 0.001};
     const Bounds3 box = bounds_of(read_scene_and_emitters("cornell-box", options, messages));
     REQUIRE(messages.all().size() == 1);
     CHECK(messages.all()[0].is_warning);
-    CHECK(messages.all()[0].remark.place == Place{"cornell-box"});
+    CHECK(messages.all()[0].remark.location == FileLocation{"cornell-box"});
     Messages none;
     CHECK(box == bounds_of(read_scene_and_emitters("cornell-box", {}, none)));
     CHECK(none.all().empty());

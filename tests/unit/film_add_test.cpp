@@ -57,7 +57,7 @@ void check_equal(const Film& a, const Film& b) {
 
 } // namespace
 
-TEST_CASE("films that hold parts of the samples add up to the film that holds them all, whichever device they are on") {
+TEST_CASE("films of parts of the samples add up to the film of all samples on any device") {
     Queue cpu = Queue::make_cpu(), other_cpu = Queue::make_cpu(), requested = test::requested_queue();
     Film whole(cpu, kWidth, kHeight, kAovs);
     take_samples(whole, {0, kSamples});
@@ -82,7 +82,7 @@ TEST_CASE("films that hold parts of the samples add up to the film that holds th
     }
 }
 
-TEST_CASE("a film is made again from the bytes of its targets, on whichever device it was and is to be") {
+TEST_CASE("a film is restored from the bytes of its targets on any device") {
     Queue cpu = Queue::make_cpu(), requested = test::requested_queue();
     Film whole(cpu, kWidth, kHeight, kAovs), part(cpu, kWidth, kHeight, kAovs), other(cpu, kWidth, kHeight, kAovs);
     take_samples(whole, {0, kSamples});
@@ -112,7 +112,7 @@ public:
     }
 };
 
-TEST_CASE("targets that a film is given are added and cleared with its own, and those of another kind are refused") {
+TEST_CASE("targets given to a film are added and cleared with its own, and those of another kind are refused") {
     Queue cpu = Queue::make_cpu(), requested = test::requested_queue();
     const auto with_counts = [](Queue& queue, std::size_t count, const char* name) {
         Film film(queue, kWidth, kHeight, 0);
@@ -147,7 +147,7 @@ TEST_CASE("a film of another size or of other layers is refused") {
     CHECK_THROWS_AS(film.add(Film(queue, kWidth, kHeight + 1, kAovDepth)), std::logic_error);
 }
 
-TEST_CASE("what a film shows has the bytes of its picture tone-mapped on the host") {
+TEST_CASE("the displayed film has the bytes of its picture tone-mapped on the host") {
     Queue cpu = Queue::make_cpu(), requested = test::requested_queue();
     Film film(cpu, kWidth, kHeight, kAovs);
     take_samples(film, {0, kSamples});
@@ -174,7 +174,7 @@ TEST_CASE("what a film shows has the bytes of its picture tone-mapped on the hos
     CHECK(film.displayed().pixels != with_alpha.pixels);
 }
 
-TEST_CASE("a film says which samples of which rows it holds, and refuses those that do not follow its own") {
+TEST_CASE("a film reports its samples and rows and refuses others that do not follow them") {
     Queue queue = Queue::make_cpu();
     const auto film_of = [&](FilmPart part) {
         Film film(queue, kWidth, kHeight, 0);
@@ -200,7 +200,7 @@ TEST_CASE("a film says which samples of which rows it holds, and refuses those t
     CHECK(film.part().is_empty());
 }
 
-TEST_CASE("frames whose pixels were taken apart, on either device, are put together") {
+TEST_CASE("frames split into pixels on either device are merged") {
     Queue cpu = Queue::make_cpu(), requested = test::requested_queue();
     for (const bool splits_light : {false, true}) {
         NoisyFrame whole(cpu, kWidth, kHeight, splits_light), upper(cpu, kWidth, kHeight, splits_light);
@@ -210,7 +210,7 @@ TEST_CASE("frames whose pixels were taken apart, on either device, are put toget
         const auto take = [&](const NoisyFrame& frame, uint32_t pixel) {
             test::Random random(pixel);
             const NoisyFrameView& view = frame.view();
-            for (Float4* array : {view.emission, view.place, view.normal, view.albedo, view.gloss}) {
+            for (Float4* array : {view.emission, view.hit, view.normal, view.albedo, view.gloss}) {
                 array[pixel] = {random.within(0, 1), random.within(0, 1), random.within(0, 1), random.within(0, 1)};
             }
             const float red = pixel % 7 == 0 ? kInfinity : random.within(0, 1);

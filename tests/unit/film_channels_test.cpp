@@ -6,7 +6,7 @@
 
 using namespace pertev;
 
-TEST_CASE("groups of channels follow each other in the order of their bits, those that are there") {
+TEST_CASE("the present groups of channels follow each other in the order of their bits") {
     constexpr uint32_t kAll = kAovAlbedo | kAovNormal | kAovDepth | kAovPosition | kAovIds;
     CHECK(film_channel_count(0) == 4);
     CHECK(film_channel_count(kAovIds) == 4);
@@ -21,7 +21,7 @@ TEST_CASE("groups of channels follow each other in the order of their bits, thos
     CHECK(channel_offset(kAovAlbedo | kAovPosition, kAovPosition) == 7);
 }
 
-TEST_CASE("auxiliary layers have names, by which their bits are found") {
+TEST_CASE("auxiliary layers are found by their names") {
     CHECK(aov_names() == std::vector<std::string>{"albedo", "normal", "depth", "position", "ids", "motion"});
     for (const std::string& name : aov_names()) CHECK(aov_group(aov_named(name).value()).name == name);
     CHECK_FALSE(aov_named("id").has_value());

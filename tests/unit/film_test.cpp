@@ -25,7 +25,7 @@ std::vector<FilmLayer> layers_of(Film& film, uint32_t samples) {
 
 } // namespace
 
-TEST_CASE("a film starts black, with zeros in every layer, and clear() takes it back there") {
+TEST_CASE("a film starts black with zeros in every layer, and clear() restores that") {
     Queue queue = Queue::make_cpu();
     Film film(queue, 3, 2, kAllAovs);
     const auto is_empty = [&] {
@@ -73,7 +73,7 @@ TEST_CASE("the picture is the mean of the samples of each pixel, rounded once") 
     }
 }
 
-TEST_CASE("a small sample is not lost among a million large ones") {
+TEST_CASE("a small sample is not lost in a sum of a million large ones") {
     Queue queue = Queue::make_cpu();
     Film film(queue, 1, 1, 0);
     for (int i = 0; i < 1'000'000; ++i) add_radiance(film.view(), 0, {1000.0f, -1.0f, 0x1p-40f});
@@ -101,7 +101,7 @@ TEST_CASE("a transparent picture's alpha is the share of samples that hit someth
     CHECK(picture.at(1, 0)[3] == 0);
 }
 
-TEST_CASE("layers come in one order with their channels; geometry is a mean over hits, albedo over all samples") {
+TEST_CASE("layers have a fixed order of channels; geometry is a mean over hits, albedo over all samples") {
     Queue queue = Queue::make_cpu();
     Film film(queue, 2, 1, kAovAlbedo | kAovNormal | kAovDepth | kAovPosition);
     const FilmView view = film.view();
@@ -128,7 +128,7 @@ TEST_CASE("layers come in one order with their channels; geometry is a mean over
     CHECK(layers[3].image.pixels == std::vector<float>{0, 0, 0, 10, -25, 40});
 }
 
-TEST_CASE("only the layers asked for are there, and ids only with kAovIds") {
+TEST_CASE("a film has only the requested layers, and ids only with kAovIds") {
     Queue queue = Queue::make_cpu();
     const Film plain(queue, 2, 2, 0);
     CHECK(plain.layers().empty());

@@ -40,7 +40,7 @@ RenderResult render_plane(PixelFilter filter, bool whole_plane) {
 
 } // namespace
 
-TEST_CASE("a pixel's samples lie about its centre, left to right and from the top down, for every filter") {
+TEST_CASE("a pixel's samples lie around its centre, with x to the right and y down, for every filter") {
     for (const PixelFilter filter :
          {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian, PixelFilter::BlackmanHarris}) {
         CAPTURE(static_cast<int>(filter));
@@ -67,7 +67,7 @@ TEST_CASE("albedo, normal, depth and ids are those of the first surface") {
     }
 }
 
-TEST_CASE("where only a part of a pixel is covered, alpha is that part and depth is the surface's own") {
+TEST_CASE("in a partly covered pixel alpha is the covered part and depth is the surface's own") {
     const RenderResult result = render_plane(PixelFilter::Tent, false); // covers x < 0; the tent reaches a pixel far
     const auto alpha = [&](uint32_t x) { return static_cast<double>(result.picture.at(x, 1)[3]); };
     CHECK(alpha(2) == 1);

@@ -40,7 +40,7 @@ float mean_by_ldexp(FixedSum sum, uint64_t count) {
 
 } // namespace
 
-TEST_CASE("a float in fixed point is itself, cut towards zero below 2^-64") {
+TEST_CASE("a float in fixed point keeps its value, truncated towards zero below 2^-64") {
     for (const float x : {0.0f, -0.0f, 1.0f, -1.0f, 0.1f, -0.3f, 1e-10f, 3e11f, -0x1p40f, 0x1p-64f, 0x1.8p-64f}) {
         CAPTURE(x);
         const long double cut = std::ldexp(std::trunc(std::ldexp(static_cast<long double>(x), 64)), -64);
@@ -50,7 +50,7 @@ TEST_CASE("a float in fixed point is itself, cut towards zero below 2^-64") {
     CHECK(to_fixed(-0x1p-140f) == FixedSum{}); // subnormal
 }
 
-TEST_CASE("a sum does not depend on the order, and atomic additions give the same") {
+TEST_CASE("a sum does not depend on the order, and atomic additions give the same sum") {
     test::Random random(3);
     std::vector<float> values;
     for (int i = 0; i < 2000; ++i) {
@@ -92,7 +92,7 @@ TEST_CASE("the mean is the correctly rounded quotient") {
     }
 }
 
-TEST_CASE("the mean has the bits of a division by the C library, for the least sums and the largest counts too") {
+TEST_CASE("the mean has the bits of the C library's division, including the smallest sums and the largest counts") {
     test::Random random(11);
     const auto bits64 = [&] { return (uint64_t(random.bits()) << 32) | random.bits(); };
     int smallest = 0;

@@ -45,7 +45,8 @@ std::vector<uint32_t> order_of(unsigned mask, const float (&entries)[kWideChildr
 
 } // namespace
 
-TEST_CASE("the nearest child comes first, or the builder's, or the farthest, the others as the builder has them") {
+TEST_CASE(
+    "the nearest child comes first, or the builder's first, or the farthest, and the others in the builder's order") {
     Random random(2);
     for (unsigned mask = 0; mask < 256; ++mask) {
         for (int started_in = 0; started_in <= 8; ++started_in) { // so many of the boxes, on average
@@ -119,7 +120,7 @@ std::vector<float> first_seen(bool is_far) {
 
 } // namespace
 
-TEST_CASE("rays in flight begin at their far ends where that is asked for") {
+TEST_CASE("rays in flight begin at their far ends on request") {
     for (const float t : first_seen(false)) CHECK(t <= 4); // a leaf holds four
     for (const float t : first_seen(true)) CHECK(t > 60);
 }

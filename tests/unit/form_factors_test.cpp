@@ -73,7 +73,7 @@ TEST_CASE("hemicubes of 128 pixels find the form factors of squares to 1 %") {
     }
 }
 
-TEST_CASE("a hemicube's pixels are the hemisphere, by the cosine") {
+TEST_CASE("a hemicube's pixels cover the cosine-weighted hemisphere") {
     for (const uint32_t resolution : {8u, 64u, 130u}) {
         const HemicubePixels pixels(resolution);
         const Frame frame = make_frame(normalize(Vec3{1, 2, -3}));
@@ -83,9 +83,9 @@ TEST_CASE("a hemicube's pixels are the hemisphere, by the cosine") {
             CHECK(std::abs(dot(face.forward, face.up)) < 1e-6f);
             CHECK(dot(cross(face.right, face.up), face.right) < 1e-6f);
             for (uint32_t i = 0; i < face.width * face.height; ++i) {
-                const auto x = static_cast<float>(place_of_pixel(i % face.width, face.width, -1, 2));
+                const auto x = static_cast<float>(pixel_coordinate(i % face.width, face.width, -1, 2));
                 const auto y =
-                    static_cast<float>(place_of_pixel(i / face.width, face.height, face.lowest, 1 - face.lowest));
+                    static_cast<float>(pixel_coordinate(i / face.width, face.height, face.lowest, 1 - face.lowest));
                 const Vec3 direction = normalize(face.forward + x * face.right + y * face.up);
                 const float cosine = dot(direction, frame.normal);
                 CHECK(cosine > 0);
@@ -121,7 +121,7 @@ TEST_CASE("form factors of a closed room sum to 1, whatever it contains") {
     }
 }
 
-TEST_CASE("few rays find the form factor of a lamp") {
+TEST_CASE("few rays find the form factor of an emitter") {
     Scene scene;
     test::add(scene, test::floor_at(0, 0.05f), test::white(0.5f));
     const float half = 0.1f;
@@ -134,7 +134,7 @@ TEST_CASE("few rays find the form factor of a lamp") {
     CHECK(patched.factor(rows, 0, 0, 1) == doctest::Approx(known).epsilon(0.02));
 }
 
-TEST_CASE("light that both kinds of rays find counts once") {
+TEST_CASE("light found by both kinds of rays counts once") {
     Scene scene;
     test::add(scene, test::floor_at(0, 0.02f), test::white(0.5f));
     test::add(scene, test::sheet({0, 1, 0}, {1, 0, 0}, {0, 0, 1}), test::emitter_material(0, 1)); // its front down

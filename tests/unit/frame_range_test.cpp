@@ -6,7 +6,7 @@
 
 using namespace pertev;
 
-TEST_CASE("each run of # in a file's name becomes the frame's number") {
+TEST_CASE("each run of # in a file name becomes the frame number") {
     CHECK(frame_file("frame-####.png", 7) == "frame-0007.png");
     CHECK(frame_file("frame-##.png", 12345) == "frame-12345.png");
     CHECK(frame_file("a#b/c#d##.exr", 3) == "a#b/c3d03.exr");
@@ -16,7 +16,7 @@ TEST_CASE("each run of # in a file's name becomes the frame's number") {
     CHECK(!names_frames("x.png"));
 }
 
-TEST_CASE("frame k is at k / fps, and a turn ends where it began") {
+TEST_CASE("frame k is at time k / fps, and a turntable ends where it began") {
     const FrameRange moving = {.first = 3, .last = 5, .fps = 24.0};
     CHECK(moving.count() == 3);
     CHECK(moving.time_of(3) == 3 / 24.0);
@@ -28,7 +28,7 @@ TEST_CASE("frame k is at k / fps, and a turn ends where it began") {
     CHECK(!FrameRange{}.time_of(9));
 }
 
-TEST_CASE("the frame before one is a step back in time and in the turn, before the first too") {
+TEST_CASE("the previous frame is one step back in time and on the turntable, even for the first") {
     const FrameRange moving = {.first = 3, .last = 5, .fps = 24.0};
     CHECK(moving.time_before(5) == moving.time_of(4));
     CHECK(moving.time_before(0) == -1 / 24.0);

@@ -31,7 +31,7 @@ double cosine_average(F f) { // 2 int f(mu) mu dmu, midpoints
 } // namespace
 
 TEST_CASE(
-    "dielectric transmittance is what is not reflected, to 1e-6 of itself down to grazing, and equal from both sides") {
+    "dielectric transmittance is 1 minus reflectance to 1e-6 of itself down to grazing angles, equal from both sides") {
     for (const float eta : {1.1f, 1.33f, 1.5f, 2.4f, 3.0f})
         for (const float cosine : {1e-6f, 1e-4f, 0.01f, 0.3f, 0.7f, 1.0f}) {
             const double c = cosine, n = eta, far = std::sqrt(1 - (1 - c * c) / (n * n));
@@ -44,7 +44,7 @@ TEST_CASE(
         }
 }
 
-TEST_CASE("dielectric reflectance agrees with complex arithmetic to 1e-5, total reflection included") {
+TEST_CASE("dielectric reflectance agrees with complex arithmetic to 1e-5, including total reflection") {
     for (const float eta : {1.0f / 2.4f, 1.0f / 1.5f, 0.99f, 1.0f, 1.01f, 1.33f, 1.5f, 3.0f})
         for (int i = 1; i <= 1000; i++) {
             const float cosine = static_cast<float>(i) / 1000.0f;
@@ -79,7 +79,7 @@ TEST_CASE("conductor reflectance agrees with complex arithmetic to 1e-4") {
     CHECK(fresnel_conductor(0.3f, 0, 2) == doctest::Approx(1));
 }
 
-TEST_CASE("the averages of reflectance agree with their integrals") {
+TEST_CASE("average reflectances agree with their integrals") {
     for (const float eta : {1.0f / 2.5f, 1.0f / 1.5f, 1.1f, 1.33f, 1.5f, 2.5f}) {
         INFO("eta " << eta);
         const double exact = cosine_average([eta](double mu) { return reflectance(mu, double(eta)); });

@@ -35,7 +35,8 @@ uint32_t owner_of(const GuidedCdf& table, uint32_t number) {
 
 } // namespace
 
-TEST_CASE("ordered table: every index owns as many numbers as its weight asks for, at least one, and no weight none") {
+TEST_CASE(
+    "guided cdf: every index has an interval proportional to its weight, at least one number, and weight 0 none") {
     for (const std::size_t count : {1u, 2u, 3u, 7u, 64u, 1000u, 4096u, 100'000u}) {
         const std::vector<double> weights = random_weights(count, static_cast<uint32_t>(count));
         const GuidedCdf table = build_guided_cdf(weights);
@@ -59,7 +60,7 @@ TEST_CASE("ordered table: every index owns as many numbers as its weight asks fo
     }
 }
 
-TEST_CASE("ordered table: a number draws the index that owns it, the first and the last number of each too") {
+TEST_CASE("guided cdf: a number selects the index of its interval, including the interval's ends") {
     for (const std::size_t count : {1u, 2u, 5u, 33u, 700u}) {
         const GuidedCdf table = build_guided_cdf(random_weights(count, 5));
         const GuidedCdfView view = view_of(table);
@@ -81,7 +82,7 @@ TEST_CASE("ordered table: a number draws the index that owns it, the first and t
     }
 }
 
-TEST_CASE("ordered table: the order of numbers is kept, through the index and the rest") {
+TEST_CASE("guided cdf: the order of numbers is kept by the index and the rest") {
     const GuidedCdf table = build_guided_cdf(random_weights(100, 3));
     const GuidedCdfView view = view_of(table);
     double last = -1;
@@ -95,7 +96,7 @@ TEST_CASE("ordered table: the order of numbers is kept, through the index and th
     CHECK(backwards == 0);
 }
 
-TEST_CASE("ordered table: what is left of a number is even again, exactly so where a table is drawn by it") {
+TEST_CASE("guided cdf: the rest of a number is uniform again, and exactly so for a second cdf") {
     // Every (rest, more) of an index, with more in steps: each of the drawn numbers' top bits must come equally often.
     for (const uint32_t owned : {1u, 3u, 5u, 96u, 1000u}) {
         constexpr uint32_t cells = 64, steps = 1u << 12;
@@ -120,7 +121,7 @@ TEST_CASE("ordered table: what is left of a number is even again, exactly so whe
     CHECK(number_of_rest({0, (1u << 31) - 1, 0x7ffffffeu - 1, 0xffffffffu}) >= 0xfffffffdu);
 }
 
-TEST_CASE("ordered table: the bits behind a pair of numbers are a permutation of either one") {
+TEST_CASE("guided cdf: the bits behind a pair of numbers are a permutation of either one") {
     constexpr uint32_t count = 1u << 18;
     for (const uint32_t fixed : {0u, 1u, 0x9e3779b9u}) {
         std::vector<uint32_t> by_x, by_y;
@@ -135,7 +136,7 @@ TEST_CASE("ordered table: the bits behind a pair of numbers are a permutation of
     }
 }
 
-TEST_CASE("ordered table: invalid weights are never drawn, the smallest valid one is") {
+TEST_CASE("guided cdf: invalid weights are never selected, and the smallest valid weight is") {
     const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
     const std::vector<double> weights = {nan, 1, -3, 1e-300, infinite, 3, 0};
     const GuidedCdf table = build_guided_cdf(weights);

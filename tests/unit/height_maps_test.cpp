@@ -35,7 +35,7 @@ Scene three_sheets() {
 
 } // namespace
 
-TEST_CASE("a height map is a material, a file, a scale, and the height that moves nothing") {
+TEST_CASE("a height map has a material, a file, a scale and a neutral height") {
     const HeightMapText two = parse_height_map("wall*=a,b=c.png,-0.5");
     CHECK(two.material == "wall*");
     CHECK(two.file == "a,b=c.png");
@@ -49,10 +49,10 @@ TEST_CASE("a height map is a material, a file, a scale, and the height that move
         CAPTURE(text);
         CHECK(why_not(text).find("expected MATERIAL=FILE,SCALE") != std::string::npos);
     }
-    CHECK(why_not("a=b,3e6").find("SCALE and MIDDLE are within") != std::string::npos);
+    CHECK(why_not("a=b,3e6").find("SCALE and MIDDLE must be between") != std::string::npos);
 }
 
-TEST_CASE("heights are the first channel as stored, for every material of the name, the last map counting") {
+TEST_CASE("heights are the first channel as stored, for every material of the name, and the last map counts") {
     const std::filesystem::path folder = test::scratch_folder();
     const std::string png = (folder / "h.png").string(), exr = (folder / "h.exr").string();
     write_png(png, Rgba8Image{2, 1, {0, 9, 9, 255, 51, 7, 7, 255}});
@@ -74,7 +74,7 @@ TEST_CASE("heights are the first channel as stored, for every material of the na
     CHECK(read->at(1).middle == 0.5f);
 }
 
-TEST_CASE("a map for no material, for one without texture coordinates, or of no picture is refused") {
+TEST_CASE("a height map without a material, texture coordinates or picture is refused") {
     const std::filesystem::path folder = test::scratch_folder();
     const std::string file = (folder / "no.png").string(), png = (folder / "h.png").string();
     test::write_text(file, "no picture");
@@ -84,7 +84,7 @@ TEST_CASE("a map for no material, for one without texture coordinates, or of no 
         const HeightMapText map[] = {parse_height_map(material + "=" + name + ",1")};
         return test::bad_input_message([&] { read_height_maps(map, scene); });
     };
-    CHECK(why("door", file).find("no material of the scene has this name; there are 'floor', 'wall left'") !=
+    CHECK(why("door", file).find("there is no material of the scene with this name; there are 'floor', 'wall left'") !=
           std::string::npos);
     CHECK(why("floor", png).find("'floor' is on a mesh without texture coordinates") != std::string::npos);
     CHECK(why("wall left", file).find(file) != std::string::npos);

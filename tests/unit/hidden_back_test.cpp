@@ -75,8 +75,7 @@ float darkest(const Image& image) { return *std::ranges::min_element(image.pixel
 
 } // namespace
 
-TEST_CASE(
-    "a ray from the camera passes the back of what is not double sided, mirrored, turned or tiny; no other does") {
+TEST_CASE("only camera rays pass the backs of one-sided surfaces, even mirrored, rotated or tiny") {
     Scene scene;
     const Transform mirror = make_scale({1, 1, -1}); // the sheet's front then faces -z, with the node's +z
     const uint32_t plain = add(scene, sheet(), false), both = add(scene, sheet(), true);
@@ -102,7 +101,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a room that the camera sees into through its walls' backs stays dark, and so does one it stands in") {
+TEST_CASE("a closed room stays dark, seen through its walls' backs or from inside") {
     for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
         Scene scene;
         scene.environment = Environment{};
@@ -132,7 +131,7 @@ TEST_CASE("a room that the camera sees into through its walls' backs stays dark,
     }
 }
 
-TEST_CASE("the share of rays that pass a hidden back is a figure of scene and view, whatever the picture's size") {
+TEST_CASE("the share of rays through hidden backs depends on scene and view, not on the picture's size") {
     Scene scene;
     scene.environment = Environment{};
     add(scene, sheet(), false, make_translation({1, 0, 0})); // the right half of the view

@@ -9,7 +9,7 @@
 
 using namespace pertev;
 
-TEST_CASE("Hilbert's curve visits every cell once, each a neighbour of the one before") {
+TEST_CASE("the Hilbert curve visits every cell once, each adjacent to the previous one") {
     // The first 8^4 places of the curve fill the first 16 x 16 x 16 cells.
     constexpr uint32_t side = 16, count = side * side * side;
     std::vector<std::array<int, 3>> cells(count, {-1, -1, -1});
@@ -27,7 +27,7 @@ TEST_CASE("Hilbert's curve visits every cell once, each a neighbour of the one b
     }
 }
 
-TEST_CASE("a point's place on the curve is that of its cell; boxes without size have one") {
+TEST_CASE("a point's index on the curve is that of its cell, even in a box without extent") {
     const Bounds3 bounds = {{-1, 0, 2}, {1, 2, 4}};
     CHECK(hilbert_position(bounds.lo, bounds) == hilbert_position({0, 0, 0}));
     CHECK(hilbert_position(bounds.hi, bounds) == hilbert_position({1023, 1023, 1023}));

@@ -50,10 +50,10 @@ struct OneTriangle {
     OneTriangle(const OneTriangle&) = delete;
     OneTriangle& operator=(const OneTriangle&) = delete;
 
-    PlacedTriangle at(float u, float v) const {
+    WorldTriangle at(float u, float v) const {
         Hit hit;
         hit.u = u, hit.v = v, hit.primitive = 0;
-        return place_triangle(instance, mesh, hit);
+        return world_triangle(instance, mesh, hit);
     }
 };
 
@@ -64,7 +64,7 @@ DoubleVec3 point_at(const Vec3 (&corners)[3], double u, double v) {
 }
 
 /// Whether it is no sliver and large beside its error: neither cuts short how far a point is kept off its edges.
-bool has_room(const PlacedTriangle& placed) {
+bool has_room(const WorldTriangle& placed) {
     const double size = static_cast<double>(max_component(max(abs(placed.ab), abs(placed.ac))));
     const double width = length(cross(to_double(placed.ab), to_double(placed.ac))) / size;
     return width > 0.07 * size && width > 300 * static_cast<double>(max_component(placed.error));
@@ -77,8 +77,7 @@ double part_of(DoubleVec3 off, Vec3 error) {
 
 } // namespace
 
-TEST_CASE(
-    "a position is within its error of where the traversal has the surface, baked or moved into an instance's space") {
+TEST_CASE("a hit position is within its error bound of the traversed surface, baked or in an instance") {
     test::Random random(3);
     for (const bool is_baked : {true, false}) {
         CAPTURE(is_baked);
@@ -87,7 +86,7 @@ TEST_CASE(
         for (int i = 0; i < 200'000; ++i) {
             const OneTriangle one(random, is_baked);
             const float u = random.within(0.25f, 0.4f), v = random.within(0.25f, 0.4f); // no edge is near
-            const PlacedTriangle placed = one.at(u, v);
+            const WorldTriangle placed = one.at(u, v);
             if (!has_room(placed)) continue;
             ++tried;
             const Transform& m = one.instance.world_from_local;
@@ -109,7 +108,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a position is kept off all edges by more than its error, and is moved no farther than 900 of it") {
+TEST_CASE("a hit position is kept off all edges by more than its error and moves by at most 900 times that") {
     test::Random random(5);
     double nearest = 1e30, farthest = 0;
     int kept = 0;
@@ -119,7 +118,7 @@ TEST_CASE("a position is kept off all edges by more than its error, and is moved
         const float along = random.unit();
         const float u = where == 0 ? 0.0f : where == 1 ? along : 1.0f - along;
         const float v = where == 1 ? 0.0f : along;
-        const PlacedTriangle placed = one.at(u, v);
+        const WorldTriangle placed = one.at(u, v);
         const double error = static_cast<double>(max_component(placed.error));
         const Vec3 corners[3] = {placed.a, placed.a + placed.ab, placed.a + placed.ac};
         farthest =

@@ -129,7 +129,7 @@ std::string message_of(const std::vector<std::byte>& bytes) {
 
 } // namespace
 
-TEST_CASE("EXR colour is read from float and half, scanlines and tiles, under every lossless compression") {
+TEST_CASE("EXR colour is read from float and half, scanlines and tiles, with every lossless compression") {
     for (const Imf::PixelType type : {Imf::FLOAT, Imf::HALF}) {
         for (const bool tiled : {false, true}) {
             for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
@@ -143,13 +143,13 @@ TEST_CASE("EXR colour is read from float and half, scanlines and tiles, under ev
     }
 }
 
-TEST_CASE("EXR with R, G, B, A has four channels, Y one, and uint colour is read as numbers") {
+TEST_CASE("an EXR with R, G, B, A has four channels, one with Y has one, and uint colour is read as numbers") {
     check_values(decode(make_exr({.names = {"R", "G", "B", "A"}})), 4);
     check_values(decode(make_exr({.names = {"Y"}})), 1);
     CHECK(decode(make_exr({.type = Imf::UINT})).at(3, 2)[0] == 35);
 }
 
-TEST_CASE("an EXR's display window is the picture; outside the data window it is 0, data outside it is cut") {
+TEST_CASE("an EXR's display window is the picture: 0 outside the data window, and data outside it is cropped") {
     const Image image = decode(make_exr({.data = {{-3, 2}, {5, 12}}}));
     CHECK(image.width == 10);
     CHECK(image.height == 8);
@@ -161,7 +161,7 @@ TEST_CASE("an EXR's display window is the picture; outside the data window it is
     CHECK(apart.pixels == std::vector<float>(240, 0.0f));
 }
 
-TEST_CASE("of several parts the first with colour is the picture, and read_exr names them all") {
+TEST_CASE("the first part with colour of a multi-part EXR is the picture, and read_exr names all parts") {
     Prepared depth({.names = {"Z"}}), colour({});
     depth.header.setName("depth");
     colour.header.setName("beauty");
@@ -198,7 +198,8 @@ TEST_CASE("an EXR cut short anywhere is an error that names the file") {
     }
 }
 
-TEST_CASE("a written EXR gives back every bit, its layers, ids over 2^24 and metadata, and is written the same twice") {
+TEST_CASE(
+    "a written EXR is read back to the bit with layers, ids over 2^24 and metadata, and has the same bytes each time") {
     const float inf = std::numeric_limits<float>::infinity();
     const Image picture{2, 2, 4, {0, -0.0f, 1e-42f, 1, inf, -inf, 3.0e38f, 0.1f, 1, 2, 3, 4, 5, 6, 7, 8}};
     const std::vector<ExrLayer> layers = {
@@ -227,7 +228,7 @@ TEST_CASE("a written EXR gives back every bit, its layers, ids over 2^24 and met
     for (const auto& entry : metadata) CHECK(std::count(file.metadata.begin(), file.metadata.end(), entry) == 1);
 }
 
-TEST_CASE("an EXR holds rows of any length: where sixteen are over 256 MiB, each is packed by itself") {
+TEST_CASE("an EXR holds rows of any length, and packs each alone if sixteen exceed 256 MiB") {
     constexpr uint32_t kWidth = kMaxImageSide;
     for (const auto& [layer_count, compression] :
          {std::pair(20u, Imf::ZIP_COMPRESSION), std::pair(21u, Imf::ZIPS_COMPRESSION)}) {
@@ -252,7 +253,7 @@ TEST_CASE("an EXR holds rows of any length: where sixteen are over 256 MiB, each
     }
 }
 
-TEST_CASE("an EXR of thousands of layers is read again") {
+TEST_CASE("an EXR of thousands of layers is written and read") {
     std::vector<ExrLayer> layers;
     for (int i = 0; i < 1500; ++i) {
         layers.push_back({"n" + std::to_string(i), {"R", "G", "B"}, std::vector<float>(3, static_cast<float>(i))});
@@ -266,7 +267,7 @@ TEST_CASE("an EXR of thousands of layers is read again") {
     }
 }
 
-TEST_CASE("an EXR whose rows would be over 1 GiB is refused before it is made") {
+TEST_CASE("an EXR whose rows would exceed 1 GiB is refused before it is made") {
     check_exr_row(kMaxImageSide, 4096);
     check_exr_row(1u << 14, 16384);
     for (const auto& [width, channels] : {std::pair(kMaxImageSide, 4097u), std::pair((1u << 14) + 1, 16384u)}) {
@@ -276,7 +277,7 @@ TEST_CASE("an EXR whose rows would be over 1 GiB is refused before it is made") 
     }
 }
 
-TEST_CASE("two layers of one name and metadata named as the format's own are a programmer's mistake") {
+TEST_CASE("two layers of one name, and metadata with a reserved name, fail an assertion") {
     const Image picture{1, 1, 3, {1, 2, 3}};
     const ExrLayer layer{"depth", {"Z"}, std::vector<float>{1}};
     CHECK_THROWS_AS(encode_exr(picture, std::vector<ExrLayer>{layer, layer}), std::logic_error);

@@ -210,7 +210,7 @@ TEST_CASE("equal pictures have FLIP 0 at every pixel, and FLIP is symmetric to t
     CHECK(hdr_flip(a, a).mean == 0);
 }
 
-TEST_CASE("FLIP of black against white is 0.95 plus what their 100 units of lightness take of the last 5 %") {
+TEST_CASE("FLIP of black against white is 0.95 plus the part of the last 5 % for their 100 units of lightness") {
     const double largest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), 0.7), knee = 0.4 * largest;
     const double wanted = 0.95 + 0.05 * (std::pow(100.0, 0.7) - knee) / (largest - knee);
     CHECK(flip(filled(32, 0, 0, 0), filled(32, 1, 1, 1)).mean == doctest::Approx(wanted).epsilon(1e-4));

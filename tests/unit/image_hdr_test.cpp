@@ -39,14 +39,14 @@ std::string message_of(const std::string& text) {
 
 } // namespace
 
-TEST_CASE("an RGBE pixel is its mantissa times 2^(exponent - 136), down to the smallest exponents") {
+TEST_CASE("an RGBE pixel is its mantissa times 2^(exponent - 136), even for the smallest exponents") {
     const Image image = decode(header("-Y 1 +X 4") + pixel(128, 64, 255, 129) + pixel(7, 7, 7, 0) +
                                pixel(255, 1, 2, 1) + pixel(255, 0, 0, 255));
     CHECK(image.pixels == std::vector<float>{1, 0.5f, 255.0f / 128, 0, 0, 0, 255 * 0x1p-135f, 0x1p-135f, 0x1p-134f,
                                              255 * 0x1p119f, 0, 0});
 }
 
-TEST_CASE("all eight orientations of a Radiance file put the first pixel where they say") {
+TEST_CASE("all eight orientations of a Radiance file put the first pixel in its corner") {
     // Red 1, 2, 3, ... in file order, 3 wide and 2 high.
     std::string pixels;
     for (int i = 1; i <= 6; ++i) pixels += pixel(i, 0, 0, 136);
@@ -62,7 +62,7 @@ TEST_CASE("all eight orientations of a Radiance file put the first pixel where t
     CHECK(decoded("-X 3 +Y 2") == V{6, 4, 2, 5, 3, 1});
 }
 
-TEST_CASE("old run-length coding repeats the pixel before, with several bytes of count") {
+TEST_CASE("old run-length coding repeats the previous pixel, with several bytes of count") {
     const Image short_run = decode(header("-Y 1 +X 5") + pixel(9, 0, 0, 136) + pixel(1, 1, 1, 3) + pixel(4, 0, 0, 136));
     CHECK(reds(short_run) == std::vector<float>{9, 9, 9, 9, 4});
     const Image long_run =
@@ -83,17 +83,17 @@ TEST_CASE("new run-length coding holds each channel as runs and plain bytes") {
     CHECK(image.at(7, 0)[2] == 0);
 }
 
-TEST_CASE("values are divided by EXPOSURE, all lines of it, and by COLORCORR") {
+TEST_CASE("values are divided by every EXPOSURE line and by COLORCORR") {
     const Image image =
         decode(header("-Y 1 +X 1", "EXPOSURE=2\nEXPOSURE=4\nCOLORCORR=1 2 0.5\n") + pixel(64, 64, 64, 136));
     CHECK(image.pixels == std::vector<float>{8, 4, 16});
 }
 
-TEST_CASE("a damaged Radiance file is an error that says what is wrong") {
+TEST_CASE("a damaged Radiance file is an error that describes the fault") {
     CHECK(message_of(header("-Y 1 +Z 1") + "abcd").find("-Y 512 +X 1024") != std::string::npos);
     CHECK(message_of(header("-Y 1 -Y 1") + "abcd").find("-Y 512 +X 1024") != std::string::npos);
     CHECK(message_of(header("-Y 0 +X 4")).find("at least 1") != std::string::npos);
-    CHECK(message_of(header("-Y 1 +X 2") + "abcd").find("cut short") != std::string::npos);
+    CHECK(message_of(header("-Y 1 +X 2") + "abcd").find("truncated") != std::string::npos);
     CHECK(message_of(header("-Y 1 +X 8") + pixel(2, 2, 0, 9)).find("9 pixels") != std::string::npos);
     CHECK(message_of(header("-Y 1 +X 8") + pixel(2, 2, 0, 8) + "\x89\x01").find("beyond") != std::string::npos);
     CHECK(message_of(header("-Y 1 +X 4") + pixel(1, 1, 1, 4)).find("before the first") != std::string::npos);

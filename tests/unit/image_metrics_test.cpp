@@ -31,7 +31,7 @@ TEST_CASE("errors of a picture against itself are zero and its PSNR is infinite"
     CHECK(std::isinf(peak_signal_to_noise(0)));
 }
 
-TEST_CASE("relMSE, MSE and PSNR of a uniform difference are their formulas") {
+TEST_CASE("relMSE, MSE and PSNR of a uniform difference match their formulas") {
     const Image x = filled(10, 10, 0.75f), r = filled(10, 10, 0.25f);
     CHECK(relative_error(x, r).rel_mse == doctest::Approx(0.25 / (0.0625 + 0.01)).epsilon(1e-12));
     CHECK(mean_squared_error(x, r) == 0.25);
@@ -42,7 +42,7 @@ TEST_CASE("relMSE, MSE and PSNR of a uniform difference are their formulas") {
     CHECK(relative_error(x, r).reference_mean[2] == 0.25);
 }
 
-TEST_CASE("the trimmed relMSE leaves the worst pixels out, of its means as well, and no more than asked for") {
+TEST_CASE("the trimmed relMSE leaves out exactly the requested share of worst pixels, also from its means") {
     const Image r = filled(10, 10, 1);
     Image x = filled(10, 10, 1);
     x.at(3, 4)[0] = 1e6f;
@@ -62,7 +62,7 @@ TEST_CASE("alpha is not compared") {
     CHECK(relative_error(x, r, 1).rel_mse == 0);
 }
 
-TEST_CASE("pictures of different sizes are an error that tells both") {
+TEST_CASE("pictures of different sizes are an error that names both") {
     try {
         relative_error(filled(4, 3, 0), filled(3, 4, 0));
         FAIL("no error");
@@ -72,7 +72,7 @@ TEST_CASE("pictures of different sizes are an error that tells both") {
     }
 }
 
-TEST_CASE("the variance of pictures is the unbiased one of each channel over its squared mean") {
+TEST_CASE("the variance of pictures is the unbiased variance of each channel over its squared mean") {
     const VarianceOfPictures same = variance_of({filled(4, 3, 0.3f), filled(4, 3, 0.3f), filled(4, 3, 0.3f)});
     CHECK(same.over(same.best_pixels(1)).rel_mse == 0);
 
@@ -89,14 +89,14 @@ TEST_CASE("the variance of pictures is the unbiased one of each channel over its
     CHECK(green.over({0}).mean == doctest::Approx(7.0 / 3).epsilon(1e-12));
 }
 
-TEST_CASE("the variance of pictures loses no digits where they are bright and differ by little") {
+TEST_CASE("the variance of pictures keeps its digits where they are bright and differ little") {
     const float next = std::nextafter(4096.0f, 5000.0f); // 2^-11 above
     const VarianceOfPictures variance = variance_of({filled(1, 1, 4096), filled(1, 1, next)});
     const double mean = 4096 + std::ldexp(1.0, -12);
     CHECK(variance.over({0}).rel_mse == doctest::Approx(std::ldexp(1.0, -23) / (mean * mean + 0.01)).epsilon(1e-12));
 }
 
-TEST_CASE("the best pixels of pictures are those that vary least, and any others can be asked of too") {
+TEST_CASE("the best pixels are those that vary least, and the variance of others can be requested") {
     Image low = filled(10, 10, 1), high = filled(10, 10, 1);
     for (uint32_t x = 0; x < 10; ++x) { // row 2 varies, its right end more
         low.at(x, 2)[0] = 1 - 0.01f * static_cast<float>(x + 1);
@@ -114,7 +114,7 @@ TEST_CASE("the best pixels of pictures are those that vary least, and any others
     CHECK(variance.best_pixels(1e-9).size() == 1);
 }
 
-TEST_CASE("a pixel with a value that is not finite varies most, in whichever of the pictures it is") {
+TEST_CASE("a pixel with a value that is not finite in any picture varies most") {
     for (const float value : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
         for (std::size_t bad = 0; bad < 3; ++bad) {
             CAPTURE(value);
@@ -130,7 +130,7 @@ TEST_CASE("a pixel with a value that is not finite varies most, in whichever of 
     }
 }
 
-TEST_CASE("the variance of pictures of different sizes is an error that tells both") {
+TEST_CASE("the variance of pictures of different sizes is an error that names both") {
     VarianceOfPictures variance;
     variance.add(filled(4, 3, 0));
     try {

@@ -93,7 +93,7 @@ TEST_CASE("grey PNGs of 1, 2, 4 and 8 bits are scaled to the full range and repe
           Bytes{77, 77, 77, 3});
 }
 
-TEST_CASE("a palette PNG is looked up, with the palette's alpha") {
+TEST_CASE("a palette PNG is expanded with the palette's alpha") {
     CHECK(decode_rgba8({.width = 3,
                         .height = 1,
                         .bit_depth = 2,
@@ -103,7 +103,7 @@ TEST_CASE("a palette PNG is looked up, with the palette's alpha") {
                         .rows = {{0b10'00'01'00}}}) == Bytes{30, 31, 32, 255, 10, 11, 12, 5, 20, 21, 22, 255});
 }
 
-TEST_CASE("a grey level named as transparent gets alpha 0") {
+TEST_CASE("a grey level marked as transparent gets alpha 0") {
     CHECK(decode_rgba8({.width = 2,
                         .height = 1,
                         .colour_type = PNG_COLOR_TYPE_GRAY,
@@ -136,7 +136,7 @@ TEST_CASE("a 16-bit PNG keeps its precision and its channels") {
     CHECK(decode(PNG_COLOR_TYPE_RGB_ALPHA, {0, 1, 0, 2, 0, 3, 0, 4}).pixels.back() == 4.0f / 65535.0f);
 }
 
-TEST_CASE("a written PNG reads back to the same bytes, with and without alpha, and is written the same twice") {
+TEST_CASE("a written PNG reads back to the same pixels, with and without alpha, and has the same bytes each time") {
     Rgba8Image image{5, 3, {}};
     for (int i = 0; i < 5 * 3 * 4; ++i) image.pixels.push_back(static_cast<uint8_t>(i * 29));
     const auto with_alpha = encode_png(image, true);
@@ -171,7 +171,7 @@ std::size_t inflated_bytes(const std::vector<std::byte>& file, std::size_t at_mo
 
 } // namespace
 
-TEST_CASE("a PNG that several threads write holds the picture, and its bytes do not depend on them") {
+TEST_CASE("a PNG written by several threads holds the picture, and its bytes do not depend on them") {
     const auto noise = [](uint32_t width, uint32_t height, uint32_t bits) {
         Rgba8Image image{width, height, {}};
         image.pixels.resize(std::size_t(width) * height * 4);
@@ -205,7 +205,7 @@ TEST_CASE("a PNG that several threads write holds the picture, and its bytes do 
     }
 }
 
-TEST_CASE("damage to a PNG's pixels is an error that names the file; damage to a comment is not even noticed") {
+TEST_CASE("damage to a PNG's pixels is an error that names the file, and damage to a comment is ignored") {
     std::vector<std::byte> bytes = make_png({.width = 1, .height = 1, .rows = {{1, 2, 3}}});
     const auto at_data = [&] {
         for (std::size_t i = 0; i + 4 <= bytes.size(); ++i)

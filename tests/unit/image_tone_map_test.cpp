@@ -79,7 +79,7 @@ Colour agx_in_double(const Colour& c) {
 
 } // namespace
 
-TEST_CASE("sRGB decoding and encoding follow IEC 61966-2-1 and undo each other on every byte") {
+TEST_CASE("sRGB decoding and encoding follow IEC 61966-2-1 and are inverse on every byte") {
     for (int i = 0; i < 256; ++i) {
         const double e = i / 255.0, wanted = e <= 0.04045 ? e / 12.92 : std::pow((e + 0.055) / 1.055, 2.4);
         const float decoded = srgb_decode_table()[static_cast<std::size_t>(i)];
@@ -112,7 +112,7 @@ TEST_CASE("every tone map sends black to black and keeps greys grey and in order
     }
 }
 
-TEST_CASE("no tone map gives anything outside [0, 1], whatever it is given") {
+TEST_CASE("tone maps stay within [0, 1] for every input") {
     const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
     const float values[] = {nan, -inf, -3.4e38f, -1, -1e-42f, 0, 1e-42f, 1e-8f, 0.08f, 0.5f, 1, 1e4f, 3.4e38f, inf};
     for (const ToneMap kind : kAll) {
@@ -143,7 +143,7 @@ TEST_CASE("AgX, ACES and PBR Neutral agree with their formulas in double over a 
     }
 }
 
-TEST_CASE("PBR Neutral is the colour itself, less the 4 % of a dielectric's reflection, below its knee") {
+TEST_CASE("below its knee PBR Neutral is the colour minus the 4 % of a dielectric's reflection") {
     for (const Rgb base : {Rgb{0.04f, 0.3f, 0.75f}, Rgb{0.7f, 0.04f, 0.1f}, Rgb{0.5f, 0.5f, 0.5f}}) {
         const Rgb shown = srgb_decode(tone_map(base + grey(0.04f), ToneMap::Neutral));
         CHECK(shown.r == doctest::Approx(double(base.r)).epsilon(1e-5));
@@ -154,7 +154,7 @@ TEST_CASE("PBR Neutral is the colour itself, less the 4 % of a dielectric's refl
     CHECK(srgb_decode(tone_map(grey(2.0f), ToneMap::Neutral)).g == doctest::Approx(0.96).epsilon(1e-5));
 }
 
-TEST_CASE("AgX shows middle grey in the middle and desaturates what is bright") {
+TEST_CASE("AgX maps middle grey to the middle and desaturates bright colours") {
     CHECK(tone_map(grey(0.18f), ToneMap::Agx).g == doctest::Approx(0.5).epsilon(0.01)); // the pivot of AgX
     const Rgb red = tone_map({64, 0, 0}, ToneMap::Agx);
     CHECK(red.g > 0.4f);
@@ -168,7 +168,7 @@ TEST_CASE("exposure is in stops") {
     for (const ToneMap kind : kAll) CHECK(tone_map(grey(0.05f), kind, exposure_scale(2)) == tone_map(grey(0.2f), kind));
 }
 
-TEST_CASE("tone mapping divides out premultiplied alpha, or composites over black without alpha") {
+TEST_CASE("tone mapping divides by premultiplied alpha, or composites over black without alpha") {
     const Image image{1, 1, 4, {0.25f, 0.5f, 0, 0.5f}};
     CHECK(tone_map_image(image, ToneMap::Srgb).pixels == std::vector<uint8_t>{188, 255, 0, 128});
     CHECK(tone_map_image(image, ToneMap::Srgb, 0, false).pixels == std::vector<uint8_t>{137, 188, 0, 255});
@@ -176,7 +176,7 @@ TEST_CASE("tone mapping divides out premultiplied alpha, or composites over blac
     CHECK(tone_map_image(grey_image, ToneMap::Srgb, 1).pixels == std::vector<uint8_t>{137, 137, 137, 255});
 }
 
-TEST_CASE("tone maps are found by their names on the command line") {
+TEST_CASE("tone maps are found by their names") {
     CHECK(value_named<ToneMap>("agx") == ToneMap::Agx);
     CHECK(value_named<ToneMap>("srgb") == ToneMap::Srgb);
     CHECK(value_named<ToneMap>("aces") == ToneMap::Aces);

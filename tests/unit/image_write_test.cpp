@@ -24,7 +24,7 @@ Image gradient(uint32_t channels) {
 
 } // namespace
 
-TEST_CASE("the extension picks the format, in any case, and the content follows it") {
+TEST_CASE("the extension chooses the format, in any case") {
     const std::filesystem::path folder = test::scratch_folder();
     const Image image = gradient(3);
     const struct {
@@ -61,7 +61,7 @@ TEST_CASE("an unknown extension is an error that lists the known ones, and nothi
     CHECK(std::filesystem::is_empty(folder));
 }
 
-TEST_CASE("unwritable files are named before rendering") {
+TEST_CASE("files that cannot be written are named before rendering") {
     const std::filesystem::path folder = test::scratch_folder();
     const auto refused = [&](const char* name, uint32_t width, uint32_t height) {
         return test::thrown_error([&] { check_image_output(folder / name, width, height); });
@@ -90,7 +90,7 @@ TEST_CASE("alpha is written to PNG on request") {
     CHECK(read_image(folder / "o.png").pixels[0] == doctest::Approx(0.1).epsilon(0.02));
 }
 
-TEST_CASE("a picture's hash names its size and every bit, and survives EXR") {
+TEST_CASE("a picture's hash covers its size and every bit and survives EXR") {
     const std::filesystem::path path = test::scratch_folder() / "h.exr";
     const Image image = gradient(3);
     write_image(path, image);

@@ -44,7 +44,7 @@ Reference reference(Vec3 o, Vec3 d, Vec3 a, Vec3 b, Vec3 c) {
 
 } // namespace
 
-TEST_CASE("a ray through the middle gives the distance and the weights") {
+TEST_CASE("a ray through the middle of a triangle gives the distance and the weights") {
     const Vec3 a = {0, 0, 5}, b = {4, 0, 5}, c = {0, 4, 5};
     TriangleHit hit;
     REQUIRE(intersect({1, 2, 1}, {0, 0, 2}, a, b, c, hit));
@@ -59,7 +59,7 @@ TEST_CASE("a ray through the middle gives the distance and the weights") {
     CHECK_FALSE(intersect({3, 3, 1}, {0, 0, 1}, a, b, c, hit)); // outside the triangle
 }
 
-TEST_CASE("both ends of the ray's range are outside it") {
+TEST_CASE("both ends of a ray's range are exclusive") {
     const Vec3 a = {0, 0, 4}, b = {4, 0, 4}, c = {0, 4, 4};
     TriangleHit hit;
     CHECK(intersect({1, 1, 0}, {0, 0, 1}, a, b, c, hit, 3.9999998f, 4.0000005f));
@@ -68,7 +68,7 @@ TEST_CASE("both ends of the ray's range are outside it") {
     CHECK_FALSE(intersect({1, 1, 0}, {0, 0, 1}, a, b, c, hit, 5, 4));
 }
 
-TEST_CASE("vertices and edges belong to the triangle, along all six main directions") {
+TEST_CASE("vertices and edges belong to the triangle along all six main directions") {
     for (int axis = 0; axis < 3; ++axis) {
         for (const float sign : {1.0f, -1.0f}) {
             const auto turn = [&](Vec3 p) {
@@ -85,7 +85,7 @@ TEST_CASE("vertices and edges belong to the triangle, along all six main directi
     }
 }
 
-TEST_CASE("a triangle without area or with a bad vertex is never hit") {
+TEST_CASE("a triangle without area or with an invalid vertex is never hit") {
     const float nan = std::nanf("");
     TriangleHit hit;
     Random random(4);
@@ -102,7 +102,7 @@ TEST_CASE("a triangle without area or with a bad vertex is never hit") {
     }
 }
 
-TEST_CASE("hits agree with extended precision, and lie on the ray as closely as the boxes allow for") {
+TEST_CASE("hits agree with extended precision and lie within the boxes' tolerance of the ray") {
     Random random(8);
     uint64_t hits = 0, wrong = 0;
     float worst_units = 0;
@@ -152,7 +152,7 @@ TEST_CASE("hits agree with extended precision, and lie on the ray as closely as 
     CHECK(worst_units <= 6);
 }
 
-TEST_CASE("products that underflow still have their sign") {
+TEST_CASE("products that underflow keep their sign") {
     // Edge functions of about 2^-130: a float product would be denormal and lose the sign of the difference.
     const float s = 0x1p-65f;
     TriangleHit hit;
@@ -162,7 +162,7 @@ TEST_CASE("products that underflow still have their sign") {
     CHECK_FALSE(intersect({s, s, -1}, {0, 0, 1}, {-s, -s, 0}, {s, -s, 0}, {0, s, 0}, hit));
 }
 
-TEST_CASE("an edge along the ray, and any edge that is zero, leaves the others to decide, at every size") {
+TEST_CASE("an edge along the ray, or of length zero, leaves the decision to the others at every size") {
     Random random(9);
     uint64_t hits = 0, along = 0, wrong = 0;
     for (int i = 0; i < 200000; ++i) {

@@ -36,7 +36,7 @@ struct Case {
     }
 };
 
-TEST_CASE("a material whose alpha lets all light through is named, by its own, its texture's or its vertices' alpha") {
+TEST_CASE("a material made invisible by its own, its texture's or its vertices' alpha is named") {
     CHECK(Case(AlphaMode::Blend, 0).is_named());
     CHECK(Case(AlphaMode::Mask, 0.4f).is_named());
     CHECK(Case(AlphaMode::Blend).with_texture(0).is_named());
@@ -46,7 +46,7 @@ TEST_CASE("a material whose alpha lets all light through is named, by its own, i
     CHECK(Case(AlphaMode::Mask, 0.7f).with_vertices(0.7f).is_named());
 }
 
-TEST_CASE("a material of which anything can be seen is not named") {
+TEST_CASE("a material that is visible anywhere is not named") {
     CHECK_FALSE(Case(AlphaMode::Opaque, 0).is_named());
     CHECK_FALSE(Case(AlphaMode::Opaque).with_texture(0).with_vertices(0).is_named());
     CHECK_FALSE(Case(AlphaMode::Blend, 0.01f).is_named());

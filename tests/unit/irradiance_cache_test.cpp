@@ -51,7 +51,7 @@ void check_near(Vec3 a, Vec3 b, float within) {
 
 } // namespace
 
-TEST_CASE("a hemisphere's cells have one cosine-weighted size, and no more rays than are asked for") {
+TEST_CASE("a hemisphere's cells have equal cosine-weighted sizes and at most the requested rays") {
     for (const uint32_t rays : {16u, 100u, 768u, 65536u}) {
         const HemisphereGrid grid = make_hemisphere_grid(rays);
         CHECK(grid.cells() <= rays);
@@ -67,7 +67,7 @@ TEST_CASE("a hemisphere's cells have one cosine-weighted size, and no more rays 
     }
 }
 
-TEST_CASE("a turn under a sky of known gradient: its irradiance and that of the turned surface") {
+TEST_CASE("the rotational gradient under a known sky matches the irradiance of a rotated surface") {
     // Under radiance 1 + b w irradiance is pi (1 + 2/3 b n): its derivative by n is 2/3 b, across n.
     const Vec3 b = {0.3f, -0.4f, 0.2f};
     for (const Vec3 normal : {Vec3{0, 0, 1}, normalize(Vec3{1, -2, 0.5f}), Vec3{0, -1, 0}}) {
@@ -83,7 +83,7 @@ TEST_CASE("a turn under a sky of known gradient: its irradiance and that of the 
     }
 }
 
-TEST_CASE("a step under a ceiling that ends: the gradient of the closed form") {
+TEST_CASE("the translational gradient under a finite ceiling matches the closed form") {
     // Under the half x > 0 of a ceiling at height h that gives radiance 1, irradiance at x is pi (1 + x / sqrt(x^2 +
     // h^2)) / 2. What lies behind the ceiling's edge is dark and far away.
     const float h = 1.5f;
@@ -104,7 +104,7 @@ TEST_CASE("a step under a ceiling that ends: the gradient of the closed form") {
     }
 }
 
-TEST_CASE("a record's radius is the harmonic mean of distances, within limits, and its gradient's") {
+TEST_CASE("a record's radius is the harmonic mean of distances, within its limits and its gradient's") {
     HemisphereSum sum = sum_over(kFine, make_frame({0, 0, 1}), [](Vec3 w) {
         return HemisphereCell{{1, 1, 1}, w.x > 0 ? 1.0f : 3.0f};
     });
@@ -123,7 +123,7 @@ TEST_CASE("a record's radius is the harmonic mean of distances, within limits, a
     check_near(limited.by_move[1], {0, 2, 0}, 1e-5f);
 }
 
-TEST_CASE("radii are clamped by those of their neighbours, whatever the order") {
+TEST_CASE("radii are clamped by those of their neighbours, in any order") {
     test::Random random(3);
     std::vector<Sphere> records;
     for (int i = 0; i < 700; ++i) {
@@ -144,7 +144,7 @@ TEST_CASE("radii are clamped by those of their neighbours, whatever the order") 
     CHECK(smaller > 100);
 }
 
-TEST_CASE("work in parts is done once, in order, and no further than it is let") {
+TEST_CASE("work in parts is done once, in order and within its limit") {
     for (const PartSizes sizes : {PartSizes{7, 1000}, PartSizes{100, 100}, PartSizes{5000, 5000}}) {
         for (const int max_requested : {1, 2, 3, 1 << 20}) {
             uint64_t done = 0, longest = 0;
@@ -167,7 +167,7 @@ TEST_CASE("work in parts is done once, in order, and no further than it is let")
         0, {1, 1}, [] { return false; }, [](uint64_t, uint64_t) { CHECK(false); }));
 }
 
-TEST_CASE("parts of work take about a tenth of a second, however long each piece takes") {
+TEST_CASE("parts of work take about 0.1 s, however long each piece takes") {
     uint64_t longest = 0, shortest = 1 << 20;
     const auto take_a_millisecond = [](uint64_t pieces) {
         std::this_thread::sleep_for(std::chrono::milliseconds(pieces));
@@ -184,7 +184,7 @@ TEST_CASE("parts of work take about a tenth of a second, however long each piece
     CHECK(shortest > 1);
 }
 
-TEST_CASE("spacing eight times as many records takes about eight times as long, however far they reach") {
+TEST_CASE("the time to space records grows linearly with their number for all radii") {
     const auto seconds_for = [](uint32_t count) {
         test::Random random(8);
         std::vector<Sphere> records;
@@ -206,10 +206,10 @@ TEST_CASE("spacing eight times as many records takes about eight times as long, 
     CHECK(many < 32 * few); // 64 where each looks at all
 }
 
-TEST_CASE("light between records is their weighted mean, and none beyond their reach") {
+TEST_CASE("light between records is their weighted mean, and there is none outside their radii") {
     const auto record_at = [](Vec3 at, float light) {
         IrradianceRecord record = {};
-        record.place = {at, {0, 0, 1}, 0, kBareDiffuse};
+        record.point = {at, {0, 0, 1}, 0, kBareDiffuse};
         record.light = {light, light, light};
         return record;
     };
@@ -243,7 +243,7 @@ TEST_CASE("light between records is their weighted mean, and none beyond their r
     CHECK(look_up(cache, {{0, 0, 0}, {0, 0, 1}, 0, 4}).weight == 0); // under a reflection
 }
 
-TEST_CASE("the overture's grids have each pixel in the end, and none twice in a round") {
+TEST_CASE("the overture's grids cover each pixel in the end, and none twice in a round") {
     for (const auto& [width, height] : {std::pair(37u, 21u), std::pair(1u, 1u), std::pair(640u, 33u)}) {
         for (uint32_t round = 0; round < kOvertureRounds; ++round) {
             const OvertureGrid grid = make_overture_grid(round, width, height);
@@ -287,7 +287,7 @@ struct CacheRun {
 
 } // namespace
 
-TEST_CASE("records take the memory of the host that is said beforehand") {
+TEST_CASE("host memory of records equals its prediction") {
     const Scene scene = test::room_with_ball(test::white(0.8f), test::white(0.5f), false);
     constexpr uint32_t kSize = 64;
     const CacheRun run(scene, test::room_camera(), kSize, {.accuracy = 0.01f, .hemisphere_rays = 16}, 1);
@@ -297,7 +297,7 @@ TEST_CASE("records take the memory of the host that is said beforehand") {
     CHECK(run.integrator.host_bytes() > most / 2);
 }
 
-TEST_CASE("irradiance at records is that of brute force") {
+TEST_CASE("irradiance at records equals brute force") {
     const Scene scene = test::room_with_ball(test::white(0.8f), test::white(0.5f), false);
     const CacheRun run(scene, test::room_camera(), 24, {.accuracy = 0.3f, .hemisphere_rays = 6000}, 1);
     const std::vector<IrradianceRecord> records = run.integrator.records();
@@ -305,9 +305,9 @@ TEST_CASE("irradiance at records is that of brute force") {
     Queue queue = Queue::make_cpu();
     int compared = 0;
     for (std::size_t i = 0; i < records.size(); i += records.size() / 12) {
-        const CachePlace& place = records[i].place;
-        const Vec3 at = place.position + run.prepared.centre;
-        if (std::abs(place.normal.y - 1) > 1e-4f || at.y > 0.01f) continue; // only the floor, whose albedo is known
+        const CachePoint& point = records[i].point;
+        const Vec3 at = point.position + run.prepared.centre;
+        if (std::abs(point.normal.y - 1) > 1e-4f || at.y > 0.01f) continue; // only the floor, whose albedo is known
         RenderSettings settings; // light that is scattered at least twice, by path tracing, looked at from close by
         settings.width = settings.height = 1;
         settings.filter = PixelFilter::Box;
@@ -328,7 +328,7 @@ TEST_CASE("irradiance at records is that of brute force") {
     CHECK(compared >= 3);
 }
 
-TEST_CASE("few lookups miss, and records lie behind mirrors and beneath layers") {
+TEST_CASE("few lookups miss, and there are records behind mirrors and beneath layers") {
     const Scene scene = test::room_with_ball(test::of_roughness(MaterialKind::MetallicRoughness, 0),
                                              test::of_roughness(MaterialKind::MetallicRoughness, 0.4f), false);
     const CacheRun run(scene, test::room_camera(), 48, {.accuracy = 0.4f, .hemisphere_rays = 64}, 4);
@@ -336,17 +336,17 @@ TEST_CASE("few lookups miss, and records lie behind mirrors and beneath layers")
     CHECK(run.integrator.record_count() == records.size());
     CHECK(records.size() < 48 * 48 / 4);
     CHECK(run.integrator.missed_lookups() < 48 * 48 * 4 / 50);
-    CHECK(std::ranges::any_of(records, [](const IrradianceRecord& r) { return r.place.scatterings == 1; }));
-    CHECK(std::ranges::any_of(records, [](const IrradianceRecord& r) { return r.place.material != kBareDiffuse; }));
+    CHECK(std::ranges::any_of(records, [](const IrradianceRecord& r) { return r.point.scatterings == 1; }));
+    CHECK(std::ranges::any_of(records, [](const IrradianceRecord& r) { return r.point.material != kBareDiffuse; }));
     for (const IrradianceRecord& record : records) {
         CHECK(record.radius > 0);
         CHECK(record.light.r >= 0);
         CHECK(is_finite(record.by_move[0]));
-        CHECK(length(record.place.normal) == doctest::Approx(1).epsilon(1e-4));
+        CHECK(length(record.point.normal) == doctest::Approx(1).epsilon(1e-4));
     }
 }
 
-TEST_CASE("a glowing room shows each scattering once, by records and by paths where there are none") {
+TEST_CASE("in a glowing room each scattering counts once, with records and with paths where there are none") {
     const test::TriangleMesh sphere = test::make_sphere(3, {0, 0, 0}, 2.0f);
     Scene scene;
     Mesh mesh;
@@ -372,7 +372,7 @@ TEST_CASE("a glowing room shows each scattering once, by records and by paths wh
     }
 }
 
-TEST_CASE("marks are drawn where records are seen, and nowhere else") {
+TEST_CASE("marks are drawn only where records are visible") {
     const Scene scene = test::room_with_ball(test::white(0.8f), test::white(0.5f), false);
     constexpr uint32_t kSize = 64;
     IrradianceCacheSettings cache = {.accuracy = 0.8f, .hemisphere_rays = 32};
@@ -382,7 +382,7 @@ TEST_CASE("marks are drawn where records are seen, and nowhere else") {
     std::vector<double> nearest(std::size_t(kSize) * kSize, 1e9); // record, pixels
     std::vector<bool> has_record(nearest.size());
     for (const IrradianceRecord& record : plain.integrator.records()) {
-        const ProjectedPoint seen = project_point(plain.picture.camera.view, record.place.position);
+        const ProjectedPoint seen = project_point(plain.picture.camera.view, record.point.position);
         has_record[static_cast<std::size_t>(seen.pixel.y) * kSize + static_cast<std::size_t>(seen.pixel.x)] = true;
         for (std::size_t i = 0; i < nearest.size(); ++i) {
             const double x = static_cast<double>(i % kSize) + 0.5 - static_cast<double>(seen.pixel.x);
@@ -409,7 +409,7 @@ TEST_CASE("marks are drawn where records are seen, and nowhere else") {
 }
 
 TEST_CASE(
-    "the overture's share is of all its rays where records are wanted ever more rarely, or until there is no room") {
+    "the overture's progress is its share of all rays, while ever fewer records are needed or until memory is full") {
     constexpr uint32_t kWidth = 640, kHeight = 360, kTraversal = 2, kRecord = 500;
     struct Case {
         double falls_by;
@@ -432,10 +432,10 @@ TEST_CASE(
         uint64_t rays = 0;
         double before = 0;
         const auto check = [&](bool is_known) {
-            const double told = progress.share(rays), done = static_cast<double>(rays) / static_cast<double>(all);
-            CHECK(told >= before);
-            before = told;
-            if (is_known) CHECK(told == doctest::Approx(done).epsilon(0.1));
+            const double reported = progress.share(rays), done = static_cast<double>(rays) / static_cast<double>(all);
+            CHECK(reported >= before);
+            before = reported;
+            if (is_known) CHECK(reported == doctest::Approx(done).epsilon(0.1));
         };
         for (uint32_t round = 0; round < kOvertureRounds; ++round) {
             const bool is_known = round > 2; // how it falls is

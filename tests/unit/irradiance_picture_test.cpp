@@ -23,7 +23,7 @@ RenderSettings irradiance_settings(uint32_t side, uint32_t samples) {
 
 } // namespace
 
-TEST_CASE("under a point light a floor has I cos(t) / r^2, whatever it is made of") {
+TEST_CASE("under a point light a floor has the irradiance I cos(t) / r^2, whatever its material") {
     constexpr uint32_t kPixels = 10;
     Material glass = test::white();
     glass.kind = MaterialKind::Dielectric;
@@ -75,7 +75,7 @@ TEST_CASE("a pixel of an irradiance picture equals the light meter's value") {
     }
 }
 
-TEST_CASE("pictures of irradiance have one picture, and black where nothing is seen") {
+TEST_CASE("an irradiance picture has no layers and is black where no surface is visible") {
     Queue queue = Queue::make_cpu();
     const Scene scene = test::make_mixed_scene();
     RenderSettings settings = irradiance_settings(40, 2);

@@ -8,7 +8,7 @@
 
 using namespace pertev;
 
-TEST_CASE("a mix of rays has the rate of its kinds traced in sequence") {
+TEST_CASE("a mix of rays has the rate of its kinds traced one after the other") {
     const IsolatedRates rates = {.camera = 4, .bounce = 2, .shadow = 8};
     CHECK(rates.of_mix({.camera = 4, .bounce = 4, .shadow = 8}) == 4.0); // 16 rays in 1 + 2 + 1 seconds
     CHECK(rates.of_mix({.camera = 4, .bounce = 0, .shadow = 0}) == 4.0);
@@ -16,7 +16,7 @@ TEST_CASE("a mix of rays has the rate of its kinds traced in sequence") {
     CHECK(IsolatedRates{.camera = 4}.of_mix({.camera = 4, .bounce = 1, .shadow = 0}) == 0.0); // no rate, no mix
 }
 
-TEST_CASE("rays of each kind by themselves have a rate, and whoever waits is asked on the way") {
+TEST_CASE("rays of each kind have a rate, and the callback is called during the measurement") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();

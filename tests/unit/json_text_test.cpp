@@ -20,7 +20,7 @@ TEST_CASE("numbers between commas are a JSON array, to all their digits") {
     }
 }
 
-TEST_CASE("of an EXR's metadata vectors are arrays, and other texts stay texts whatever they look like") {
+TEST_CASE("vectors in an EXR's metadata become arrays, and all other texts stay texts") {
     CHECK(metadata_json({"pertev.eye", "0,0.5,4"}) == "[0,0.5,4]");
     CHECK(metadata_json({"pertev.shutter", "-0.25,0.1"}) == "[-0.25,0.1]");
     CHECK(metadata_json({"pertev.environment", "1,2,0.5"}) == "[1,2,0.5]");

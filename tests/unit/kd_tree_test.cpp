@@ -11,8 +11,8 @@
 #include "accel/kd_tree/check_kd_tree.h"
 #include "accel/triangle_points.h"
 #include "base/parallel_for.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
+#include "tests/support/stress_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -34,8 +34,8 @@ bool same(const KdTree& a, const KdTree& b) {
 
 } // namespace
 
-TEST_CASE("kd-trees over nasty meshes are sound and keep to their bounds") {
-    for (const NastyMesh& c : nasty_meshes()) {
+TEST_CASE("kd-trees over stress meshes are valid and respect their limits") {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(c.name);
         for (const KdTreeSettings& settings : kSettings) {
             CAPTURE(settings.max_references);
@@ -63,7 +63,7 @@ TEST_CASE("a kd-tree does not depend on the number of threads") {
     }
 }
 
-TEST_CASE("a kd-tree by cost is worth more than one by medians, which is worth more than none") {
+TEST_CASE("a kd-tree by SAH is cheaper than one by medians, which is cheaper than brute force") {
     const auto mesh = triangles_of(make_torus(80, 40));
     const KdTree sah = build_kd_tree(mesh), median = build_kd_tree(mesh, {.split = KdSplit::SpatialMedian});
     const KdTree none = build_kd_tree(mesh, {.max_depth = 0});
@@ -72,7 +72,7 @@ TEST_CASE("a kd-tree by cost is worth more than one by medians, which is worth m
     CHECK(none.sah_cost == static_cast<float>(mesh.size()));
 }
 
-TEST_CASE("clipping to the cells of a grid keeps every point of a triangle, and nothing outside its cell") {
+TEST_CASE("clipping to the cells of a grid keeps every point of a triangle and nothing outside the cell") {
     Random random(9);
     for (int i = 0; i < 3000; ++i) {
         const float scale = i % 3 == 0 ? 1.0f : (i % 3 == 1 ? 0x1p38f : 0x1p-30f);
@@ -110,7 +110,7 @@ TEST_CASE("clipping to the cells of a grid keeps every point of a triangle, and 
     }
 }
 
-TEST_CASE("the checker notices a kd-tree that is broken") {
+TEST_CASE("the checker detects a broken kd-tree") {
     const auto mesh = triangles_of(make_torus(20, 12));
     const KdTree sound = build_kd_tree(mesh);
     REQUIRE(!find_fault(sound));
@@ -159,8 +159,8 @@ TEST_CASE("the checker notices a kd-tree that is broken") {
     }));
 }
 
-TEST_CASE("a kd-tree of a million triangles in a line keeps to its bounds") {
-    const auto line = nasty_meshes(static_cast<uint32_t>(effort(20000, 1'000'000)))[6];
+TEST_CASE("a kd-tree of a million triangles in a line respects its limits") {
+    const auto line = stress_meshes(static_cast<uint32_t>(effort(20000, 1'000'000)))[6];
     REQUIRE(line.name == std::string("a line"));
     for (const KdSplit split : {KdSplit::SpatialMedian, KdSplit::Sah}) {
         const KdTree tree = build_kd_tree(line.triangles, {.split = split});

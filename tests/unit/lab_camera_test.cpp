@@ -8,7 +8,7 @@
 
 using namespace pertev;
 
-TEST_CASE("a camera is told in settings that place it again") {
+TEST_CASE("a camera is described by settings that reproduce it") {
     Camera camera;
     camera.world_from_camera = look_at({0, 1, 3}, {0, 1, 0}, {0, 1, 0});
     camera.fov_y = kPi / 4;
@@ -26,7 +26,7 @@ TEST_CASE("a camera is told in settings that place it again") {
     CHECK(length(normalize(target - eye) - way) < 1e-6f);
 }
 
-TEST_CASE("combinations that cannot be measured are listed with the reason; where none can, that is an error") {
+TEST_CASE("combinations that cannot be measured are listed with the reason; if none can, that is an error") {
     LabSettings settings;
     settings.structures = {StructureKind::Binned};
     settings.traversals = {TraversalKind::Kd, TraversalKind::SkipLinks};
@@ -42,7 +42,7 @@ TEST_CASE("combinations that cannot be measured are listed with the reason; wher
     settings.traversals = {TraversalKind::Kd};
     CHECK_THROWS_WITH(check_any_can_run(list_combinations(settings, {})),
                       "none of the combinations asked for can be measured:\n  binned kd rta near and 1 more: the kd "
-                      "traversal goes over a kd-tree's planes; the structures for it are kd-median and kd-sah");
+                      "traversal needs a kd-tree; choose the structure kd-median or kd-sah");
 }
 
 TEST_CASE("text of any bytes becomes UTF-8") {

@@ -25,7 +25,7 @@ TEST_CASE("a frame of depth d is the sets of depths 1 to d, and needs all of the
     CHECK(mrays(report, c.runs[0]) == doctest::Approx(4));
 }
 
-TEST_CASE("the laboratory's table of runs has each figure, and nothing where nothing was measured") {
+TEST_CASE("the laboratory's table of runs has each figure and empty cells where nothing was measured") {
     LabReport report = small_report();
     report.combinations[0].registers = 40, report.combinations[0].local_bytes = 0;
     report.combinations[0].runs[1].is_copy = true;
@@ -57,7 +57,7 @@ TEST_CASE("the laboratory's table of runs has each figure, and nothing where not
     CHECK(runs.at(3, "structure") == "binned");
 }
 
-TEST_CASE("the laboratory's CSV has the report's columns in front of those of its runs") {
+TEST_CASE("the laboratory's CSV has the report's columns before those of its runs") {
     const std::string csv = csv_of(small_report());
     CHECK(csv.starts_with(
         "scene,device,commit,threads,scene_triangles,width,height,runs,warm_ups,interrupted,combination,"));
@@ -66,7 +66,7 @@ TEST_CASE("the laboratory's CSV has the report's columns in front of those of it
     CHECK(has(csv, "\"no <planes>, none\""));
 }
 
-TEST_CASE("the laboratory's other tables are of its scene, its sets of rays and its structures") {
+TEST_CASE("the laboratory's other tables describe its scene, ray sets and structures") {
     LabReport report = small_report();
     report.structures.push_back({.name = "octree", .failed = "too <large>"});
     const Measurement m = measurement_of(report);
@@ -85,7 +85,7 @@ TEST_CASE("the laboratory's other tables are of its scene, its sets of rays and 
     CHECK(has(text_of(report), "octree: too <large>"));
 }
 
-TEST_CASE("the price of exactness stands with the exact combination alone") {
+TEST_CASE("the cost of exactness is shown only for the exact combination") {
     LabReport report = small_report();
     report.combinations.push_back(figures({.options = kFastTests}, {timed(0, 1)}));
     report.combinations.back().runs[0].different = 17;
@@ -119,7 +119,7 @@ TEST_CASE("notes list missing results and skipped combinations, grouped by reaso
     CHECK(has(text_of(report), "\nshadow: <none>\n"));
 }
 
-TEST_CASE("heat maps that the report kept are pictures on one scale") {
+TEST_CASE("heat maps of a report share one scale") {
     LabReport report = small_report();
     for (const char* name : {"b", "c"}) report.heat_map_names.emplace_back(name);
     report.heat_maps.push_back({"b", 1e6, 1, 1, {1}, {2}});
@@ -178,7 +178,7 @@ TEST_CASE("warp statistics are shown where they were measured") {
     CHECK(!has(any_hit, "48")); // registers are of the closest-hit kernel
 }
 
-TEST_CASE("combinations that were checked and not timed have no speed") {
+TEST_CASE("combinations that were checked but not timed have no speed") {
     LabReport report = small_report();
     report.runs = 0;
     for (RunFigures& run : report.combinations[0].runs) run = {.set = run.set};

@@ -84,7 +84,7 @@ std::size_t lpe_caret(const std::string& message) { return message.size() - mess
 
 } // namespace
 
-TEST_CASE("the automaton accepts the words that std::regex accepts") {
+TEST_CASE("the automaton accepts exactly the words that std::regex accepts") {
     const std::vector<std::string> texts = {
         "LE",         "L(D|S)*E",      "LDE",     "L(S|D)*D+DE", "LS+DE",         "L.*E",
         "L.{0}E",     "L.{2,3}E",      "L.{2,}E", "L[DS]?G*E",   "L[^S]+E",       "(LD|LS)(G|D)*E",
@@ -143,7 +143,7 @@ TEST_CASE("the automaton is minimal") {
     CHECK(automaton_of({"L.*E"}).column_count == 1); // nothing tells scatterings apart
 }
 
-TEST_CASE("a scattering may be asked to go on to one side") {
+TEST_CASE("a scattering event may be limited to reflection or transmission") {
     const LightPathAutomaton automaton = automaton_of({"LS<T>+DE", "L[S<R>D]*E", "L[^S<T>]*E", "L.<T>E"});
     CHECK(layers_of_word(automaton, "ssD") == 0b0001);
     CHECK(layers_of_word(automaton, "SD") == 0b0110);
@@ -162,41 +162,41 @@ TEST_CASE("a bad expression points at its character") {
         CHECK(message.find(says) != std::string::npos);
         CHECK(message.find("\n  " + text + "\n  ") != std::string::npos);
     };
-    points_at("LXE", 1, "no letter of an expression");
+    points_at("LXE", 1, "unknown letter; expected L");
     points_at("L(DE", 1, "not closed");
     points_at("LD)E", 2, "no ( before it");
-    points_at("L[DE", 3, "a set holds scatterings");
+    points_at("L[DE", 3, "a set can hold only scatterings");
     points_at("L[D", 1, "not closed");
-    points_at("L[]E", 2, "one letter at least");
-    points_at("L[Q]E", 2, "no letter of a set");
-    points_at("*LE", 0, "nothing stands before it");
-    points_at("L(|+)E", 3, "nothing stands before it");
+    points_at("L[]E", 2, "at least one letter");
+    points_at("L[Q]E", 2, "unknown letter of a set");
+    points_at("*LE", 0, "nothing before it");
+    points_at("L(|+)E", 3, "nothing before it");
     points_at("LD{2E", 4, "} is missing");
     points_at("LD{}E", 3, "a whole number");
-    points_at("LD{3,2}E", 2, "the smaller one");
+    points_at("LD{3,2}E", 2, "smaller than the first");
     points_at("LD{256}E", 3, "at most 255");
     points_at("L<'lamp>E", 2, "not closed");
     points_at("L<'lamp' E", 9, "between < and >");
     points_at("L<'lamp'", 1, "not closed");
     points_at("L<>E", 2, "between < and >");
-    points_at("L<''>E", 3, "a name stands here");
+    points_at("L<''>E", 3, "expected a name");
     points_at("LD<^>E", 3, "before names");
-    points_at("L<T>E", 0, "ways of scattering");
-    points_at("L[DG]<'x'>E", 5, "in brackets too");
-    points_at("L(D|G)<'x'>E", 6, "in brackets too");
-    points_at("LD<R><'x'>E", 5, "behind one letter");
-    points_at("L'lamp'E", 1, "names stand between < and >");
-    points_at("LE,b=LDE", 2, "`lpe` NAME=EXPRESSION of its own");
+    points_at("L<T>E", 0, "apply only to scattering");
+    points_at("L[DG]<'x'>E", 5, "also in brackets");
+    points_at("L(D|G)<'x'>E", 6, "also in brackets");
+    points_at("LD<R><'x'>E", 5, "after a single letter");
+    points_at("L'lamp'E", 1, "names are enclosed in < and >");
+    points_at("LE,b=LDE", 2, "needs its own `lpe` NAME=EXPRESSION");
     points_at("CD*L", 0, "from the light to the eye");
-    points_at("lde", 0, "capitals");
-    points_at("LdE", 1, "capitals");
+    points_at("lde", 0, "upper case");
+    points_at("LdE", 1, "upper case");
     points_at("LDE<'x'>", 3, "the eye has no name");
-    points_at("", 0, "an expression stands here");
+    points_at("", 0, "expected an expression");
     points_at(" DE", 1, "begins with one L");
     points_at("LD", 1, "ends with one E");
     points_at("ELE", 0, "begins with one L");
-    points_at("LEE", 0, "scatterings alone");
-    points_at("LLE", 0, "scatterings alone");
+    points_at("LEE", 0, "only by scatterings");
+    points_at("LLE", 0, "only by scatterings");
 }
 
 TEST_CASE("characters of a name are counted as displayed") {
@@ -205,22 +205,22 @@ TEST_CASE("characters of a name are counted as displayed") {
     CHECK(lpe_caret(message) == 7);
 }
 
-TEST_CASE("texts that are not NAME=EXPRESSION are refused") {
+TEST_CASE("texts other than NAME=EXPRESSION are refused") {
     for (const std::string text : {"LDE", "=LDE", "a b=LDE", "a.b=LDE", "\xc3\xa4=LDE"}) {
         CHECK(lpe_refusal(text).find("expected NAME=EXPRESSION") != std::string::npos);
     }
 }
 
-TEST_CASE("expressions that grow without end are refused") {
+TEST_CASE("expressions that grow without bound are refused") {
     CHECK(is_over({"L" + std::string(5000, 'D') + "E"}, "more than 4096 characters"));
     CHECK(is_over({"L((D{255}){255}){255}E"}, "more than 4096 letters"));
     CHECK(is_over({"L.{15}D.*E"}, "16384 states")); // from the eye it needs a state for each of 2^15 pasts
-    CHECK(lpe_refusal("x=L" + std::string(300, '(') + "D" + std::string(300, ')') + "E").find("within each other") !=
+    CHECK(lpe_refusal("x=L" + std::string(300, '(') + "D" + std::string(300, ')') + "E").find("nested parentheses") !=
           std::string::npos);
     parse_light_path("x=LD" + std::string(4000, '*') + "E"); // nested as deeply as possible
 }
 
-TEST_CASE("expressions that are too large together are refused") {
+TEST_CASE("expressions whose total size is too large are refused") {
     const auto repeated = [](std::size_t count, auto text_of) {
         std::vector<std::string> texts;
         for (std::size_t i = 0; i < count; ++i) texts.push_back(text_of(i));

@@ -85,7 +85,7 @@ TEST_CASE("a surface's names are those of its object, mesh, material and parent 
     CHECK(surfaces_of_filter("x=L.E") == TheseAre{true, true, true});
 }
 
-TEST_CASE("a light's names are its own and its parent nodes', and the environment has a word") {
+TEST_CASE("a light's names are its own and its parent nodes', and the environment has a keyword") {
     CHECK(lights_of_filter("x=L<'bulb'>E") == TheseAre{false, true, false, false});
     CHECK(lights_of_filter("x=L<'lamp'>E") == TheseAre{true, false, false, false});
     CHECK(lights_of_filter("x=L<'glow'>E") == TheseAre{true, false, false, false});
@@ -102,7 +102,7 @@ TEST_CASE("an unknown name is refused at its character, with a list of names") {
     CHECK(message("b=LD<'wal'>E").find("`lpe=b`: character 5: no object, mesh, material or node") == 0);
     CHECK(message("b=LD<'wal'>E").find("\n      ^") != std::string::npos);
     CHECK(message("b=LD<'wall' 'x*'>E").find("character 12") != std::string::npos);
-    CHECK(message("b=L<'wall'>E").find("no light of the scene has this name; there are 'bulb', 'disc'") !=
+    CHECK(message("b=L<'wall'>E").find("there is no light of the scene with this name; there are 'bulb', 'disc'") !=
           std::string::npos); // a wall gives no light
     CHECK(message("a=LDE").find("two expressions have this name") != std::string::npos);
 }

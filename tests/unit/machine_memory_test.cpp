@@ -51,14 +51,14 @@ TEST_CASE("memory is limited by the tightest of the control groups that a proces
     CHECK(first.limit() == 2000000000u);
 }
 
-TEST_CASE("a container whose group has another name outside is limited by the root that it sees") {
+TEST_CASE("a container whose group has another name outside is limited by its visible root") {
     const Groups container;
     container.write("self", "0::/docker/0123456789\n");
     container.write("mounted/memory.max", "536870912\n");
     CHECK(container.limit() == 536870912u);
 }
 
-TEST_CASE("this machine has memory") {
+TEST_CASE("the memory of this machine is positive") {
     CHECK(machine_memory_bytes() > 1u << 20);
     CHECK(machine_memory_bytes() < SIZE_MAX);
 }

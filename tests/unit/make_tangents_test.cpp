@@ -100,7 +100,7 @@ TEST_CASE("a mesh with a normal map gets tangents, and more vertices where its t
     }
 }
 
-TEST_CASE("tangents are those of the normal map's own set of coordinates, and only where they are wanted") {
+TEST_CASE("tangents follow the normal map's set of coordinates and are made only where needed") {
     // No normal map, one over set 1, one over set 0, set 1 again.
     Scene scene =
         scene_of(mirrored_squares(), {Material(), with_normal_map(1), with_normal_map(0), with_normal_map(1)});
@@ -126,7 +126,7 @@ TEST_CASE("tangents are those of the normal map's own set of coordinates, and on
     CHECK(given.meshes[0].positions.size() == 6);
 }
 
-TEST_CASE("without normals tangents lie in their triangles, which stay flat") {
+TEST_CASE("without normals tangents lie in their triangles, which stay flat-shaded") {
     Mesh roof; // two squares that meet in an edge along y
     roof.positions = {{-1, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {0, 1, 1}, {1, 1, 0}};
     roof.uv[0] = {{0, 1}, {1, 1}, {2, 1}, {0, 0}, {1, 0}, {2, 0}};
@@ -143,7 +143,7 @@ TEST_CASE("without normals tangents lie in their triangles, which stay flat") {
     }
 }
 
-TEST_CASE("what a skin and morph targets move is split alike, and its tangents move with it") {
+TEST_CASE("skinned and morphed vertices are split in the same way, and their tangents follow") {
     Scene scene = scene_of(mirrored_squares(), {with_normal_map()});
     // The target turns the mesh by a quarter about z; a second one moves nothing.
     MorphTarget turn;
@@ -191,7 +191,7 @@ TEST_CASE("what a skin and morph targets move is split alike, and its tangents m
     }
 }
 
-TEST_CASE("a joint that mirrors at rest leaves the tangents of the file's vertices as they are without it") {
+TEST_CASE("a joint that mirrors at rest does not change the tangents of the file's vertices") {
     Scene scene = scene_of(mirrored_squares(), {with_normal_map()});
     MeshShape& shape = add_shape(scene, {}, true);
     std::get<NodePose>(scene.nodes[1].pose).scale = {-1, 1, 1};
@@ -212,8 +212,7 @@ TEST_CASE("a joint that mirrors at rest leaves the tangents of the file's vertic
     }
 }
 
-TEST_CASE(
-    "a glTF file with a normal map and without tangents gets them at the gate, over TEXCOORD_1 where it says so") {
+TEST_CASE("a glTF file with a normal map but no tangents gets them, over TEXCOORD_1 if the map uses it") {
     test::GltfBuilder builder;
     const int positions = builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     const int normals = builder.add("VEC3", std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1});
@@ -236,7 +235,7 @@ TEST_CASE(
     CHECK(read(1) == std::vector<Vec4>(3, Vec4{0, 1, 0, 1}));
 }
 
-TEST_CASE("a normal map of an OBJ file has tangents, x to the right and y up") {
+TEST_CASE("a normal map of an OBJ file has tangents with x to the right and y up") {
     const std::filesystem::path folder = test::scratch_folder();
     Rgba8Image image = {2, 2, {}};
     for (int i = 0; i < 4; ++i) image.pixels.insert(image.pixels.end(), {128, 128, 255, 255});

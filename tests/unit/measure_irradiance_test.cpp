@@ -16,7 +16,7 @@ using namespace pertev;
 namespace {
 
 constexpr double kPiExact = 3.14159265358979323846;
-constexpr MeterPlace kUpwards = {{0, 0, 0}, {0, 1, 0}};
+constexpr MeterPoint kUpwards = {{0, 0, 0}, {0, 1, 0}};
 
 RenderSettings samples_of(uint32_t samples, uint32_t seed = 0) {
     RenderSettings settings;
@@ -36,9 +36,9 @@ struct Room {
     Room(const Room&) = delete;
     Room& operator=(const Room&) = delete;
 
-    Irradiance measure(const MeterPlace& place, const RenderSettings& settings) const {
+    Irradiance measure(const MeterPoint& point, const RenderSettings& settings) const {
         Queue queue = test::requested_queue();
-        return measure_irradiance(queue, prepared, place, settings);
+        return measure_irradiance(queue, prepared, point, settings);
     }
 };
 
@@ -79,7 +79,7 @@ constexpr double kUnderDisc = kPiExact * 10 * 0.25 / (0.25 + 4); // pi L R^2 / (
 
 } // namespace
 
-TEST_CASE("under a disc a meter reads pi L R^2 / (R^2 + h^2), and the floor that it lies on does not shade it") {
+TEST_CASE("under a disc a meter reads pi L R^2 / (R^2 + h^2), unshadowed by the floor below it") {
     const Room room(disc_over_floor());
     const Irradiance irradiance = room.measure(kUpwards, samples_of(4));
     check_measured(irradiance.luminance, kUnderDisc, 2e-3);
@@ -88,7 +88,7 @@ TEST_CASE("under a disc a meter reads pi L R^2 / (R^2 + h^2), and the floor that
     CHECK(room.measure({{0, 0, 0}, {0, -2, 0}}, samples_of(1)).luminance.value == 0); // turned away
 }
 
-TEST_CASE("under a rectangle a meter reads what the closed form says, by each colour") {
+TEST_CASE("under a rectangle a meter matches the closed form in each channel") {
     Scene scene;
     Material emitter = black_emitter(1);
     emitter.emission = {1, 2, 3};
@@ -129,7 +129,7 @@ TEST_CASE("under an environment of radiance 1 a meter reads pi, whichever way it
     }
 }
 
-TEST_CASE("in a room that glows a meter reads all scattered light, and no more of it than the depth allows") {
+TEST_CASE("in a glowing room a meter reads all scattered light up to the max depth") {
     const test::TriangleMesh sphere = test::make_sphere(2, {0, 0, 0}, 2.0f);
     Mesh mesh;
     mesh.positions = sphere.positions;
@@ -137,15 +137,15 @@ TEST_CASE("in a room that glows a meter reads all scattered light, and no more o
     Scene scene;
     test::add(scene, mesh, {{.two_sided_emission = true, .base_color = grey(0.5f), .emission = {1, 1, 1}}, "wall"});
     const Room room(std::move(scene));
-    const MeterPlace place = {{0.3f, 0.2f, -0.5f}, {1, 0.4f, 0.1f}};
+    const MeterPoint point = {{0.3f, 0.2f, -0.5f}, {1, 0.4f, 0.1f}};
     RenderSettings settings = samples_of(2);
     for (const auto& [depth, wanted] : {std::pair(0u, 1.0), {1u, 1.5}, {60u, 2.0}}) {
         settings.path.max_depth = depth;
-        check_measured(room.measure(place, settings).luminance, wanted * kPiExact, 5e-3);
+        check_measured(room.measure(point, settings).luminance, wanted * kPiExact, 5e-3);
     }
 }
 
-TEST_CASE("the error of a measurement is what measurements with other seeds differ from the truth by") {
+TEST_CASE("the error of a measurement matches the deviation of measurements with other seeds") {
     const Room room(disc_over_floor());
     constexpr uint32_t kSeeds = 24;
     double squares = 0;
@@ -158,15 +158,15 @@ TEST_CASE("the error of a measurement is what measurements with other seeds diff
     CHECK(squares / kSeeds < 2.4);
 }
 
-TEST_CASE("a meter reads the very same by both bodies of the path tracer, and on both devices") {
+TEST_CASE("a meter reads the same bits in both schedules of the path tracer and on both devices") {
     const Room room(test::make_mixed_scene());
-    const MeterPlace place = {{0.1f, 0.02f, 0.2f}, {0.2f, 1, 0}};
+    const MeterPoint point = {{0.1f, 0.02f, 0.2f}, {0.2f, 1, 0}};
     RenderSettings settings = samples_of(1);
     settings.body = PathBody::Loop;
     Queue cpu = Queue::make_cpu();
-    const Irradiance one = measure_irradiance(cpu, room.prepared, place, settings);
+    const Irradiance one = measure_irradiance(cpu, room.prepared, point, settings);
     settings.body = PathBody::Wavefront;
-    const Irradiance other = room.measure(place, settings);
+    const Irradiance other = room.measure(point, settings);
     CHECK(one.luminance.value > 0);
     CHECK(one.rays.shadow == other.rays.shadow);
     for (int k = 0; k < 3; ++k) {

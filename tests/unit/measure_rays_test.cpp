@@ -29,7 +29,7 @@ RaySet random_rays(uint32_t count, bool any_hit) {
 
 } // namespace
 
-TEST_CASE("a traversal over a set of rays gives the hits and the work of each ray's own traversal") {
+TEST_CASE("the traversal of a ray set gives the hits and the work of each ray's own traversal") {
     const Bvh bvh = build_bvh(triangles_of(make_torus(32, 24)));
     const SceneBvhView binary = scene_of(view_of(bvh));
     Queue queue = Queue::make_cpu();

@@ -23,7 +23,7 @@ ResultTable two_rows() {
 
 } // namespace
 
-TEST_CASE("a cell is null in JSON and empty in CSV where there is no value, and 0 is one") {
+TEST_CASE("a cell without a value is null in JSON and empty in CSV, and 0 is a value") {
     CHECK(ResultCell().json() == "null");
     CHECK(ResultCell().csv().empty());
     CHECK(ResultCell().text("") == "-");
@@ -49,7 +49,7 @@ TEST_CASE("tables become CSV and aligned text") {
     CHECK(two_rows().at(0, "seconds") == 0.25);
 }
 
-TEST_CASE("a measurement says machine, command and date, and has its tables by keys, titles and units") {
+TEST_CASE("a measurement has machine, command and date, and tables with keys, titles and units") {
     const Queue cpu = Queue::make_cpu();
     Measurement m = start_measurement(cpu, "Test");
     CHECK(has(m.command, "pertev_tests"));

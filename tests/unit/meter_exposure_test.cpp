@@ -109,7 +109,7 @@ TEST_CASE("samples, seed, sampler, filter, size, time and alpha do not move the 
     CHECK(stops_of(queue, scene, camera, other) != stops);
 }
 
-TEST_CASE("a GPU's meter shows what the CPU's does") {
+TEST_CASE("the meter gives the same exposure on the GPU and the CPU") {
     if (!test::cuda_requested()) return;
     Queue cpu = Queue::make_cpu(), cuda = test::make_cuda_queue();
     const Scene scene = test::make_mixed_scene();
@@ -120,7 +120,7 @@ TEST_CASE("a GPU's meter shows what the CPU's does") {
     }
 }
 
-TEST_CASE("a room stays legible beside its bright window") {
+TEST_CASE("a room with a bright window stays legible") {
     Queue queue = test::requested_queue();
     const Scene scene = make_room_with_window();
     const Camera camera = camera_at({0, 1.5f, -0.3f}, {0, 1.5f, -5});
@@ -130,7 +130,7 @@ TEST_CASE("a room stays legible beside its bright window") {
     CHECK(room.burnt <= 0.01);
 }
 
-TEST_CASE("a lamp in view takes nothing from what it lights") {
+TEST_CASE("a visible emitter does not darken what it lights") {
     Queue queue = test::requested_queue();
     Scene scene; // a white floor that fills the lower half of the picture, and a lamp that fills much of the upper half
     scene.materials.push_back({{.base_color = grey(0.5f)}, "white"});
@@ -144,14 +144,14 @@ TEST_CASE("a lamp in view takes nothing from what it lights") {
     CHECK(floor.burnt <= 0.01);
 }
 
-TEST_CASE("where there is only sky, the sky becomes middle grey") {
+TEST_CASE("if only sky is visible, it becomes middle grey") {
     Queue queue = test::requested_queue();
     Scene scene = make_room_with_window();
     scene.environment->scale = grey(0.72f);
     CHECK(stops_of(queue, scene, camera_at({0, 1, -9}, {0, 1, -20}), metered_settings()) == -2.0f);
 }
 
-TEST_CASE("a patch of sun on the floor is not burnt") {
+TEST_CASE("a patch of sunlight on the floor is not clipped") {
     Queue queue = test::requested_queue();
     Scene scene = make_room_with_window();
     scene.lights.push_back({.name = "sun",

@@ -36,7 +36,7 @@ double distance(Vec3 a, Vec3 b) { return static_cast<double>(length(a - b)); }
 
 } // namespace
 
-TEST_CASE("a motion leads a body to where it is at any time, and back") {
+TEST_CASE("a motion maps an object to its position at any time, and back") {
     const PlacedBox box = skewed_box();
     struct Case {
         float turn, way;
@@ -100,7 +100,7 @@ TEST_CASE("still objects have no keys, and motions that are not rigid are left o
     CHECK(gone.motions.front().keys.empty());
 }
 
-TEST_CASE("motion between equal poses at even times is found") {
+TEST_CASE("motion between equal poses at evenly spaced times is found") {
     const PlacedBox box = skewed_box();
     const auto segments_of = [&](const std::function<Transform(double)>& place_at, std::span<const double> looks = {}) {
         const FittedMotions fitted = fit_motions(
@@ -121,7 +121,7 @@ TEST_CASE("motion between equal poses at even times is found") {
     CHECK(segments_of(hop, {&key, 1}) == kMaxMotionSegments);
 }
 
-TEST_CASE("the swept box holds every place that a body takes") {
+TEST_CASE("the swept box contains every position of an object") {
     const PlacedBox box = skewed_box();
     test::Random random(7);
     for (int round = 0; round < 40; ++round) {

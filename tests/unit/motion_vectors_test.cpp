@@ -41,7 +41,7 @@ float pixels_a_metre(const CameraView& view) { return 0.5f * 64 / (4 * view.half
 
 } // namespace
 
-TEST_CASE("an object moving right and up has that motion in pixels") {
+TEST_CASE("an object that moves right and up has that motion in pixels") {
     Messages messages;
     Queue queue = test::requested_queue();
     const Camera camera = camera_of_ball();
@@ -70,7 +70,7 @@ TEST_CASE("an object moving right and up has that motion in pixels") {
     CHECK(length(Vec3{sky.x, sky.y, 0}) < 1e-3f);
 }
 
-TEST_CASE("a camera that goes to the right moves what is near to the left, and one that turns the sky too") {
+TEST_CASE("a camera moving right moves near objects to the left, and a turning one the sky as well") {
     Messages messages;
     Queue queue = test::requested_queue();
     const Scene scene = test::make_furnace_scene(0.5f);
@@ -97,7 +97,7 @@ TEST_CASE("a camera that goes to the right moves what is near to the left, and o
     CHECK(std::abs(at(motion, 32, 24).y) < 1e-2f);
 }
 
-TEST_CASE("a picture without a frame before it has no motion, nor has what was behind the camera or was hidden") {
+TEST_CASE("a picture without a previous frame has no motion, nor have surfaces that were behind the camera or hidden") {
     Messages messages;
     Queue queue = test::requested_queue();
     Scene scene = test::make_furnace_scene(0.5f);
@@ -135,16 +135,16 @@ TEST_CASE("a picture without a frame before it has no motion, nor has what was b
     CHECK(largest(session.motion()) < 1e-4f);
 }
 
-TEST_CASE("memory of motion vectors equals its prediction, and their bytes are equal on every device") {
+TEST_CASE("memory of motion vectors equals its prediction, and their bytes are the same on every device") {
     Messages messages;
     Queue cpu = Queue::make_cpu();
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     const auto motion_on = [&](Queue& queue, PathBody body) {
-        Messages said;
+        Messages messages;
         RenderSettings settings = motion_settings();
         settings.body = body;
-        const PreparedScene own = prepare_scene(scene, {}, said);
+        const PreparedScene own = prepare_scene(scene, {}, messages);
         Session session(queue, own, test::mixed_scene_camera(), settings);
         session.keep_as_before();
         Camera moved = test::mixed_scene_camera();

@@ -34,7 +34,7 @@ Vec3 eye_of(const Camera& camera) { return camera.world_from_camera.translation;
 
 } // namespace
 
-TEST_CASE("a made-up camera is that of the scene at rest, at all times") {
+TEST_CASE("a default camera is that of the scene at rest at all times") {
     PosedScene posed(make_scene(false));
     Messages messages;
     const MovingCamera moving({}, std::nullopt, posed.scene(), 1, messages);
@@ -43,7 +43,7 @@ TEST_CASE("a made-up camera is that of the scene at rest, at all times") {
     CHECK(moving.at(posed.scene(), 8.0) == at_rest);
 }
 
-TEST_CASE("a scene's own camera goes with its node, and keeps what flags say") {
+TEST_CASE("a scene's camera moves with its node and keeps what flags set") {
     PosedScene posed(make_scene(true));
     Messages messages;
     CameraChoice choice;
@@ -61,7 +61,7 @@ TEST_CASE("a scene's own camera goes with its node, and keeps what flags say") {
     CHECK(aimed.at(posed.scene(), 6.0).focus_distance == 10);
 }
 
-TEST_CASE("a path leads the camera, and says the time at which it cannot") {
+TEST_CASE("a path moves the camera, and an error names the time at which it cannot") {
     PosedScene posed(make_scene(true));
     Messages messages;
     const CameraPath path = {
@@ -72,7 +72,7 @@ TEST_CASE("a path leads the camera, and says the time at which it cannot") {
     CHECK_THROWS_WITH_AS(moving.at(posed.scene(), 1.0), doctest::Contains("the camera's path at 1 s"), Error);
 }
 
-TEST_CASE("a turntable goes counter-clockwise round the target and comes back") {
+TEST_CASE("a turntable goes counter-clockwise around the target and returns") {
     PosedScene posed(make_scene(true));
     Messages messages;
     CameraChoice choice;

@@ -38,7 +38,7 @@ using Moves = std::vector<bool>;
 
 } // namespace
 
-TEST_CASE("parents_first puts each node after its parent, whatever their numbers, and leaves circles out") {
+TEST_CASE("parents_first puts each node after its parent, whatever their indices, and leaves out cycles") {
     Scene scene = make_scene();
     CHECK(parents_first(scene.nodes) == std::vector<uint32_t>{3, 1, 0, 2});
     scene.nodes.resize(6);
@@ -53,7 +53,7 @@ TEST_CASE("parents_first puts each node after its parent, whatever their numbers
     CHECK(std::is_sorted(order.rbegin(), order.rend()));
 }
 
-TEST_CASE("an instance may move where an animation changes its node or one above it") {
+TEST_CASE("an instance may move if an animation changes its node or an ancestor") {
     Scene scene = make_scene();
     CHECK(may_move(scene) == Moves{false, false, false, false});
     SUBCASE("a node in the middle moves what is below it") {
@@ -82,7 +82,7 @@ TEST_CASE("an instance may move where an animation changes its node or one above
     }
 }
 
-TEST_CASE("a mesh that is used once keeps a tree of its own where it may move, and is baked where it may not") {
+TEST_CASE("a mesh used once keeps its own BLAS if it may move and is baked otherwise") {
     Scene scene = make_scene();
     animate(scene, 1, AnimatedPart::Translation);
     const MeshPlacement placement = place_meshes(scene);

@@ -9,8 +9,8 @@
 #include "accel/octree/build_octree.h"
 #include "accel/octree/check_octree.h"
 #include "base/parallel_for.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/options.h"
+#include "tests/support/stress_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -26,8 +26,8 @@ const OctreeSettings kSettings[] = {{},
 
 } // namespace
 
-TEST_CASE("octrees over nasty meshes are sound and keep to their bounds") {
-    for (const NastyMesh& c : nasty_meshes()) {
+TEST_CASE("octrees over stress meshes are valid and respect their limits") {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(c.name);
         for (const OctreeSettings& settings : kSettings) {
             CAPTURE(settings.max_references);
@@ -44,7 +44,7 @@ TEST_CASE("octrees over nasty meshes are sound and keep to their bounds") {
     }
 }
 
-TEST_CASE("an octree holds a point, a line, and bounds as far away or as small as floats go") {
+TEST_CASE("an octree holds a point, a line, and bounds of any position and size of floats") {
     const Vec3 places[] = {
         {0, 0, 0}, {-0x1p40f, 0x1p40f, 0x1.fffffep39f}, {0x1p-140f, -0x1p-140f, 0}, {3, -0x1p30f, 1}};
     const float sizes[] = {0, 0x1p-149f, 0x1p-100f, 1e-6f, 1, 0x1p39f};
@@ -83,14 +83,14 @@ TEST_CASE("an octree does not depend on the number of threads") {
     CHECK(one.references == four.references);
 }
 
-TEST_CASE("an octree is worth more than testing every triangle") {
+TEST_CASE("an octree is cheaper than brute force") {
     const auto mesh = triangles_of(make_torus(80, 40));
     const Octree tree = build_octree(mesh), none = build_octree(mesh, {.max_depth = 0});
     CHECK(tree.sah_cost < 0.03f * none.sah_cost);
     CHECK(none.sah_cost == static_cast<float>(mesh.size()));
 }
 
-TEST_CASE("the checker notices an octree that is broken") {
+TEST_CASE("the checker detects a broken octree") {
     const auto mesh = triangles_of(make_torus(20, 12));
     const Octree sound = build_octree(mesh);
     REQUIRE(!find_fault(sound));
@@ -130,8 +130,8 @@ TEST_CASE("the checker notices an octree that is broken") {
     }));
 }
 
-TEST_CASE("an octree of a million triangles in a line keeps to its bounds") {
-    const auto line = nasty_meshes(static_cast<uint32_t>(effort(20000, 1'000'000)))[6];
+TEST_CASE("an octree of a million triangles in a line respects its limits") {
+    const auto line = stress_meshes(static_cast<uint32_t>(effort(20000, 1'000'000)))[6];
     REQUIRE(line.name == std::string("a line"));
     const Octree tree = build_octree(line.triangles);
     const auto fault = find_fault(tree);

@@ -79,8 +79,9 @@ struct CutOuts {
 };
 
 /// Opacity at points of a scene, with micromaps and with textures only, on the CPU.
-struct Told {
-    explicit Told(const Scene& of) : scene(of), prepared(prepare_scene(scene, {}, messages)), device(queue, prepared) {
+struct Micromaps {
+    explicit Micromaps(const Scene& of)
+        : scene(of), prepared(prepare_scene(scene, {}, messages)), device(queue, prepared) {
         maps.update(queue, scene, device.view(), true);
         with = device.view();
         with.micromaps = maps.of_instances();
@@ -142,7 +143,7 @@ Vec2 some_place(test::Random& random) {
 
 } // namespace
 
-TEST_CASE("each micro-triangle has an index of its own, and the places on it have that index") {
+TEST_CASE("each micro-triangle has a unique index, which all of its points have") {
     test::Random random(3);
     for (uint32_t level = kMinMicroLevel; level <= kMaxMicroLevel; ++level) {
         CAPTURE(level);
@@ -167,7 +168,7 @@ TEST_CASE("each micro-triangle has an index of its own, and the places on it hav
     }
 }
 
-TEST_CASE("the range over a box of texels holds each of them, and of small boxes no more") {
+TEST_CASE("the range over a box of texels contains each of them, and is tight for small boxes") {
     test::Random random(5);
     const int size = 64;
     for (const Wrap wrap : {Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge}) {
@@ -191,7 +192,7 @@ TEST_CASE("the range over a box of texels holds each of them, and of small boxes
     }
 }
 
-TEST_CASE("micromaps never say anything else than textures, whatever these are, and however they lie") {
+TEST_CASE("micromaps never contradict their textures, whatever these hold and however they are mapped") {
     CutOuts made;
     for (const Wrap wrap : {Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge}) {
         for (const TextureFilter filter : {TextureFilter::Linear, TextureFilter::Nearest}) {
@@ -223,16 +224,16 @@ TEST_CASE("micromaps never say anything else than textures, whatever these are, 
             }
         }
     }
-    const Told told(made.scene);
+    const Micromaps micromaps_of(made.scene);
     uint32_t wrong = 0, known = 0, places = 0;
     for (uint32_t instance = 0; instance < made.scene.instances.size(); ++instance) {
         for (uint32_t i = 0; i < 4000; ++i) {
             const uint32_t primitive = i % 24;
             const Vec2 at = some_place(made.random);
-            const bool is_known = told.known(instance, primitive, at.x, at.y) != Opacity::Unknown;
+            const bool is_known = micromaps_of.known(instance, primitive, at.x, at.y) != Opacity::Unknown;
             known += is_known;
             ++places;
-            wrong += !told.is_same(instance, primitive, at.x, at.y, i * 7919);
+            wrong += !micromaps_of.is_same(instance, primitive, at.x, at.y, i * 7919);
         }
     }
     CAPTURE(known);
@@ -241,7 +242,7 @@ TEST_CASE("micromaps never say anything else than textures, whatever these are, 
     CHECK(known > places / 4);
 }
 
-TEST_CASE("what a texture gives on a micro-triangle is within the range that is said of it") {
+TEST_CASE("a texture's values on a micro-triangle lie within its range") {
     test::Random random(11);
     TextureImage fine, wide; // texels a rounding apart, some of them no number; and an image of many columns
     fine.rgba_float = {5, 4, 4, std::vector<float>(size_t(4) * 5 * 4)};
@@ -255,7 +256,7 @@ TEST_CASE("what a texture gives on a micro-triangle is within the range that is 
     const Pyramid pyramids[] = {Pyramid(images[0]), Pyramid(images[1])};
     const uint32_t indices[] = {0, 1, 2};
     constexpr uint32_t kLevel = 5;
-    uint64_t outside = 0, said = 0;
+    uint64_t outside = 0, bounded = 0;
     for (int round = 0; round < 200'000; ++round) {
         const auto any_of = [&](auto... of) {
             const std::common_type_t<decltype(of)...> all[] = {of...};
@@ -279,14 +280,14 @@ TEST_CASE("what a texture gives on a micro-triangle is within the range that is 
         const ValueRange range = texture_range(mesh, ref, pyramids[ref.image].bounds, {0, 1, 2}, corners);
         const float value =
             lookup_texture_channel(images, ref, interpolate(uv, TriangleIndices{0, 1, 2}, place.x, place.y), nullptr);
-        said += range.most < kInfinity;
+        bounded += range.most < kInfinity;
         if (!(range.least <= value && value <= range.most) && range.most < kInfinity) ++outside;
     }
     CHECK(outside == 0);
-    CHECK(said > 50'000);
+    CHECK(bounded > 50'000);
 }
 
-TEST_CASE("micromaps know of most places of a leaf, and none is made where alpha is one number") {
+TEST_CASE("micromaps know the opacity of most points of a leaf, and constant alpha has none") {
     CutOuts made;
     Mesh square;
     square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -296,7 +297,7 @@ TEST_CASE("micromaps know of most places of a leaf, and none is made where alpha
     made.add(square, {{.alpha_mode = AlphaMode::Blend, .base_color_texture = {.image = 0}}});
     made.add(square, {{.alpha_mode = AlphaMode::Blend, .alpha = 0.5f}});
     made.add(square, {{.base_color_texture = {.image = 0}}});
-    const Told told(made.scene);
+    const Micromaps micromaps_of(made.scene);
     for (const uint32_t instance : {0u, 1u}) {
         CAPTURE(instance);
         uint32_t opaque = 0, transparent = 0;
@@ -304,18 +305,18 @@ TEST_CASE("micromaps know of most places of a leaf, and none is made where alpha
         for (uint32_t i = 0; i < kPlaces; ++i) {
             float u = made.random.unit(), v = made.random.unit();
             if (u + v > 1) u = 1 - u, v = 1 - v;
-            const Opacity known = told.known(instance, i % 2, u, v);
+            const Opacity known = micromaps_of.known(instance, i % 2, u, v);
             opaque += known == Opacity::Opaque;
             transparent += known == Opacity::Transparent;
         }
         CHECK(opaque > 0.36 * kPlaces); // the disc is half of the square
         CHECK(transparent > 0.32 * kPlaces);
     }
-    CHECK(told.with.micromaps[2].states == nullptr);
-    CHECK(told.with.micromaps[3].states == nullptr);
+    CHECK(micromaps_of.with.micromaps[2].states == nullptr);
+    CHECK(micromaps_of.with.micromaps[3].states == nullptr);
 }
 
-TEST_CASE("micromaps are made again when textures, materials or meshes change, and left where things only move") {
+TEST_CASE("micromaps are remade when textures, materials or meshes change, and kept when objects only move") {
     CutOuts made;
     made.add(made.triangles(8, 1),
              {{.alpha_mode = AlphaMode::Mask, .alpha_cutoff = 0.5f, .base_color_texture = {.image = 0}}});

@@ -8,13 +8,13 @@
 #include <string>
 
 #include "accel/builders/build_bvh.h"
-#include "tests/support/nasty_meshes.h"
+#include "tests/support/stress_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
 
 TEST_CASE("parent links lead from every node to the root") {
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(std::string(c.name));
         Bvh bvh = build_bvh(c.triangles);
         for (const BvhNode& node : bvh.nodes) CHECK((node.parent == 0 && node.split == 0)); // the form in the cache
@@ -41,7 +41,7 @@ TEST_CASE("parent links lead from every node to the root") {
     }
 }
 
-TEST_CASE("a tree without parent links, or with a wrong one, is told") {
+TEST_CASE("a tree without parent links, or with a wrong one, is detected") {
     Bvh bvh = build_bvh(make_soup(200, 0));
     CHECK(find_parent_link_fault(bvh) != std::nullopt);
     add_parent_links(bvh);

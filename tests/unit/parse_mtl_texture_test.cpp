@@ -4,7 +4,7 @@
 
 using namespace pertev;
 
-TEST_CASE("mtl: options of a map stand before its name, behind it or around it") {
+TEST_CASE("mtl: options of a map stand before or after its name, or on both sides") {
     for (const char* text :
          {"-o 0.25 0.5 -s 2 3 -clamp on my map.png", "my map.png -o 0.25 0.5 0 -s 2 3 1 -clamp on",
           "-s 2 3 my map.png -clamp on -o 0.25 0.5", "  my map.png\t-clamp on -s 2 3 -o 0.25 0.5 # x"}) {
@@ -22,7 +22,7 @@ TEST_CASE("mtl: options of a map stand before its name, behind it or around it")
     CHECK(parse_mtl_texture("a.png -blendu off -mm 0 1 -texres 256 -type sphere").name == "a.png");
 }
 
-TEST_CASE("mtl: words of a name that look like options but are none belong to the name") {
+TEST_CASE("mtl: words that only look like options belong to the name") {
     for (const char* name : {"wall -bm x.png", "a-s.png", "-x.png", "wood -clamp maybe.png", "a - b.png", "x -bm",
                              "photo -o 2.png", "night -s 1 2 3 4.png"}) {
         CAPTURE(name);

@@ -16,7 +16,7 @@ constexpr float kTooLarge = std::numeric_limits<float>::infinity();
 
 } // namespace
 
-TEST_CASE("a number too near 0 for a float is 0 and one too large is infinite, however it is written") {
+TEST_CASE("a number too close to 0 for a float is 0 and one too large is infinite, in any notation") {
     const std::string zeros(400, '0');
     for (const std::string& tiny : {std::string("1e-46"), std::string("9.9e-400"), "0." + zeros + "1",
                                     "0." + zeros + "1e5", "." + zeros + "7e+300", "1" + zeros + "e-500",
@@ -41,7 +41,7 @@ TEST_CASE("a number too near 0 for a float is 0 and one too large is infinite, h
     CHECK(parse_whole_float("0e-999") == 0.0f);
 }
 
-TEST_CASE("a whole number in text has nothing before or after it") {
+TEST_CASE("a whole number in text has nothing around it") {
     CHECK(parse_whole_float("-1.5") == -1.5f);
     for (const char* text : {"", " 1", "1 ", "+1", "1e-400x", "1,2", "e5", "."}) {
         CAPTURE(text);
@@ -49,7 +49,7 @@ TEST_CASE("a whole number in text has nothing before or after it") {
     }
 }
 
-TEST_CASE("a whole number is its digits alone, as many as its type holds") {
+TEST_CASE("a whole number consists only of digits, up to its type's limit") {
     CHECK(parse_whole_number("18446744073709551615") == std::numeric_limits<uint64_t>::max());
     CHECK(parse_whole_number<uint32_t>("007") == 7u);
     CHECK_FALSE(parse_whole_number<uint32_t>("4294967296"));

@@ -14,7 +14,7 @@ namespace {
 
 struct Parsed {
     ObjData data;
-    std::string said; // warnings, or the error
+    std::string messages; // warnings, or the error
 };
 
 Parsed parse_in_pieces(const std::string& text, std::size_t piece_bytes) {
@@ -28,9 +28,9 @@ Parsed parse_in_pieces(const std::string& text, std::size_t piece_bytes) {
         if (!found.empty()) CHECK(found.front() == parsed.data.material_files.at(0).line);
     } catch (const Error& error) {
         CHECK(error.code() == ErrorCode::BadInput);
-        parsed.said = error.what();
+        parsed.messages = error.what();
     }
-    for (const Message& message : messages.all()) parsed.said += message.text + "\n";
+    for (const Message& message : messages.all()) parsed.messages += message.text + "\n";
     return parsed;
 }
 
@@ -55,7 +55,7 @@ bool same(const ObjData& a, const ObjData& b) {
 
 } // namespace
 
-TEST_CASE("a text that several threads read in pieces is the same, and so is what is said of it") {
+TEST_CASE("a text read in pieces by several threads gives the same result and messages") {
     // ; ends a line. Every construct whose meaning lies in what stands before it, and each kind of fault.
     const std::string corners = "v 0 0 0;v 1 0 0 1 0.5 0;v 0 1 \\;0;v 1 1 0;vt 0 0;vt 1 0;vn 0 0 1;";
     const std::string faces = "f 1 2 3;o box # one;usemtl red one # note;f -4/-2/-1 -3//-1 -2/-1;# C:\\;f 2 3 4;usemtl "
@@ -79,7 +79,7 @@ TEST_CASE("a text that several threads read in pieces is the same, and so is wha
                 CAPTURE(text);
                 CAPTURE(piece_bytes);
                 const Parsed in_pieces = parse_in_pieces(lines, piece_bytes);
-                CHECK(in_pieces.said == at_once.said);
+                CHECK(in_pieces.messages == at_once.messages);
                 CHECK(same(in_pieces.data, at_once.data));
             }
         }

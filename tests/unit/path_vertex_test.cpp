@@ -30,27 +30,27 @@ public:
     void take_up(const Kept& kept) { kept_ = kept; }
     void vertex(const PathState& path, const Hit&, Surface&) {
         ++kept_.vertices;
-        tell("vertex", path);
+        record("vertex", path);
     }
-    void missed(const PathState& path) { tell("missed", path); }
+    void missed(const PathState& path) { record("missed", path); }
     void emitted(const PathState& path, Rgb light) {
-        tell("emitted", path);
+        record("emitted", path);
         found = light;
     }
     void direct(const PathState& path, const SurfaceVertex&, Vec3, const ShadowRay& shadow) {
-        tell("direct", path);
+        record("direct", path);
         shadow_data_ = {shadow.contribution};
     }
-    void scattered(const PathState& path, const SurfaceVertex&, const BsdfSample&) { tell("scattered", path); }
+    void scattered(const PathState& path, const SurfaceVertex&, const BsdfSample&) { record("scattered", path); }
     void put_down(Kept& kept) const { kept = kept_; }
     void hand_over(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
 
-    std::vector<std::string> told;
+    std::vector<std::string> events;
     Rgb found;
 
 private:
-    void tell(const char* what, const PathState& path) {
-        told.push_back(std::string(what) + " " + std::to_string(path.depth));
+    void record(const char* what, const PathState& path) {
+        events.push_back(std::string(what) + " " + std::to_string(path.depth));
     }
     Kept kept_;
     ShadowData shadow_data_;
@@ -60,7 +60,7 @@ private:
 class Thief : public PathListener<Thief> {
 public:
     explicit Thief(const PathJob&) {}
-    bool takes(const PathState&, const EmitterPoint& place, float) {
+    bool takes(const PathState&, const EmitterPoint& point, float) {
         place_ = place;
         return true;
     }
@@ -111,29 +111,29 @@ Features chosen(CompiledFor<kMasks...>, Features wanted) {
 
 } // namespace
 
-TEST_CASE("unit/path_vertex: a listener is told of a vertex in its order, and changes nothing of the light") {
+TEST_CASE("path vertex: a listener gets a vertex's events in order and does not change the light") {
     const LitFloor place;
     PathState alone, heard = path_down();
     ShadowRay shadow_alone, shadow_heard;
-    bool asks_alone = false, asks_heard = false;
+    bool wants_alone = false, wants_heard = false;
     Listeners<> nobody(place.job);
     Listeners<Witness> witness(place.job);
-    while (!asks_alone && heard.sample < 100) { // until the sky is drawn, not the floor itself
+    while (!wants_alone && heard.sample < 100) { // until the sky is drawn, not the floor itself
         ++heard.sample;
         alone = heard;
         REQUIRE(
-            shade_vertex<kAllMaterials>(place.job, alone, kFloor, DrawOnDemand(), shadow_alone, asks_alone, nobody));
+            shade_vertex<kAllMaterials>(place.job, alone, kFloor, DrawOnDemand(), shadow_alone, wants_alone, nobody));
     }
     witness.begins(heard);
-    CHECK(shade_vertex<kPlainDiffuse>(place.job, heard, kFloor, DrawOnDemand(), shadow_heard, asks_heard, witness));
-    REQUIRE(asks_alone);
-    CHECK(asks_heard);
+    CHECK(shade_vertex<kPlainDiffuse>(place.job, heard, kFloor, DrawOnDemand(), shadow_heard, wants_heard, witness));
+    REQUIRE(wants_alone);
+    CHECK(wants_heard);
     CHECK(heard.radiance == alone.radiance);
     CHECK(heard.throughput == alone.throughput);
     CHECK(heard.direction == alone.direction);
     CHECK(shadow_heard.contribution == shadow_alone.contribution);
     CHECK(shadow_heard.direction == shadow_alone.direction);
-    CHECK(witness.told == std::vector<std::string>{"vertex 0", "emitted 0", "direct 0", "scattered 1"});
+    CHECK(witness.events == std::vector<std::string>{"vertex 0", "emitted 0", "direct 0", "scattered 1"});
     CHECK(witness.found == Rgb{1, 2, 3});
 
     Listeners<Witness>::Kept kept;
@@ -146,14 +146,14 @@ TEST_CASE("unit/path_vertex: a listener is told of a vertex in its order, and ch
     Listeners<Witness> next(place.job);
     next.take_up(kept);
     CHECK_FALSE(
-        shade_vertex<kPlainDiffuse>(place.job, heard, kNothing, DrawOnDemand(), shadow_heard, asks_heard, next));
-    CHECK_FALSE(asks_heard);
-    CHECK(next.told == std::vector<std::string>{"missed 1", "emitted 1"});
+        shade_vertex<kPlainDiffuse>(place.job, heard, kNothing, DrawOnDemand(), shadow_heard, wants_heard, next));
+    CHECK_FALSE(wants_heard);
+    CHECK(next.events == std::vector<std::string>{"missed 1", "emitted 1"});
     next.put_down(kept);
     CHECK(kept.vertices == 1);
 }
 
-TEST_CASE("unit/path_vertex: light that a listener takes is not the path's, and others are told that none was added") {
+TEST_CASE("path vertex: light taken by a listener is not added to the path, and other listeners get zero") {
     const LitFloor place;
     PathState path = path_down();
     ShadowRay shadow;
@@ -165,13 +165,13 @@ TEST_CASE("unit/path_vertex: light that a listener takes is not the path's, and 
     CHECK(both.place_.instance == 0);
     CHECK(both.place_.u == 0.3f);
     CHECK(both.found == Rgb{0, 0, 0});
-    CHECK(both.told == std::vector<std::string>{"vertex 0", "emitted 0", "scattered 1"});
+    CHECK(both.events == std::vector<std::string>{"vertex 0", "emitted 0", "scattered 1"});
     CHECK_FALSE(shade_vertex<kAllMaterials>(place.job, path, kNothing, DrawOnDemand(), shadow, asks, both));
     CHECK(path.radiance == Rgb{0, 0, 0});
     CHECK(both.place_.kind() == SourceKind::Environment);
 }
 
-TEST_CASE("unit/path_vertex: the code for a mask of features is the least that holds all of them") {
+TEST_CASE("path vertex: the variant of a mask of features is the smallest that covers all of them") {
     const FilmFeatures films;
     CHECK(chosen(films, 0) == kPlainDiffuse);
     CHECK(chosen(films, kTextured) == kDiffuse);

@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "integrators/photon_map/order_photons.h"
-#include "tests/support/nasty_points.h"
 #include "tests/support/random.h"
+#include "tests/support/stress_points.h"
 
 using namespace pertev;
 
 namespace {
 
 struct GridOfPoints {
-    std::vector<Float4> places, points;
+    std::vector<Float4> positions, points;
     std::vector<uint32_t> starts;
     PhotonGridView view;
 
@@ -26,11 +26,11 @@ struct GridOfPoints {
                  uint32_t pass = 0) {
         Queue queue = Queue::make_cpu();
         const auto count = static_cast<uint32_t>(from.size());
-        for (const Vec3 p : from) places.push_back({p.x, p.y, p.z, 0});
+        for (const Vec3 p : from) positions.push_back({p.x, p.y, p.z, 0});
         const PhotonCells cells = make_photon_cells(radius, largest, count);
         std::vector<uint64_t> keys(count), sorted_keys(count);
         std::vector<uint32_t> order(count), sorted_order(count);
-        for (uint32_t i = 0; i < count; ++i) MakeBuckets{places.data(), cells, keys.data(), order.data()}(i);
+        for (uint32_t i = 0; i < count; ++i) MakeBuckets{positions.data(), cells, keys.data(), order.data()}(i);
         Buffer<std::byte> scratch;
         sort_photons(queue, scratch, keys.data(), order.data(), sorted_keys.data(), sorted_order.data(), count, 31);
         points.resize(count);
@@ -40,7 +40,7 @@ struct GridOfPoints {
             FindBuckets{sorted_keys.data(), count, cells.buckets, starts.data()}(i);
         }
         for (uint32_t i = 0; i < count; ++i) {
-            KeepPhotons{{places.data(), nullptr, powers.data()},
+            KeepPhotons{{positions.data(), nullptr, powers.data()},
                         sorted_keys.data(),
                         sorted_order.data(),
                         starts.data(),
@@ -55,14 +55,14 @@ struct GridOfPoints {
 
 } // namespace
 
-TEST_CASE("a hash grid finds what looking at every photon finds, ties by number") {
-    for (const test::NastyPoints& set : test::nasty_points(600)) {
+TEST_CASE("a hash grid matches brute force over all photons, with ties by number") {
+    for (const test::StressPoints& set : test::stress_points(600)) {
         if (set.extent < 1e-30f) continue; // squares of such distances are 0: all is near all, but not in a grid
         CAPTURE(set.name);
         for (const float share : {1e-6f, 0.1f, 0.25f, 1.0f}) {
             const float radius = share * set.extent;
             const GridOfPoints grid(set.points, radius, 2 * set.extent);
-            for (const Vec3 at : test::places_to_ask(set, 60)) {
+            for (const Vec3 at : test::query_points(set, 60)) {
                 const std::vector<NearPoint> want = test::within_by_brute_force(set.points, at, radius);
                 std::vector<NearPoint> seen;
                 visit_within(grid.view, at, radius, [&](const NearPoint& p) { seen.push_back(p); });
@@ -79,7 +79,7 @@ TEST_CASE("a hash grid finds what looking at every photon finds, ties by number"
     }
 }
 
-TEST_CASE("of a crowded bucket as many photons stay as are wanted, each as often as any other, with the power of all") {
+TEST_CASE("a crowded bucket keeps the requested number of photons, chosen uniformly, with the total power") {
     test::Random random(12);
     std::vector<Vec3> points;
     for (int i = 0; i < 700; ++i) points.push_back(random.point(0, 1));
@@ -105,7 +105,7 @@ TEST_CASE("of a crowded bucket as many photons stay as are wanted, each as often
         std::vector<uint32_t> those_that_stay;
         double power = 0;
         for (uint32_t i = 0; i < points.size(); ++i) {
-            if (grid.places[i].w == 0) continue;
+            if (grid.positions[i].w == 0) continue;
             those_that_stay.push_back(i);
             power += static_cast<double>(grid.powers[i].x);
             ++stayed[i];
@@ -116,7 +116,7 @@ TEST_CASE("of a crowded bucket as many photons stay as are wanted, each as often
     const GridOfPoints all(points, kRadius, 40), some(points, kRadius, 40, kMost);
     uint32_t thinned = 0;
     for (uint32_t i = 0; i < points.size(); ++i) {
-        const Float4 p = all.places[i];
+        const Float4 p = all.positions[i];
         const uint32_t bucket = all.view.cells.bucket_of({p.x, p.y, p.z});
         const uint32_t n = all.starts[bucket + 1] - all.starts[bucket];
         const double chance = n > kMost ? static_cast<double>(kMost) / n : 1;
@@ -129,7 +129,7 @@ TEST_CASE("of a crowded bucket as many photons stay as are wanted, each as often
     CHECK(thinned < points.size());
 }
 
-TEST_CASE("photons are sorted by their numbers whatever the order in which they come") {
+TEST_CASE("photons are sorted by their numbers, whatever their order of arrival") {
     Queue queue = Queue::make_cpu();
     test::Random random(4);
     std::vector<std::pair<uint64_t, uint32_t>> wanted;

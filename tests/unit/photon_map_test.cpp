@@ -17,15 +17,15 @@
 #include "session/check_integrator.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/meshes.h"
-#include "tests/support/nasty_points.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/room_with_ball.h"
+#include "tests/support/stress_points.h"
 #include "tests/support/thrown_error.h"
 
 using namespace pertev;
 
-TEST_CASE("the radius of a pass is Knaus and Zwicker's, a function of the pass alone") {
+TEST_CASE("the radius of a pass is Knaus and Zwicker's and depends only on the pass") {
     CHECK(radius_of_pass(0) == 1);
     const double a = 2.0 / 3;
     double squared = 1;
@@ -38,7 +38,7 @@ TEST_CASE("the radius of a pass is Knaus and Zwicker's, a function of the pass a
     CHECK(static_cast<double>(radius_of_pass(100'000)) == doctest::Approx(std::exp(0.5 * logarithm)).epsilon(1e-5));
 }
 
-TEST_CASE("photons are aimed with the density that is said, wherever the spheres lie") {
+TEST_CASE("photons are aimed with the reported density, wherever the target spheres lie") {
     const Float4 near_each_other[] = {{1, 0, 0, 0.4f}, {1.3f, 0.3f, 0, 0.4f}, {-2, 1, 0.5f, 0.1f}};
     const Float4 round_all[] = {{0.1f, 0, 0, 1}, {3, 0, 0, 0.5f}};
     for (const PhotonTargetsView targets : {PhotonTargetsView{near_each_other, 3}, PhotonTargetsView{round_all, 2}}) {
@@ -113,7 +113,7 @@ struct PhotonRun {
             {{.max_depth = max_depth}, {.photons = photons, .radius = radius, .nearest = nearest, .gather = gather}},
             in_loop, 1u << 20);
         integrator.begin(picture, tracer, 1);
-        integrator.tell_energy(&energy);
+        integrator.record_energy_in(&energy);
         Film film(queue, 8, 8, 0);
         integrator.render(3, 1, film.view());
         counts = integrator.photons();
@@ -127,7 +127,7 @@ struct PhotonRun {
 private:
     void add(const PhotonMapView& map) {
         for (uint32_t i = 0; i < map.count; ++i) {
-            if (map.photons.places[i].w == 0) {
+            if (map.photons.positions[i].w == 0) {
                 ++left_out;
                 continue;
             }
@@ -174,8 +174,7 @@ double mean_seen(const Scene& scene, const RenderSettings& from, Vec3 camera = {
 
 } // namespace
 
-TEST_CASE(
-    "the energy of photons that leave the lights is what lies in the maps, what surfaces absorb and what escapes") {
+TEST_CASE("the energy of emitted photons is the sum of what is stored, absorbed and escapes") {
     const Material glass = test::of_roughness(MaterialKind::Dielectric, 0);
     const Scene scenes[] = {test::make_mixed_scene(), under_two_faces_of_glass(), sphere_that_glows(0.5f),
                             test::room_with_ball(glass, test::white(0.6f), false)};
@@ -205,7 +204,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("of photons that crowd some are left out with their power on the others, and none where the nearest count") {
+TEST_CASE("some crowded photons are dropped and their power goes to the others, but none if the nearest count") {
     const Scene scene = test::room_with_ball(test::white(0.6f), test::white(0.6f), false);
     const PhotonRun all(scene, 6, 12000), some(scene, 6, 12000, true, PhotonGather::Direct, 2),
         nearest(scene, 6, 12000, true, PhotonGather::Direct, 2, 20);
@@ -217,7 +216,7 @@ TEST_CASE("of photons that crowd some are left out with their power on the other
     CHECK(nearest.stored == all.stored);
 }
 
-TEST_CASE("photons carry what the lights send, and leave what a closed room keeps") {
+TEST_CASE("photons carry the emitted power, and a closed room keeps the expected part") {
     // A sphere of radius 2 whose inside and outside send pi W/m2 each: photons of the outside escape. Three colours.
     const double area = 4 * 3.14159265 * 4 * 0.99, inside = 3 * 3.14159265 * area; // 0.99: it has flat sides
     const PhotonRun run(sphere_that_glows(0.5f), 5, 20000);
@@ -229,7 +228,7 @@ TEST_CASE("photons carry what the lights send, and leave what a closed room keep
     CHECK(run.counts.caustic == 0);
 }
 
-TEST_CASE("a floor under a lamp behind glass has the radiance of the closed form, by photons alone") {
+TEST_CASE("a floor under an emitter behind glass has the radiance of the closed form from photons alone") {
     RenderSettings settings;
     settings.path.max_depth = 6;
     settings.samples = 8;
@@ -248,7 +247,7 @@ TEST_CASE("a floor under a lamp behind glass has the radiance of the closed form
     CHECK(mean_seen(scene, settings) == 0);
 }
 
-TEST_CASE("what is seen in a mirror is there too: a caustic that neither end finds alone") {
+TEST_CASE("a caustic seen in a mirror is found, which neither end finds alone") {
     Scene scene = under_two_faces_of_glass();
     test::add(scene, test::sheet({0.5f, 0.2f, 0}, {0, 0, 0.1f}, {0, 0.1f, 0}), test::mirror()); // its front to -x
     RenderSettings settings;
@@ -270,7 +269,7 @@ TEST_CASE("what is seen in a mirror is there too: a caustic that neither end fin
     CHECK(by_bidirectional < 0.1 * seen);
 }
 
-TEST_CASE("a floor within glass is as bright by photons as by path tracing") {
+TEST_CASE("a floor within glass is as bright by photon mapping as by path tracing") {
     Scene scene = test::make_furnace_scene(0.6f);
     scene.materials[0] = test::of_roughness(MaterialKind::Dielectric, 0); // the furnace's ball
     test::add(scene, test::floor_at(0, 0.5f), test::white(0.6f));
@@ -286,7 +285,7 @@ TEST_CASE("a floor within glass is as bright by photons as by path tracing") {
     }
 }
 
-TEST_CASE("a glowing room shows each scattering once, by direct estimate and by final gathering") {
+TEST_CASE("in a glowing room each scattering counts once, by direct estimate and by final gathering") {
     for (const PhotonGather gather : {PhotonGather::Direct, PhotonGather::Final}) {
         for (const uint32_t nearest : {0u, 100u}) {
             double wanted = 0;
@@ -307,7 +306,7 @@ TEST_CASE("a glowing room shows each scattering once, by direct estimate and by 
     }
 }
 
-TEST_CASE("rays of photon mapping are those that a hand counts, the gathering's among them") {
+TEST_CASE("the ray counts of photon mapping, including gathering, equal those computed by hand") {
     const test::TriangleMesh sphere = test::make_sphere(3, {0, 0, 0}, 2.0f);
     Scene room; // closed and white, with a light that every place sees: no subpath ends before its last scattering
     Mesh mesh;
@@ -343,7 +342,7 @@ TEST_CASE("rays of photon mapping are those that a hand counts, the gathering's 
     }
 }
 
-TEST_CASE("where subpaths end a ray looks for lamps that are near, and none where there are points alone") {
+TEST_CASE("where subpaths end a ray searches for nearby area lights, but not if there are only point lights") {
     for (const PhotonGather gather : {PhotonGather::Direct, PhotonGather::Final}) {
         RenderSettings settings;
         settings.width = settings.height = 16;
@@ -369,7 +368,7 @@ TEST_CASE("a sphere in a furnace shows its albedo") {
     CHECK(mean_seen(test::make_furnace_scene(0.6f), settings, {0, 2, 0}) == doctest::Approx(0.6).epsilon(0.01));
 }
 
-TEST_CASE("targets are one sphere round a ball, and several where mirrors lie apart") {
+TEST_CASE("targets are one sphere around a ball and several around separate mirrors") {
     SpecularBounds found;
     std::fill_n(reinterpret_cast<unsigned char*>(&found), sizeof found, hploc::kNothing);
     CHECK(choose_targets(found).empty());
@@ -416,25 +415,25 @@ TEST_CASE("targets are one sphere round a ball, and several where mirrors lie ap
     }
 }
 
-TEST_CASE("scenes without lights and too many photons are refused") {
+TEST_CASE("scenes without lights, and too many photons, are refused") {
     Scene scene;
     test::add(scene, test::floor_at(0, 1), test::white());
     RenderSettings settings;
     settings.integrator = IntegratorKind::PhotonMap;
     Messages messages;
-    const auto said = [&] { return test::bad_input_message([&] { check_light(settings, scene, messages); }); };
-    CHECK(said().starts_with("`integrator=photon_map`: "));
+    const auto message = [&] { return test::bad_input_message([&] { check_light(settings, scene, messages); }); };
+    CHECK(message().starts_with("`integrator=photon_map`: "));
     scene.lights.push_back(test::point_light({0, 2, 0}, {1, 1, 1}));
-    CHECK(said() == "no error");
+    CHECK(message() == "no error");
     scene.lights.clear();
     settings.path.max_depth = 0; // only emission
-    CHECK(said() == "no error");
+    CHECK(message() == "no error");
 
     settings.path.max_depth = 64;
     settings.photon_map.photons = kMaxPhotons;
     const auto error = test::thrown_error([&] { check_integrator(settings); });
     CHECK(test::is_about(error, ErrorCode::OverLimit, "photons", "16777216"));
-    CHECK(test::says(error, "at most 8521760"));
+    CHECK(test::says(error, "the limit is 8521760"));
     settings.path.max_depth = 65;
     const auto too_deep = test::thrown_error([&] { check_integrator(settings); });
     CHECK(test::is_about(too_deep, ErrorCode::OverLimit, "max_depth", "65"));

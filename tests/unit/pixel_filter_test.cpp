@@ -52,7 +52,7 @@ constexpr PixelFilter kFilters[] = {PixelFilter::Box, PixelFilter::Tent, PixelFi
 
 } // namespace
 
-TEST_CASE("samples of a pixel filter follow its formula: chi-square along an axis") {
+TEST_CASE("samples of a pixel filter pass a chi-square test of its formula along an axis") {
     constexpr int cells = 101, samples = 1'000'000; // odd: the middle cell holds the table's steepest place
     for (const PixelFilter kind : kFilters) {
         CAPTURE(static_cast<int>(kind));
@@ -75,7 +75,7 @@ TEST_CASE("samples of a pixel filter follow its formula: chi-square along an axi
     }
 }
 
-TEST_CASE("a pixel filter's mean is the pixel's centre and its variance the formula's") {
+TEST_CASE("a pixel filter's mean is the pixel's centre, and its variance is that of the formula") {
     for (const PixelFilter kind : kFilters) {
         CAPTURE(static_cast<int>(kind));
         const float radius = default_filter_radius(kind);
@@ -113,7 +113,7 @@ TEST_CASE("a pixel filter's samples grow with u, are symmetric and stay inside t
     }
 }
 
-TEST_CASE("the two axes of a pixel filter take one number each") {
+TEST_CASE("the two axes of a pixel filter use one number each") {
     for (const PixelFilter kind : kFilters) {
         const Filter filter(kind, 1.5f);
         const Vec2 offset = sample_filter(filter.view, {0.2f, 0.9f});
@@ -122,7 +122,7 @@ TEST_CASE("the two axes of a pixel filter take one number each") {
     }
 }
 
-TEST_CASE("only filters without a closed form have a table, which ends at the radius on both sides") {
+TEST_CASE("only filters without a closed form have a table, which covers the radius on both sides") {
     CHECK(make_filter_table(PixelFilter::Box).empty());
     CHECK(make_filter_table(PixelFilter::Tent).empty());
     for (const PixelFilter kind : {PixelFilter::Gaussian, PixelFilter::BlackmanHarris}) {

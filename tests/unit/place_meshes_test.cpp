@@ -33,7 +33,7 @@ Scene scene_of(uint32_t triangles, uint32_t squeezed) {
 
 } // namespace
 
-TEST_CASE("an instance is baked when it alone uses its mesh, or when its space is skewed") {
+TEST_CASE("an instance is baked if it alone uses its mesh or if its space is skewed") {
     CHECK(place_meshes(scene_of(1, 0)).is_baked == std::vector<bool>{true});
     CHECK(place_meshes(scene_of(1, 0)).copies == 0);
     const MeshPlacement placement = place_meshes(scene_of(5, 2));
@@ -43,7 +43,7 @@ TEST_CASE("an instance is baked when it alone uses its mesh, or when its space i
     CHECK(placement.copied_triangles == 10);
 }
 
-TEST_CASE("baked copies that far exceed the scene's size are refused by instance name") {
+TEST_CASE("baked copies that far exceed the scene's size are refused with the instance's name") {
     constexpr uint32_t triangles = 1u << 18, most = kFreeBakedTriangles / triangles + kMaxBakedExpansion;
     CHECK(place_meshes(scene_of(triangles, most)).copies == most);
     const auto error = test::thrown_error([] { place_meshes(scene_of(triangles, most + 1)); });
@@ -52,7 +52,7 @@ TEST_CASE("baked copies that far exceed the scene's size are refused by instance
     CHECK(std::string(error->what()).starts_with("instance " + std::to_string(most + 1) + " leaf: "));
 }
 
-TEST_CASE("many baked copies are a warning") {
+TEST_CASE("many baked copies cause a warning") {
     Messages few, many;
     const Scene of_few = scene_of(1u << 10, 2);
     prepare_scene(of_few, {}, few);

@@ -6,14 +6,14 @@
 
 #include "accel/kd_tree/point_kd_tree.h"
 #include "base/parallel_for.h"
-#include "tests/support/nasty_points.h"
 #include "tests/support/options.h"
+#include "tests/support/stress_points.h"
 
 using namespace pertev;
 using namespace pertev::test;
 
-TEST_CASE("searches of a kd-tree over points find what looking at every point finds, ties by index") {
-    for (const NastyPoints& set : nasty_points(static_cast<uint32_t>(effort(600, 5000)))) {
+TEST_CASE("searches of a kd-tree over points match brute force, with ties by index") {
+    for (const StressPoints& set : stress_points(static_cast<uint32_t>(effort(600, 5000)))) {
         CAPTURE(set.name);
         const PointKdTree tree = build_point_kd_tree(set.points);
         CHECK(find_wrong_search(view_of(tree), set, static_cast<uint32_t>(effort(60, 400))) == "");
@@ -24,7 +24,7 @@ TEST_CASE("a kd-tree over any number of points is left-balanced") {
     Random random(2);
     for (uint32_t n = 0; n < 70; ++n) {
         CAPTURE(n);
-        NastyPoints set = {"few", {}};
+        StressPoints set = {"few", {}};
         for (uint32_t i = 0; i < n; ++i) set.points.push_back(random.point(-1, 1));
         const PointKdTree tree = build_point_kd_tree(set.points);
         REQUIRE(tree.nodes.size() == n);
@@ -40,7 +40,7 @@ TEST_CASE("a kd-tree over any number of points is left-balanced") {
     }
 }
 
-TEST_CASE("a kd-tree over points looks at few of them, and does not depend on the number of threads") {
+TEST_CASE("a kd-tree over points visits few of them and does not depend on the number of threads") {
     Random random(6);
     std::vector<Vec3> points;
     for (uint32_t i = 0; i < effort(100'000, 2'000'000); ++i) points.push_back(random.point(-1, 1));

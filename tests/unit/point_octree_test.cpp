@@ -4,8 +4,8 @@
 #include <doctest/doctest.h>
 
 #include "accel/octree/point_octree.h"
-#include "tests/support/nasty_points.h"
 #include "tests/support/options.h"
+#include "tests/support/stress_points.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -20,8 +20,8 @@ std::vector<Sphere> points_as_spheres(const std::vector<Vec3>& points) {
 
 } // namespace
 
-TEST_CASE("searches of an octree over points find what looking at every point finds, ties by index") {
-    for (const NastyPoints& set : nasty_points(static_cast<uint32_t>(effort(600, 5000)))) {
+TEST_CASE("searches of an octree over points match brute force, with ties by index") {
+    for (const StressPoints& set : stress_points(static_cast<uint32_t>(effort(600, 5000)))) {
         CAPTURE(set.name);
         for (const uint32_t max_leaf : {1u, 4u}) {
             const PointOctree tree = build_point_octree(points_as_spheres(set.points), max_leaf);
@@ -31,8 +31,8 @@ TEST_CASE("searches of an octree over points find what looking at every point fi
     }
 }
 
-TEST_CASE("an octree over spheres finds all that cover a place, and no other, each once") {
-    for (const NastyPoints& set : nasty_points(static_cast<uint32_t>(effort(3000, 20000)))) {
+TEST_CASE("an octree over spheres finds exactly the spheres that cover a point, each once") {
+    for (const StressPoints& set : stress_points(static_cast<uint32_t>(effort(3000, 20000)))) {
         CAPTURE(set.name);
         Random random(12);
         std::vector<Sphere> spheres;
@@ -46,7 +46,7 @@ TEST_CASE("an octree over spheres finds all that cover a place, and no other, ea
         CHECK(tree.spheres.size() == spheres.size());
         CHECK(tree.nodes.size() <= 2 * spheres.size());
         uint64_t covering = 0;
-        for (const Vec3 at : places_to_ask(set, static_cast<uint32_t>(effort(300, 2000)))) {
+        for (const Vec3 at : query_points(set, static_cast<uint32_t>(effort(300, 2000)))) {
             std::vector<NearPoint> want, seen;
             for (uint32_t i = 0; i < spheres.size(); ++i) {
                 const float distance_squared = squared_distance(spheres[i].centre, at);
@@ -62,7 +62,7 @@ TEST_CASE("an octree over spheres finds all that cover a place, and no other, ea
     }
 }
 
-TEST_CASE("a few large spheres do not make the search for small ones slow") {
+TEST_CASE("a few large spheres do not slow down the search for small ones") {
     Random random(6);
     std::vector<Sphere> spheres;
     for (uint32_t i = 0; i < 50'000; ++i) spheres.push_back({random.point(-1, 1), i % 1000 == 0 ? 1.0f : 0.01f});

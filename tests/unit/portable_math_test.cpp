@@ -137,7 +137,7 @@ TEST_CASE("elementary functions keep their stated error bounds") {
     }
 }
 
-TEST_CASE("elementary functions are right at structured inputs") {
+TEST_CASE("elementary functions are correct at structured inputs") {
     std::vector<uint32_t> inputs = {bits_of(0x1.f37f4ap95f)}; // the float nearest to a multiple of pi/2
     for (uint32_t exponent = 0; exponent < 256; exponent++) {
         for (const uint32_t mantissa :
@@ -178,7 +178,7 @@ TEST_CASE("pow and atan2 treat zeros, infinities, integers and NaN as C does") {
     }
 }
 
-TEST_CASE("pow keeps its bound where the result neither overflows nor vanishes, atan2 at every angle") {
+TEST_CASE("pow keeps its error bound where the result neither overflows nor vanishes, and atan2 at every angle") {
     constexpr uint32_t kChunks = 256;
     double pow_errors[kChunks] = {}, atan2_errors[kChunks] = {};
     const auto chunk_size = static_cast<uint32_t>(test::effort(2000, 1u << 20));

@@ -79,7 +79,7 @@ using Numbers = std::vector<uint32_t>;
 
 } // namespace
 
-TEST_CASE("contents of a node move with it, and only they are reported as moved") {
+TEST_CASE("contents of a node move with it, and only these are reported as moved") {
     PosedScene posed = pose(make_scene());
     const SceneUpdate update = posed.set_time(1.5);
     CHECK(posed.scene().instances[1].world_from_local.translation == Vec3{1.5f, 0, 0});
@@ -100,7 +100,7 @@ TEST_CASE("a time that is not finite is refused") {
     }
 }
 
-TEST_CASE("a place within a node is kept as the node moves") {
+TEST_CASE("a position within a node is kept as the node moves") {
     Scene scene = make_scene();
     scene.instances[1].node_from_local = make_translation({0, 5, 0});
     scene.instances[1].world_from_local = make_translation({0, 5, 0});
@@ -109,7 +109,7 @@ TEST_CASE("a place within a node is kept as the node moves") {
     CHECK(posed.scene().instances[1].world_from_local.translation == Vec3{2, 5, 0});
 }
 
-TEST_CASE("the later of two animations of one part applies") {
+TEST_CASE("the later of two animations of one property applies") {
     Scene scene = make_scene();
     scene.animations.push_back(
         {.name = "", .origin = "", .channels = {channel(0, AnimatedPart::Translation, {0, 2}, {0, 0, 0, 0, 0, 6})}});
@@ -152,7 +152,7 @@ TEST_CASE("an instance hidden by a scale of 0 at rest is kept only if it moves")
     }
 }
 
-TEST_CASE("a scene of which all is hidden at rest can be looked at") {
+TEST_CASE("a scene in which all instances are hidden at rest can be rendered") {
     Scene scene = make_scene();
     scene.instances.erase(scene.instances.begin());
     scene.instances[0].world_from_local = make_scale({0, 0, 0});
@@ -173,11 +173,11 @@ TEST_CASE("positions beyond the limit are refused, at rest and at later times") 
     Scene scene = make_scene();
     scene.animations[0].channels[0].values[3] = 1e13f;
     PosedScene posed = pose(std::move(scene));
-    CHECK_THROWS_WITH_AS(posed.set_time(4), doctest::Contains("further out than 2^40 metres at 4 s"), Error);
+    CHECK_THROWS_WITH_AS(posed.set_time(4), doctest::Contains("beyond 2^40 metres at 4 s"), Error);
     CHECK(posed.set_time(0).moved_instances == Numbers{1});
 }
 
-TEST_CASE("cameras and lights go with their nodes; one that is squashed stands at rest, or gives no light") {
+TEST_CASE("cameras and lights move with their nodes; a singular camera keeps its rest pose, a singular light is dark") {
     Scene scene = make_scene();
     scene.animations[0].channels.push_back(channel(0, AnimatedPart::Scale, {0, 8, 9}, {1, 1, 1, 1, 1, 1, 0, 0, 0}));
     scene.cameras.push_back({.name = "eye", .node = 1});
@@ -197,7 +197,7 @@ TEST_CASE("cameras and lights go with their nodes; one that is squashed stands a
     CHECK(is_finite(posed.scene().lights[0].direction));
 }
 
-TEST_CASE("a light's range and cone and an orthographic view change over time, within what they may be") {
+TEST_CASE("a light's range and cone and an orthographic view change over time within their limits") {
     Scene scene = make_scene();
     scene.cameras.push_back({.name = "plan", .projection = Projection::Orthographic});
     scene.lights.push_back({.name = "lamp", .kind = LightKind::Spot, .direction = {0, 0, -1}});
@@ -221,7 +221,7 @@ TEST_CASE("a light's range and cone and an orthographic view change over time, w
     CHECK_NOTHROW(validate(now, "posed", messages));
 }
 
-TEST_CASE("a skin's vertices go where its joints take them, normals and tangents with them") {
+TEST_CASE("a skin's vertices follow its joints, with normals and tangents") {
     Scene scene = make_scene();
     Mesh& mesh = scene.meshes[0];
     mesh.tangents = {{1, 0, 0, -1}, {1, 0, 0, -1}, {1, 0, 0, -1}};
@@ -233,7 +233,7 @@ TEST_CASE("a skin's vertices go where its joints take them, normals and tangents
     scene.animations[0].channels = {channel(0, AnimatedPart::Rotation, {0, 1}, {0, 0, 0, 1, 0, root, 0, root})};
     shape_mesh(shape, {},
                joint_transforms(scene.skins[0],
-                                world_from_nodes(places_of(scene.nodes, parents_first(scene.nodes)), {0, 0, 0})),
+                                world_from_nodes(transforms_of(scene.nodes, parents_first(scene.nodes)), {0, 0, 0})),
                mesh);
     CHECK(close(mesh.positions[0], {-1, 0, 0}));
     PosedScene posed = pose(std::move(scene));
@@ -251,7 +251,7 @@ TEST_CASE("a skin's vertices go where its joints take them, normals and tangents
     CHECK(turned.positions[0] == Vec3{-1, 0, 0});
 }
 
-TEST_CASE("normals stay across their surface where a joint squeezes or mirrors it, tangents and bitangents along") {
+TEST_CASE("where a joint squeezes or mirrors, normals stay perpendicular and tangents parallel to the surface") {
     Scene scene = make_scene();
     Mesh& mesh = scene.meshes[0];
     mesh.normals.assign(3, normalize(Vec3{1, 1, 0}));
@@ -273,7 +273,7 @@ TEST_CASE("normals stay across their surface where a joint squeezes or mirrors i
     CHECK(now.tangents[0].w == 1);
 }
 
-TEST_CASE("joints that mirror turn the triangles over, so that their fronts stay") {
+TEST_CASE("joints that mirror reverse the winding, so that fronts stay fronts") {
     Scene scene = make_scene();
     hang_on_first_node(scene);
     scene.animations[0].channels = {channel(0, AnimatedPart::Scale, {0, 1, 2}, {1, 1, 1, 0, 0, 0, -1, 1, 1})};
@@ -289,7 +289,7 @@ TEST_CASE("joints that mirror turn the triangles over, so that their fronts stay
     CHECK(posed.scene().meshes[0].indices == Numbers{0, 1, 2});
 }
 
-TEST_CASE("morph targets are added by their weights at the time, and unit normals stay unit") {
+TEST_CASE("morph targets are added by their weights at a time, and normals stay unit") {
     Scene scene = make_scene();
     const Mesh& mesh = scene.meshes[0];
     scene.nodes[1].morph_weights = {0, 0};
@@ -331,7 +331,7 @@ TEST_CASE("Khronos: the skin of SimpleSkin bends its upper half to both sides") 
     CHECK(mesh.positions[8].x > 0.9f);
 }
 
-TEST_CASE("Khronos: the cubes of InterpolationTest stand where each interpolation puts them") {
+TEST_CASE("Khronos: the cubes of InterpolationTest follow their interpolations") {
     const auto path = test::test_scene("gltf/InterpolationTest/InterpolationTest.glb");
     if (!path) return;
     Messages messages;

@@ -43,12 +43,12 @@ std::size_t bytes_of(const Scene& scene) {
 
 } // namespace
 
-TEST_CASE("a scene takes the bytes that are said beforehand") {
+TEST_CASE("memory of a scene equals its prediction") {
     CHECK(bytes_of(test::make_mixed_scene()) > 50'000);
     CHECK(bytes_of(test::make_furnace_scene(0.5f)) > 5'000);
 }
 
-TEST_CASE("each light of a scene counts in the bytes that it will take") {
+TEST_CASE("each light of a scene counts in its predicted memory") {
     constexpr std::size_t kCount = 64;
     Scene scene;
     scene.meshes.push_back(make_triangle());
@@ -67,14 +67,14 @@ TEST_CASE("each light of a scene counts in the bytes that it will take") {
     CHECK(bytes_of(glowing) >= dark + kCount * (sizeof(Emitter) + sizeof(EmissiveTriangle) + 16));
 }
 
-TEST_CASE("queues of paths have at most their bytes, and nearly those, whatever a path has beside") {
+TEST_CASE("queues of paths use nearly all of their memory limit, whatever else a path stores") {
     constexpr std::size_t kMost = PathIntegrator::kMaxQueueBytes;
     for (uint32_t bits = 0; bits < 16; ++bits) {
         CAPTURE(bits);
         const PathParts parts = {.has_times = (bits & 1) != 0,
                                  .has_layers = (bits & 2) != 0,
                                  .splits_light = (bits & 4) != 0,
-                                 .tells_bounce = (bits & 8) != 0};
+                                 .records_bounce = (bits & 8) != 0};
         for (const bool on_cuda : {false, true}) {
             const auto bytes = [&](uint32_t width, uint32_t height, uint32_t batch) {
                 Queue queue = Queue::make_dry_run(on_cuda);
@@ -85,7 +85,7 @@ TEST_CASE("queues of paths have at most their bytes, and nearly those, whatever 
                               .height = height,
                               .has_times = parts.has_times,
                               .splits_light = parts.splits_light,
-                              .tells_bounce = parts.tells_bounce});
+                              .records_bounce = parts.records_bounce});
                 return queue.peak_bytes();
             };
             CHECK(bytes(1 << 16, 1 << 16, 1u << 31) <= kMost);
@@ -98,7 +98,7 @@ TEST_CASE("queues of paths have at most their bytes, and nearly those, whatever 
     }
 }
 
-TEST_CASE("every integrator predicts its memory for a picture that no machine holds, and the host gives none of it") {
+TEST_CASE("every integrator predicts its memory for an impossibly large picture without allocating it") {
     const WorkSize huge = {.width = 1 << 16, .height = 1 << 15, .samples = 4, .triangles = 1'000'000};
     const auto peak_kib = [] {
         rusage usage = {};

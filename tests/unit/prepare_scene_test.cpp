@@ -37,7 +37,7 @@ Scene torus_at(Vec3 at, bool by_vertices = true) {
 
 } // namespace
 
-TEST_CASE("rough glass whose index is rendered as another is a warning") {
+TEST_CASE("rough glass whose index is out of range causes a warning") {
     CHECK(warnings_for_glass(1.05f, 0.3f) == 1);
     CHECK(warnings_for_glass(4, 0.3f) == 1);
     CHECK(warnings_for_glass(1.5f, 0.3f) == 0);
@@ -45,8 +45,7 @@ TEST_CASE("rough glass whose index is rendered as another is a warning") {
     CHECK(warnings_for_glass(1.05f, 0) == 0); // smooth glass takes any
 }
 
-TEST_CASE(
-    "the world's centre is the middle of the scene on a grid of the scene's size, and 0 for a scene about there") {
+TEST_CASE("the world's centre is the middle of the scene on a grid of the scene's size, and 0 for a scene around 0") {
     CHECK(world_centre(Scene{}) == Vec3{0, 0, 0});
     for (const bool by_vertices : {true, false}) { // 3 m wide: a grid of 4 m
         CHECK(world_centre(torus_at({0, 0, 0}, by_vertices)) == Vec3{0, 0, 0});
@@ -61,7 +60,7 @@ TEST_CASE(
     CHECK(world_centre(two) == Vec3{4096, 0, 0}); // the middle is at 3150 m, the grid 2048 m
 }
 
-TEST_CASE("trees and lights lie in the moved world, and in the file's where rays are given in its coordinates") {
+TEST_CASE("trees and lights are in the translated world, or in the file's if rays use its coordinates") {
     Scene scene = torus_at({1000, 0, 0});
     scene.lights.push_back({.name = "lamp", .position = {1001, 2, 3}});
     scene.materials[0].emission = {1, 1, 1};
@@ -77,7 +76,7 @@ TEST_CASE("trees and lights lie in the moved world, and in the file's where rays
     CHECK(kept.lights.punctual[0].position == Vec3{1001, 2, 3});
 }
 
-TEST_CASE("the cache tells the tree of a moved world from that of the file's") {
+TEST_CASE("the cache distinguishes the tree of a translated world from that of the file's") {
     const Scene scene = torus_at({1000, 0, 0});
     PrepareOptions options;
     options.bvh_cache = test::scratch_folder();

@@ -10,7 +10,7 @@
 
 using namespace pertev;
 
-TEST_CASE("a queue moves while it has given no memory; after that its buffers hold it where it is") {
+TEST_CASE("a queue can be moved until it has allocated memory") {
     Queue queue = Queue::make_cpu();
     Queue moved(std::move(queue));
     {
@@ -19,7 +19,7 @@ TEST_CASE("a queue moves while it has given no memory; after that its buffers ho
     }
 }
 
-TEST_CASE("a dry run counts the bytes that a device gives, and gives none") {
+TEST_CASE("a dry run counts the bytes of a device and allocates none") {
     const auto take = [](Queue& queue) {
         Buffer<Float4> grown(queue, 10, "numbers");
         grown.grow(queue, 5, "fewer");
@@ -46,7 +46,7 @@ TEST_CASE("a dry run counts the bytes that a device gives, and gives none") {
     }
 }
 
-TEST_CASE("streams go on after what was given before the fork, and work behind the join comes after all of them") {
+TEST_CASE("streams run after the work before the fork, and work after the join runs after all streams") {
     Queue queue = test::requested_queue();
     constexpr int kStreams = Queue::kMaxStreams;
     constexpr std::size_t kMany = 1 << 22; // a fill that takes longer than it takes to give the next
@@ -70,7 +70,7 @@ TEST_CASE("streams go on after what was given before the fork, and work behind t
     }
 }
 
-TEST_CASE("an exception on a stream leaves the queue with one stream again") {
+TEST_CASE("an exception on a stream leaves the queue with a single stream") {
     Queue queue = test::requested_queue();
     Buffer<unsigned char> bytes(queue, 100, "bytes");
     const auto fail_on_a_stream = [&] {
@@ -85,7 +85,7 @@ TEST_CASE("an exception on a stream leaves the queue with one stream again") {
     CHECK(bytes.download()[99] == 3); // after what the stream was given
 }
 
-TEST_CASE("a number is read back as it was when that was asked for, whatever comes later") {
+TEST_CASE("a number is read back as it was when requested, whatever follows") {
     Queue queue = test::requested_queue();
     Buffer<uint32_t> number(queue, 1, "number");
     Readback<uint32_t> readback(queue);

@@ -55,12 +55,12 @@ std::string why_refused(const std::filesystem::path& path, const Scene& scene) {
 
 } // namespace
 
-TEST_CASE("patches cover their triangles, no edge is longer than asked for, and each place finds its own") {
+TEST_CASE("patches cover their triangles with edges within the requested length, and each point finds its patch") {
     test::PatchedScene patched(lit_box(), 0.8f);
     double area = 0;
     for (const Patch& patch : patched.tree.patches) {
         if (patch.side() == 0 && patch.instance < 6) area += static_cast<double>(patch.area);
-        const PlacedTriangle triangle = place_on(patched.solved.view(), patch, patch.corners.middle());
+        const WorldTriangle triangle = place_on(patched.solved.view(), patch, patch.corners.middle());
         for (int k = 0; k < 3; ++k) {
             const Vec2 a = patch.corners.at[k], b = patch.corners.at[(k + 1) % 3];
             CHECK(length(triangle.at(a.x, a.y) - triangle.at(b.x, b.y)) <= 0.8f);
@@ -68,22 +68,22 @@ TEST_CASE("patches cover their triangles, no edge is longer than asked for, and 
     }
     CHECK(area == doctest::Approx(24).epsilon(1e-5));
     for (uint32_t i = 0; i < 40; i += 7) patched.tree.split(patched.solved.view(), i);
-    std::size_t looked_up = 0;
+    std::size_t lookups = 0;
     for (uint32_t i = 0; i < patched.tree.patches.size(); ++i) {
         const Patch& patch = patched.tree.patches[i];
         for (const Vec2 b : {Vec2{0.2f, 0.3f}, Vec2{0.6f, 0.3f}, Vec2{0.1f, 0.8f}}) {
-            const Vec2 at = patch.corners.place(b);
+            const Vec2 at = patch.corners.uv_at(b);
             Vec3 weights = {1.0f - at.x - at.y, at.x, at.y};
             CHECK(patched.tree.view().find(patch.face, weights) == (kIsPatch | i));
             CHECK(weights.y == doctest::Approx(b.x).epsilon(1e-4));
             CHECK(weights.z == doctest::Approx(b.y).epsilon(1e-4));
-            ++looked_up;
+            ++lookups;
         }
     }
-    CHECK(looked_up == 3 * patched.tree.patches.size());
+    CHECK(lookups == 3 * patched.tree.patches.size());
 }
 
-TEST_CASE("light that is shown has no gap where a patch meets smaller ones") {
+TEST_CASE("displayed light has no gap where a patch meets smaller ones") {
     Scene scene;
     test::add(scene, test::floor_at(0, 1), test::white(0.5f));
     test::PatchedScene patched(std::move(scene), 1.5f); // four patches a triangle
@@ -120,7 +120,7 @@ TEST_CASE("light that is shown has no gap where a patch meets smaller ones") {
                           patched.tree.patches[5].corners.middle().y) == irradiance[5] + grey(7));
 }
 
-TEST_CASE("a solution comes back from its file, and another scene's or a damaged one is refused") {
+TEST_CASE("a solution is read back from its file, and another scene's or a damaged one is refused") {
     const std::filesystem::path path = test::scratch_folder() / "solution";
     const Scene scene = lit_box();
     const RadiositySolution solution = solution_of(scene);
@@ -228,7 +228,7 @@ TEST_CASE("a solution is rendered only with the light it was solved for") {
     CHECK(why_refused(path, seen) == "no error");
 }
 
-TEST_CASE("a solution's file of the version before is read, with a warning that its light is not known") {
+TEST_CASE("a solution's file of the previous version is read with a warning that its light is unknown") {
     const std::filesystem::path path = test::scratch_folder() / "old";
     Scene scene = lit_box();
     const RadiositySolution solution = solution_of(scene);
@@ -244,7 +244,7 @@ TEST_CASE("a solution's file of the version before is read, with a warning that 
     CHECK_FALSE(back.light.has_value());
     REQUIRE(messages.all().size() == 1);
     CHECK(messages.all()[0].is_warning);
-    CHECK(messages.all()[0].text.find("by an earlier version") != std::string::npos);
+    CHECK(messages.all()[0].text.find("an earlier version") != std::string::npos);
     scene.meshes[0].positions[1].x += 1;
     CHECK(why_refused(path, scene).find("of another scene") != std::string::npos);
     bytes[15] = std::byte('4');
@@ -252,7 +252,7 @@ TEST_CASE("a solution's file of the version before is read, with a warning that 
     CHECK(why_refused(path, scene).find("no radiosity solution") != std::string::npos);
 }
 
-TEST_CASE("an interrupted solution records what it holds and is rendered with a warning") {
+TEST_CASE("an interrupted solution records its state and is rendered with a warning") {
     const std::filesystem::path path = test::scratch_folder() / "ended";
     Messages messages;
     /// Ended at the `heard`th time that it tells of `during`.
@@ -268,14 +268,13 @@ TEST_CASE("an interrupted solution records what it holds and is rendered with a 
             prepared, settings, [&](const char* what, double) { return what != during || ++count < heard; });
         CHECK(solved.stats.was_interrupted);
         write_solution(path, solved.solution);
-        Messages said;
-        const RadiositySolution back = read_solution(path, scene, said);
+        Messages messages;
+        const RadiositySolution back = read_solution(path, scene, messages);
         CHECK(back.hash() == solved.solution.hash());
         CHECK(back.extent == solved.solution.extent);
-        REQUIRE(said.all().size() == 1);
-        CHECK(said.all()[0].is_warning);
-        CHECK(said.all()[0].text.find("was ended while it was solved, and holds " + describe(back.extent)) !=
-              std::string::npos);
+        REQUIRE(messages.all().size() == 1);
+        CHECK(messages.all()[0].is_warning);
+        CHECK(messages.all()[0].text.find("it is unfinished and holds " + describe(back.extent)) != std::string::npos);
         return back;
     };
     const RadiositySolution begun = ended(RadiositySolver::Hierarchical, "direct light", 1);
@@ -309,10 +308,10 @@ TEST_CASE("an interrupted solution records what it holds and is rendered with a 
     }
     whole.extent.left = 2; // no share
     write_solution(path, whole);
-    CHECK(why_refused(path, scene).find("was damaged") != std::string::npos);
+    CHECK(why_refused(path, scene).find("is damaged") != std::string::npos);
 }
 
-TEST_CASE("where links are ended while patches are divided, the parts keep the light of the whole") {
+TEST_CASE("if links are interrupted while patches are divided, the parts keep the light of the whole") {
     const Scene scene = lit_box(0.02f);
     Messages messages;
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
@@ -337,7 +336,7 @@ TEST_CASE("where links are ended while patches are divided, the parts keep the l
     CHECK(dim_share(solved.solution) < 0.5); // 0.82 for black parts
 }
 
-TEST_CASE("a solution's bytes do not depend on threads, and follow its settings") {
+TEST_CASE("a solution's bytes depend on its settings and not on threads") {
     const Scene scene = lit_box();
     for (const auto& [method, solver] : {std::pair(FormFactors::Rays, RadiositySolver::Southwell),
                                          std::pair(FormFactors::Hemicube, RadiositySolver::GaussSeidel),
@@ -380,7 +379,7 @@ TEST_CASE("a scene that cannot be solved is refused") {
     CHECK(error->code() == ErrorCode::Interrupted);
 }
 
-TEST_CASE("solving stops promptly when asked, however long a row takes") {
+TEST_CASE("solving stops promptly on request, however long a row takes") {
     Messages messages;
     const Scene scene = lit_box();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);

@@ -46,7 +46,7 @@ double difference(const SolvedSystem& a, const SolvedSystem& b) {
 
 } // namespace
 
-TEST_CASE("all solvers come to the light that is known inside a sphere") {
+TEST_CASE("all solvers converge to the known light inside a sphere") {
     const RadiositySystem system = room_of(40, 0.8f, 2);
     const SolvedSystem southwell = solve_by_southwell(system, 1e-7, 0);
     const SolvedSystem gauss_seidel = solve_by_gauss_seidel(system, 1e-8);
@@ -68,7 +68,7 @@ TEST_CASE("all solvers come to the light that is known inside a sphere") {
     }
 }
 
-TEST_CASE("an elimination that is ended leaves direct light: of lamps and of what is no patch, by way of no surface") {
+TEST_CASE("an interrupted elimination leaves the direct light of emitters and of lights without patches") {
     const RadiositySystem system = room_of(40, 0.8f, 2);
     double sent = 0, area = 0;
     for (const SystemPatch& patch : system.patches) {
@@ -88,7 +88,7 @@ TEST_CASE("an elimination that is ended leaves direct light: of lamps and of wha
     }
 }
 
-TEST_CASE("Southwell sends from the patch with most unsent light, the first of several") {
+TEST_CASE("Southwell shoots from the patch with the most unshot light, the first of several") {
     RadiositySystem system;
     // Four patches in a row; each sends to the next one alone. Nothing is reflected, so that each sends what it has.
     for (const float exitance : {1.0f, 3.0f, 3.0f, 2.0f}) system.patches.push_back({1, {}, grey(exitance)});
@@ -108,7 +108,7 @@ TEST_CASE("Southwell sends from the patch with most unsent light, the first of s
     CHECK(received(1) == std::vector<float>{0, 1, 0, 0});
 }
 
-TEST_CASE("unsent light is shown as ambient light, and all of it is there from the start") {
+TEST_CASE("unshot light is displayed as ambient light, so that all light is present from the start") {
     const RadiositySystem system = room_of(40, 0.8f, 2);
     const SolvedSystem whole = solve_by_matrix(system);
     double before = 1e30;
@@ -124,7 +124,7 @@ TEST_CASE("unsent light is shown as ambient light, and all of it is there from t
     CHECK(max_component(solve_by_gauss_seidel(system, 1e-6).ambient) == 0);
 }
 
-TEST_CASE("no light is lost or made: what patches absorb is what is emitted") {
+TEST_CASE("no light is lost or added: patches absorb what is emitted") {
     const RadiositySystem system = room_of(60, 0.9f, 3);
     const SolvedSystem solved = solve_by_gauss_seidel(system, 1e-9);
     double emitted = 0, absorbed = 0;
@@ -137,7 +137,7 @@ TEST_CASE("no light is lost or made: what patches absorb is what is emitted") {
     CHECK(absorbed == doctest::Approx(emitted).epsilon(1e-5));
 }
 
-TEST_CASE("a solution ends when it is asked to, or is close enough") {
+TEST_CASE("a solution ends on request or within its tolerance") {
     const RadiositySystem system = room_of(300, 0.95f, 1);
     int requested = 0;
     const auto end_after_three = [&](double) { return ++requested < 3; };
@@ -152,7 +152,7 @@ TEST_CASE("a solution ends when it is asked to, or is close enough") {
     CHECK(test::is_about(error, ErrorCode::OverLimit, "solver", "matrix"));
 }
 
-TEST_CASE("what next to nothing absorbs ends after a stated number of steps, and what is left is said") {
+TEST_CASE("an almost lossless scene ends after a limited number of steps and reports the rest") {
     const RadiositySystem system = room_of(12, 0.999995f, 2);
     const SolvedSystem southwell = solve_by_southwell(system, 1e-6, 0), few = solve_by_southwell(system, 1e-6, 10);
     CHECK(southwell.steps == kMaxSweeps * 12);
@@ -166,15 +166,15 @@ TEST_CASE("what next to nothing absorbs ends after a stated number of steps, and
     CHECK_FALSE(solve_by_southwell(room_of(12, 0.9f, 2), 1e-6, 0).reached_limit);
 }
 
-TEST_CASE("light that nothing ever absorbs is refused, and no other") {
+TEST_CASE("only light that nothing absorbs is refused") {
     const auto why = [](const RadiositySystem& system) {
         return test::bad_input_message([&] { check_light_ends(system); });
     };
     const RadiositySystem white = room_of(30, 1, 2);
-    CHECK(why(white).find("light has no end: ") != std::string::npos); // red is reflected by a third of them alone
+    CHECK(why(white).find("light never ends: ") != std::string::npos); // red is reflected by a third of them alone
     RadiositySystem system = white;
     for (SystemPatch& patch : system.patches) patch.reflectance = grey(1);
-    CHECK(why(system).find("light has no end: 30 of 30 patches") != std::string::npos);
+    CHECK(why(system).find("light never ends: 30 of 30 patches") != std::string::npos);
     RadiositySystem dark = system;
     for (SystemPatch& patch : dark.patches) patch.exitance = {};
     for (Rgb& direct : dark.direct) direct = {};
@@ -192,10 +192,10 @@ TEST_CASE("light that nothing ever absorbs is refused, and no other") {
     rooms.rows = {{{1, 1.0f}}, {{0, 1.0f}}, {{3, 1.0f}}, {{2, 1.0f}}};
     CHECK(why(rooms) == "no error");
     rooms.direct[1] = grey(1);
-    CHECK(why(rooms).find("light has no end: 2 of 4 patches") != std::string::npos);
+    CHECK(why(rooms).find("light never ends: 2 of 4 patches") != std::string::npos);
 }
 
-TEST_CASE("ambient light is that of the patches that see others: what faces nothing takes no part in it") {
+TEST_CASE("ambient light is that of patches that see others, and patches that face nothing do not count") {
     const RadiositySystem inside = room_of(40, 0.8f, 2);
     RadiositySystem with_outside = inside;
     for (int i = 0; i < 40; ++i) {

@@ -33,17 +33,17 @@ Pinhole pinhole(const Camera& camera, uint32_t width, uint32_t height) {
 }
 
 /// How often each pixel's sample is drawn by triangles of `mesh`.
-std::vector<int> times_drawn(const Mesh& mesh, const Pinhole& camera, SamplePlace place) {
+std::vector<int> times_drawn(const Mesh& mesh, const Pinhole& camera, SamplePosition position) {
     std::vector<int> times(camera.width * camera.height);
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
         PinholePoint corners[3];
         for (std::size_t k = 0; k < 3; ++k) corners[k] = camera.see(to_double(mesh.positions[mesh.indices[i + k]]));
         ProjectedTriangle t;
         if (!project_triangle(camera, corners, t)) continue;
-        const PixelSpan rows = rows_of(t, place, camera.height);
+        const PixelSpan rows = rows_of(t, position, camera.height);
         for (int32_t y = rows.first; y <= rows.last; ++y) {
             for (int k = 1; k + 1 < t.count; ++k) {
-                const PixelSpan span = span_of(t, k, y, place, camera.width);
+                const PixelSpan span = span_of(t, k, y, position, camera.width);
                 for (int32_t x = span.first; x <= span.last; ++x) {
                     ++times[static_cast<std::size_t>(y) * camera.width + static_cast<std::size_t>(x)];
                 }
@@ -95,14 +95,14 @@ Vec3 pixel_of(const Image& image, uint32_t x, uint32_t y) {
 
 } // namespace
 
-TEST_CASE("triangles that share edges draw each sample once") {
+TEST_CASE("triangles with shared edges cover each sample once") {
     for (const uint32_t n : {3u, 40u, 300u}) { // cells of many pixels, and of less than one
         const Mesh grid = crooked_grid(n, 2, n);
         // Straight on; askew; through the picture's edges, the eye's plane and behind it.
         for (const Camera& camera : {camera_at({0, 0, 3}, {0, 0, 0}), camera_at({0.3f, 0.2f, 0.4f}, {0.5f, 0.7f, 0}),
                                      camera_at({0.1f, 0.2f, 0.05f}, {0.1f, 1, 0}, {0, 0, 1})}) {
             const Pinhole seen = pinhole(camera, 211, 173);
-            const SamplePlace middle = {kSubpixels / 2, kSubpixels / 2};
+            const SamplePosition middle = {kSubpixels / 2, kSubpixels / 2};
             const std::vector<int> times = times_drawn(grid, seen, middle);
             const std::vector<int> outline = times_drawn(test::sheet({0, 0, 0}, {2, 0, 0}, {0, 2, 0}), seen, middle);
             CHECK(times == outline);
@@ -128,7 +128,7 @@ TEST_CASE("a sample on an edge belongs to the triangle to its right or below it"
     CHECK(times == expected);
 }
 
-TEST_CASE("coverage and depth are those of rays through a million pixels") {
+TEST_CASE("coverage and depth equal those of rays through a million pixels") {
     const Scene scene = test::make_mixed_scene();
     Queue queue = test::requested_queue();
     RenderSettings settings = raster_settings(1000, 1000);
@@ -160,7 +160,7 @@ TEST_CASE("coverage and depth are those of rays through a million pixels") {
     CHECK(worst < 1e-4);
 }
 
-TEST_CASE("light is evaluated in pixels, at corners or once a triangle, and is that of the formula") {
+TEST_CASE("light is evaluated per pixel, corner or triangle and matches the formula") {
     Scene scene;
     test::add(scene, test::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), test::white(0.5f)); // faces +z
     scene.lights.push_back(test::point_light({0, 0, 1}, {3, 2, 1}));
@@ -171,7 +171,7 @@ TEST_CASE("light is evaluated in pixels, at corners or once a triangle, and is t
     camera.projection = Projection::Orthographic;
     camera.ortho_height = 2;
     const auto middle = [&](RasterShading shading) {
-        settings.look.shading = shading;
+        settings.display.shading = shading;
         return pixel_of(test::render(queue, scene, camera, settings).picture, 32, 32);
     };
     // albedo / pi I cos / d^2 + albedo ambient: at the middle, at the corners (d^2 = 3) and at a triangle's middle.
@@ -191,7 +191,7 @@ TEST_CASE("light is evaluated in pixels, at corners or once a triangle, and is t
     check(middle(RasterShading::Phong), {0, 0, 0});
 }
 
-TEST_CASE("without shadows raster shades as cast does, by all lobes, textures and interpolated normals") {
+TEST_CASE("without shadows raster shades as cast does, with all lobes, textures and interpolated normals") {
     Scene scene = test::make_furnace_scene(0.7f); // a smooth sphere
     scene.environment.reset();
     scene.materials.front().kind = MaterialKind::MetallicRoughness;
@@ -215,7 +215,7 @@ TEST_CASE("without shadows raster shades as cast does, by all lobes, textures an
     CHECK(alike >= lit - lit / 50); // but for samples at edges, which have another triangle
 }
 
-TEST_CASE("edges are Bresenham's lines, the nearer one first") {
+TEST_CASE("edges are Bresenham's lines, and the nearer one is visible") {
     Scene scene;
     Mesh triangle; // from (2, 2) to (12, 2) to (2, 6), pixels of a picture 16 wide, and one behind it
     triangle.positions = {{-5.5f, 5.5f, 0}, {4.5f, 5.5f, 0}, {-5.5f, 1.5f, 0}};
@@ -225,7 +225,7 @@ TEST_CASE("edges are Bresenham's lines, the nearer one first") {
     test::add(scene, triangle, {{.base_color = {0, 1, 0}}, "green"});
     Queue queue = test::requested_queue();
     RenderSettings settings = raster_settings(16, 16);
-    settings.look.is_wireframe = true;
+    settings.display.is_wireframe = true;
     settings.ambient = Rgb{0, 0, 0};
     Camera camera = camera_at({0, 0, 2}, {0, 0, 0});
     camera.projection = Projection::Orthographic;
@@ -245,7 +245,8 @@ TEST_CASE("edges are Bresenham's lines, the nearer one first") {
     }
 }
 
-TEST_CASE("samples of a pixel lie in its filter, evenly, the first in the middle; a picture is their mean") {
+TEST_CASE(
+    "samples of a pixel are spread evenly over its filter, the first in the middle, and a picture is their mean") {
     Scene scene;
     test::add(scene, test::sheet({-1, 0, 0}, {1, 0, 0}, {0, 9, 0}), {{.emission = {1, 1, 1}}, "lamp"});
     Queue queue = test::requested_queue();
@@ -262,7 +263,7 @@ TEST_CASE("samples of a pixel lie in its filter, evenly, the first in the middle
     CHECK(covered == doctest::Approx(0.3).epsilon(0.02));
 }
 
-TEST_CASE("raster refuses lenses and scenes that it would render black, and predicts its memory") {
+TEST_CASE("raster refuses lenses and scenes that it would render black, and its memory equals its prediction") {
     Scene scene = test::make_furnace_scene(0.5f);
     Camera camera;
     camera.aperture_radius = 0.1f;
@@ -282,14 +283,14 @@ TEST_CASE("raster refuses lenses and scenes that it would render black, and pred
     CHECK(queue.allocated_bytes() <= predicted + 4096); // the filter's table, the scene's view
 }
 
-TEST_CASE("rasterised pictures do not depend on threads or passes, and layers are those of the first surface") {
+TEST_CASE("rasterised pictures do not depend on threads or passes, and layers describe the first surface") {
     const Scene scene = test::make_mixed_scene(); // cut-outs, blended sheets, hidden backs, instances
     RenderSettings settings = raster_settings(67, 45);
     settings.samples = 3;
     settings.aovs = kAovAlbedo | kAovNormal | kAovIds;
     for (const bool wireframe : {false, true}) {
         for (const RasterShading shading : {RasterShading::Flat, RasterShading::Gouraud, RasterShading::Phong}) {
-            settings.look = {shading, wireframe};
+            settings.display = {shading, wireframe};
             settings.pass_samples = 0;
             Queue queue = Queue::make_cpu();
             const RenderResult one = test::render(queue, scene, test::mixed_scene_camera(), settings);

@@ -43,7 +43,7 @@ TEST_CASE("next_float is the neighbour in the direction of the sign") {
     }
 }
 
-TEST_CASE("a moved origin is never on the wrong side, wherever within its error the true point lies") {
+TEST_CASE("an offset origin is never on the wrong side, wherever the true point lies within its error") {
     test::Random random(7);
     double least = 1e30, farthest = 0;
     for (int i = 0; i < 200'000; ++i) {
@@ -75,7 +75,7 @@ TEST_CASE("a moved origin is never on the wrong side, wherever within its error 
     CHECK(farthest > 0.2); // so the bound says something
 }
 
-TEST_CASE("an exact point on an axis-aligned plane still moves, and only along the normal") {
+TEST_CASE("an exact point on an axis-aligned plane is still offset, and only along the normal") {
     const Vec3 up = offset_ray_origin({5, 2, -3}, {0, 1e-6f, 0}, {0, 1, 0}, {0.6f, 0.8f, 0});
     CHECK(up.x == 5);
     CHECK(up.y > 2);
@@ -87,7 +87,7 @@ TEST_CASE("an exact point on an axis-aligned plane still moves, and only along t
     CHECK(offset_ray_origin({1, 2, 3}, {0, 0, 0}, {0, 1, 0}, {0, 1, 0}) == Vec3{1, 2, 3}); // known exactly
 }
 
-TEST_CASE("a place near an edge is moved in, any other is kept to the bit") {
+TEST_CASE("a point near an edge is moved inwards, and any other is kept to the bit") {
     test::Random random(11);
     for (int i = 0; i < 100'000; ++i) {
         const float least = i % 50 == 0 ? 0.25f : std::ldexp(random.unit(), -2 - static_cast<int>(random.below(22)));
@@ -95,7 +95,7 @@ TEST_CASE("a place near an edge is moved in, any other is kept to the bit") {
         if (u + v > 1) u = 1 - u, v = 1 - v;
         if (i % 3 == 0) u = i % 2 == 0 ? 0.0f : least * random.unit();
         if (i % 5 == 0) v = 1 - u; // the third weight is 0, or a unit off
-        const PlaceOnTriangle place = keep_off_edges(u, v, least);
+        const PointOnTriangle place = keep_off_edges(u, v, least);
         const float w = 1 - place.u - place.v;
         CHECK(min(w, min(place.u, place.v)) >= least / 1.5f - 0x1p-22f);
         CHECK(abs(place.u - u) <= 2 * least + 0x1p-22f);

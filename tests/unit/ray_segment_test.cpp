@@ -63,7 +63,7 @@ float power(int exponent) { return static_cast<float>(std::ldexp(1.0, exponent))
 
 } // namespace
 
-TEST_CASE("a box that holds a hit is entered, however small, and however often the segment was shortened") {
+TEST_CASE("a box that contains a hit is entered, however small, and however often the segment was shortened") {
     Random random(7);
     uint64_t missed = 0;
     for (uint32_t i = 0; i < static_cast<uint32_t>(effort(40'000, 1'000'000)); ++i) {
@@ -99,7 +99,7 @@ TEST_CASE("a box that holds a hit is entered, however small, and however often t
     CHECK(missed == 0);
 }
 
-TEST_CASE("boxes behind a segment's origin or beyond its end are not entered") {
+TEST_CASE("boxes before a segment's start or beyond its end are not entered") {
     const Ray ray = {{0, 0.25f, -0.5f}, 0, {-2, 0, 0}, kInfinity};
     const auto at = [](float from, float to) { return Bounds3{{-2 * to, -1, -1}, {-2 * from, 1, 1}}; };
     RayOctantBoxes boxes = make_ray_octant_boxes<ExactTests>(ray, 100, 10);
@@ -122,7 +122,7 @@ TEST_CASE("boxes behind a segment's origin or beyond its end are not entered") {
     CHECK(boxes.segment.end == 5);
 }
 
-TEST_CASE("a segment without a limit ends where the ray has left all that there is") {
+TEST_CASE("a segment without a limit ends where the ray has left the scene") {
     const Ray ray = {{3, 0, 0}, 0, {0.5f, -0.25f, 0}, kInfinity};
     const RaySegment segment = make_ray_segment<ExactTests>(ray, 5, kInfinity);
     CHECK(segment.end >= 16);

@@ -67,7 +67,7 @@ Camera looking(Vec3 eye, Vec3 target, float fov_y) {
 }
 
 /// A sphere of radius 1 in an open box; about half of what leaves it is lost.
-Scene make_room() {
+Scene allocate() {
     const TriangleMesh ball = make_sphere(3, {0, 0, 0}, 1);
     Mesh mesh;
     mesh.positions = ball.positions;
@@ -95,7 +95,7 @@ double cosine_to(Vec3 direction, Vec3 normal) { return static_cast<double>(dot(d
 
 } // namespace
 
-TEST_CASE("draws hit the two zeros that were found on the record, and no third") {
+TEST_CASE("samples hit the two zeros found on record and no third one") {
     // Among 8,294,400 rays of seed 22 only number 4,807,597 draws 0 first: the ray whose direction is its normal.
     uint32_t zeros = 0, at = 0;
     for (uint32_t o = 0; o < kRecordRays; ++o) {
@@ -110,7 +110,7 @@ TEST_CASE("draws hit the two zeros that were found on the record, and no third")
     CHECK(second == 0);
 }
 
-TEST_CASE("rays are turned to the axis that they are nearest to, or a little beside it") {
+TEST_CASE("rays are turned to their nearest axis or slightly off it") {
     RaySet from{"some", false, {}};
     from.rays.push_back({{1, 2, 3}, 0.5f, normalize({0.1f, -0.9f, 0.2f}), 7});
     from.rays.push_back({{0, 0, 0}, 0, normalize({-0.5f, -0.4f, 0.3f}), 1});
@@ -130,7 +130,7 @@ TEST_CASE("rays are turned to the axis that they are nearest to, or a little bes
     }
 }
 
-TEST_CASE("the frame of the record is that of its count, and smaller ones are whole tiles of the same shape") {
+TEST_CASE("the frame of the record matches its count, and smaller ones are whole tiles of the same shape") {
     CHECK(record_frame(kRecordRays).width == 1920);
     CHECK(record_frame(kRecordRays).height == 1080);
     for (const uint32_t count : {1u, 100u, 9216u, 100000u, 1000000u, kRecordRays - 1, 0xffffffffu}) {
@@ -143,8 +143,8 @@ TEST_CASE("the frame of the record is that of its count, and smaller ones are wh
     }
 }
 
-TEST_CASE("primary rays come frame after frame, tile after tile, each inside its pixel") {
-    Traced traced(make_room());
+TEST_CASE("primary rays are ordered by frame and tile, each inside its pixel") {
+    Traced traced(allocate());
     const uint32_t width = 64, height = 36, pixels = width * height;
     const std::vector<Ray> rays = make_record_ray_sets(traced.job(width, height), 4 * pixels)[0].rays;
     REQUIRE(rays.size() == 4 * pixels);
@@ -173,16 +173,16 @@ TEST_CASE("primary rays come frame after frame, tile after tile, each inside its
     CHECK(places.size() > rays.size() - 8); // four frames are four different ones
 }
 
-TEST_CASE("a count that is no whole frame is the start of one") {
-    Traced traced(make_room());
+TEST_CASE("a count below a whole frame is the start of one") {
+    Traced traced(allocate());
     const auto whole = make_record_ray_sets(traced.job(64, 36), 4 * 64 * 36);
     const auto part = make_record_ray_sets(traced.job(64, 36), 1001);
     for (std::size_t k = 0; k < part.size(); ++k) CHECK(part[k].rays.size() == 1001);
     CHECK(std::memcmp(part[0].rays.data(), whole[0].rays.data(), 1001 * sizeof(Ray)) == 0);
 }
 
-TEST_CASE("secondary rays start at the hits before them, in their order, and go where their numbers say") {
-    Traced traced(make_room());
+TEST_CASE("secondary rays start at the previous hits in order, in the directions of their numbers") {
+    Traced traced(allocate());
     const uint32_t count = 4 * 64 * 36;
     const auto sets = make_record_ray_sets(traced.job(64, 36), count);
     REQUIRE(sets.size() == 5);
@@ -233,8 +233,8 @@ TEST_CASE("secondary rays start at the hits before them, in their order, and go 
     CHECK(refilled == 2); // diffuse2 and diffuse3: the box is open, so they need second parents
 }
 
-TEST_CASE("second parents continue a set with other numbers") {
-    Traced traced(make_room());
+TEST_CASE("a second use of parents continues a set with other numbers") {
+    Traced traced(allocate());
     const uint32_t count = 4 * 64 * 36;
     const auto sets = make_record_ray_sets(traced.job(64, 36), count);
     const std::vector<RayHit> hits = traced.hits(sets[2]);
@@ -251,7 +251,7 @@ TEST_CASE("second parents continue a set with other numbers") {
 }
 
 TEST_CASE("ray sets are the same for any number of threads") {
-    Traced traced(make_room());
+    Traced traced(allocate());
     const uint32_t count = 40000; // more than two of the chunks that are counted at once
     std::vector<RaySet> alone;
     {
@@ -266,7 +266,7 @@ TEST_CASE("ray sets are the same for any number of threads") {
 
 TEST_CASE("ray sets, hits and work are the same on the GPU") {
     // On the CPU twice where no GPU was asked for.
-    Traced here(make_room()), there(make_room(), requested_queue());
+    Traced here(allocate()), there(allocate(), requested_queue());
     const uint32_t count = cuda_requested() ? 1000000 : 20000;
     const auto sets = make_record_ray_sets(here.job(256, 144), count);
     CHECK(same_bits(sets, make_record_ray_sets(there.job(256, 144), count)));
@@ -285,8 +285,8 @@ TEST_CASE("ray sets, hits and work are the same on the GPU") {
     }
 }
 
-TEST_CASE("in a frame each bounce starts at the hits of the one before and at nothing else") {
-    Traced traced(make_room());
+TEST_CASE("in a frame each bounce starts only at the previous bounce's hits") {
+    Traced traced(allocate());
     const auto sets = make_frame_ray_sets(traced.job(100, 60), 8);
     REQUIRE(sets.size() == 10);
     CHECK(sets[0].rays.size() == 6000);
@@ -303,7 +303,7 @@ TEST_CASE("in a frame each bounce starts at the hits of the one before and at no
     CHECK(make_frame_ray_sets(traced.job(8, 4), 0).size() == 2);
 }
 
-TEST_CASE("a scene that no ray meets has no secondary rays") {
+TEST_CASE("a scene without hits has no secondary rays") {
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     mesh.indices = {0, 1, 2};
@@ -315,7 +315,7 @@ TEST_CASE("a scene that no ray meets has no secondary rays") {
     }
 }
 
-TEST_CASE("rays start on the outside of instances, wherever these stand") {
+TEST_CASE("rays start on the outside of instances at any position") {
     const Scene scene = make_mixed_scene();
     REQUIRE(scene.instances.size() > 1);
     Scene placed = scene;
@@ -336,7 +336,7 @@ TEST_CASE("rays start on the outside of instances, wherever these stand") {
     CHECK(wrong <= hits.size() / 1000); // directions along the surface: one rounding either way
 }
 
-TEST_CASE("the first shadow targets in Sponza are those on the record") {
+TEST_CASE("the first shadow targets in Sponza match the record") {
     const auto path = test_scene("crytek-sponza/sponza.obj");
     if (!path) return;
     Messages messages;
@@ -350,7 +350,7 @@ TEST_CASE("the first shadow targets in Sponza are those on the record") {
     }
 }
 
-TEST_CASE("as many rays hit Sponza as on the record") {
+TEST_CASE("the number of hits in Sponza matches the record") {
     const auto path = test_scene("crytek-sponza/sponza.obj");
     if (!path) return;
     Messages messages;

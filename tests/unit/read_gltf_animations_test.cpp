@@ -52,7 +52,7 @@ std::string channel(int node, const std::string& path, int number = 0) {
 
 } // namespace
 
-TEST_CASE("a glTF file's nodes keep their numbers, parents and poses") {
+TEST_CASE("a glTF file's nodes keep their indices, parents and poses") {
     Messages messages;
     const Scene scene = test::read_gltf_text(file("", ""), messages);
     REQUIRE(scene.nodes.size() == 3);
@@ -68,7 +68,7 @@ TEST_CASE("a glTF file's nodes keep their numbers, parents and poses") {
     for (const Instance& instance : scene.instances) CHECK(instance.mesh == (instance.node == 1 ? 1u : 0u));
 }
 
-TEST_CASE("channels are read with their key frames") {
+TEST_CASE("animation channels are read with their key frames") {
     Messages messages;
     const Scene scene = test::read_gltf_text(
         file(sampler(1, 2) + "," + sampler(1, 7, R"(,"interpolation":"STEP")") + "," +
@@ -94,12 +94,12 @@ TEST_CASE("channels are read with their key frames") {
     CHECK(channels[3].part == AnimatedPart::Weights);
     CHECK(channels[3].values.size() == 6);
     CHECK(std::ranges::any_of(messages.all(), [](const Message& message) {
-        return message.text.find("/animations/0/channels/4/target: the channel names no node") != std::string::npos;
+        return message.text.find("/animations/0/channels/4/target: the channel has no node") != std::string::npos;
     }));
     CHECK_NOTHROW(validate_nodes(scene, "file"));
 }
 
-TEST_CASE("channels with invalid numbers are left out with a warning that names them") {
+TEST_CASE("animation channels with invalid numbers are left out with a warning that names them") {
     const auto left_out = [](const std::string& samplers, const std::string& channels, const std::string& why) {
         Messages messages;
         const Scene scene = test::read_gltf_text(file(samplers, channels), messages);
@@ -109,7 +109,7 @@ TEST_CASE("channels with invalid numbers are left out with a warning that names 
     left_out(sampler(1, 8), channel(0, "rotation"), "the rotation of key 1 is 0");
 }
 
-TEST_CASE("a channel that the format does not allow is left out with its pointer, and the others play") {
+TEST_CASE("an animation channel that the format does not allow is left out with its pointer, and the others play") {
     const auto check = [](const std::string& samplers, const std::string& channels, const std::string& message) {
         CAPTURE(message);
         const std::string error = test::gltf_fault(file(samplers, channels));
@@ -163,7 +163,7 @@ TEST_CASE("validate_nodes refuses graphs that readers must not produce") {
     refused([](Scene& s) { s.animations[0].channels[0].times.clear(); }, "it has no key times");
 }
 
-TEST_CASE("KHR_animation_pointer animates nodes, views and lights; anything else is named and left out") {
+TEST_CASE("KHR_animation_pointer animates nodes, views and lights, and other targets are named and left out") {
     GltfBuilder builder = numbers();
     builder.add("SCALAR", std::vector<float>{1, 0.5f, 0.25f}); // 10
     const auto pointer = [](const std::string& to, int number) {
@@ -218,7 +218,7 @@ TEST_CASE("KHR_animation_pointer animates nodes, views and lights; anything else
     CHECK(test::has_warning(messages, {"colour and intensity of one light"}));
 }
 
-TEST_CASE("nodes that show one mesh share it, but for those whose weights are animated") {
+TEST_CASE("nodes with one mesh share it, except those with animated weights") {
     Messages messages;
     const Scene scene = test::read_gltf_text(
         numbers().json(

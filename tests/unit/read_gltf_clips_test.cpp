@@ -55,7 +55,7 @@ Scene read(const ReadOptions& options = {}) {
     return read(options, messages);
 }
 
-TEST_CASE("the scene plays the animation that is chosen, and knows of the others by name and end") {
+TEST_CASE("the scene plays the chosen animation and lists the others by name and end") {
     const Scene first = read();
     REQUIRE(first.animations.size() == 1);
     CHECK(first.animations[0].name == "walk");
@@ -79,7 +79,7 @@ TEST_CASE("the scene plays the animation that is chosen, and knows of the others
     CHECK_THROWS_AS(read({.animation = "jump"}), Error);
 }
 
-TEST_CASE("an instance that only another animation moves does not move, and may be baked") {
+TEST_CASE("an instance that only an unchosen animation moves stays still and may be baked") {
     const auto moving = [](const ReadOptions& options) { return may_move(read(options)); };
     CHECK(moving({}) == std::vector<bool>{true, false});
     CHECK(moving({.animation = "bend"}) == std::vector<bool>{false, true});
@@ -94,7 +94,7 @@ TEST_CASE("an instance that only another animation moves does not move, and may 
     CHECK(place_meshes(read({.animation = "all"})).is_baked == std::vector<bool>{false, false});
 }
 
-TEST_CASE("nothing is said of channels of an animation that does not play") {
+TEST_CASE("channels of an animation that does not play cause no messages") {
     Messages quiet, loud;
     read({}, quiet);
     CHECK(quiet.all().empty());
@@ -103,7 +103,7 @@ TEST_CASE("nothing is said of channels of an animation that does not play") {
     CHECK(loud.all()[0].text.find("/animations/3/channels/0/target") != std::string::npos);
 }
 
-TEST_CASE("a scene of the file is chosen before the file's own choice") {
+TEST_CASE("a requested scene of the file takes precedence over the file's own choice") {
     const std::string scenes = R"("scene":1,"scenes":[{"name":"left","nodes":[0]},{"name":"both","nodes":[0,1]}],)";
     Messages messages;
     const Scene both = read({}, messages, scenes), left = read({.file_scene = "left"}, messages, scenes),

@@ -53,7 +53,7 @@ std::string with_buffer(const std::string& members) {
 
 } // namespace
 
-TEST_CASE("an extension that is not supported is left out, required or not, with a warning that names its place") {
+TEST_CASE("an unsupported extension is left out, required or not, with a warning that names its location") {
     CHECK(test::gltf_fault(
               document(R"("extensionsUsed":["KHR_x"],"extensionsRequired":["KHR_texture_transform","KHR_x"])"))
               .starts_with("model.gltf: /extensionsRequired/1: "));
@@ -91,7 +91,7 @@ TEST_CASE("files that are not glTF 2 are refused, and files without a version ar
     }
 }
 
-TEST_CASE("JSON that is not valid is an error with the line, the column and what would be right there") {
+TEST_CASE("invalid JSON is an error with the line, the column and the expected text") {
     const auto read = [](const std::string& text) {
         const std::string error = test::gltf_fault(text), start = "model.gltf: not valid JSON: ";
         CHECK(error.starts_with(start));
@@ -131,15 +131,15 @@ TEST_CASE("an error for a damaged GLB container names the first faulty byte") {
         bad[at] = static_cast<std::byte>(value);
         return glb_fault(bad);
     };
-    CHECK(with_byte(0, 'x') == "model.glb: byte 0: expected the letters glTF, with which a GLB file starts");
+    CHECK(with_byte(0, 'x') == "model.glb: byte 0: expected \"glTF\", the start of a GLB file");
     CHECK(with_byte(4, 1) == "model.glb: byte 4: GLB container version 1; expected 2");
     CHECK(with_byte(15, 0x7f).starts_with(
-        "model.glb: byte 12: the chunk says ")); // the JSON tells by itself where it ends
+        "model.glb: byte 12: the chunk states ")); // the JSON tells by itself where it ends
     CHECK(with_byte(20, '[').starts_with("model.glb: not valid JSON: "));
     CHECK(with_byte(16, 'X') == "model.glb: byte 12: the first chunk of a GLB file must be JSON");
 }
 
-TEST_CASE("an accessor that leaves its data is an error before anything is allocated") {
+TEST_CASE("an accessor beyond its data is an error before anything is allocated") {
     const auto read = [](const std::string& members) { return test::gltf_fault(with_accessor(members)); };
     const std::string vec3 = R"("type":"VEC3","componentType":5126,)";
     CHECK(read("\"bufferView\":0," + vec3 + "\"count\":3").empty());
@@ -173,7 +173,7 @@ TEST_CASE("an attribute of the wrong type or length is an error with the attribu
           place + "POSITION: a string; expected a whole number");
 }
 
-TEST_CASE("a triangle with an index past the vertices is left out with its place and value") {
+TEST_CASE("a triangle with an index beyond the vertices is left out with its location and value") {
     test::GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.add("SCALAR", std::vector<uint32_t>{0, 1, 4294967295u});
@@ -183,7 +183,7 @@ TEST_CASE("a triangle with an index past the vertices is left out with its place
               .starts_with("model.gltf: /meshes/0/primitives/0/indices: "));
 }
 
-TEST_CASE("users of a missing, short, badly encoded or outside buffer are left out") {
+TEST_CASE("elements that use a missing, short, badly encoded or outside buffer are left out") {
     const auto read = [](const std::string& members) { return test::gltf_fault(with_buffer(members)); };
     CHECK(read(R"("byteLength":36,"uri":"data:;base64,AAAA")").starts_with("model.gltf: /bufferViews/0: "));
     CHECK(read(R"("byteLength":36,"uri":"data:;base64,A*AA")").starts_with("model.gltf: /buffers/0/uri: "));
@@ -196,7 +196,7 @@ TEST_CASE("users of a missing, short, badly encoded or outside buffer are left o
     CHECK(test::gltf_fault(with_accessor(R"("bufferView":0,"componentType":5126,"type":"VEC3","count":3)")).empty());
 }
 
-TEST_CASE("a small file that multiplies itself without bound is refused") {
+TEST_CASE("a small file that expands without bound is refused") {
     test::GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.add("VEC3", std::vector<float>(3 * 20'000));
@@ -209,7 +209,7 @@ TEST_CASE("a small file that multiplies itself without bound is refused") {
     CHECK(error.find("times the size of its files") != std::string::npos);
 }
 
-TEST_CASE("a buffer file that many buffers name is read once") {
+TEST_CASE("a file used by many buffers is read once") {
     const auto folder = test::scratch_folder();
     write_file_atomically(folder / "big.bin", std::vector<std::byte>(std::size_t(8) << 20));
     std::string buffers = R"({"byteLength":4,"uri":"big.bin"})";
@@ -220,7 +220,7 @@ TEST_CASE("a buffer file that many buffers name is read once") {
     CHECK(read_gltf(folder / "model.gltf", FileAccess(folder / "model.gltf", {}), {}, messages).meshes.empty());
 }
 
-TEST_CASE("base64 and percent encoding are decoded, also in file names") {
+TEST_CASE("base64 and percent encoding are decoded, even in file names") {
     const auto decoded = [](const std::string& text, const std::string& start = "data:text/plain;base64,") {
         std::string out;
         const auto bytes = gltf::decode_data_uri(start + text);

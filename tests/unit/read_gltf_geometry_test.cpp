@@ -42,7 +42,7 @@ std::vector<uint32_t> read_topology(int mode) {
 
 } // namespace
 
-TEST_CASE("a glTF triangle arrives with its positions, indices and the default material") {
+TEST_CASE("a glTF triangle is read with its positions, indices and the default material") {
     GltfBuilder builder;
     const int positions = builder.add("VEC3", kCorners);
     const int indices = builder.add("SCALAR", std::vector<uint16_t>{2, 0, 1});
@@ -63,7 +63,7 @@ TEST_CASE("a glTF triangle arrives with its positions, indices and the default m
     CHECK(material.roughness == 1.0f);
 }
 
-TEST_CASE("a GLB file reads like the same document with its data in base64") {
+TEST_CASE("a GLB file is read like the same document with its data in base64") {
     GltfBuilder builder;
     const std::string members =
         one_primitive("\"attributes\":{" + attribute("POSITION", builder.add("VEC3", kCorners)) + "}");
@@ -77,7 +77,7 @@ TEST_CASE("a GLB file reads like the same document with its data in base64") {
     CHECK(messages.all().empty());
 }
 
-TEST_CASE("a buffer is found beside the file, under a percent-encoded name") {
+TEST_CASE("a buffer in the file's folder is found by a percent-encoded name") {
     const auto folder = test::scratch_folder();
     write_file_atomically(folder / "a b.bin", std::as_bytes(std::span(kCorners)));
     const std::string text =
@@ -90,13 +90,13 @@ TEST_CASE("a buffer is found beside the file, under a percent-encoded name") {
     CHECK(scene.meshes.at(0).positions.at(1) == Vec3{1, 0, 0});
 }
 
-TEST_CASE("strips and fans become triangles with the winding of the specification") {
+TEST_CASE("strips and fans become triangles with the specified winding") {
     CHECK(read_topology(4) == std::vector<uint32_t>{0, 1, 2}); // two corners are left over
     CHECK(read_topology(5) == std::vector<uint32_t>{0, 1, 2, 1, 3, 2, 2, 3, 4});
     CHECK(read_topology(6) == std::vector<uint32_t>{1, 2, 0, 2, 3, 0, 3, 4, 0});
 }
 
-TEST_CASE("points and lines are left out with a warning, and the rest of the mesh stays") {
+TEST_CASE("points and lines are left out with a warning, and the rest of the mesh is read") {
     GltfBuilder builder;
     const std::string positions = "\"attributes\":{" + attribute("POSITION", builder.add("VEC3", kCorners)) + "}";
     Messages messages;
@@ -133,7 +133,7 @@ TEST_CASE("all attributes are read") {
     CHECK(bare.materials.at(0).kind == MaterialKind::Diffuse);
 }
 
-TEST_CASE("normalised integers are scaled as section 3.11 says and plain integers are taken as they are") {
+TEST_CASE("normalised integers are scaled by section 3.11, and plain integers keep their values") {
     GltfBuilder builder;
     const std::string normalized = ",\"normalized\":true";
     const std::string attributes =
@@ -152,7 +152,7 @@ TEST_CASE("normalised integers are scaled as section 3.11 says and plain integer
     CHECK(mesh.colors[2] == Vec4{1 / 255.0f, 2 / 255.0f, 3 / 255.0f, 4 / 255.0f});
 }
 
-TEST_CASE("interleaved attributes are read with the view's stride") {
+TEST_CASE("interleaved attributes are read with the buffer view's stride") {
     GltfBuilder builder;
     std::vector<float> interleaved; // position, uv
     for (int i = 0; i < 3; ++i) {
@@ -199,7 +199,7 @@ TEST_CASE("a sparse accessor overrides its base, or zeros where it has none") {
     CHECK(error.starts_with("model.gltf: /accessors/2/sparse/indices: "));
 }
 
-TEST_CASE("parts with the same data share one mesh whatever their material") {
+TEST_CASE("primitives with the same data share one mesh, whatever their material") {
     GltfBuilder builder;
     const std::string part = "\"attributes\":{" + attribute("POSITION", builder.add("VEC3", kCorners)) + "}";
     const Scene scene =
@@ -210,7 +210,7 @@ TEST_CASE("parts with the same data share one mesh whatever their material") {
     CHECK(scene.materials.at(scene.instances[1].material).name == "b");
 }
 
-TEST_CASE("views compressed with EXT_meshopt_compression are decoded, filters included") {
+TEST_CASE("buffer views compressed with EXT_meshopt_compression are decoded, including filters") {
     std::vector<Vec3> grid;
     std::vector<uint32_t> triangles;
     for (uint32_t y = 0; y < 20; ++y) {
@@ -267,7 +267,7 @@ TEST_CASE("views compressed with EXT_meshopt_compression are decoded, filters in
     }
 }
 
-TEST_CASE("damaged or impossible compressed views are errors that name the view") {
+TEST_CASE("damaged or impossible compressed buffer views are errors that name the view") {
     const auto read = [](std::size_t stride, std::size_t count, const std::string& members) {
         GltfBuilder builder;
         builder.add_compressed_view(std::vector<unsigned char>(64, 0x55), stride, count, members);

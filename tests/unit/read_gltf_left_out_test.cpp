@@ -39,7 +39,7 @@ Light emitter(const std::string& members) {
 }
 
 /// Messages of reading and validating; the Error's text comes last.
-std::vector<std::string> told_of(const std::string& json) {
+std::vector<std::string> left_out_of(const std::string& json) {
     Messages messages;
     std::vector<std::string> texts;
     std::string error;
@@ -71,7 +71,7 @@ void set_u32(std::vector<std::byte>& bytes, std::size_t at, std::size_t value) {
     std::memcpy(bytes.data() + at, &number, sizeof number);
 }
 
-TEST_CASE("a member that is null is one that is not there") {
+TEST_CASE("a member that is null counts as absent") {
     Messages messages;
     const Scene scene = test::read_gltf_text(
         triangle_with(
@@ -96,7 +96,7 @@ TEST_CASE("a null element is read as an empty object") {
     CHECK(messages.left_out().size() == 2); // the child and the channel
 }
 
-TEST_CASE("a number beyond the largest float is the largest, and a range of that is none") {
+TEST_CASE("a number beyond the largest float becomes the largest, and a range of that size is unlimited") {
     for (const std::string range : {"3.40282347E+38", "3.4028234663852886e+38", "1.7976931348623157e+308"}) {
         const Light light = emitter("\"range\":" + range);
         CHECK(light.range == std::numeric_limits<float>::max());
@@ -106,7 +106,7 @@ TEST_CASE("a number beyond the largest float is the largest, and a range of that
     CHECK(bright.intensity.b == 0);
 }
 
-TEST_CASE("numbers beyond 64 bits and beyond doubles, and what others write for them, cost nothing but themselves") {
+TEST_CASE("numbers beyond 64 bits or doubles, and substitutes for them, affect only themselves") {
     const std::string whole = "340282346638528859811704183484516925440"; // C#'s largest float
     for (const std::string& range : {whole, std::string("1e400"), std::string("Infinity")}) {
         CAPTURE(range);
@@ -133,7 +133,7 @@ TEST_CASE("numbers beyond 64 bits and beyond doubles, and what others write for 
     CHECK(messages.left_out().empty());
 }
 
-TEST_CASE("texts that are not Unicode are read with U+FFFD, and zero bytes after a document are padding") {
+TEST_CASE("texts that are not valid Unicode are read with U+FFFD, and zero bytes after a document are padding") {
     for (const auto& [name, read] : {std::pair("K\xfc"
                                                "che",
                                                "K\xef\xbf\xbd"
@@ -152,7 +152,7 @@ TEST_CASE("texts that are not Unicode are read with U+FFFD, and zero bytes after
     CHECK(test::read_gltf_text(text + std::string(3, '\0')).instances.size() == 1);
 }
 
-TEST_CASE("a version that is a number, and extensions that are no object, cost nothing") {
+TEST_CASE("a version that is a number, and extensions that are not an object, are tolerated") {
     std::string text = triangle_with(R"("nodes":[{"mesh":0}],"extensions":{"KHR_lights_punctual":[]})");
     text.replace(text.find("\"2.0\""), 5, "2.0");
     Messages messages;
@@ -160,17 +160,17 @@ TEST_CASE("a version that is a number, and extensions that are no object, cost n
     CHECK(messages.all().size() == 1);
 }
 
-TEST_CASE("an extension that is not supported is told once where the file does not list it either") {
-    const std::vector<std::string> told = told_of(triangle().json(
+TEST_CASE("an unsupported and unlisted extension is reported once") {
+    const std::vector<std::string> left_out = left_out_of(triangle().json(
         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0,"extras":)"
         R"({"extensions":{"EXT_private":{}}}},{"extensions":{"EXT_none":null}}],"materials":[{"extensions":)"
         R"({"KHR_materials_clearcoat":{"clearcoatFactor":1},"KHR_materials_ior":{}}},{"extensions":)"
         R"({"KHR_materials_clearcoat":{}}}])"));
-    REQUIRE(told.size() == 1);
-    CHECK(told[0].find("model.gltf: /materials/0/extensions/KHR_materials_clearcoat: ") != std::string::npos);
+    REQUIRE(left_out.size() == 1);
+    CHECK(left_out[0].find("model.gltf: /materials/0/extensions/KHR_materials_clearcoat: ") != std::string::npos);
 }
 
-TEST_CASE("a node keeps what of its transform can be read") {
+TEST_CASE("a node keeps the readable parts of its transform") {
     const auto pose = [](const std::string& members) {
         return std::get<NodePose>(
             test::read_gltf_text(triangle_with(R"("nodes":[{"mesh":0,)" + members + "}]")).nodes.at(0).pose);
@@ -183,7 +183,7 @@ TEST_CASE("a node keeps what of its transform can be read") {
     CHECK(pose(R"("matrix":[1,2],"scale":[2,2,2])").scale == DoubleVec3{2, 2, 2});
 }
 
-TEST_CASE("a camera keeps what of it can be read") {
+TEST_CASE("a camera keeps its readable properties") {
     const auto camera = [](const std::string& members) {
         return test::read_gltf_text(triangle_with(R"("cameras":[{"type":"perspective","perspective":{)" + members +
                                                   R"(}}],"nodes":[{"mesh":0},{"camera":0}])"))
@@ -195,7 +195,7 @@ TEST_CASE("a camera keeps what of it can be read") {
     CHECK(camera(R"("yfov":45)").fov_y == Camera().fov_y);
 }
 
-TEST_CASE("a skin without weights, or with matrices that are not finite, leaves the mesh") {
+TEST_CASE("a skin without weights, or with matrices that are not finite, is left out and the mesh is kept") {
     GltfBuilder builder = triangle();
     builder.add("VEC4", std::vector<uint16_t>(12));
     builder.add("VEC4", std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
@@ -218,7 +218,7 @@ TEST_CASE("a skin without weights, or with matrices that are not finite, leaves 
     CHECK(positions(R"(,"WEIGHTS_0":2)", R"(,"inverseBindMatrices":3)") == as_in_file);
 }
 
-TEST_CASE("triangles that stray beyond all bounds are left out, and the others shown") {
+TEST_CASE("triangles beyond all limits are left out, and the others are kept") {
     GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1e30f, 0});
     Messages messages;
@@ -229,7 +229,7 @@ TEST_CASE("triangles that stray beyond all bounds are left out, and the others s
     CHECK(length(bounds_of(scene).size()) < 2);
 }
 
-TEST_CASE("parts beyond all bounds are left out, and the rest is shown") {
+TEST_CASE("primitives beyond all limits are left out, and the rest is kept") {
     Messages messages;
     Scene scene = test::read_gltf_text(
         triangle_with(R"("cameras":[{"type":"perspective","perspective":{"yfov":1}}],"nodes":[{"mesh":0},)"
@@ -281,58 +281,59 @@ TEST_CASE("a GLB's JSON may be padded with zero bytes, and its header may give a
     std::vector<std::byte> cut_off(good.begin(), good.end() - 4);
     Messages messages;
     CHECK(read_glb(cut_off, messages).instances.empty());
-    CHECK(test::has_warning(messages, {"model.glb: byte", "cut off", "left out"}));
+    CHECK(test::has_warning(messages, {"model.glb: byte", "truncated", "left out"}));
 }
 
-TEST_CASE("a part that is compressed alone is left out with the command that converts the file") {
+TEST_CASE("a primitive with only compressed data is left out, with the command that converts the file") {
     const std::string draco = R"("extensionsRequired":["KHR_draco_mesh_compression"],)"
                               R"("accessors":[{"componentType":5126,"type":"VEC3","count":3}],)";
     const std::string compressed =
         R"({"attributes":{"POSITION":0},"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{}}}})";
     const std::string command = "gltf-transform/cli copy \"model.gltf\" \"model-converted.gltf\"";
-    const std::vector<std::string> told =
-        told_of(R"({"asset":{"version":"2.0"},)" + draco + R"("meshes":[{"primitives":[)" + compressed +
-                R"(]}],"nodes":[{"mesh":0}]})");
-    REQUIRE(told.size() == 2);
-    CHECK(told[0].find("model.gltf: /meshes/0/primitives/0: a part compressed by KHR_draco_mesh_compression") !=
-          std::string::npos);
-    CHECK(told[0].find(command) != std::string::npos);
-    CHECK(told[1].starts_with("error: "));
-    CHECK(told[1].find(command) != std::string::npos);
+    const std::vector<std::string> left_out =
+        left_out_of(R"({"asset":{"version":"2.0"},)" + draco + R"("meshes":[{"primitives":[)" + compressed +
+                    R"(]}],"nodes":[{"mesh":0}]})");
+    REQUIRE(left_out.size() == 2);
+    CHECK(
+        left_out[0].find("model.gltf: /meshes/0/primitives/0: a primitive compressed by KHR_draco_mesh_compression") !=
+        std::string::npos);
+    CHECK(left_out[0].find(command) != std::string::npos);
+    CHECK(left_out[1].starts_with("error: "));
+    CHECK(left_out[1].find(command) != std::string::npos);
 
     // It is not needed next to uncompressed data.
-    CHECK(told_of(triangle().json(R"("extensionsUsed":["KHR_draco_mesh_compression"],"meshes":[{"primitives":[)" +
-                                  compressed + R"(]}],"nodes":[{"mesh":0}])"))
+    CHECK(left_out_of(triangle().json(R"("extensionsUsed":["KHR_draco_mesh_compression"],"meshes":[{"primitives":[)" +
+                                      compressed + R"(]}],"nodes":[{"mesh":0}])"))
               .empty());
 }
 
-TEST_CASE("a texture with a picture of another kind alone is left out with the command that converts the file") {
+TEST_CASE("a texture with only an unsupported image is left out, with the command that converts the file") {
     for (const auto& [extension, command] :
          {std::pair("KHR_texture_basisu", "cli ktxdecompress "), std::pair("EXT_texture_webp", "cli png ")}) {
         CAPTURE(extension);
-        const std::vector<std::string> told = told_of(triangle().json(
+        const std::vector<std::string> left_out = left_out_of(triangle().json(
             R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0}],"materials":[)"
             R"({"emissiveTexture":{"index":0}}],"textures":[{"extensions":{")" +
             std::string(extension) + R"(":{"source":0}}}],"images":[{"uri":"a.ktx2"}])"));
-        REQUIRE(told.size() == 1);
-        CHECK(told[0].find("/textures/0") != std::string::npos);
-        CHECK(told[0].find(command) != std::string::npos);
+        REQUIRE(left_out.size() == 1);
+        CHECK(left_out[0].find("/textures/0") != std::string::npos);
+        CHECK(left_out[0].find(command) != std::string::npos);
     }
 }
 
-TEST_CASE("a picture of a kind that is not decoded is left out with the command, wherever it stands") {
+TEST_CASE("an image of an unsupported format is left out with the command, wherever it is stored") {
     const std::string webp = "UklGRiQAAABXRUJQVlA4IAAAAAA=", ktx = "q0tUWCAyMLsNChoKAAAAAA==";
     for (const auto& [bytes, command] : {std::pair(webp, "cli png "), {ktx, "cli ktxdecompress "}}) {
-        const std::vector<std::string> told = told_of(triangle().json(
+        const std::vector<std::string> left_out = left_out_of(triangle().json(
             R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"nodes":[{"mesh":0}],"materials":[)"
             R"({"emissiveTexture":{"index":0}}],"textures":[{"source":0}],"images":[{"uri":"data:;base64,)" +
             bytes + "\"}]"));
-        REQUIRE(told.size() == 1);
-        CHECK(told[0].find(command) != std::string::npos);
+        REQUIRE(left_out.size() == 1);
+        CHECK(left_out[0].find(command) != std::string::npos);
     }
 }
 
-TEST_CASE("an image's name may be absolute, of another system, a file: URI or hold a percent sign") {
+TEST_CASE("an image's name may be absolute, of another system, a file: URI or contain a percent sign") {
     const auto folder = test::scratch_folder();
     const std::string png =
         "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAAMBAQDJ/pLvAAAAAElFTkSuQmCC";
@@ -367,7 +368,7 @@ TEST_CASE("an image's name may be absolute, of another system, a file: URI or ho
     }
 }
 
-TEST_CASE("an attribute that cannot be read is left out, and the part is shown") {
+TEST_CASE("an attribute that cannot be read is left out, and the primitive is kept") {
     GltfBuilder builder = triangle();
     builder.add("VEC2", std::vector<float>{0, 0, 1, 0});
     Messages messages;
@@ -381,7 +382,7 @@ TEST_CASE("an attribute that cannot be read is left out, and the part is shown")
     CHECK(messages.left_out().size() == 3);
 }
 
-TEST_CASE("of a material only the property that cannot be read is left out") {
+TEST_CASE("only the unreadable property of a material is left out") {
     Messages messages;
     const Scene scene = test::read_gltf_text(
         triangle().json(

@@ -52,7 +52,7 @@ TEST_CASE("every factor of a metallic-roughness material is read") {
     CHECK(!material.base_color_texture.has_image());
 }
 
-TEST_CASE("a material that says nothing is a white, rough metal that lets nothing through") {
+TEST_CASE("a material without properties is a white, rough and opaque metal") {
     const Material material = read_material("{}");
     CHECK(material.kind == MaterialKind::MetallicRoughness);
     CHECK(material.base_color == Rgb{1, 1, 1});
@@ -70,7 +70,7 @@ TEST_CASE("a material that says nothing is a white, rough metal that lets nothin
     CHECK(!glowing.is_emitter());
 }
 
-TEST_CASE("doubleSided says whether a back is seen and whether it gives light; without it neither") {
+TEST_CASE("doubleSided makes backs visible and emissive") {
     for (const std::string text : {"{}", R"({"doubleSided":false})"}) {
         const Material material = read_material(text);
         CHECK_FALSE(material.double_sided);
@@ -124,7 +124,7 @@ TEST_CASE("each texture slot gets its image, its channel and its encoding") {
     CHECK(material.base_color_texture.filter == TextureFilter::Linear);
 }
 
-TEST_CASE("images come from data URIs, buffer views and files, each once, and only those that are used") {
+TEST_CASE("images come from data URIs, buffer views and files, each read once and only if used") {
     GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.add("VEC2", std::vector<float>{0, 0, 1, 0, 0, 1});
@@ -187,7 +187,7 @@ TEST_CASE("a sampler's wrap modes and filters are read") {
             .starts_with("model.gltf: /samplers/0/wrapS: "));
 }
 
-TEST_CASE("a texture transform is translation * rotation * scale, a turn taking (1, 0) towards (0, -1)") {
+TEST_CASE("a texture transform is translation * rotation * scale, and a rotation takes (1, 0) towards (0, -1)") {
     const TextureRef texture =
         read_material(R"({"emissiveTexture":{"index":0,"texCoord":0,"extensions":{"KHR_texture_transform":)"
                       R"({"offset":[0.25,-0.5],"rotation":0.5,"scale":[2,3],"texCoord":1}}}})",
@@ -215,7 +215,7 @@ TEST_CASE("a texture transform is translation * rotation * scale, a turn taking 
     }
 }
 
-TEST_CASE("textures that cannot be had are warnings and leave the factor alone") {
+TEST_CASE("textures that cannot be read cause warnings, and the factor stays") {
     const auto read = [](const std::string& info, const std::string& members, const std::string& warning) {
         CAPTURE(warning);
         Messages messages;
@@ -233,7 +233,7 @@ TEST_CASE("textures that cannot be had are warnings and leave the factor alone")
     read(R"({"index":0})", R"(,"textures":[{"source":0}],"images":[{"uri":"data:image/png,%A"}])", "/images/0/uri");
 }
 
-TEST_CASE("an image that may not be read is left out with its pointer") {
+TEST_CASE("an image outside the allowed folders is left out with its pointer") {
     const auto error = [](const std::string& uri) {
         return test::gltf_fault(with_material(R"({"normalTexture":{"index":0}})",
                                               R"(,"textures":[{"source":0}],"images":[{"uri":")" + uri + "\"}]"));
@@ -247,7 +247,7 @@ TEST_CASE("an image that may not be read is left out with its pointer") {
     CHECK(error("http://a/x.png").starts_with("model.gltf: /images/0/uri: "));
 }
 
-TEST_CASE("a texture over coordinates that the mesh does not have is a warning with the material's pointer") {
+TEST_CASE("a texture over missing texture coordinates causes a warning with the material's pointer") {
     const auto read = [](const std::string& material) {
         GltfBuilder builder;
         builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -264,12 +264,12 @@ TEST_CASE("a texture over coordinates that the mesh does not have is a warning w
     CHECK(read(R"({"emissiveTexture":{"index":0}})").all().empty());
     for (const std::string slot : {"emissiveTexture", "normalTexture"}) {
         const Messages messages = read("{\"" + slot + R"(":{"index":0,"texCoord":1}})");
-        CHECK(test::has_warning(messages, {"model.gltf: /materials/0: a texture over TEXCOORD_1"}));
+        CHECK(test::has_warning(messages, {"model.gltf: /materials/0: a texture uses TEXCOORD_1"}));
         CHECK(messages.all().size() == 1);
     }
 }
 
-TEST_CASE("geometry alone reads no material and opens no image") {
+TEST_CASE("reading only geometry reads no material and opens no image") {
     Messages messages;
     const Scene scene =
         test::read_gltf_text(with_material(R"({"emissiveTexture":{"index":0}})",

@@ -26,7 +26,7 @@ const std::string kQuarterTurnAboutZ = R"("rotation":[0,0,0.70710678,0.70710678]
 
 } // namespace
 
-TEST_CASE("a node's place is its parents' places times translation, rotation, scale, in this order") {
+TEST_CASE("a node's transform is its parents' transforms times translation, rotation and scale, in this order") {
     const Scene scene = test::read_gltf_text(with_triangle(
         R"("nodes":[{"name":"parent","translation":[10,0,0],)" + kQuarterTurnAboutZ + R"(,"children":[1]},)" +
         R"({"name":"child","mesh":0,"translation":[0,5,0],)" + kQuarterTurnAboutZ + R"(,"scale":[2,3,4]}])"));
@@ -46,7 +46,7 @@ TEST_CASE("a node's matrix is read column by column") {
     CHECK(scene.instances.at(0).world_from_local == Transform{{1, 4, 7}, {2, 5, 8}, {3, 6, 10}, {11, 12, 13}});
 }
 
-TEST_CASE("several nodes that show one mesh share it") {
+TEST_CASE("several nodes with one mesh share it") {
     const Scene scene = test::read_gltf_text(
         with_triangle(R"("nodes":[{"mesh":0},{"mesh":0,"translation":[1,0,0]},{"mesh":0,"translation":[2,0,0]}])"));
     CHECK(scene.meshes.size() == 1);
@@ -70,7 +70,7 @@ TEST_CASE("EXT_mesh_gpu_instancing places one instance for each element, within 
     CHECK(close(transform_point(scene.instances[1].world_from_local, {1, 1, 1}), {2 - 5, 10 - 6, 7}));
 }
 
-TEST_CASE("the scene property chooses what is shown, and without scenes all of it is") {
+TEST_CASE("the scene property chooses the nodes, and without scenes all are used") {
     const std::string nodes = R"("nodes":[{"mesh":0,"name":"a"},{"mesh":0,"name":"b"},{"mesh":0,"name":"c"}])";
     const std::string scenes = R"("scenes":[{"nodes":[0]},{"nodes":[2,1]}],)";
     CHECK(test::read_gltf_text(with_triangle(nodes)).instances.size() == 3);
@@ -83,7 +83,7 @@ TEST_CASE("the scene property chooses what is shown, and without scenes all of i
     CHECK(messages.all().empty()); // whoever opens the scene says which it is
 }
 
-TEST_CASE("links that make a cycle or a second parent are left out with a warning that names the node") {
+TEST_CASE("children that make a cycle or have a second parent are left out with a warning that names the node") {
     CHECK(test::gltf_fault(only_nodes(R"("nodes":[{"children":[1]},{"children":[0]}])"))
               .starts_with("model.gltf: /nodes/0: "));
     CHECK(test::gltf_fault(only_nodes(R"("nodes":[{"children":[0]}])")).starts_with("model.gltf: /nodes/0: "));
@@ -91,7 +91,7 @@ TEST_CASE("links that make a cycle or a second parent are left out with a warnin
               .starts_with("model.gltf: /nodes/1/children/0: "));
 }
 
-TEST_CASE("a child that the scene lists is shown once, in the place that its parent gives it") {
+TEST_CASE("a child that the scene lists occurs once, with its parent's transform") {
     const std::string nodes = R"("nodes":[{"children":[1],"translation":[1,0,0]},{"mesh":0,"translation":[0,2,0]}])";
     for (const std::string listed : {"[1]", "[0,1]", "[1,0]", "[1,1]"}) {
         CAPTURE(listed);
@@ -104,7 +104,7 @@ TEST_CASE("a child that the scene lists is shown once, in the place that its par
     }
 }
 
-TEST_CASE("a node whose transform cannot be read stands where its parent does") {
+TEST_CASE("a node with an unreadable transform has its parent's transform") {
     Messages messages;
     const Scene scene = test::read_gltf_text(
         with_triangle(
@@ -149,7 +149,7 @@ TEST_CASE("cameras keep their angle, height and aspect, and lose their node's sc
     CHECK(orthographic.world_from_camera == Transform());
 }
 
-TEST_CASE("punctual lights shine along their node's -z with candela and lux taken one for one") {
+TEST_CASE("punctual lights shine along their node's -z, and candela and lux are used without a factor") {
     Messages messages;
     const Scene scene = test::read_gltf_text(
         only_nodes(
@@ -181,8 +181,7 @@ TEST_CASE("punctual lights shine along their node's -z with candela and lux take
     CHECK(scene.lights[3].cos_outer == doctest::Approx(std::sqrt(0.5)).epsilon(1e-6));
 }
 
-TEST_CASE(
-    "a spot of equal cone angles has a sharp edge and a warning; other cones that are none are clamped with one") {
+TEST_CASE("a spot with equal cone angles has a sharp edge and a warning; invalid cones are clamped with a warning") {
     const auto spot = [](const std::string& cone) {
         return only_nodes(R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot","spot":{)" + cone +
                           R"(}}]}},"nodes":[{"extensions":{"KHR_lights_punctual":{"light":0}}}])");
@@ -223,7 +222,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a light that would take light away gives none, with the number's pointer") {
+TEST_CASE("a light with negative intensity gives no light, with a warning that has the number's pointer") {
     const auto read = [](const std::string& members, const std::string& place) {
         Messages messages;
         const Scene scene = test::read_gltf_text(
@@ -237,7 +236,7 @@ TEST_CASE("a light that would take light away gives none, with the number's poin
     CHECK(read(R"("color":[1,-0.5,0])", "color/1: -0.5") == Rgb{1, 0, 0});
 }
 
-TEST_CASE("what is placed knows where the file describes it") {
+TEST_CASE("instances, cameras and lights record their location in the file") {
     const Scene scene = test::read_gltf_text(
         with_triangle(R"("materials":[{},{}],"cameras":[{"type":"perspective","perspective":{"yfov":1}}],)"
                       R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}},"nodes":[{},{"mesh":0},)"
@@ -248,19 +247,19 @@ TEST_CASE("what is placed knows where the file describes it") {
     CHECK(scene.lights.at(0).origin == "/nodes/3");
 }
 
-TEST_CASE("a file that shows no mesh says what it has instead") {
-    const auto told = [](const std::string& text) { return test::read_gltf_text(text).no_instances; };
-    CHECK(told(with_triangle(R"("nodes":[{"mesh":0}])")).empty());
-    CHECK(told(with_triangle(R"("nodes":[{},{}])")) ==
-          "/nodes: the scene has 2 nodes, and none shows a mesh (of 1); expected a \"mesh\" in one of them");
-    CHECK(told(with_triangle(R"("scenes":[{"nodes":[1]}],"nodes":[{"mesh":0},{}])"))
+TEST_CASE("an error for a file without meshes lists its content") {
+    const auto reason_of = [](const std::string& text) { return test::read_gltf_text(text).no_instances; };
+    CHECK(reason_of(with_triangle(R"("nodes":[{"mesh":0}])")).empty());
+    CHECK(reason_of(with_triangle(R"("nodes":[{},{}])")) ==
+          "/nodes: the scene has 2 nodes, and none uses a mesh (of 1); expected a \"mesh\" in one of them");
+    CHECK(reason_of(with_triangle(R"("scenes":[{"nodes":[1]}],"nodes":[{"mesh":0},{}])"))
               .starts_with("/nodes: the scene has 1 node,"));
-    CHECK(told(only_nodes(R"("nodes":[{}])")).starts_with("/meshes: there are none"));
-    CHECK(told(only_nodes(R"("meshes":[{"primitives":[{"attributes":{}}]}],"nodes":[{"mesh":0}])"))
-              .starts_with("/meshes: none that a node of the scene shows has a triangle"));
+    CHECK(reason_of(only_nodes(R"("nodes":[{}])")).starts_with("/meshes: there are none"));
+    CHECK(reason_of(only_nodes(R"("meshes":[{"primitives":[{"attributes":{}}]}],"nodes":[{"mesh":0}])"))
+              .starts_with("/meshes: none that a node of the scene uses has a triangle"));
 }
 
-TEST_CASE("a skinned mesh stands where its joints put it and its own node does not move it") {
+TEST_CASE("a skinned mesh follows its joints and not its own node") {
     GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.add("VEC3", std::vector<float>{0, 0, 1, 1, 0, 0, 0, 0, 1});
@@ -286,7 +285,7 @@ TEST_CASE("a skinned mesh stands where its joints put it and its own node does n
     CHECK(mesh.indices == std::vector<uint32_t>{0, 1, 2});
 }
 
-TEST_CASE("a joint that the skin does not have is an error with the attribute's pointer") {
+TEST_CASE("a joint index beyond the skin is an error with the attribute's pointer") {
     GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.add("VEC4", std::vector<uint16_t>{0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0});
@@ -297,7 +296,7 @@ TEST_CASE("a joint that the skin does not have is an error with the attribute's 
               .starts_with("model.gltf: /meshes/0/primitives/0/attributes/JOINTS_0: "));
 }
 
-TEST_CASE("morph targets are added with the mesh's weights, or the node's where it has some") {
+TEST_CASE("morph targets are added with the node's weights, or the mesh's if it has none") {
     GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.add("VEC3", std::vector<float>{0, 0, 8, 0, 0, 0, 0, 0, 0});

@@ -37,7 +37,7 @@ using Texts = std::vector<std::string>;
 const std::string kThreeCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 const std::string kFace = "f 1 2 3\n";
 
-TEST_CASE("obj: objects and groups are instances with their names, each for each material, which they share") {
+TEST_CASE("obj: objects and groups are instances with their names, one per material, and share materials") {
     Messages messages;
     const Scene scene = load("mtllib a.mtl\n" + kThreeCorners + "o table\nusemtl wood\n" + kFace + "usemtl iron\n" +
                                  kFace + "o chair\n" + kFace + "usemtl wood\n" + kFace + "o table\n" + kFace,
@@ -57,7 +57,7 @@ TEST_CASE("obj: objects and groups are instances with their names, each for each
     CHECK(messages.all().empty());
 }
 
-TEST_CASE("obj: an instance has the name of its object and group, or of its material where it has neither") {
+TEST_CASE("obj: an instance has the name of its object and group, or else of its material") {
     CHECK(names_of_instances(kThreeCorners + kFace) == Texts{""});
     CHECK(names_of_instances(kThreeCorners + "usemtl red\n" + kFace) == Texts{"red"});
     CHECK(names_of_instances(kThreeCorners + "g left side # a note\nusemtl red\n" + kFace) == Texts{"left side"});
@@ -68,7 +68,7 @@ TEST_CASE("obj: an instance has the name of its object and group, or of its mate
     CHECK(names_of_instances(kThreeCorners + "o unused\no used\n" + kFace) == Texts{"used"});
 }
 
-TEST_CASE("obj: thousands of groups are thousands of instances, and a group for each face is grouped by material") {
+TEST_CASE("obj: thousands of groups become thousands of instances, but a group per face is merged by material") {
     const auto text = [](std::size_t groups) {
         std::string lines = kThreeCorners;
         for (std::size_t i = 0; i < groups; ++i) lines += "g n" + std::to_string(i) + "\n" + kFace;

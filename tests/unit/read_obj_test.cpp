@@ -19,7 +19,7 @@ struct Loaded {
     Scene scene;
     Messages messages;
 
-    bool said(const std::string& text) const {
+    bool reports(const std::string& text) const {
         return std::any_of(messages.all().begin(), messages.all().end(),
                            [&](const Message& message) { return message.text.find(text) != std::string::npos; });
     }
@@ -92,7 +92,7 @@ TEST_CASE("corners share a vertex only where position, texture coordinate and no
 }
 
 TEST_CASE(
-    "the front of a lamp is where its vertex normals point, else where its winding says; nothing else is turned") {
+    "the front of an emitter follows its vertex normals, or else its winding, and no other surface is turned over") {
     const auto read = [](const std::string& normals, const std::string& face, const std::string& emission) {
         return load_text("mtllib a.mtl\n" + kTriangle + normals + "usemtl m\nf " + face + "\n", "newmtl m\n" + emission)
             .scene;
@@ -135,16 +135,16 @@ TEST_CASE("numbers are read to the nearest float") {
     CHECK(p[2] == Vec3{0.5f, -5.0f, kInfinity});
 }
 
-TEST_CASE("numbers that are not there or cannot be read become NaN, with a warning that names the first line") {
+TEST_CASE("missing and unreadable numbers become NaN, with a warning that names the first line") {
     const Loaded l = load_text("v 0 0 0\nv 1 nan 0\nv 1 zero 0\nv 0 1\nf 1 2 3 4\n");
     const std::vector<Vec3>& p = l.scene.meshes[0].positions;
     CHECK(!is_finite(p[1]));
     CHECK(!is_finite(p[2]));
     CHECK(!is_finite(p[3]));
-    CHECK(l.said("a.obj:3: 2 lines with a number"));
+    CHECK(l.reports("a.obj:3: 2 lines with a missing"));
 }
 
-TEST_CASE("a face with a vertex that does not exist is left out with its line, and the others are read") {
+TEST_CASE("a face with a missing vertex is left out with its line, and the others are read") {
     for (const std::string face : {"f 1 2 4", "f 1 2 -4", "f 0 1 2", "f 1 2 99999999999999999999", "f 1 2 4294967296",
                                    "f 1 2 c", "f 1/1/1/1 2 3", "f 1.5 2 3", "f / 2 3"}) {
         CAPTURE(face);
@@ -160,20 +160,20 @@ TEST_CASE("a face with a vertex that does not exist is left out with its line, a
     CHECK(none.scene.no_instances.find("a.obj:4: ") != std::string::npos);
 }
 
-TEST_CASE("an index may lead to a vertex further down, one of a texture coordinate to none") {
+TEST_CASE("an index may refer to a later vertex, and that of a texture coordinate to none") {
     const Loaded l = load_text("f 1/7 2/7 3/7\n" + kTriangle);
     CHECK(l.scene.meshes[0].triangle_count() == 1);
     CHECK(l.scene.meshes[0].uv[0].empty());
-    CHECK(l.said("a.obj:1: 3 face corners"));
+    CHECK(l.reports("a.obj:1: 3 face corners"));
 }
 
-TEST_CASE("lines, points, curves and garbage are left out, each kind with one warning") {
+TEST_CASE("lines, points, curves and garbage are left out with one warning per kind") {
     const Loaded l = load_text(kTriangle + "l 1 2\np 1\ncstype bezier\ncurv 0 1 1 2\nwhat is this\nf 1 2\nf 1 2 3\n");
     CHECK(l.scene.meshes[0].triangle_count() == 1);
     CHECK(l.messages.all().size() == 4);
 }
 
-TEST_CASE("polygons of any shape are cut into triangles that cover them once") {
+TEST_CASE("polygons of any shape are split into triangles that cover them once") {
     const std::vector<Vec3> arrow = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 0.5f, 0}, {0, 2, 0}};
     const std::vector<Vec3> dart = {{0, 0, 0}, {4, -3, 0}, {1, 0, 0}, {4, 3, 0}};
     std::vector<Vec3> comb = {{0, 0, 0}, {100, 0, 0}};
@@ -190,7 +190,7 @@ TEST_CASE("polygons of any shape are cut into triangles that cover them once") {
     }
 }
 
-TEST_CASE("a polygon of very many corners, spiral or scrambled, takes no time") {
+TEST_CASE("a polygon of very many corners, spiral or scrambled, is triangulated quickly") {
     std::vector<Vec3> polygon;
     for (uint32_t i = 0; i < 300'000; ++i) {
         const uint32_t scrambled = i * 2654435761u;
@@ -201,7 +201,7 @@ TEST_CASE("a polygon of very many corners, spiral or scrambled, takes no time") 
     CHECK(cut.size() == 3 * (polygon.size() - 2));
 }
 
-TEST_CASE("mtl: what a Phong material is converted to") {
+TEST_CASE("mtl: a Phong material is converted to diffuse and glossy lobes") {
     CHECK(material_of("Kd 0.2 0.3 0.4\nKs 0 0 0\nNs 10\nillum 2").kind == MaterialKind::Diffuse);
     CHECK(material_of("Kd 0.2 0.3 0.4").base_color == Rgb{0.2f, 0.3f, 0.4f});
     CHECK(material_of("Kd 0.8 0.8 0.8\nKs 0.5 0.5 0.5\nNs 225").kind == MaterialKind::Diffuse);
@@ -249,7 +249,7 @@ TEST_CASE("mtl: what a Phong material is converted to") {
     CHECK(material_of("Kd 0 0 0\nKe 17 12 4").emission == Rgb{17, 12, 4});
 }
 
-TEST_CASE("mtl: a line with a number that is missing, is none or is not finite is left out with file and line") {
+TEST_CASE("mtl: a line with a missing, unreadable or infinite number is left out with file and line") {
     for (const std::string line : {"Kd oops 1 1", "Kd nan 0 0", "Kd 1e999 0 0", "Kd", "Kd 1 1", "Kd 1 1 # 1",
                                    "Ks 1,1,1", "illum xx", "d foo", "Tr", "Ns zzz", "Ni inf", "Pr -nan", "aniso x",
                                    "map_Kd -bm x t.png", "map_Kd -clamp maybe t.png", "map_Kd -s 1e99 1 t.png"}) {
@@ -257,8 +257,8 @@ TEST_CASE("mtl: a line with a number that is missing, is none or is not finite i
         const Loaded l = load_text("mtllib a.mtl\n" + kTriangle + "usemtl m\nf 1 2 3\n",
                                    "newmtl m\n# a comment\n" + line + "\nKe 1 2 3\n");
         REQUIRE(l.messages.left_out().size() == 1);
-        CHECK(l.said("a.mtl:3: "));
-        CHECK(l.said("the line is left out"));
+        CHECK(l.reports("a.mtl:3: "));
+        CHECK(l.reports("the line is left out"));
         CHECK(l.material("m").base_color == grey(0.5f));
         CHECK(l.material("m").emission == Rgb{1, 2, 3});
     }
@@ -268,16 +268,16 @@ TEST_CASE("mtl: unread lines cause one warning that names the first") {
     const Loaded l = load_text("mtllib a.mtl\n" + kTriangle + "usemtl m\nf 1 2 3\n",
                                "Kd 1 0 0\nnewmtl m\nfoo 3\nmap_Normal x.png\nKd spectral x.rfl\nmap_Ks t.png\n"
                                "map_Ks u.png\nNs 10 11\nPc 0.5\nPs 0\nKa 1 1 1\nsharpness 60\nmap_Ka t.png\n");
-    CHECK(l.said("a.mtl:1: 3 lines that are not understood (Kd is the first) are left out"));
-    CHECK(l.said("a.mtl:5: 1 line of Kd spectral is left out"));
-    CHECK(l.said("a.mtl:6: 2 lines of map_Ks are left out"));
-    CHECK(l.said("a.mtl:8: 1 line with more than the key takes"));
-    CHECK(l.said("a.mtl:9: 1 line of Pc is left out"));
+    CHECK(l.reports("a.mtl:1: 3 lines with an unknown key (Kd is the first) are left out"));
+    CHECK(l.reports("a.mtl:5: 1 line of Kd spectral is left out"));
+    CHECK(l.reports("a.mtl:6: 2 lines of map_Ks are left out"));
+    CHECK(l.reports("a.mtl:8: 1 line with more numbers than the key has"));
+    CHECK(l.reports("a.mtl:9: 1 line of Pc is left out"));
     CHECK(l.messages.all().size() == 5);
     CHECK(l.material("m").base_color == grey(0.5f));
 }
 
-TEST_CASE("mtl: one number is a grey, keys count in any case, and without Kd a material is grey") {
+TEST_CASE("mtl: one number is a grey, keys ignore case, and without Kd a material is grey") {
     CHECK(material_of("Kd 0.25").base_color == grey(0.25f));
     CHECK(material_of("kd 1 0 0 # red").base_color == Rgb{1, 0, 0});
     CHECK(material_of("KE 3").emission == grey(3));
@@ -290,7 +290,7 @@ TEST_CASE("mtl: one number is a grey, keys count in any case, and without Kd a m
     CHECK(material_of("Kd 0 0 0").base_color == grey(0));
 }
 
-TEST_CASE("mtl: byte order marks, comments and blanks behind or before a name do not count as part of it") {
+TEST_CASE("mtl: byte order marks, comments and blanks around a name are not part of it") {
     for (const std::string start : {"newmtl a b", "newmtl  a b", "newmtl a b ", "newmtl\ta b\r", "newmtl a b # x",
                                     "\xef\xbb\xbfnewmtl a b", "# C:\\scenes\\\nnewmtl a b #", "  newmtl a b"}) {
         CAPTURE(start);
@@ -304,7 +304,7 @@ TEST_CASE("mtl: byte order marks, comments and blanks behind or before a name do
     CHECK(l.material("Material #25").base_color == Rgb{1, 0, 0});
 }
 
-TEST_CASE("mtl: many files on one line, longer together than a name may be") {
+TEST_CASE("mtl: many files on one line may together be longer than a name") {
     const fs::path folder = test::scratch_folder();
     std::string line = "mtllib";
     for (int i = 0; i < 9; ++i) {
@@ -322,7 +322,7 @@ TEST_CASE("mtl: many files on one line, longer together than a name may be") {
     for (const Message& message : none.messages.all()) CHECK(message.text.size() < 1000);
 }
 
-TEST_CASE("mtl: a texture on faces without texture coordinates is a warning") {
+TEST_CASE("mtl: a texture on faces without texture coordinates causes a warning") {
     const fs::path folder = test::scratch_folder();
     write_picture(folder / "my t.png", 4, [](uint32_t, uint32_t) -> uint8_t { return 200; });
     test::write_text(folder / "a.mtl",
@@ -334,10 +334,10 @@ TEST_CASE("mtl: a texture on faces without texture coordinates is a warning") {
     CHECK(good.material("m").base_color_texture.has_image());
     CHECK(good.material("m").base_color == grey(1)); // no Kd: the map alone
     const Loaded bad = load(test::write_text(folder / "b.obj", start + textured + bare + plain));
-    CHECK(bad.said("b.obj: 1 material with a texture, but on faces without texture coordinates (m is the first)"));
+    CHECK(bad.reports("b.obj: 1 material with a texture on faces without texture coordinates (m is the first)"));
 }
 
-TEST_CASE("mtl: textures with options, spaces, backslashes and alpha") {
+TEST_CASE("mtl: textures may have options, spaces, backslashes and alpha") {
     const fs::path folder = test::scratch_folder();
     fs::create_directories(folder / "my maps");
     const auto outline = [](uint32_t x, uint32_t channel) -> uint8_t { return channel < 3 ? 200 : (x < 8 ? 0 : 255); };
@@ -382,17 +382,17 @@ TEST_CASE("mtl: textures with options, spaces, backslashes and alpha") {
     CHECK(offset.base_color_texture.m02 == 0.25f);
     CHECK(offset.base_color_texture.wrap_s == Wrap::ClampToEdge);
     CHECK(!offset.normal_texture.has_image());
-    CHECK(l.said("height map"));
+    CHECK(l.reports("height map"));
 
     CHECK(l.material("uri").base_color_texture.image == leaf.base_color_texture.image);
     CHECK(!l.material("missing").base_color_texture.has_image());
-    CHECK(l.said("there is no texture none.png"));
+    CHECK(l.reports("there is no texture none.png"));
     CHECK(!l.material("broken").base_color_texture.has_image());
     CHECK(l.material("broken").normal_texture.image == faded.normal_texture.image);
-    CHECK(l.said("broken.png"));
+    CHECK(l.reports("broken.png"));
 }
 
-TEST_CASE("obj: meshes and materials know the lines that describe them") {
+TEST_CASE("obj: meshes and materials record their lines") {
     const Scene scene =
         load_text("mtllib a.mtl\n" + kTriangle + "usemtl m\n# a comment\nf 1 2 3\n", "# one\n\nnewmtl m\nKd 1 0 0\n")
             .scene;
@@ -400,11 +400,11 @@ TEST_CASE("obj: meshes and materials know the lines that describe them") {
     CHECK(scene.materials.at(0).origin.ends_with("a.mtl:3"));
 }
 
-TEST_CASE("mtl: a missing file and a missing material are grey with a warning; geometry only is grey without") {
+TEST_CASE("mtl: a missing file or material is grey with a warning, and geometry alone is grey without one") {
     const Loaded missing = load_text("mtllib none.mtl other.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
     CHECK(missing.scene.materials[0].base_color == grey(0.5f));
-    CHECK(missing.said("there is no material file none.mtl"));
-    CHECK(missing.said("(x is the first)"));
+    CHECK(missing.reports("there is no material file none.mtl"));
+    CHECK(missing.reports("(x is the first)"));
 
     const fs::path folder = test::scratch_folder();
     test::write_text(folder / "a.mtl", "newmtl x\nKd 1 0 0\nmap_Kd none.png\n");
@@ -414,7 +414,7 @@ TEST_CASE("mtl: a missing file and a missing material are grey with a warning; g
     CHECK(grey_only.messages.all().empty());
 }
 
-TEST_CASE("mtl: several files, read beside the geometry or behind it, say all they have to, after the geometry") {
+TEST_CASE("mtl: messages of several files come after those of the geometry, in any schedule") {
     const fs::path folder = test::scratch_folder();
     write_picture(folder / "shared.png", 2, [](uint32_t, uint32_t) { return uint8_t{100}; });
     const std::string first = "newmtl a\nmap_Kd shared.png\nnewmtl twice\nKd 1 0 0\n";
@@ -438,13 +438,13 @@ TEST_CASE("mtl: several files, read beside the geometry or behind it, say all th
         CHECK(all[1].text.find("no material file gone.mtl") != std::string::npos);
         CHECK(all[1].is_left_out);
 
-        Messages said;
+        Messages messages;
         const fs::path bad =
             test::write_text(folder / "bad.obj", before + "mtllib gone.mtl\nmtllib bad.mtl\n" + kTriangle);
-        read_obj(bad, FileAccess(bad, {}), {}, said);
-        REQUIRE(said.left_out().size() == 2);
-        CHECK(said.left_out()[0].find("gone.mtl") != std::string::npos);
-        CHECK(said.left_out()[1].find("bad.mtl:2") != std::string::npos);
+        read_obj(bad, FileAccess(bad, {}), {}, messages);
+        REQUIRE(messages.left_out().size() == 2);
+        CHECK(messages.left_out()[0].find("gone.mtl") != std::string::npos);
+        CHECK(messages.left_out()[1].find("bad.mtl:2") != std::string::npos);
     }
     const Loaded at_once = load_with("mtllib a.mtl\n" + kTriangle + faces);
     set_thread_count(1);
@@ -461,21 +461,21 @@ TEST_CASE("mtl: a texture or material file outside the scene's folder is left ou
     const fs::path path =
         test::write_text(folder / "in" / "a.obj", "mtllib ../out.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
     const Loaded without = load(path);
-    CHECK(without.said("`allow_path="));
-    CHECK(without.said("a.obj:1: refers to \"../out.mtl\""));
+    CHECK(without.reports("`allow_path="));
+    CHECK(without.reports("a.obj:1: refers to \"../out.mtl\""));
     CHECK(without.messages.left_out().size() == 2); // the file, and the material
     CHECK(load(path, {.allowed_paths = {folder}}).scene.materials[0].base_color == Rgb{1, 0, 0});
 
     test::write_text(folder / "in" / "b.mtl", "newmtl x\nmap_Kd /etc/passwd\n");
     const fs::path b = test::write_text(folder / "in" / "b.obj", "mtllib b.mtl\n" + kTriangle + "usemtl x\nf 1 2 3\n");
     const Loaded outside = load(b);
-    CHECK(outside.said("`allow_path="));
-    CHECK(outside.said("b.mtl:2: refers to"));
+    CHECK(outside.reports("`allow_path="));
+    CHECK(outside.reports("b.mtl:2: refers to"));
     CHECK(outside.messages.left_out().size() == 1);
     CHECK(outside.scene.images.empty());
 }
 
-TEST_CASE("Sponza comes in by material, its leaves and chains cut out") {
+TEST_CASE("Sponza is split by material, and its leaves and chains are cut-outs") {
     const auto path = test::test_scene("crytek-sponza/sponza.obj");
     if (!path) return;
     const Loaded l = load(*path);

@@ -90,7 +90,7 @@ const std::string kSquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
 } // namespace
 
-TEST_CASE("ply: ascii and binary of both byte orders, whatever stands where, give the same mesh") {
+TEST_CASE("ply: ascii and binary of both byte orders give the same mesh for any order of properties") {
     std::string body = "2 1 2 7\n0 8\n1 4 0 1 2 3 1 0.5\n1 3 3 2 1 0\n";
     for (int i = 0; i < 4; ++i) {
         body += std::string("-1.5 1 -1 ") + (i < 2 ? "0 " : "3 ") + (i == 1 || i == 2 ? "2" : "0") +
@@ -102,7 +102,7 @@ TEST_CASE("ply: ascii and binary of both byte orders, whatever stands where, giv
     check_odd(load(odd_binary(true)));
 }
 
-TEST_CASE("ply: a header with CRLF line ends, and float colours, which are sRGB as those of bytes are") {
+TEST_CASE("ply: a header with CRLF line ends and float colours, which are sRGB as bytes are") {
     std::string text = ascii("element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
                              "property float red\nproperty float green\nproperty float blue\nproperty float alpha\n"
                              "element face 1\n" +
@@ -112,7 +112,7 @@ TEST_CASE("ply: a header with CRLF line ends, and float colours, which are sRGB 
     CHECK(load(text).meshes[0].colors[0] == Vec4{1, srgb_decode(0.5f), 0, 0.25f});
 }
 
-TEST_CASE("ply: triangle strips turn every other triangle round and begin anew after -1") {
+TEST_CASE("ply: triangle strips reverse every other triangle and restart after -1") {
     const Scene scene = load(ascii(kVertices + "element tristrips 1\n" + kFaces, kSquare + "8 0 1 3 2 -1 2 3 1\n"));
     CHECK(scene.meshes[0].indices == std::vector<uint32_t>{0, 1, 3, 3, 1, 2, 2, 3, 1});
 }
@@ -127,7 +127,7 @@ TEST_CASE("ply: every cut of a file is an error, never a crash") {
     }
 }
 
-TEST_CASE("ply: what is wrong is said with the place") {
+TEST_CASE("ply: errors have their location") {
     const auto error_of = [](const std::string& text) { return test::thrown_error([&] { load(text); }); };
     CHECK(test::says(error_of(""), "a.ply:1:"));
     CHECK(test::says(error_of("ply\nformat words 1.0\n"), "a.ply:2:"));
@@ -140,7 +140,7 @@ TEST_CASE("ply: what is wrong is said with the place") {
 }
 
 TEST_CASE(
-    "ply: a face with an index that is no vertex is left out with the place, and so is what a cut leaves unread") {
+    "ply: a face with a missing vertex and the unread rest of a truncated file are left out with their location") {
     const auto left_out = [](int faces, const std::string& lines, std::size_t triangles) {
         Messages messages;
         const std::string header = kVertices + "element face " + std::to_string(faces) + "\n" + kFaces;
@@ -155,11 +155,11 @@ TEST_CASE(
     CHECK(says(left_out(2, "3 0 1 2\n3 0 1 4\n", 1), "face 1: vertex index 4 is out of range; there are 4"));
     CHECK(says(left_out(2, "3 0 1 -1\n4 0 1 2 3\n", 2), "index -1"));
     CHECK(says(left_out(3, "3 0 1 2\n3 0 1\n", 1), "the file ends here"));
-    CHECK(says(left_out(3, "3 0 1 2\n", 1), "what follows is left out"));
+    CHECK(says(left_out(3, "3 0 1 2\n", 1), "the rest is left out"));
     CHECK(says(left_out(1, "3 0 1 9\n", 0), "index 9"));
 }
 
-TEST_CASE("ply: of a text only what has a value that cannot be read is left out") {
+TEST_CASE("ply: only elements with an unreadable value are left out of a text file") {
     const auto load_faces = [](const std::string& vertices, const std::string& faces, Messages& messages) {
         const std::string count = std::to_string(std::count(faces.begin(), faces.end(), '\n'));
         return load(ascii(kVertices + "element face " + count + "\n" + kFaces, vertices + faces), messages)
@@ -188,7 +188,7 @@ TEST_CASE("ply: of a text only what has a value that cannot be read is left out"
     CHECK(messages.left_out()[0].find("a.ply:11: vertex 1") != std::string::npos);
 }
 
-TEST_CASE("ply: whole numbers written with a fraction, and types and lines of others, are read") {
+TEST_CASE("ply: whole numbers with a fraction, and types and lines of other writers, are read") {
     const std::string start = "ply\nformat ascii 1.0\n", rest = "element face 1\n" + kFaces + "end_header\n";
     const std::string coloured = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
     const Scene colours = load(start + kVertices + coloured + rest +
@@ -217,7 +217,7 @@ TEST_CASE("ply: whole numbers written with a fraction, and types and lines of ot
     }
 }
 
-TEST_CASE("ply: what of a header is harmless is taken") {
+TEST_CASE("ply: harmless faults in a header are accepted") {
     const std::string rest = kVertices + "element face 1\n" + kFaces + "end_header\n" + kSquare + "3 0 1 2\n";
     for (const std::string start : {"\xef\xbb\xbfply\nformat ascii 1.0\n", "ply \nformat ascii 1.0 \n",
                                     "ply\ncomment by hand\n\nobj_info x\nformat ascii 1.0\n"}) {
@@ -227,7 +227,7 @@ TEST_CASE("ply: what of a header is harmless is taken") {
     CHECK_THROWS_AS(load("ply\nelement vertex 3\nformat ascii 1.0\n" + rest), Error);
 }
 
-TEST_CASE("ply: colours and texture coordinates of faces, which are left out, are warnings") {
+TEST_CASE("ply: colours and texture coordinates of faces are left out with warnings") {
     const std::string colours = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
     Messages messages;
     load(ascii(kVertices + "element face 1\n" + kFaces + colours + "property list uchar float texcoord\n",
@@ -238,7 +238,7 @@ TEST_CASE("ply: colours and texture coordinates of faces, which are left out, ar
     CHECK(messages.all()[1].text.find("texture coordinates of faces are left out") != std::string::npos);
 }
 
-TEST_CASE("ply: counts are believed only as far as the file has bytes for them") {
+TEST_CASE("ply: counts are trusted only as far as the file has bytes for them") {
     for (const char* count : {"1000000000", "4294967295", "4294967296", "18446744073709551615"}) {
         for (const char* format : {"ascii", "binary_little_endian"}) {
             CAPTURE(count);

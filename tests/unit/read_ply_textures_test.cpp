@@ -15,7 +15,7 @@ struct Loaded {
     Scene scene;
     Messages messages;
 
-    bool said(const std::string& text) const {
+    bool reports(const std::string& text) const {
         for (const Message& message : messages.all()) {
             if (message.text.find(text) != std::string::npos) return true;
         }
@@ -66,7 +66,7 @@ TEST_CASE("ply: a comment TextureFile is the texture of vertices with texture co
     }
 }
 
-TEST_CASE("ply: the name of a texture may stand between quotes, and be a file: URI") {
+TEST_CASE("ply: the name of a texture may be quoted or a file: URI") {
     for (const std::string name : {"\"blue one.png\"", "file:///C:/scans/blue%20one.png"}) {
         CAPTURE(name);
         const Loaded l = load(kStart + "comment TextureFile " + name + "\n" + kVertices + kVertexUv +
@@ -75,7 +75,7 @@ TEST_CASE("ply: the name of a texture may stand between quotes, and be a file: U
     }
 }
 
-TEST_CASE("ply: texture coordinates of faces split the vertices that have several, and those alone") {
+TEST_CASE("ply: texture coordinates of faces split only the vertices that have several") {
     // The vertices 0 and 2 have one place in the texture for both triangles, 1 and 3 are of one triangle each.
     const Loaded joined = load(kStart + kRed + kVertices + "element face 2\n" + kList + kFaceUv + "end_header\n" +
                                kSquare + "3 0 1 2 6 0 0 1 0 1 1\n3 0 2 3 6 0 0 1 1 0 1\n");
@@ -100,7 +100,7 @@ TEST_CASE("ply: texture coordinates of faces split the vertices that have severa
     CHECK(quad.mesh(0).uv[0][1] == Vec2{0.5f, 1});
 }
 
-TEST_CASE("ply: texnumber gives faces one of several textures, and -1 none") {
+TEST_CASE("ply: texnumber selects one of several textures for a face, and -1 none") {
     const Loaded l =
         load(kStart + kRed + kBlue + kVertices + "property uchar red\nproperty uchar green\nproperty uchar blue\n" +
              "element face 4\n" + kList + kFaceUv + "property int texnumber\nend_header\n" +
@@ -116,21 +116,21 @@ TEST_CASE("ply: texnumber gives faces one of several textures, and -1 none") {
     CHECK(l.mesh(0).colors.empty()); // the texture tells
     CHECK(l.mesh(2).colors.size() == 3);
     CHECK(l.mesh(2).positions.size() == 3);
-    CHECK(l.said("vertex colours beside a texture are left out"));
+    CHECK(l.reports("vertex colours are left out"));
 }
 
-TEST_CASE("ply: what of textures cannot be used is said") {
+TEST_CASE("ply: unusable textures are reported") {
     const std::string face = "element face 1\n" + kList;
     const Loaded without_uv = load(kStart + kRed + kVertices + face + "end_header\n" + kSquare + "4 0 1 2 3\n");
-    CHECK(without_uv.said("a.ply:3: 1 texture left out"));
+    CHECK(without_uv.reports("a.ply:3: 1 texture left out"));
     CHECK(without_uv.scene.materials[0].base_color == grey(0.5f));
     const Loaded missing = load(kStart + "comment TextureFile gone.png\n" + kVertices + kVertexUv + face +
                                 "end_header\n" + kSquareUv + "4 0 1 2 3\n");
-    CHECK(missing.said("there is no texture gone.png"));
+    CHECK(missing.reports("there is no texture gone.png"));
     CHECK(missing.scene.materials[0].base_color == grey(0.5f));
     const Loaded wild = load(kStart + kRed + kVertices + kVertexUv + face + "property uchar texnumber\nend_header\n" +
                              kSquareUv + "4 0 1 2 3 7\n");
-    CHECK(wild.said("1 face of a texture that is not in the header"));
+    CHECK(wild.reports("1 face with a texture that the header does not list"));
     CHECK(wild.texel(0) == std::array<int, 3>{0, 0, 0});
     const Loaded plain = load(kStart + kVertices + kVertexUv + face + "end_header\n" + kSquareUv + "4 0 1 2 3\n");
     CHECK(plain.messages.all().empty());
@@ -140,13 +140,13 @@ TEST_CASE("ply: what of textures cannot be used is said") {
     CHECK(grey_only.messages.all().empty());
 }
 
-TEST_CASE("ply: more numbers on a line than the header says are left out, with one warning") {
+TEST_CASE("ply: excess numbers on a line are left out with one warning") {
     const std::string head = kStart + kVertices + "element face 2\n" + kList + "end_header\n";
     const Loaded l = load(head + "0 0 0 255 128\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 2 3 0 255 0\n");
     CHECK(l.mesh(0).indices == std::vector<uint32_t>{0, 1, 2, 0, 2, 3});
     CHECK(l.mesh(0).positions[1] == Vec3{1, 0, 0});
     REQUIRE(l.messages.all().size() == 1);
-    CHECK(l.said("a.ply:10: 3 lines with more numbers"));
+    CHECK(l.reports("a.ply:10: 3 lines with more numbers"));
     // Elements that share lines have none of their own.
     const Loaded packed = load(head + "0 0 0 1 0 0 1 1 0\n0 1 0 3 0 1 2 3 0 2 3\n");
     CHECK(packed.mesh(0).indices == std::vector<uint32_t>{0, 1, 2, 0, 2, 3});
@@ -156,11 +156,11 @@ TEST_CASE("ply: more numbers on a line than the header says are left out, with o
     CHECK(broken.messages.all().empty());
 }
 
-TEST_CASE("ply: the line of Blender 2.4 and old Assimp without the word comment is taken as one") {
+TEST_CASE("ply: the line of Blender 2.4 and old Assimp without the word comment is read as a comment") {
     const std::string rest = kVertices + "element face 1\n" + kList + "end_header\n" + kSquare + "4 0 1 2 3\n";
     const Loaded l = load(kStart + "Created by Blender3D 241 - www.blender.org, source file: bust.blend\n" + rest);
     CHECK(l.mesh(0).triangle_count() == 2);
-    CHECK(l.said("a.ply:3: a header line that is not understood"));
+    CHECK(l.reports("a.ply:3: an unknown header line"));
     const std::string binary = "ply\nformat binary_little_endian 1.0\n" + kVertices + "Created by nobody\n";
     CHECK_THROWS_AS(load(binary + "element face 1\n" + kList + "end_header\n" + std::string(65, '\0')),
                     Error); // a property?

@@ -72,7 +72,7 @@ constexpr float kNoisy = 1e4f, kExact = 0; // variances
 
 } // namespace
 
-TEST_CASE("a pass of the filter mixes light of one surface, but not over edges of object, normal, plane or light") {
+TEST_CASE("a filter pass mixes light of one surface, but not across edges of object, normal, plane or light") {
     Wall one;
     const auto mixed = [&](Wall& wall, float variance) {
         return filter_once(wall, halves(1, 3, variance), halves(1, 3, variance), 1);
@@ -97,7 +97,7 @@ TEST_CASE("a pass of the filter mixes light of one surface, but not over edges o
     }
 }
 
-TEST_CASE("a pass of the filter mixes gloss of like widths alone, and sharp gloss only from near by") {
+TEST_CASE("a filter pass mixes gloss of similar widths only, and sharp gloss only from nearby pixels") {
     Wall wall;
     wall.set_right({{0, 0, 1}, 0.2f, 5, 7});
     const Filtered apart = filter_once(wall, halves(1, 3, kNoisy), halves(1, 3, kNoisy), 1);
@@ -114,7 +114,7 @@ TEST_CASE("a pass of the filter mixes gloss of like widths alone, and sharp glos
     CHECK(mixed_from(0.001f, 4, kNoisy) > 1.04f); // noise is averaged
 }
 
-TEST_CASE("bumps keep light apart that is known, but not noise") {
+TEST_CASE("bumps separate reliable light, but not noise") {
     Wall wall;
     const float tilt = 0.4f; // 1 - cosine 0.08
     wall.set_right({normalize(Vec3{tilt, 0, 1}), 1, 5, 7});
@@ -127,7 +127,7 @@ TEST_CASE("bumps keep light apart that is known, but not noise") {
     CHECK(mixed(kInfinity) > 1.01f);
 }
 
-TEST_CASE("variances go by squares of the weights, and lead by their mean about a pixel") {
+TEST_CASE("variances are filtered by squared weights, and the filter uses their mean around a pixel") {
     Wall wall;
     const Filtered even = filter_once(wall, halves(1, 1, 2), halves(1, 1, 2), 2);
     CHECK(even.diffuse[kLeftOfBorder].w ==
@@ -161,7 +161,7 @@ Filtered first_means(uint32_t pixel, float brightest, bool limits) {
 
 } // namespace
 
-TEST_CASE("a sample far brighter than all around it counts for 64 times the brightest of them, if limits are wanted") {
+TEST_CASE("firefly clamping limits a sample to 64 times its brightest neighbour") {
     for (const uint32_t pixel : {kLeftOfBorder, 0u, kStagePixels - 1}) { // in the middle, and in corners
         CAPTURE(pixel);
         const Filtered limited = first_means(pixel, 1000, true);
@@ -202,7 +202,7 @@ Held hold(Wall& wall, float left, float right, float deviation, float frames, bo
 
 } // namespace
 
-TEST_CASE("long means are held within recent ones of the same surface and what single frames stray by") {
+TEST_CASE("history clamping limits long means to the range of recent ones of the same surface") {
     Wall wall;
     const Held held = hold(wall, 1, 1, 0, 32, true);
     CHECK(held.diffuse.x == doctest::Approx(1));
@@ -220,7 +220,7 @@ TEST_CASE("long means are held within recent ones of the same surface and what s
     }
 }
 
-TEST_CASE("variance is that over time, or over neighbours where few frames know the place") {
+TEST_CASE("variance is temporal, or spatial where the history is short") {
     Wall wall;
     CHECK(hold(wall, 3, 3, 2, 32, false).diffuse_out.w == doctest::Approx(4 * 4.0 / 32));
     CHECK(hold(wall, 3, 3, 2, 32, false).gloss_out.w == doctest::Approx(4 * 4.0 / 32));
@@ -258,7 +258,8 @@ float shown_after(float own, float around, float old, bool is_near_moving) {
 
 } // namespace
 
-TEST_CASE("shown colours are means over time held within those around, and edges move with what is nearest") {
+TEST_CASE(
+    "displayed colours are temporal means clamped to their neighbourhood, and edges move with the nearest surface") {
     // Around .5 with one of .9: mean .5444, deviation .1257.
     CHECK(shown_after(0.9f, 0.5f, 0.5f, false) == doctest::Approx(0.5 + 0.1 * 0.4));
     CHECK(shown_after(0.9f, 0.5f, 0.1f, false) == doctest::Approx(0.4187 + 0.1 * (0.9 - 0.4187)).epsilon(0.001));
@@ -284,7 +285,7 @@ float enlarged(const Guide& right, uint32_t fine_object = 7) {
         place(kStagePixels, Float4{float_of(fine_object), 0, 0, 0}), normal(kStagePixels, Float4{0, 0, 1, 5}),
         white(kStagePixels, Float4{1, 1, 1, 1}), picture(kStagePixels), met(kStagePixels, Float4{0, 0, 0, 1});
     NoisyFrameView features;
-    features.light = light.data(), features.emission = met.data(), features.place = place.data();
+    features.light = light.data(), features.emission = met.data(), features.hit = place.data();
     features.normal = normal.data(), features.albedo = white.data(), features.gloss = black.data();
     const UpsamplePicture stage = {
         features,
@@ -312,17 +313,17 @@ TEST_CASE("upsampling takes light from coarse pixels of the same object, normal 
     CHECK(enlarged({{0, 0, 1}, 1, 5, 8}, 9) > 1.2f); // none shows it: all are the best guess
 }
 
-TEST_CASE("a change of light is known where both pictures show the same surface, and spreads over that alone") {
+TEST_CASE("temporal gradients exist where both pictures show the same surface and spread over that surface only") {
     std::vector<Float4> light(4, Float4{2, 2, 2, 1}), black(4, Float4{0, 0, 0, 0}), white(4, Float4{1, 1, 1, 1}),
         met(4, Float4{0, 0, 0, 1}), place(4, Float4{float_of(7), 0, 0, 0}), normal(4, Float4{0, 0, 1, 5});
     std::vector<Float4> other_place = place, other_normal = normal, guide(4), was(4), is(4);
     other_place[1].x = float_of(8);
     other_normal[2].w = 9;
     NoisyFrameView after;
-    after.light = light.data(), after.emission = met.data(), after.place = place.data();
+    after.light = light.data(), after.emission = met.data(), after.hit = place.data();
     after.normal = normal.data(), after.albedo = white.data(), after.gloss = black.data();
     NoisyFrameView before = after;
-    before.place = other_place.data(), before.normal = other_normal.data();
+    before.hit = other_place.data(), before.normal = other_normal.data();
     const CompareLight compare = {before, after, guide.data(), was.data(), is.data()};
     for (uint32_t i = 0; i < 4; ++i) compare(i);
     CHECK(object_of(guide[0]) == 7);

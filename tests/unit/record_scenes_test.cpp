@@ -67,7 +67,7 @@ TEST_CASE("a mesh in the open box is sixteen times finer, still closed, and stan
     CHECK(most - least > 0.005f); // it is rough
 }
 
-TEST_CASE("the forest has its triangles, all of them in its place, for any number of threads") {
+TEST_CASE("the forest has the same triangles within its bounds for any number of threads") {
     CHECK(ForestSettings{}.triangle_count() == 8223200);
     const ForestSettings small = {.ground_quads = 40, .trees = 30, .leaves = 200};
     const Mesh mesh = make_forest(small);
@@ -94,7 +94,7 @@ TEST_CASE("the forest has its triangles, all of them in its place, for any numbe
     set_thread_count(before);
 }
 
-TEST_CASE("scenes of the record have the triangles stated") {
+TEST_CASE("scenes of the record have the stated number of triangles") {
     const auto sponza = test_scene("crytek-sponza/sponza.obj"), bunny = test_scene("stanford/bunny.obj");
     for (const RecordScene& record : the_record().scenes) {
         const std::string_view name = record.name;
@@ -111,7 +111,7 @@ TEST_CASE("scenes of the record have the triangles stated") {
     }
 }
 
-TEST_CASE("a scene whose file is not there is refused by the file's name") {
+TEST_CASE("a scene whose file is missing is refused with the file's name") {
     Messages messages;
     for (const char* name : {"sponza", "bunny"}) {
         const RecordScene& record = *find_named(the_record().scenes, name);

@@ -38,14 +38,14 @@ std::vector<BvhTriangle> deformed(std::vector<BvhTriangle> triangles) {
 
 } // namespace
 
-TEST_CASE("a refitted tree is sound and finds what testing every triangle finds, by each builder, on nasty meshes") {
-    for (const NastyMesh& nasty : nasty_meshes()) {
-        CAPTURE(nasty.name);
-        const std::vector<BvhTriangle> before = numbered(nasty.triangles), after = deformed(before);
-        NastyMesh mesh = nasty;
+TEST_CASE("a refitted tree of each builder is valid and matches brute force on stress meshes") {
+    for (const StressMesh& stress : stress_meshes()) {
+        CAPTURE(stress.name);
+        const std::vector<BvhTriangle> before = numbered(stress.triangles), after = deformed(before);
+        StressMesh mesh = stress;
         mesh.triangles = after;
-        mesh.centre = {nasty.centre.y + 0.25f * nasty.centre.z, -nasty.centre.x, 0.5f * nasty.centre.z};
-        const std::vector<Ray> rays = nasty_rays(500, mesh, 41);
+        mesh.centre = {stress.centre.y + 0.25f * stress.centre.z, -stress.centre.x, 0.5f * stress.centre.z};
+        const std::vector<Ray> rays = stress_rays(500, mesh, 41);
         const std::vector<Hit> hits = hits_by_brute_force(after, rays, AcceptAll{});
         for (const BvhBuilder builder : kValuesOf<BvhBuilder>) {
             CAPTURE(std::string(name_of(builder)));
@@ -58,7 +58,7 @@ TEST_CASE("a refitted tree is sound and finds what testing every triangle finds,
     }
 }
 
-TEST_CASE("a tree that is refitted to where it was is the tree that was built") {
+TEST_CASE("a tree refitted to unmoved triangles equals the built one") {
     const std::vector<BvhTriangle> triangles = triangles_of(make_torus(80, 60));
     for (const BvhBuilder builder : {BvhBuilder::Binned, BvhBuilder::Reinsertion}) {
         const Bvh built = build_bvh(builder, triangles);
@@ -75,7 +75,7 @@ TEST_CASE("a tree that is refitted to where it was is the tree that was built") 
     set_thread_count(0);
 }
 
-TEST_CASE("a tree is not refitted to other triangles, and builders that cut them say why theirs are not at all") {
+TEST_CASE("a tree is not refitted to other triangles, and trees with split triangles are refused with the reason") {
     const std::vector<BvhTriangle> triangles = triangles_of(make_torus(20, 10));
     std::vector<BvhTriangle> fewer = triangles;
     fewer.pop_back();
@@ -84,7 +84,7 @@ TEST_CASE("a tree is not refitted to other triangles, and builders that cut them
         CHECK(why_no_refit(builder).has_value() == cuts_triangles(builder));
 }
 
-TEST_CASE("an update shares trees that stay, refits those that are deformed, and builds anew those refits spoil") {
+TEST_CASE("an update shares unchanged trees, refits deformed ones and rebuilds those that refitting degraded") {
     const std::vector<BvhTriangle> torus = triangles_of(make_torus(40, 30));
     SceneTriangles before;
     before.baked = torus;

@@ -9,7 +9,7 @@
 
 using namespace pertev;
 
-TEST_CASE("boxes above where a subtree is put grow, though the box beside it does not") {
+TEST_CASE("boxes above a reinserted subtree grow even if its sibling's box does not") {
     // x is as large as x and s together, and as x and t: the joint over x has one box before and after its move to t.
     BinaryTree tree;
     const auto add_leaf = [&](Vec3 lower, Vec3 upper) {

@@ -19,40 +19,40 @@ std::string in_brackets(const std::string& text) {
 
 } // namespace
 
-TEST_CASE("an error keeps its parts, and its text is made of them") {
+TEST_CASE("an error keeps its parts and makes its text of them") {
     const auto of_setting = test::thrown_error(
         [] { throw Error(ErrorCode::OverLimit, "max_depth", "20", "with `integrator=cast` at most 12"); });
     REQUIRE(test::is_about(of_setting, ErrorCode::OverLimit, "max_depth", "20"));
     CHECK(of_setting->reason() == "with `integrator=cast` at most 12");
     CHECK(of_setting->what() == std::string("`max_depth=20`: with `integrator=cast` at most 12"));
-    CHECK_FALSE(of_setting->place());
-    const Error of_line(ErrorCode::BadInput, Place{"a.obj", 12}, "no face");
+    CHECK_FALSE(of_setting->location());
+    const Error of_line(ErrorCode::BadInput, FileLocation{"a.obj", 12}, "no face");
     CHECK(of_line.what() == std::string("a.obj:12: no face"));
-    CHECK(of_line.place() == Place{"a.obj", 12});
+    CHECK(of_line.location() == FileLocation{"a.obj", 12});
     CHECK(of_line.setting().empty());
-    const Error of_value(ErrorCode::BadInput, Place{.file = "a.gltf", .pointer = "/nodes/3"}, "no node");
+    const Error of_value(ErrorCode::BadInput, FileLocation{.file = "a.gltf", .pointer = "/nodes/3"}, "no node");
     CHECK(of_value.what() == std::string("a.gltf: /nodes/3: no node"));
-    CHECK(Error(ErrorCode::BadInput, Place{.file = "a.gltf", .pointer = ""}, "empty").what() ==
+    CHECK(Error(ErrorCode::BadInput, FileLocation{.file = "a.gltf", .pointer = ""}, "empty").what() ==
           std::string("a.gltf: /: empty"));
-    CHECK(Error(ErrorCode::FileWrite, Place{"a.png"}, "full").what() == std::string("a.png: full"));
+    CHECK(Error(ErrorCode::FileWrite, FileLocation{"a.png"}, "full").what() == std::string("a.png: full"));
     CHECK(Error(ErrorCode::BadInput, "plain").what() == std::string("plain"));
 }
 
 TEST_CASE("a message keeps the parts of an error, and repeats of it are counted") {
     Messages messages;
-    const Error error(ErrorCode::BadInput, Place{"a.obj", 12}, "no face");
+    const Error error(ErrorCode::BadInput, FileLocation{"a.obj", 12}, "no face");
     for (int i = 0; i < 2; ++i) messages.leave_out(error.remark().and_then("; it is left out"));
-    messages.leave_out({Place{"a.obj", 13}, "no face; it is left out"});
+    messages.leave_out({FileLocation{"a.obj", 13}, "no face; it is left out"});
     REQUIRE(messages.all().size() == 2);
     CHECK(messages.all()[0].times == 2);
-    CHECK(messages.all()[0].remark.place == error.place());
+    CHECK(messages.all()[0].remark.location == error.location());
     CHECK(messages.all()[0].remark.reason == "no face; it is left out");
     Messages others;
     others.add_all(messages);
-    CHECK(others.all()[1].remark.place == Place{"a.obj", 13});
+    CHECK(others.all()[1].remark.location == FileLocation{"a.obj", 13});
 }
 
-TEST_CASE("settings between backquotes are phrased; all else of a text stays") {
+TEST_CASE("settings between backquotes are phrased, and the rest of a text is unchanged") {
     CHECK(in_brackets("say `fov`, or `projection=orthographic`") == "say [fov], or [projection orthographic]");
     CHECK(in_brackets("`eye=0,1,3` `lpe=a=LE`") == "[eye 0,1,3] [lpe a=LE]");
     CHECK(in_brackets("`` `Ply` `a b` `open `fov` last`") == "`` `Ply` `a b` `open [fov] last`");

@@ -4,7 +4,7 @@
 
 using namespace pertev;
 
-TEST_CASE("a picture without a size is 720 pixels high, in the shape that the scene's camera asks for") {
+TEST_CASE("a picture without a size is 720 pixels high with the aspect of the scene's camera") {
     RenderSettings settings;
     settings.width = 1, settings.height = 1;
     set_default_size(settings, nullptr);
@@ -23,7 +23,7 @@ TEST_CASE("a picture without a size is 720 pixels high, in the shape that the sc
     CHECK(settings.width == 8192);
 }
 
-TEST_CASE("a scene is prepared with the tracers that a session of the settings takes") {
+TEST_CASE("a scene is prepared for the tracers of a session with these settings") {
     RenderSettings settings;
     for (const bool on_cuda : {false, true}) {
         CHECK(tracers_of(settings, on_cuda) == default_tracers(on_cuda));

@@ -30,7 +30,7 @@ TEST_CASE("reprojecting a pixel's point returns the pixel") {
     }
 }
 
-TEST_CASE("a virtual point at no distance behind the surface moves as the surface does") {
+TEST_CASE("a virtual point at distance 0 behind the surface moves as the surface does") {
     const FrameCameras cameras = {make_camera_view(camera_at({1, 2, 3}), 640, 360),
                                   make_camera_view(camera_at({1.1f, 2, 3}), 640, 360), 640, 360};
     const Vec2 pixel = {200.5f, 90.5f};

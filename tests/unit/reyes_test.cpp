@@ -139,7 +139,7 @@ Diced dice(const HostMesh& host, const Camera& camera, uint32_t width, uint32_t 
         ++diced.count;
         diced.ways.insert({piece.triangle, piece.way});
         for (int k = 0; k < 3; ++k) {
-            const PinholePoint &a = p[k].place, &b = p[(k + 1) % 3].place;
+            const PinholePoint &a = p[k].position, &b = p[(k + 1) % 3].position;
             const double dx = pass.camera.column_of(a.x / a.w) - pass.camera.column_of(b.x / b.w);
             const double dy = pass.camera.row_of(a.y / a.w) - pass.camera.row_of(b.y / b.w);
             diced.longest = std::max(diced.longest, std::sqrt(dx * dx + dy * dy));
@@ -152,7 +152,7 @@ Diced dice(const HostMesh& host, const Camera& camera, uint32_t width, uint32_t 
 
 } // namespace
 
-TEST_CASE("no edge of a micropolygon is longer than the shading rate, displaced or not, near the eye or far") {
+TEST_CASE("no edge of a micropolygon exceeds the shading rate, displaced or not, at any distance") {
     const auto maps = random_heights(0.2f);
     for (const HeightMap* map : {static_cast<const HeightMap*>(nullptr), &maps->front()}) {
         for (const double rate : {4.0, 1.0}) {
@@ -169,7 +169,7 @@ TEST_CASE("no edge of a micropolygon is longer than the shading rate, displaced 
     }
 }
 
-TEST_CASE("micropolygons of a closed mesh share every edge with one other, to the last bit, displaced too") {
+TEST_CASE("micropolygons of a closed mesh share every edge with one other to the bit, even displaced ones") {
     const auto maps = random_heights(0.3f);
     for (const HeightMap* map : {static_cast<const HeightMap*>(nullptr), &maps->front()}) {
         const HostMesh sphere(seamless_sphere(), map);
@@ -179,7 +179,7 @@ TEST_CASE("micropolygons of a closed mesh share every edge with one other, to th
     }
 }
 
-TEST_CASE("nothing shines through a closed displaced sphere, seen from within") {
+TEST_CASE("no light leaks through a closed displaced sphere seen from inside") {
     Scene scene = scene_of(seamless_sphere());
     scene.environment = Environment{};
     scene.environment->scale = {1, 1, 1};
@@ -197,7 +197,7 @@ TEST_CASE("nothing shines through a closed displaced sphere, seen from within") 
     }
 }
 
-TEST_CASE("micropolygons cover what rays through the same places hit, at the same depth") {
+TEST_CASE("micropolygons have the coverage and depth of rays through the same samples") {
     const Scene scene = test::make_mixed_scene();
     Queue queue = test::requested_queue();
     RenderSettings settings = reyes_settings(500, 500);
@@ -257,7 +257,7 @@ TEST_CASE("a plane displaced by a ramp is the tilted plane, in depth and normal"
     }
 }
 
-TEST_CASE("samples of a pixel lie in its filter at places of its own; a picture is their mean") {
+TEST_CASE("each pixel has its own sample positions within its filter, and a picture is their mean") {
     Scene scene;
     test::add(scene, test::sheet({-1, 0, 0}, {1, 0, 0}, {0, 9, 0}), {{.emission = {1, 1, 1}}, "lamp"});
     Queue queue = test::requested_queue();
@@ -283,7 +283,7 @@ TEST_CASE("samples of a pixel lie in its filter at places of its own; a picture 
     CHECK(column().second == doctest::Approx(0.3).epsilon(0.01));
 }
 
-TEST_CASE("micropolygons are lit as raster lights pixels, each in one colour") {
+TEST_CASE("micropolygons are lit as raster lights pixels, each with one colour") {
     Scene scene = test::make_furnace_scene(0.7f); // a smooth sphere
     scene.environment.reset();
     scene.materials.front().kind = MaterialKind::MetallicRoughness;
@@ -313,7 +313,7 @@ TEST_CASE("micropolygons are lit as raster lights pixels, each in one colour") {
     CHECK(fine_colors.size() > 2 * coarse_colors.size());
 }
 
-TEST_CASE("pictures of micropolygons do not depend on threads or passes, and layers are those of the first surface") {
+TEST_CASE("pictures of micropolygons do not depend on threads or passes, and layers describe the first surface") {
     const Scene scene = test::make_mixed_scene(); // cut-outs, blended sheets, hidden backs, instances
     RenderSettings settings = reyes_settings(67, 45);
     settings.samples = 3;
@@ -341,27 +341,27 @@ TEST_CASE("pictures of micropolygons do not depend on threads or passes, and lay
     }
 }
 
-TEST_CASE("of many samples that go at once the first few come first, and then as many as there are") {
+TEST_CASE("many samples are rendered as a few first and then as many as fit") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     const RenderSettings settings = reyes_settings(24, 16);
     Session session(queue, prepared, test::mixed_scene_camera(), settings);
-    std::vector<uint32_t> told;
+    std::vector<uint32_t> reported;
     const auto keep = [&](const RenderProgress& now) {
-        if (told.empty() || now.samples_done > told.back()) told.push_back(now.samples_done);
+        if (reported.empty() || now.samples_done > reported.back()) reported.push_back(now.samples_done);
         return now.samples_done < 32;
     };
     const uint32_t added = session.render(8388607, keep);
-    REQUIRE(told.size() >= 2);
-    CHECK(added == told.back());
-    const std::size_t first = told.front() == 0 ? 1 : 0; // it was asked within the pass
-    CHECK(told.at(first) == 16);
-    CHECK(told.at(first + 1) >= 32);
+    REQUIRE(reported.size() >= 2);
+    CHECK(added == reported.back());
+    const std::size_t first = reported.front() == 0 ? 1 : 0; // it was asked within the pass
+    CHECK(reported.at(first) == 16);
+    CHECK(reported.at(first + 1) >= 32);
 }
 
-TEST_CASE("heights that fold surfaces over each other without end are refused, and no sample is left half done") {
+TEST_CASE("heights that fold surfaces without bound are refused, and no sample is left incomplete") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -376,7 +376,7 @@ TEST_CASE("heights that fold surfaces over each other without end are refused, a
     CHECK(test::mean_of(session.picture()) == 0);
 }
 
-TEST_CASE("reyes takes the memory that it says beforehand, for millions of micropolygons too") {
+TEST_CASE("memory of reyes equals its prediction, even for millions of micropolygons") {
     const Scene scene = scene_of(test::sheet({0, 0, 0}, {5, 0, 0}, {0, 5, 0}));
     const Camera camera = looking({0, 0, 1}, {0, 0, 0});
     Queue queue = test::requested_queue();
@@ -395,7 +395,7 @@ TEST_CASE("reyes takes the memory that it says beforehand, for millions of micro
     CHECK(std::ranges::all_of(picture.pixels, [](float x) { return std::abs(x - 0.5f) < 1e-6f; }));
 }
 
-TEST_CASE("reyes refuses a lens and a scene that it would show as black") {
+TEST_CASE("reyes refuses a lens and a scene that it would render black") {
     Scene scene = test::make_furnace_scene(0.5f);
     Camera camera;
     camera.aperture_radius = 0.1f;

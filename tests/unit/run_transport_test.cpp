@@ -66,7 +66,7 @@ const TransportRow& row_named(const TransportScene& scene, std::string_view name
 
 } // namespace
 
-TEST_CASE("path's error falls as one over its samples, and the reference's noise is what it is") {
+TEST_CASE("path tracing's error falls as one over its samples, and the reference's noise is measured") {
     SmallRun small;
     small.settings.integrators = {"path", "hybrid", "cast"};
     double last_share = 0;
@@ -106,7 +106,7 @@ TEST_CASE("path's error falls as one over its samples, and the reference's noise
     CHECK(scene.pictures.size() == 3);
 }
 
-TEST_CASE("radiosity takes part with solutions of growing detail, whose time is that of solving too") {
+TEST_CASE("radiosity takes part with solutions of growing detail, whose time includes solving") {
     SmallRun small;
     small.settings.integrators = {"path", "radiosity"};
     small.settings.repetitions = 2;
@@ -138,7 +138,7 @@ TEST_CASE("radiosity takes part with solutions of growing detail, whose time is 
     CHECK(scene.pictures.size() == 3);
 }
 
-TEST_CASE("what irradiance caching may take of the host's memory stands beside the device's, and others take none") {
+TEST_CASE("the table has the host memory of irradiance caching beside the device's, and others use none") {
     SmallRun small;
     small.settings.integrators = {"path", "irradiance_cache"};
     small.settings.reference_samples = 2;
@@ -152,7 +152,7 @@ TEST_CASE("what irradiance caching may take of the host's memory stands beside t
     CHECK(row_named(scene, "path").host_bytes == 0);
 }
 
-TEST_CASE("irradiance caching makes its records once, in the time that is told, and goes on by what samples take") {
+TEST_CASE("irradiance caching makes its records once within the reported time and continues by the time of samples") {
     SmallRun small;
     small.settings.integrators = {"irradiance_cache"};
     small.settings.reference_samples = 2;
@@ -176,10 +176,10 @@ TEST_CASE("irradiance caching makes its records once, in the time that is told, 
     picture.integrator = IntegratorKind::IrradianceCache;
     picture.width = picture.height = 64;
     Session session(small.queue, prepared, small.camera, picture);
-    int told = 0;
-    warm_up(session, [&] { ++told; });
+    int reported = 0;
+    warm_up(session, [&] { ++reported; });
     CHECK(session.history().samples == 0);
-    CHECK(told == 2); // at its start, and a moment later
+    CHECK(reported == 2); // at its start, and a moment later
     // No record has been made yet. The number of calls depends on the clock, but is at least two per round.
     const Making first = render_one(session);
     CHECK(first.times_requested >= 2 * static_cast<int>(kOvertureRounds));
@@ -197,7 +197,7 @@ TEST_CASE("irradiance caching makes its records once, in the time that is told, 
     CHECK(session.history().samples == 0);
 }
 
-TEST_CASE("the time of a solution's picture is that of solving and rendering, and its patches halve") {
+TEST_CASE("the time of a solution's picture includes solving and rendering, and patch sizes halve") {
     SmallRun small;
     Messages messages;
     const PreparedScene prepared = prepare_scene(small.scene, {}, messages);
@@ -223,7 +223,7 @@ TEST_CASE("the time of a solution's picture is that of solving and rendering, an
     CHECK(fine.seed == 3);
 }
 
-TEST_CASE("a scene without diffuse surfaces is refused to radiosity in its row") {
+TEST_CASE("a scene without diffuse surfaces is refused in radiosity's row") {
     SmallRun small;
     small.settings.integrators = {"path", "radiosity"};
     small.settings.reference_samples = 2;
@@ -237,7 +237,7 @@ TEST_CASE("a scene without diffuse surfaces is refused to radiosity in its row")
     CHECK_FALSE(row_named(emitters, "path").repetitions.empty());
 }
 
-TEST_CASE("an interrupt in the middle of a solution keeps those before it") {
+TEST_CASE("an interrupt during a solution keeps the previous ones") {
     SmallRun small;
     small.settings.integrators = {"radiosity"};
     small.settings.reference_samples = 2;
@@ -249,7 +249,7 @@ TEST_CASE("an interrupt in the middle of a solution keeps those before it") {
     CHECK(scene.rows[0].repetitions[0].size() == 2);
 }
 
-TEST_CASE("an interrupt keeps the turns before it, and of the first what it has") {
+TEST_CASE("an interrupt keeps the previous repetitions, or the finished part of the first") {
     SmallRun small;
     small.settings.reference_samples = 2;
     small.settings.max_samples = 8;
@@ -279,7 +279,7 @@ TEST_CASE("the budget ends a repetition before the samples that would not fit") 
     for (const Repetition& repetition : scene.rows[0].repetitions) CHECK(repetition.size() == 1);
 }
 
-TEST_CASE("a reference that cannot be one is refused before anything is rendered") {
+TEST_CASE("an unsuitable reference is refused before anything is rendered") {
     SmallRun small;
     small.settings.reference_file = "given.exr";
     const auto message = [&](Image reference) {

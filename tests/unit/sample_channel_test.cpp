@@ -48,7 +48,7 @@ constexpr double kQuarter = 1.5707963267948966;
 
 } // namespace
 
-TEST_CASE("steps hold until the next key, and the first and the last value hold for ever") {
+TEST_CASE("steps hold until the next key, and the first and the last value hold beyond the ends") {
     const auto steps = channel(AnimatedPart::Translation, Interpolation::Step, {1, 2, 4}, {1, 2, 3, 4, 5, 6, 7, 8, 9});
     CHECK(at<3>(steps, -5) == Three{1, 2, 3});
     CHECK(at<3>(steps, 1) == Three{1, 2, 3});
@@ -59,7 +59,7 @@ TEST_CASE("steps hold until the next key, and the first and the last value hold 
     CHECK(at<3>(steps, 1e300) == Three{7, 8, 9});
 }
 
-TEST_CASE("lines go from key to key") {
+TEST_CASE("linear interpolation goes from key to key") {
     const auto lines = channel(AnimatedPart::Scale, Interpolation::Linear, {1, 2, 4}, {0, 0, 0, 8, 4, -8, 0, 0, 1});
     CHECK(at<3>(lines, 0) == Three{0, 0, 0});
     CHECK(at<3>(lines, 1.25) == Three{2, 1, -2});
@@ -71,7 +71,7 @@ TEST_CASE("lines go from key to key") {
     for (const double time : {0.0, 1.0, 2.0}) CHECK(at<3>(point, time) == Three{1, 2, 3});
 }
 
-TEST_CASE("cubic splines go through their keys with their tangents, which are a second") {
+TEST_CASE("cubic splines pass through their keys with their tangents, which are per second") {
     // Value 0 with tangent 1 a second, then, 4 s later, value 2 with tangent 0: by Hermite's basis at the middle
     // 0.5 * 0 + 4 * 0.125 * 1 + 0.5 * 2 - 4 * 0.125 * 0 = 1.5; at a quarter 4 * 0.140625 + 0.15625 * 2 = 0.875.
     const auto spline =
@@ -90,7 +90,7 @@ TEST_CASE("cubic splines go through their keys with their tangents, which are a 
     CHECK(at<2>(weights, 0.5) == std::array<float, 2>{2, 4});
 }
 
-TEST_CASE("rotations go the shorter way at a constant speed") {
+TEST_CASE("rotations take the shorter way at constant speed") {
     CHECK(close(slerp(about_z(0), about_z(kQuarter), 1.0f / 3), about_z(kQuarter / 3)));
     CHECK(close(slerp(about_z(0), about_z(kQuarter), 0), about_z(0)));
     CHECK(close(slerp(about_z(0), about_z(kQuarter), 1), about_z(kQuarter)));
@@ -109,7 +109,7 @@ TEST_CASE("rotations go the shorter way at a constant speed") {
     CHECK(rotation_at(turn, -1) == Vec4{0, 0, 0, 1});
 }
 
-TEST_CASE("a rotation by cubic splines is unit, and the key's before where the spline goes through 0") {
+TEST_CASE("a rotation by cubic splines is unit, and equals the previous key's where the spline is 0") {
     const auto turn = channel(AnimatedPart::Rotation, Interpolation::CubicSpline, {0, 1},
                               {0, 0, 0, 0, /**/ 0, 0, 0, 1, /**/ 0, 0, 0, 0, //
                                0, 0, 0, 0, /**/ 0, 0, 1, 0, /**/ 0, 0, 0, 0});
@@ -120,7 +120,7 @@ TEST_CASE("a rotation by cubic splines is unit, and the key's before where the s
     CHECK(rotation_at(through, 0.5) == Vec4{0, 0, 0, 1});
 }
 
-TEST_CASE("many keys late in a long animation keep their times apart") {
+TEST_CASE("many keys late in a long animation keep distinct times") {
     std::vector<float> times, values;
     for (int i = 0; i < 1000; ++i) {
         times.push_back(3600 + static_cast<float>(i) / 64);

@@ -98,7 +98,7 @@ TEST_CASE("the first 4^k samples of a pixel have one point in each box of four d
     }
 }
 
-TEST_CASE("digits are multiplied as in the field of four") {
+TEST_CASE("digits are multiplied as in the field of four elements") {
     const uint32_t all = 0x9c3fu << 3 ^ 0xa5071b6du;
     const auto times_w = [](uint32_t x) { return multiply_digits(FieldElement::W, x); };
     CHECK(times_w(times_w(all)) == multiply_digits(FieldElement::WSquared, all));
@@ -138,7 +138,7 @@ TEST_CASE("numbers are strictly between 0 and 1") {
     }
 }
 
-TEST_CASE("the scrambling of a digit depends on earlier digits alone, and keeps apart what differs") {
+TEST_CASE("the scrambling of a digit depends only on earlier digits and is a permutation") {
     uint32_t wrong = 0;
     for (const uint32_t key : {0u, 1u, 0x9e3779b9u, 0xffffffffu}) {
         for (uint32_t i = 0; i < 2000; i++) {
@@ -152,7 +152,7 @@ TEST_CASE("the scrambling of a digit depends on earlier digits alone, and keeps 
     CHECK(wrong == 0);
 }
 
-TEST_CASE("the numbers are the ones recorded") {
+TEST_CASE("the numbers match the recorded ones") {
     uint64_t sum = 0;
     for (const SamplerKind kind : kKinds) {
         for (uint32_t i = 0; i < 20'000; i++) {

@@ -70,26 +70,26 @@ void check_shows_all(const Scene& scene, const Camera& camera, float aspect) {
 
 } // namespace
 
-TEST_CASE("rays find the nearest triangle and its side, also through a mirrored instance") {
+TEST_CASE("rays find the nearest triangle and its side, even through a mirrored instance") {
     Scene scene;
     add_box(scene, {-1, -1, -1}, {1, 1, 1}, kAll, false);
-    const LookRay ray = {{-5, 0.2f, 0.3f}, {1, 0, 0}};
-    LookHit hit = cast_rays(scene, {&ray, 1})[0];
+    const SurveyRay ray = {{-5, 0.2f, 0.3f}, {1, 0, 0}};
+    SurveyHit hit = cast_rays(scene, {&ray, 1})[0];
     CHECK(hit.distance == doctest::Approx(4));
     CHECK(hit.is_front);
     scene.instances[0].world_from_local = compose(make_translation({2, 0, 0}), make_scale({-1, 2, 1}));
     hit = cast_rays(scene, {&ray, 1})[0];
     CHECK(hit.distance == doctest::Approx(6));
     CHECK(hit.is_front);
-    const LookRay inside = {{2, 0, 0}, {0, 1, 0}};
+    const SurveyRay inside = {{2, 0, 0}, {0, 1, 0}};
     hit = cast_rays(scene, {&inside, 1})[0];
     CHECK(hit.distance == doctest::Approx(2));
     CHECK(!hit.is_front);
-    const LookRay away = {{-5, 0, 0}, {-1, 0, 0}};
+    const SurveyRay away = {{-5, 0, 0}, {-1, 0, 0}};
     CHECK(!cast_rays(scene, {&away, 1})[0].is_hit());
 }
 
-TEST_CASE("of a sheet's two sides at one distance rays see the front, whichever triangle comes first") {
+TEST_CASE("rays see the front of a sheet with two sides at one distance, whichever triangle comes first") {
     for (const bool is_front_first : {true, false}) {
         for (const std::size_t between : {std::size_t{0}, std::size_t{20'000}}) { // the second: on another thread
             Scene scene;
@@ -105,15 +105,15 @@ TEST_CASE("of a sheet's two sides at one distance rays see the front, whichever 
             scene.meshes.push_back(std::move(mesh));
             scene.materials.emplace_back();
             scene.instances.push_back({.name = "sheet", .mesh = 0, .material = 0, .world_from_local = {}});
-            const LookRay ray = {{0, 0, 5}, {0, 0, -1}};
-            const LookHit hit = cast_rays(scene, {&ray, 1})[0];
+            const SurveyRay ray = {{0, 0, 5}, {0, 0, -1}};
+            const SurveyHit hit = cast_rays(scene, {&ray, 1})[0];
             CHECK(hit.distance == 5);
             CHECK(hit.is_front);
         }
     }
 }
 
-TEST_CASE("a solid thing is seen from outside and above, whole, at any shape of picture") {
+TEST_CASE("a solid object is seen completely from outside and above, at any aspect") {
     for (const Vec3 size : {Vec3{1, 1, 1}, Vec3{10, 0.1f, 3}, Vec3{1e-3f, 2e-3f, 1e-3f}, Vec3{1, 100, 1}}) {
         for (const float aspect : {16.0f / 9.0f, 1.0f, 0.5f}) {
             Scene scene;
@@ -128,7 +128,7 @@ TEST_CASE("a solid thing is seen from outside and above, whole, at any shape of 
     }
 }
 
-TEST_CASE("a square that hides its back is seen from its front, wherever that points") {
+TEST_CASE("a square with a hidden back is seen from its front, wherever that points") {
     for (const Vec3 front :
          {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}}) {
         CAPTURE(front.x);
@@ -146,14 +146,14 @@ TEST_CASE("a square that hides its back is seen from its front, wherever that po
         const Camera camera = make_default_camera(scene, 1, messages);
         check_shows_all(scene, camera, 1);
         CHECK(dot(normalize(eye_of(camera)), front) > 0.25f); // not at a grazing angle
-        const LookRay ray = {eye_of(camera), forward_of(camera)};
+        const SurveyRay ray = {eye_of(camera), forward_of(camera)};
         CHECK(cast_rays(scene, {&ray, 1}, Backs::Shown)[0].is_hit());
         scene.materials[0].double_sided = true; // now the front of glTF's models counts
         CHECK(forward_of(make_default_camera(scene, 1, messages)).z < -0.6f);
     }
 }
 
-TEST_CASE("walls of glass make no room, and what is hollow but solid from outside is none") {
+TEST_CASE("glass walls make no room, nor does a hollow object that is solid from outside") {
     Scene vase; // outside and inside of a hollow block, as modelled with a thickness
     add_box(vase, {-1, 0, -1}, {1, 3, 1}, kAll, false);
     add_box(vase, {-0.9f, 0.1f, -0.9f}, {0.9f, 2.9f, 0.9f}, kAll, true);
@@ -167,7 +167,7 @@ TEST_CASE("walls of glass make no room, and what is hollow but solid from outsid
     CHECK(!is_within(bounds_of(shoe), eye_of(make_default_camera(shoe, 1.5f, messages))));
 }
 
-TEST_CASE("a closed room, and a long court open at the top, is seen from inside along its length") {
+TEST_CASE("a closed room and a long court open at the top are seen from inside along their length") {
     for (const auto& sides : {kAll, kWithoutTop}) {
         for (const bool along_x : {true, false}) {
             Scene scene;
@@ -234,7 +234,7 @@ TEST_CASE("a scene without light gets a sky with a notice, one with any light ge
     }
 }
 
-TEST_CASE("what is unlit and a light of strength 0 light nothing; a scene that is all unlit needs no light") {
+TEST_CASE("unlit materials and lights of intensity 0 give no light, and a completely unlit scene needs none") {
     const auto gets_sky = [](const auto& change) {
         Scene scene;
         add_box(scene, {}, {1, 1, 1}, kAll, false);
@@ -254,7 +254,7 @@ TEST_CASE("what is unlit and a light of strength 0 light nothing; a scene that i
     CHECK(!gets_sky([](Scene& scene) { scene.lights.emplace_back().intensity = {0, 0, 0.1f}; }));
 }
 
-TEST_CASE("a closed room without light gets lamps inside it") {
+TEST_CASE("a closed room without light gets emitters inside it") {
     Scene scene;
     add_box(scene, {0, 0, 0}, {20, 6, 8}, kAll, true);
     Messages messages;

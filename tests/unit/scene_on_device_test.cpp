@@ -48,7 +48,7 @@ PreparedScene prepare(const Scene& scene) {
 
 } // namespace
 
-TEST_CASE("arrays of a part lie in one buffer at multiples of 256 bytes, and arrays may hold pointers to others") {
+TEST_CASE("arrays of a scene part lie in one buffer at multiples of 256 bytes and may hold pointers to others") {
     Queue queue = Queue::make_cpu();
     Buffer<std::byte> buffer;
     const std::vector<float> numbers = {1, 2, 3}, none;
@@ -79,7 +79,7 @@ TEST_CASE("arrays of a part lie in one buffer at multiples of 256 bytes, and arr
     }
 }
 
-TEST_CASE("a part's buffer is kept while it is large enough, and replaced, not doubled, when it is not") {
+TEST_CASE("a scene part's buffer is kept while it is large enough, and otherwise replaced, not doubled") {
     Queue queue = Queue::make_cpu();
     Buffer<std::byte> buffer;
     const auto upload = [&](std::size_t count) {
@@ -101,7 +101,7 @@ TEST_CASE("a part's buffer is kept while it is large enough, and replaced, not d
     CHECK(queue.peak_bytes() == 5376);
 }
 
-TEST_CASE("a scene that was updated part by part gives the picture of the scene uploaded afresh, and takes no memory") {
+TEST_CASE("a scene updated in parts gives the picture of a fresh upload and allocates no memory") {
     const Scene before = test::make_mixed_scene();
     Scene after = before;
     for (Material& material : after.materials) material.base_color = 0.5f * material.base_color;

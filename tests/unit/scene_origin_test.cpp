@@ -82,7 +82,7 @@ std::string far_gltf(const std::string& nodes, const std::string& more = "") {
 }
 
 /// The camera that the flags of this camera's metadata make.
-Camera told_again(const CameraSource& source, const Scene& scene) {
+Camera reopened(const CameraSource& source, const Scene& scene) {
     CameraChoice choice;
     for (const auto& [key, value] : camera_metadata(source)) {
         const std::string* text = std::get_if<std::string>(&value);
@@ -98,7 +98,7 @@ Camera told_again(const CameraSource& source, const Scene& scene) {
     return choose_camera(choice, scene, 1, messages);
 }
 
-TEST_CASE("the origin is 0 for a scene about the file's, else the middle of its box on a grid of its size") {
+TEST_CASE("the origin is 0 for a scene around the file's origin, or else the middle of its box on a grid of its size") {
     CHECK(origin_for({}) == DoubleVec3{0, 0, 0});
     CHECK(origin_for({{-1, -1, -1}, {2, 2, 2}}) == DoubleVec3{0, 0, 0});
     CHECK(origin_for({{1e6 + 3.25, -7, 0}, {1e6 + 6.25, -5, 1}}) == DoubleVec3{1e6 + 4, -8, 0});
@@ -111,7 +111,7 @@ TEST_CASE("the origin is 0 for a scene about the file's, else the middle of its 
     CHECK(!scene.is_far);
 }
 
-TEST_CASE("a sample of a scene's points tells only of boxes that stay that they do") {
+TEST_CASE("a sample of a scene's points proves only for unchanged boxes that they are unchanged") {
     CHECK(surely_stays({{-1, 0, 0}, {1, 2, 0}}));
     CHECK(surely_stays({{61, 0, 0}, {62, 1, 0}}));
     CHECK(!surely_stays({{62, 0, 0}, {63, 1, 0}}));
@@ -122,7 +122,7 @@ TEST_CASE("a sample of a scene's points tells only of boxes that stay that they 
     }
 }
 
-TEST_CASE("an OBJ file far from the origin keeps its digits, and a near one is as it was") {
+TEST_CASE("an OBJ file far from the origin keeps its digits, and a near one is unchanged") {
     const Scene far = load("far.obj", square_obj(kEast, kNorth, "v 0 0 0\n")); // a vertex without a face says nothing
     CHECK(far.is_far);
     CHECK(off(far, placed(far, 0, 0), {kEast, kNorth, 0}) < 1e-7);
@@ -139,7 +139,7 @@ TEST_CASE("an OBJ file far from the origin keeps its digits, and a near one is a
     CHECK(placed(between, 0, 0).x == -0.75f);
 }
 
-TEST_CASE("far positions of an OBJ file do not depend on how its text is cut among threads") {
+TEST_CASE("far positions of an OBJ file do not depend on how its text is split among threads") {
     std::string text;
     for (int i = 0; i < 50; ++i) text += square_obj(kEast + i, kNorth, i % 7 == 0 ? "v 1 nan 2\n# v 7 7 7\n" : "");
     const auto parse = [&](std::size_t piece_bytes) {
@@ -154,7 +154,7 @@ TEST_CASE("far positions of an OBJ file do not depend on how its text is cut amo
     CHECK(std::abs(static_cast<double>(whole.positions[207].x) + origin_for(whole.box).x - (kEast + 49)) < 1e-5);
 }
 
-TEST_CASE("a concave polygon far from the origin is cut as at the origin") {
+TEST_CASE("a concave polygon far from the origin is triangulated as at the origin") {
     const auto polygon = [](double x, double y) {
         const auto v = [&](double dx, double dy) { return fmt::format("v {:.3f} {:.3f} 0\n", x + dx, y + dy); };
         return v(0, 0) + v(.4, .1) + v(.8, 0) + v(.4, .3) + "f 1 2 3 4\n";
@@ -163,7 +163,7 @@ TEST_CASE("a concave polygon far from the origin is cut as at the origin") {
           load("near.obj", polygon(0, 0)).meshes.at(0).indices);
 }
 
-TEST_CASE("a PLY file far from the origin keeps the digits of doubles and of text, and floats as they are") {
+TEST_CASE("a PLY file far from the origin keeps the digits of doubles and text, and floats are unchanged") {
     for (const char* type : {"double", "float"}) {
         CAPTURE(type);
         const Scene text =
@@ -186,7 +186,7 @@ TEST_CASE("a PLY file far from the origin keeps the digits of doubles and of tex
     CHECK(near.meshes[0].positions[0] == Vec3{0.3f, -0.7f, 0});
 }
 
-TEST_CASE("a chain of glTF nodes is composed in double: far, turned, and far and back") {
+TEST_CASE("a chain of far, rotated and returning glTF nodes is composed in double") {
     const Scene far = test::read_gltf_text(far_gltf(R"({"translation":[448262.257,5411933.125,10],"children":[1]},)"
                                                     R"({"mesh":0,"translation":[0.125,0.25,0.0625],"scale":[2,2,2]})"));
     CHECK(far.is_far);
@@ -210,7 +210,7 @@ TEST_CASE("a chain of glTF nodes is composed in double: far, turned, and far and
     CHECK(off(matrix, placed(matrix, 0, 0), {kEast + 0.25, kNorth, 0}) < 1e-6);
 }
 
-TEST_CASE("instances, cameras, lights and skins of far glTF nodes stand where the file has them") {
+TEST_CASE("instances, cameras, lights and skins of far glTF nodes keep their positions") {
     const Scene scene = test::read_gltf_text(
         far_gltf(R"({"translation":[448262.257,5411933.125,0],"children":[1,2,3]},)"
                  R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":1}}}},)"
@@ -239,7 +239,7 @@ TEST_CASE("instances, cameras, lights and skins of far glTF nodes stand where th
     CHECK(off(skinned, placed(skinned, 0, 2), {kEast + 0.25, kNorth + 1, 0}) < 1e-6);
 }
 
-TEST_CASE("what moves below a far node moves as at the origin") {
+TEST_CASE("children of a far node move as at the origin") {
     Messages messages;
     const std::string animation = R"(,"animations":[{"samplers":[{"input":2,"output":1}],)"
                                   R"("channels":[{"sampler":0,"target":{"node":1,"path":"translation"}}]}],)"
@@ -253,14 +253,14 @@ TEST_CASE("what moves below a far node moves as at the origin") {
         const Scene& now = posed.scene();
         CHECK(off(now, placed(now, 0, 0), {kEast + 0.5 * time_s, kNorth, 0}) < 1e-6);
         CHECK(off(now, now.cameras[0].world_from_camera.translation, {kEast + 0.5 * time_s, kNorth, 0}) < 1e-6);
-        const auto places = posed.places_at(time_s + 0.125);
-        REQUIRE(places.instances[0]);
-        CHECK(off(now, places.instances[0]->translation, {kEast + 0.5 * std::min(1.0, time_s + 0.125), kNorth, 0}) <
+        const auto placements = posed.placements_at(time_s + 0.125);
+        REQUIRE(placements.instances[0]);
+        CHECK(off(now, placements.instances[0]->translation, {kEast + 0.5 * std::min(1.0, time_s + 0.125), kNorth, 0}) <
               1e-6);
     }
 }
 
-TEST_CASE("a far node that moves by keys is between them at every time") {
+TEST_CASE("a far animated node is between its keys at every time") {
     test::GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.add("VEC3", std::vector<float>{448262, 5411933, 0, 448263, 5411933, 0});
@@ -276,7 +276,7 @@ TEST_CASE("a far node that moves by keys is between them at every time") {
     }
 }
 
-TEST_CASE("the metadata of a camera far from the origin says it again to the bit") {
+TEST_CASE("the metadata of a camera far from the origin reproduces it to the bit") {
     const Scene scene = load("far.obj", square_obj(kEast, kNorth));
     Messages messages;
     const DoubleVec3 eye = {448262.757, 5411933.5625, 5};
@@ -284,10 +284,10 @@ TEST_CASE("the metadata of a camera far from the origin says it again to the bit
     const Camera requested = choose_camera(flags, scene, 1, messages);
     CHECK(off(scene, requested.world_from_camera.translation, eye) < 1e-6);
     const CameraSource source = source_of(flags, requested, scene.origin_in_file);
-    CHECK(told_again(source, scene).world_from_camera == requested.world_from_camera);
+    CHECK(reopened(source, scene).world_from_camera == requested.world_from_camera);
 
     const Camera made_up = choose_camera({}, scene, 1, messages);
-    const Camera again = told_again(source_of(CameraChoice{}, made_up, scene.origin_in_file), scene);
+    const Camera again = reopened(source_of(CameraChoice{}, made_up, scene.origin_in_file), scene);
     CHECK(again.world_from_camera.translation == made_up.world_from_camera.translation);
     CHECK(length(column(again.world_from_camera, 2) - column(made_up.world_from_camera, 2)) < 1e-6f);
 
@@ -309,7 +309,7 @@ TEST_CASE("a camera's path and a meter are in the coordinates of the file, in do
     CHECK(off(scene, meter.world_from_camera.translation, {kEast + 0.25, kNorth, 0}) < 1e-5);
 }
 
-TEST_CASE("positions of a picture are in the file's coordinates, and of a far scene relative to its origin") {
+TEST_CASE("the position layer is in the file's coordinates, and relative to the origin of a far scene") {
     struct Case {
         double x, y;
         bool is_far;
@@ -341,9 +341,9 @@ TEST_CASE("positions of a picture are in the file's coordinates, and of a far sc
     }
 }
 
-TEST_CASE("what lies beyond 2^40 m is refused wherever its scene is") {
+TEST_CASE("positions beyond 2^40 m are refused for any origin") {
     const std::string beyond = "v 4e12 0 0\nv 4.1e12 0 0\nv 4e12 1e11 0\nf 1 2 3\n";
-    CHECK(test::says(test::thrown_error([&] { load("beyond.obj", beyond); }), "further out"));
+    CHECK(test::says(test::thrown_error([&] { load("beyond.obj", beyond); }), "beyond 2^40 metres"));
 }
 
 } // namespace scene_origin_test

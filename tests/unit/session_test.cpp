@@ -57,7 +57,7 @@ std::size_t resident_bytes() {
 
 } // namespace
 
-TEST_CASE("a new camera takes no memory and copies nothing to the device; so do most settings") {
+TEST_CASE("a new camera and most settings allocate no memory and upload nothing") {
     Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
@@ -87,7 +87,7 @@ TEST_CASE("a new camera takes no memory and copies nothing to the device; so do 
     CHECK(queue.uploaded_bytes() == uploaded + (kFilterTableSize + 1) * sizeof(float));
 }
 
-TEST_CASE("a smaller picture takes a new film and no more; a larger one takes larger queues as well") {
+TEST_CASE("a smaller picture allocates only a new film, and a larger one larger queues as well") {
     Queue queue = test::requested_queue();
     const Prepared furnace(test::make_furnace_scene(0.5f));
     RenderSettings settings = queued_settings();
@@ -147,7 +147,7 @@ TEST_CASE("memory does not grow over 1000 changes of camera, size, settings and 
 #endif
 }
 
-TEST_CASE("1000 frames in which instances of a large mesh and a lamp move copy little each and take no memory") {
+TEST_CASE("1000 frames with moving instances of a large mesh and an emitter upload little and allocate no memory") {
     Queue queue = test::requested_queue();
     Messages messages;
     std::vector<Scene> scenes(1, test::make_mixed_scene());
@@ -212,7 +212,7 @@ TEST_CASE("a session without a tracer refuses and never accesses one") {
     CHECK(session.render(1) == 1);
 }
 
-TEST_CASE("nothing of a session is left on the device when it ends") {
+TEST_CASE("a session leaves nothing on the device when it ends") {
     Queue queue = test::requested_queue();
     const Prepared furnace(test::make_furnace_scene(0.5f));
     {
@@ -247,7 +247,7 @@ TEST_CASE("a time limit ends a call at a whole sample and applies to each call")
     CHECK(session.history().samples == 2);
 }
 
-TEST_CASE("only changes that affect the picture restart the film") {
+TEST_CASE("only changes of the picture restart the film") {
     Queue queue = test::requested_queue();
     const Prepared furnace(test::make_furnace_scene(0.5f));
     RenderSettings settings = queued_settings();
@@ -263,28 +263,28 @@ TEST_CASE("only changes that affect the picture restart the film") {
     CHECK(session.history().samples == 2);
     CHECK(session.history().cuts == 0);
 
-    const auto begins_anew = [&](const auto& change) {
+    const auto restarts = [&](const auto& change) {
         session.render(1);
         change(settings);
         session.set_settings(settings);
         CHECK(session.history().samples == 0);
         for (const float value : session.picture().pixels) CHECK(value == 0); // without samples
     };
-    begins_anew([](RenderSettings& s) { s.width = 25; });
-    begins_anew([](RenderSettings& s) { s.height = 5; });
-    begins_anew([](RenderSettings& s) { s.filter = PixelFilter::Box; });
-    begins_anew([](RenderSettings& s) { s.filter_radius = 3; });
-    begins_anew([](RenderSettings& s) { s.aovs = kAovDepth; });
-    begins_anew([](RenderSettings& s) { s.transparent = true; });
-    begins_anew([](RenderSettings& s) { s.path.max_depth = 2; });
-    begins_anew([](RenderSettings& s) { s.path.seed = 2; });
-    begins_anew([](RenderSettings& s) { s.path.sampler = SamplerKind::Independent; });
-    begins_anew([](RenderSettings& s) { s.path.clamp = 1; });
-    begins_anew([](RenderSettings& s) { s.path.roulette_depth = 1; });
+    restarts([](RenderSettings& s) { s.width = 25; });
+    restarts([](RenderSettings& s) { s.height = 5; });
+    restarts([](RenderSettings& s) { s.filter = PixelFilter::Box; });
+    restarts([](RenderSettings& s) { s.filter_radius = 3; });
+    restarts([](RenderSettings& s) { s.aovs = kAovDepth; });
+    restarts([](RenderSettings& s) { s.transparent = true; });
+    restarts([](RenderSettings& s) { s.path.max_depth = 2; });
+    restarts([](RenderSettings& s) { s.path.seed = 2; });
+    restarts([](RenderSettings& s) { s.path.sampler = SamplerKind::Independent; });
+    restarts([](RenderSettings& s) { s.path.clamp = 1; });
+    restarts([](RenderSettings& s) { s.path.roulette_depth = 1; });
     CHECK(session.history().cuts == 11);
 }
 
-TEST_CASE("the history knows the camera of the last samples, until a cut") {
+TEST_CASE("the history keeps the camera of the last samples until a cut") {
     Queue queue = test::requested_queue();
     const Prepared furnace(test::make_furnace_scene(0.5f));
     Session session(queue, furnace.prepared, camera_at(0), queued_settings());
@@ -312,7 +312,7 @@ TEST_CASE("the history knows the camera of the last samples, until a cut") {
     CHECK(session.history().cuts == 2);
 }
 
-TEST_CASE("a display shows the picture's tones") {
+TEST_CASE("a display has the picture's tones") {
     Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
@@ -328,7 +328,7 @@ TEST_CASE("a display shows the picture's tones") {
     }
 }
 
-TEST_CASE("the meter looks at the scene on the device, uploads nothing, and leaves the film as it is") {
+TEST_CASE("the meter uses the scene on the device, uploads nothing and does not change the film") {
     Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
@@ -353,7 +353,7 @@ TEST_CASE("the meter looks at the scene on the device, uploads nothing, and leav
     CHECK(picture_hash(session.picture()) == picture_hash(whole.picture()));
 }
 
-TEST_CASE("the meter shows what it showed when each look of it was a render of its own") {
+TEST_CASE("the meter gives the exposure of separate renders") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Prepared box(read_scene("cornell-box", {}, messages));
@@ -370,8 +370,7 @@ TEST_CASE("the meter shows what it showed when each look of it was a render of i
     CHECK(session.meter(ToneMap::Aces) == 3.0f);
 }
 
-TEST_CASE(
-    "seconds of each kind of ray are of the last call that renders, and of nothing that looks at the scene since") {
+TEST_CASE("seconds of each kind of ray are those of the last render, not of later metering") {
     Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
@@ -417,7 +416,7 @@ TEST_CASE("the share of hidden backs follows scene, camera and size") {
     CHECK(session.stats().hidden_back_share == fresh(furnace, camera_at(-3)));
 }
 
-TEST_CASE("a picture rendered aside equals a new session's and leaves the film unchanged") {
+TEST_CASE("a separately rendered picture equals a new session's and does not change the film") {
     Queue queue = test::requested_queue();
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings aside = queued_settings();
@@ -427,7 +426,7 @@ TEST_CASE("a picture rendered aside equals a new session's and leaves the film u
     Session session(queue, mixed.prepared, camera_at(0), queued_settings());
     session.render(3);
     const auto hash = picture_hash(session.picture());
-    const RenderResult seen = session.look_aside(camera_at(1), aside);
+    const RenderResult seen = session.render_separately(camera_at(1), aside);
     CHECK(picture_hash(seen.picture) == picture_hash(fresh.picture()));
     CHECK(seen.ids.size() == 20);
     CHECK(seen.layers.size() == 1);
@@ -448,7 +447,7 @@ TEST_CASE("camera rays' nodes and triangles are counted for each pixel") {
     CHECK(std::ranges::any_of(work, [](const RayWork& ray) { return ray.nodes > 0 && ray.triangles > 0; }));
 }
 
-TEST_CASE("an abandoned render adds nothing, and the picture after it is that of a fresh session") {
+TEST_CASE("an abandoned render adds nothing, and the next picture equals a fresh session's") {
     Queue queue = Queue::make_cpu(); // a GPU's samples are not broken off
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = queued_settings();

@@ -69,7 +69,7 @@ std::string emitter_refusal(const std::string& text) {
 
 } // namespace
 
-TEST_CASE("a light of 800 lm sends out 800 lm, and of 10 W 6830") {
+TEST_CASE("a light of 800 lm emits 800 lm, and one of 10 W emits 6830 lm") {
     for (const char* name : {"bulb", "spot"}) {
         for (const double efficacy : {1.0, kLumensPerWatt}) {
             CAPTURE(name);
@@ -97,7 +97,7 @@ TEST_CASE("lights keep their colour, and black ones become white") {
     CHECK(is_black(scene.lights[2].intensity));
 }
 
-TEST_CASE("each surface gets all of the amount, whatever its size, and a shared material is copied") {
+TEST_CASE("each surface gets the full amount, whatever its size, and a shared material is copied") {
     Scene scene = emitter_scene();
     set_emitter(scene, "glow=628.3185307lm", 1); // 200 pi
     REQUIRE(scene.instances[0].material != scene.instances[1].material);
@@ -120,11 +120,11 @@ TEST_CASE("each surface gets all of the amount, whatever its size, and a shared 
     CHECK(luminance_in(scene.environment->scale) == doctest::Approx(2000));
 }
 
-TEST_CASE("what a lamp cannot have is refused") {
-    CHECK(emitter_refusal("sun=800lm").find("directional light, which has lx") != std::string::npos);
-    CHECK(emitter_refusal("bulb=800lx").find("point light, which has W, lm or cd") != std::string::npos);
-    CHECK(emitter_refusal("small=8lx").find("lx are of directional lights") != std::string::npos);
-    CHECK(emitter_refusal("blub=800lm").find("no lamp of the scene has this name; there are 'bulb'") !=
+TEST_CASE("invalid settings of an emitter are refused") {
+    CHECK(emitter_refusal("sun=800lm").find("directional light, which needs lx") != std::string::npos);
+    CHECK(emitter_refusal("bulb=800lx").find("point light, which needs W, lm or cd") != std::string::npos);
+    CHECK(emitter_refusal("small=8lx").find("lx are for directional lights") != std::string::npos);
+    CHECK(emitter_refusal("blub=800lm").find("there is no lamp of the scene with this name; there are 'bulb'") !=
           std::string::npos);
     for (const char* text :
          {"bulb", "=8lm", "bulb=8", "bulb=lm", "bulb=-8lm", "bulb=8lmx", "bulb=nanlm", "bulb=1e300W"}) {
@@ -144,11 +144,11 @@ TEST_CASE("what a lamp cannot have is refused") {
     scene.images.resize(1);
     scene.images[0].rgba8 = {.width = 1, .height = 1, .pixels = {0, 0, 0, 255}};
     scene.materials[0].emission_texture.image = 0;
-    CHECK(test::bad_input_message([&] { set_emitter(scene, "small=8lm"); }).find("black all over") !=
+    CHECK(test::bad_input_message([&] { set_emitter(scene, "small=8lm"); }).find("completely black") !=
           std::string::npos);
 }
 
-TEST_CASE("flux of a lamp with a texture is what the path tracer's lamp sends out") {
+TEST_CASE("the flux of a textured emitter equals the path tracer's") {
     // A chessboard of red and grey with a blue cell, askew, repeated and blurred.
     Scene scene = emitter_scene();
     scene.images.resize(1);
@@ -196,7 +196,7 @@ TEST_CASE("flux of a lamp with a texture is what the path tracer's lamp sends ou
     CHECK(luminance_in(lit.emission) > 1.3 * 500 / (kEmitterPi * area)); // the texture takes a part of it
 }
 
-TEST_CASE("a camera's exposure is the standard's") {
+TEST_CASE("a camera's exposure follows the standard") {
     const PhysicalExposure sunny = {.iso = 100, .f_number = 16, .shutter_s = 0.01};
     CHECK(exposure_value(sunny) == doctest::Approx(14.6439).epsilon(1e-5)); // log2 25600
     CHECK(exposure_value({.iso = 400, .f_number = 16, .shutter_s = 0.01}) == doctest::Approx(12.6439).epsilon(1e-5));

@@ -8,7 +8,7 @@
 
 using namespace pertev;
 
-TEST_CASE("flags overrule what options hold, and a switch that is turned off is not given") {
+TEST_CASE("flags override options, and a switch that is turned off counts as not given") {
     PictureOptions options;
     CLI::App app("A program", "program");
     SettingFlags flags;
@@ -44,7 +44,7 @@ TEST_CASE("a renamed flag is also taken by its old name, which help and completi
     }
 }
 
-TEST_CASE("the word behind --help names a group of flags") {
+TEST_CASE("the word after --help names a group of flags") {
     std::vector<std::string> words = {"render", "--help", "Camera"};
     CHECK(take_help_group(words) == "camera");
     CHECK(words == std::vector<std::string>{"render", "--help"});

@@ -31,7 +31,7 @@ std::optional<ErrorCode> code_of(const char* name, const std::string& text) {
 
 } // namespace
 
-TEST_CASE("each setting has a name of its own, a sentence, and rules that name settings") {
+TEST_CASE("each setting has a unique name, a sentence, and rules that name settings") {
     std::set<std::string> names;
     for (const Setting& setting : all_settings()) {
         INFO(setting.name);
@@ -159,7 +159,7 @@ TEST_CASE("settings survive writing to JSON and reading back") {
     }
 }
 
-TEST_CASE("a picture's file records each setting that the table says, where the integrator has it") {
+TEST_CASE("a picture's file records each setting of the table that the integrator has") {
     PictureOptions options;
     set(options, "integrator", {"whitted"});
     set(options, "ambient", {"0.5"});

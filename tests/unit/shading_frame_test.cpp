@@ -25,7 +25,7 @@ void check_orthonormal(const Frame& frame) {
 
 } // namespace
 
-TEST_CASE("shading frame: on a wall seen upright, x of a normal map is right and y is up") {
+TEST_CASE("shading frame: on an upright wall x of a normal map points right and y up") {
     // The wall lies in the plane z = 0, with its front towards +z; u grows to the right, v down (glTF).
     const Vec3 front = {0, 0, 1};
     const Frame frame = frame_with_tangent(front, {2, 0, 0, 1});
@@ -87,7 +87,7 @@ TEST_CASE("shading frame: tangents and normals without direction fall back to a 
     CHECK(is_near(world_normal(identity, {0, 2, 2}, normal), normalize(Vec3{0, 1, 1})));
 }
 
-TEST_CASE("shading frame: normals stay perpendicular to what they were under uneven scale") {
+TEST_CASE("shading frame: normals stay perpendicular under non-uniform scale") {
     const Transform world_from_local = compose(make_rotation(0, 0, 0.6f, 0.8f), make_scale({1, 5, 0.2f}));
     const Vec3 local_normal = normalize(Vec3{1, 1, 1}), local_tangent = {1, -1, 0};
     const Vec3 normal = normalize(transform_transposed(inverse(world_from_local), local_normal));
@@ -96,7 +96,7 @@ TEST_CASE("shading frame: normals stay perpendicular to what they were under une
     CHECK(std::abs(length(world) - 1) < 1e-6f);
 }
 
-TEST_CASE("shading frame: a valid normal mirrors light above the surface, and moves no further than needed") {
+TEST_CASE("shading frame: a corrected normal reflects light above the surface and moves as little as possible") {
     Random random(2);
     const Vec3 up = {0, 0, 1};
     int kept = 0, moved = 0;

@@ -8,14 +8,14 @@
 #include <string>
 
 #include "accel/builders/build_bvh.h"
-#include "tests/support/nasty_meshes.h"
 #include "tests/support/split_bvh.h"
+#include "tests/support/stress_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
 
-TEST_CASE("a list with skip links is sound for every mesh") {
-    for (const NastyMesh& c : nasty_meshes()) {
+TEST_CASE("a list with skip links is valid for every mesh") {
+    for (const StressMesh& c : stress_meshes()) {
         CAPTURE(std::string(c.name));
         const Bvh bvh = build_bvh(c.triangles);
         const SkipBvh skip = make_skip_bvh(bvh);
@@ -26,7 +26,7 @@ TEST_CASE("a list with skip links is sound for every mesh") {
     }
 }
 
-TEST_CASE("the check of a list with skip links sees what is wrong") {
+TEST_CASE("the checker of lists with skip links detects faults") {
     const SkipBvh sound = make_skip_bvh(build_bvh(make_soup(200, 0)));
     const auto fault_after = [&](auto change) {
         SkipBvh broken = sound;

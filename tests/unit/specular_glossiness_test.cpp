@@ -28,7 +28,7 @@ Material material_of(const std::string& members, Messages& messages, Scene* scen
     return read.materials.at(0);
 }
 
-TEST_CASE("a grey and low specular colour is an index of refraction, and nothing is lost") {
+TEST_CASE("a grey and low specular colour becomes an index of refraction without loss") {
     bool is_exact = false;
     const auto to = gltf::metallic_roughness_of({{0.5f, 0.25f, 0}, {0.04f, 0.04f, 0.04f}, 0.75f}, is_exact);
     CHECK(is_exact);
@@ -38,7 +38,7 @@ TEST_CASE("a grey and low specular colour is an index of refraction, and nothing
     CHECK(to.ior == doctest::Approx(1.5).epsilon(1e-6));
 }
 
-TEST_CASE("a strong specular colour without a diffuse one is metal of that colour") {
+TEST_CASE("a strong specular colour without a diffuse one becomes metal of that colour") {
     bool is_exact = true;
     const auto gold = gltf::metallic_roughness_of({{0, 0, 0}, {1, 0.766f, 0.336f}, 1}, is_exact);
     CHECK(!is_exact);
@@ -49,7 +49,7 @@ TEST_CASE("a strong specular colour without a diffuse one is metal of that colou
     CHECK(gold.roughness == 0);
 }
 
-TEST_CASE("without a specular colour the diffuse texture alone is seen") {
+TEST_CASE("without a specular colour only the diffuse texture is visible") {
     Messages messages;
     const Material material = material_of(
         R"("diffuseTexture":{"index":0},"diffuseFactor":[1,0.5,1,0.25],"specularFactor":[0,0,0],"glossinessFactor":0)",
@@ -62,7 +62,7 @@ TEST_CASE("without a specular colour the diffuse texture alone is seen") {
     CHECK(messages.left_out().empty());
 }
 
-TEST_CASE("a specular-glossiness texture is converted texel by texel, and what is lost is told") {
+TEST_CASE("a specular-glossiness texture is converted texel by texel, and losses are reported") {
     Messages messages;
     Scene scene;
     // The texel is red: a specular colour of (1, 0, 0), and glossy by its alpha of 1.

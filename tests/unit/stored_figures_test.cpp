@@ -59,7 +59,7 @@ TEST_CASE("all scenes and jobs of the record have stored figures") {
     CHECK(find_named(the_record().jobs, "S6") == nullptr);
 }
 
-TEST_CASE("a ratio is our rate in times the other's") {
+TEST_CASE("a ratio is our rate over the other's") {
     CHECK(*ratio_of(rays_run("sponza", 1, 4331e6)).value == doctest::Approx(4331.0 / 3479));
     const auto builds = ratios_of(build_run("sponza", 0.58e-3));
     CHECK(*builds[0].value == doctest::Approx(1.48 / 0.58));
@@ -70,7 +70,7 @@ TEST_CASE("a ratio is our rate in times the other's") {
     CHECK(*ratios_of(job_run("cornell-box-8", 808e6))[0].value == doctest::Approx(808 / 184.9));
 }
 
-TEST_CASE("another card has no ratios, however much its name is like it") {
+TEST_CASE("another card has no ratios, however similar its name") {
     for (const char* device : kOtherDevices) {
         CAPTURE(device);
         const auto elsewhere = [&](auto& run) { run.device = device; };
@@ -150,14 +150,14 @@ TEST_CASE("the table of jobs has the record's scenes and jobs and the presets of
     CHECK(camera_choice(record.presets[1]).fov_deg == 50.0f);
 }
 
-TEST_CASE("ratios are summed up by their geometric mean and the least") {
+TEST_CASE("ratios are summarised by their geometric mean and minimum") {
     const RatioSummary summary = summarize(std::array{2.0, 0.5, 4.0});
     CHECK(summary.geometric_mean == doctest::Approx(1.5874).epsilon(1e-4));
     CHECK(summary.least == 0.5);
     CHECK(summarize(std::array{1.25}).geometric_mean == doctest::Approx(1.25));
 }
 
-TEST_CASE("depths of jobs are counted as each of the others' does") {
+TEST_CASE("depths of jobs are counted as each other program counts them") {
     CHECK(job_settings(*find_named(the_record().jobs, "S8")).path.max_depth == 8); // scatterings
     const RenderSettings box = job_settings(*find_named(the_record().jobs, "cornell-box-65"));
     CHECK(box.path.max_depth == 64); // edges

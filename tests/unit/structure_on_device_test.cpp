@@ -57,7 +57,7 @@ struct Change {
 
 } // namespace
 
-TEST_CASE("a structure on a device takes a change by what has changed, and rays meet what they meet in a fresh one") {
+TEST_CASE("a structure on a device updates only what has changed and gives the hits of a fresh one") {
     Messages messages;
     Queue queue = test::requested_queue();
     const std::vector<Ray> rays = rays_through_the_room();

@@ -14,7 +14,7 @@
 
 using namespace pertev;
 
-TEST_CASE("the pixel filter's density is that of the camera's rays") {
+TEST_CASE("the pixel filter's density equals that of camera rays") {
     Queue queue = Queue::make_cpu();
     for (const PixelFilter kind :
          {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian, PixelFilter::BlackmanHarris}) {

@@ -151,7 +151,7 @@ TEST_CASE("texture: a slot without an image reads white") {
     CHECK(lookup_texture_channel(nullptr, ref, {0.5f, 0.5f}, nullptr) == 1);
 }
 
-TEST_CASE("texture: a repeated image is the same to the bit a thousand repeats away") {
+TEST_CASE("texture: a repeated image is the same to the bit after a thousand repeats") {
     const TextureImage image = random_rgba8(64, 64, 3);
     TextureRef ref;
     ref.image = 0;
@@ -164,7 +164,7 @@ TEST_CASE("texture: a repeated image is the same to the bit a thousand repeats a
     }
 }
 
-TEST_CASE("texture: any float is a coordinate, and the value stays within the image's") {
+TEST_CASE("texture: any float is a valid coordinate, and the value stays within the image's range") {
     const float big = std::numeric_limits<float>::max(), tiny = std::numeric_limits<float>::denorm_min();
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<float> coordinates = {nan,   kInfinity, -kInfinity, big,      -big,           1e10f, -1e10f,
@@ -190,7 +190,7 @@ TEST_CASE("texture: any float is a coordinate, and the value stays within the im
     }
 }
 
-TEST_CASE("texture: one channel alone equals that component of the whole lookup") {
+TEST_CASE("texture: the lookup of one channel equals that component of the whole lookup") {
     const TextureImage bytes = random_rgba8(5, 9, 4), floats = as_float(bytes);
     const std::array<TextureImageView, 2> views = {view_of(bytes), view_of(floats)};
     std::mt19937 random(5);

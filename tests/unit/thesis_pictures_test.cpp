@@ -17,7 +17,7 @@
 
 using namespace pertev;
 
-TEST_CASE("the point light of figure 3.3 has the intensity that the lamp of figure 3.4 has straight down") {
+TEST_CASE("the point light of figure 3.3 has the downward intensity of the area light of figure 3.4") {
     const Scene hard = make_thesis_scene(ThesisScene::PointLight), soft = make_thesis_scene(ThesisScene::Box);
     const auto emitter = std::ranges::find(soft.instances, "light", &Instance::name);
     REQUIRE(emitter != soft.instances.end());
@@ -106,7 +106,7 @@ double distance_of(const Rgba8Image& a, const Rgba8Image& b) {
 
 } // namespace
 
-TEST_CASE("no two pictures of the thesis are alike, none is black, and each says what it shows") {
+TEST_CASE("pictures of the thesis differ, none is black, and each has a description") {
     const std::vector<ThesisPicture>& pictures = pictures_in_loop();
     const std::vector<std::string> files = thesis_picture_files();
     REQUIRE(pictures.size() == files.size());
@@ -131,7 +131,7 @@ TEST_CASE("no two pictures of the thesis are alike, none is black, and each says
     }
 }
 
-TEST_CASE("pictures of the thesis have the same bytes by all stages at once, and on a GPU") {
+TEST_CASE("pictures of the thesis have the same bytes in the wavefront and on a GPU") {
     Queue queue = test::requested_queue();
     const std::vector<ThesisPicture>& in_loop = pictures_in_loop();
     const std::vector<ThesisPicture> at_once = all_pictures(queue, PathBody::Wavefront);
@@ -142,7 +142,7 @@ TEST_CASE("pictures of the thesis have the same bytes by all stages at once, and
     }
 }
 
-TEST_CASE("patches are as many pixels high in small pictures as in full ones, where they have 8 cm") {
+TEST_CASE("patches cover as many pixels in small pictures as in full ones, where they have 8 cm") {
     const auto is = [](uint32_t panel_height, float patch_size, uint32_t steps, uint32_t photons) {
         const ThesisDetail detail = thesis_detail(panel_height);
         return detail.patch_size == patch_size && detail.early_steps == steps && detail.photons == photons;
@@ -165,7 +165,7 @@ TEST_CASE("patches are as many pixels high in small pictures as in full ones, wh
     CHECK(has("figure-3.10b", " `gather=direct` `photons=4096` `size"));
 }
 
-TEST_CASE("figure 3.7's panels come ever nearer to the solution that is smooth") {
+TEST_CASE("the panels of figure 3.7 converge to the smooth solution") {
     Queue queue = test::requested_queue();
     ThesisPictures pictures(queue, small_picture(192, 144, 8));
     const auto panel = [&](const char* name) { return pictures.make(name, {}).image; };
@@ -184,7 +184,7 @@ TEST_CASE("figure 3.7's panels come ever nearer to the solution that is smooth")
     CHECK(distance_of(flat, smooth) > 0.2);
 }
 
-TEST_CASE("figure 3.9's photons lie on surfaces, and the map blurs what final gathering shows") {
+TEST_CASE("the photons of figure 3.9 lie on surfaces, and the map blurs what final gathering shows") {
     Queue queue = test::requested_queue();
     ThesisPictures pictures(queue, small_picture(256, 192, 8));
     const ThesisPicture dots = pictures.make("figure-3.9a", {}), map = pictures.make("figure-3.9b", {}),
@@ -200,7 +200,7 @@ TEST_CASE("figure 3.9's photons lie on surfaces, and the map blurs what final ga
     CHECK(map.image.pixels != gathered.image.pixels);
 }
 
-TEST_CASE("figure 3.10's caustic is brighter than thrice its surroundings") {
+TEST_CASE("the caustic of figure 3.10 is more than three times as bright as its surroundings") {
     Queue queue = test::requested_queue();
     ThesisPictures pictures(queue, small_picture(256, 192, 16));
     const ThesisPicture dots = pictures.make("figure-3.10a", {}), shown = pictures.make("figure-3.10b", {});
@@ -223,8 +223,7 @@ TEST_CASE("figure 3.10's caustic is brighter than thrice its surroundings") {
     CHECK(mean_green(dots.image, 0.42, 0.64, 0.49, 0.70) > 2 * mean_green(dots.image, 0.05, 0.75, 0.35, 0.95));
 }
 
-TEST_CASE(
-    "shadows are hard under a point light and soft under a lamp, and indirect light has neither lamp nor shadow") {
+TEST_CASE("shadows are hard under a point light and soft under an area light, and indirect light shows neither") {
     Queue queue = test::requested_queue();
     const RenderSettings settings = small_picture(96, 72, 64);
     ThesisPictures pictures(queue, settings);

@@ -62,7 +62,7 @@ CombinationFigures& variant(LabReport& report, const std::string& name, bool is_
 
 } // namespace
 
-TEST_CASE("the thesis's variants are different combinations that make sense on their device") {
+TEST_CASE("the thesis's variants are different combinations that are valid on their device") {
     for (const bool is_cuda : {false, true}) {
         std::vector<std::string> names;
         for (const ThesisVariant& v : thesis_variants(is_cuda)) {
@@ -76,7 +76,7 @@ TEST_CASE("the thesis's variants are different combinations that make sense on t
     }
 }
 
-TEST_CASE("the thesis's tables are numbered as its captions and have a row a depth and the columns that these name") {
+TEST_CASE("the thesis's tables have the numbers and columns of its captions and one row per depth") {
     const Measurement m = measurement_of(full_thesis("NVIDIA H200"));
     const std::string text = text_of(full_thesis("NVIDIA H200")), box = "cornell-box", hall = "sibenik <hall>";
     CHECK(heads_of(m) ==
@@ -101,7 +101,7 @@ TEST_CASE("the thesis's tables are numbered as its captions and have a row a dep
     CHECK(!has(text, "WRONG"));
 }
 
-TEST_CASE("the thesis's tables say what a CPU has not got, and have every variant that was measured") {
+TEST_CASE("the thesis's tables mark what a CPU lacks and have every measured variant") {
     const Measurement m = measurement_of(full_thesis("CPU"));
     const std::string none = "without persistent threads, which a CPU has not got";
     CHECK(heads_of(m) ==
@@ -113,7 +113,7 @@ TEST_CASE("the thesis's tables say what a CPU has not got, and have every varian
     CHECK(has(text_of(full_thesis("CPU")), "plain while-while"));
 }
 
-TEST_CASE("what the thesis lacks is named in its notes and in the terminal, with its reason") {
+TEST_CASE("missing parts of the thesis are named with the reason in its notes and the terminal") {
     ThesisReport thesis = full_thesis("CPU");
     thesis.scenes.pop_back();
     thesis.lacking = {"figure 6.8: <no file>", "figure-3.6: out of memory"};
@@ -125,7 +125,7 @@ TEST_CASE("what the thesis lacks is named in its notes and in the terminal, with
     CHECK(m.table("lacking").at(1, "what") == "figure-3.6: out of memory");
 }
 
-TEST_CASE("the thesis's pictures are grouped by figure, with how they were made") {
+TEST_CASE("the thesis's pictures are grouped by figure, with their commands") {
     ThesisReport thesis = full_thesis("CPU");
     ThesisPicture rendered = {.name = "figure-3.8",
                               .place = "Figure 3.8",
@@ -177,7 +177,7 @@ TEST_CASE("wrong, refused and missing variants are named with the reason") {
     CHECK(!m.table("table-6.6").at(3, "A_mrays").is_there());
 }
 
-TEST_CASE("an interrupted chapter says so, and what it lacks") {
+TEST_CASE("an interrupted chapter is marked and lists what it lacks") {
     ThesisReport thesis = full_thesis("CPU");
     thesis.scenes.pop_back();
     LabReport& report = thesis.scenes[0];

@@ -29,7 +29,7 @@ Point moved(const Transform& m, Vec3 p) {
 
 } // namespace
 
-TEST_CASE("a hit on an instance has the t, u and v that it has on the moved triangles") {
+TEST_CASE("a hit on an instance has the t, u and v of the transformed triangles") {
     const test::TriangleMesh torus = test::make_torus(24, 16);
     const Bvh tree = build_bvh(test::triangles_of(torus));
     const BvhView view = view_of(tree);

@@ -30,7 +30,7 @@ TEST_CASE("structures of --build fast can be refitted") {
     CHECK(!why_no_refit(*builder_of(structure_of(TreeBuild::Fast))));
 }
 
-TEST_CASE("a scene is prepared with the trees that most of its rays go through, and no others") {
+TEST_CASE("a scene is prepared only with the trees of its tracers") {
     const Scene scene = test::make_mixed_scene();
     Messages messages;
     PrepareOptions options;

@@ -112,7 +112,7 @@ TEST_CASE("the next samples fit into the remaining time, without preparing recor
     CHECK(next_samples({.samples = 1, .seconds = 0}, 1, 8) == 2);
 }
 
-TEST_CASE("equal samples are the largest number that all integrators have reached") {
+TEST_CASE("the equal sample count is the largest that all integrators have reached") {
     TransportScene scene = small_transport_scene();
     for (Repetition& repetition : scene.rows[0].repetitions) repetition.push_back({13, 1.3, 0.1, 0.1}); // by path alone
     CHECK(equal_samples(scene) == 8);
@@ -130,7 +130,7 @@ TEST_CASE("an error of 0 is interpolated linearly") {
     CHECK_FALSE(efficiency(*point));
 }
 
-TEST_CASE("for solutions, the last finished one counts at a time, and none at a sample count") {
+TEST_CASE("at equal time the last finished solution counts, and at equal samples none") {
     TransportScene scene = small_transport_scene();
     TransportRow solved = transport_row("radiosity", {{{16, 0.2, 0.1, 0.05, 100}, {16, 5, 0.01, 0.02, 400}},
                                                       {{16, 0.4, 0.3, 0.05, 100}, {16, 6, 0.03, 0.02, 400}}});
@@ -178,7 +178,7 @@ TEST_CASE("for solutions, the last finished one counts at a time, and none at a 
     CHECK(repetitions.at(0, "host_bytes") == 2097152);
 }
 
-TEST_CASE("efficiency is one over error times time, and its ratio to path's stands in the tables") {
+TEST_CASE("efficiency is one over error times time, and the tables have its ratio to path tracing's") {
     const TransportScene scene = small_transport_scene();
     const auto path = at_samples(scene.rows[0], 8);
     REQUIRE(path);
@@ -194,7 +194,7 @@ TEST_CASE("efficiency is one over error times time, and its ratio to path's stan
     CHECK(by_time.at(1, "of_path").text("{:.3g}") == "0.667");
 }
 
-TEST_CASE("an interrupted repetition counts as far as it has figures") {
+TEST_CASE("an interrupted repetition counts up to its last figure") {
     TransportRow row = transport_row("path", {falling(1, 0.1), {falling(3, 0.1)[0]}});
     const std::vector<TransportPoint> points = points_of(row);
     REQUIRE(points.size() == 4);
@@ -204,7 +204,7 @@ TEST_CASE("an interrupted repetition counts as far as it has figures") {
     CHECK_FALSE(points[1].rel_mse.half_width);
 }
 
-TEST_CASE("seeds of repetitions differ from each other and from the reference's") {
+TEST_CASE("seeds of repetitions differ from each other and the reference's") {
     for (const uint32_t seed : {0u, 5u, 0x7fffffffu}) {
         TransportSettings settings;
         settings.picture.path.seed = seed;
@@ -215,7 +215,7 @@ TEST_CASE("seeds of repetitions differ from each other and from the reference's"
     }
 }
 
-TEST_CASE("each preset is a scene of the program, and all light is what three integrators find in lamps") {
+TEST_CASE("each preset is a built-in scene, and three integrators find all of its light") {
     for (const TransportPreset& preset : the_record().presets) {
         CAPTURE(preset.name);
         CHECK(find_named(the_record().presets, preset.name) == &preset);

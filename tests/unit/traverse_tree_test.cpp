@@ -15,7 +15,7 @@
 using namespace pertev;
 using namespace pertev::test;
 
-TEST_CASE("a box whose entry equals the limit is entered, one ulp less and it is not") {
+TEST_CASE("a box whose entry equals the limit is entered, but not with a limit one ulp less") {
     Random random(6);
     const Bvh bvh = build_bvh(triangles_of(make_torus(16, 12)));
     const std::vector<WideBvhNode<8>> wide = make_wide_bvh<8>(bvh, kSimdCollapse).nodes;
@@ -51,7 +51,7 @@ TEST_CASE("a box whose entry equals the limit is entered, one ulp less and it is
     CHECK(wrong == 0);
 }
 
-TEST_CASE("a node on the stack whose entry equals the limit is taken, greater ones are dropped") {
+TEST_CASE("a node on the stack is visited if its entry equals the limit and dropped if it is greater") {
     TreeStack::Slot slots[3];
     TreeStack stack = {slots};
     stack.push(7, 1.0f), stack.push(8, 2.0f), stack.push(9, 2.0000002f);
@@ -64,7 +64,7 @@ TEST_CASE("a node on the stack whose entry equals the limit is taken, greater on
     CHECK(traversal.size == 0);
 }
 
-TEST_CASE("an inner node without a box on the ray goes back to what waits on the stack, equal entries too") {
+TEST_CASE("an inner node without a box on the ray continues with the stack, including equal entries") {
     // One node far from the ray, and a leaf that waits.
     BvhNode node = {};
     set_child(node, 0, {{100, 100, 100}, {101, 101, 101}}, kLeafBit | 1u);

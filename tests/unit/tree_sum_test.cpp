@@ -56,7 +56,7 @@ TEST_CASE("the tree of a sum depends only on the count") {
     }
 }
 
-TEST_CASE("terms of a sum are requested once each and in order") {
+TEST_CASE("each term of a sum is requested once and in order") {
     for (uint64_t count = 0; count < 70; ++count) {
         std::vector<uint64_t> requested;
         const uint64_t sum = tree_sum(count, [&](uint64_t i) {

@@ -53,7 +53,7 @@ void check_refused(const char* saying, ErrorCode code, const std::function<void(
 
 } // namespace
 
-TEST_CASE("a sound scene passes as it is, without a word") {
+TEST_CASE("a valid scene passes unchanged and without messages") {
     const Result result = validated([](Scene&) {});
     CHECK(!result.error);
     CHECK(result.messages.all().empty());
@@ -61,7 +61,7 @@ TEST_CASE("a sound scene passes as it is, without a word") {
     CHECK(result.scene.meshes[0].normals == square().meshes[0].normals);
 }
 
-TEST_CASE("triangles with a vertex that is not finite, and those without area, are dropped and counted") {
+TEST_CASE("triangles with a vertex that is not finite, or without area, are dropped and counted") {
     const Result result = validated([](Scene& scene) {
         Mesh& mesh = scene.meshes[0];
         mesh.positions.push_back({kNan, 0, 0});
@@ -92,7 +92,7 @@ TEST_CASE("tiny and huge triangles have an area") {
     }
 }
 
-TEST_CASE("a mesh that loses all its triangles goes with its instances; a scene that does is refused") {
+TEST_CASE("a mesh without valid triangles is dropped with its instances, and a scene without any is refused") {
     const Result result = validated([](Scene& scene) {
         scene.meshes.insert(scene.meshes.begin(), scene.meshes[0]);
         scene.meshes[0].indices = {0, 0, 0};
@@ -104,11 +104,11 @@ TEST_CASE("a mesh that loses all its triangles goes with its instances; a scene 
     CHECK(result.scene.instances[0].name == "two");
     CHECK(result.scene.instances[0].mesh == 0);
 
-    check_refused("no geometry", ErrorCode::BadInput, [](Scene& scene) { scene.meshes[0].indices = {0, 0, 0}; });
-    check_refused("no geometry", ErrorCode::BadInput, [](Scene& scene) { scene = {}; });
+    check_refused("no visible triangle", ErrorCode::BadInput, [](Scene& scene) { scene.meshes[0].indices = {0, 0, 0}; });
+    check_refused("no visible triangle", ErrorCode::BadInput, [](Scene& scene) { scene = {}; });
 }
 
-TEST_CASE("an instance that a scale of 0 hides is left out with a warning; where all are, the error says so") {
+TEST_CASE("an instance hidden by a scale of 0 is left out with a warning; if all are, an error explains that") {
     const auto add_hidden = [](Scene& scene, uint32_t node) {
         scene.instances.push_back({.name = "hidden", .world_from_local = make_scale({0, 0, 0}), .node = node});
     };
@@ -123,11 +123,11 @@ TEST_CASE("an instance that a scale of 0 hides is left out with a warning; where
     CHECK(result.scene.instances[0].name == "one");
     CHECK(result.scene.instances[1].name == "last");
     REQUIRE(result.messages.all().size() == 1);
-    CHECK(result.messages.all()[0].text == "file: 2 instances with a singular transform, such as a scale of 0: hidden; "
-                                           "the first is /nodes/5 hidden");
+    CHECK(result.messages.all()[0].text ==
+          "file: 2 instances with a singular transform, such as a scale of 0, hidden (/nodes/5 hidden is the first)");
 
-    check_refused("file: no geometry, not one triangle to see: 1 instance with a singular transform, the first of them "
-                  "/nodes/5 hidden; expected scales "
+    check_refused("file: the scene has no visible triangle: 1 instance with a singular transform (/nodes/5 hidden is "
+                  "the first); expected scales "
                   "other than 0",
                   ErrorCode::BadInput, [&](Scene& scene) {
                       scene.instances.clear();
@@ -136,7 +136,7 @@ TEST_CASE("an instance that a scale of 0 hides is left out with a warning; where
                   });
 }
 
-TEST_CASE("an instance that is out of bounds or squeezed flat is left out where others remain") {
+TEST_CASE("an instance that is out of bounds or squeezed flat is left out if others remain") {
     const auto add = [](Scene& scene, const Transform& place) {
         scene.instances.push_back({.name = "odd", .mesh = 0, .material = 0, .world_from_local = place});
     };
@@ -152,18 +152,18 @@ TEST_CASE("an instance that is out of bounds or squeezed flat is left out where 
     CHECK(hidden.messages.left_out().empty());
 }
 
-TEST_CASE("without geometry the error says what there is instead") {
-    check_refused("1 instance of meshes that lost all their triangles, the first of them mesh 0 square; expected",
+TEST_CASE("an error for a scene without geometry lists its content") {
+    check_refused("1 instance of meshes without valid triangles (mesh 0 square is the first); expected",
                   ErrorCode::BadInput, [](Scene& scene) {
                       scene.meshes[0].indices = {0, 0, 0};
                   });
-    check_refused("no geometry, not one triangle to see: as the reader says", ErrorCode::BadInput, [](Scene& scene) {
+    check_refused("the scene has no visible triangle: as the reader says", ErrorCode::BadInput, [](Scene& scene) {
         scene = {};
         scene.no_instances = "as the reader says";
     });
 }
 
-TEST_CASE("every parameter of a material is visited, and so is checked") {
+TEST_CASE("every parameter of a material is visited and thus checked") {
     MaterialParameters parameters;
     std::size_t bytes = sizeof parameters.kind + sizeof parameters.alpha_mode + sizeof parameters.two_sided_emission +
                         sizeof parameters.double_sided;
@@ -173,13 +173,13 @@ TEST_CASE("every parameter of a material is visited, and so is checked") {
     CHECK(bytes == sizeof parameters);
 }
 
-TEST_CASE("what the file describes somewhere is named by that place") {
+TEST_CASE("messages name elements by their location in the file") {
     using E = ErrorCode;
     check_refused("file: /meshes/3/primitives/1 square: triangle 1", E::BadInput, [](Scene& s) {
         s.meshes[0].origin = "/meshes/3/primitives/1";
         s.meshes[0].indices[4] = 4;
     });
-    check_refused("file: /nodes/7 one lies further", E::OverLimit, [](Scene& s) {
+    check_refused("file: /nodes/7 one lies beyond", E::OverLimit, [](Scene& s) {
         s.nodes.resize(8);
         s.instances[0].node = 7;
         s.instances[0].world_from_local = make_scale({1e30f, 1, 1});
@@ -199,7 +199,7 @@ TEST_CASE("what the file describes somewhere is named by that place") {
     });
 }
 
-TEST_CASE("normals are made unit; zero and NaN become the surface's own") {
+TEST_CASE("normals are normalised; zero and NaN become the geometric normal") {
     const Result result = validated([](Scene& scene) {
         Mesh& mesh = scene.meshes[0];
         mesh.normals = {{0, 0, 0}, {kNan, 0, 1}, {3e30f, 4e30f, 0}, {0, 0, 1e-30f}};
@@ -221,7 +221,7 @@ TEST_CASE("normals are made unit; zero and NaN become the surface's own") {
     CHECK(result.messages.all().size() == 4);
 }
 
-TEST_CASE("faults of meshes and instances are refused, each with its place") {
+TEST_CASE("faults of meshes and instances are refused with their location") {
     using E = ErrorCode;
     check_refused("triangle 1: vertex index 4", E::BadInput, [](Scene& s) { s.meshes[0].indices[4] = 4; });
     check_refused("5 indices", E::BadInput, [](Scene& s) { s.meshes[0].indices.pop_back(); });
@@ -238,7 +238,7 @@ TEST_CASE("faults of meshes and instances are refused, each with its place") {
     check_refused("2^40", E::OverLimit, [](Scene& s) { s.instances[0].world_from_local.translation.z = 1e13f; });
 }
 
-TEST_CASE("faults of materials and images are refused; numbers out of their range are clamped with one warning") {
+TEST_CASE("faults of materials and images are refused, and numbers out of range are clamped with one warning") {
     using E = ErrorCode;
     check_refused("base_color is", E::BadInput, [](Scene& s) { s.materials[0].base_color.g = kNan; });
     check_refused("emission is", E::BadInput, [](Scene& s) { s.materials[0].emission.r = kInfinity; });
@@ -280,8 +280,8 @@ TEST_CASE("faults of cameras and lights are refused") {
     using E = ErrorCode;
     const auto camera = [](auto change) { return [change](Scene& s) { change(s.cameras.emplace_back()); }; };
     CHECK(!validated(camera([](Camera&) {})).error);
-    check_refused("angle of view", E::BadInput, camera([](Camera& c) { c.fov_y = 0; }));
-    check_refused("angle of view", E::BadInput, camera([](Camera& c) { c.fov_y = 3.2f; }));
+    check_refused("field of view", E::BadInput, camera([](Camera& c) { c.fov_y = 0; }));
+    check_refused("field of view", E::BadInput, camera([](Camera& c) { c.fov_y = 3.2f; }));
     check_refused("singular", E::BadInput, camera([](Camera& c) { c.world_from_camera = make_scale({0, 1, 1}); }));
     check_refused("aperture", E::BadInput, camera([](Camera& c) { c.aperture_radius = kNan; }));
     check_refused("focus", E::BadInput, camera([](Camera& c) { c.focus_distance = 0; }));
@@ -319,7 +319,7 @@ TEST_CASE("an environment's pixels that are negative or not finite are set to 0 
     check_refused("scale", ErrorCode::BadInput, [](Scene& s) { s.environment.emplace().scale.r = -1; });
 }
 
-TEST_CASE("messages name what has a name, number the rest, and count one thing as one") {
+TEST_CASE("messages use names where there are any, numbers otherwise, and the right plural") {
     const auto out_of_range = [](Scene& scene) { scene.meshes[0].indices[3] = 9; };
     check_refused("file: mesh 0 square: triangle 1: ", ErrorCode::BadInput, out_of_range);
     check_refused("file: mesh 0: triangle 1: ", ErrorCode::BadInput, [&](Scene& scene) {

@@ -7,7 +7,7 @@
 
 using namespace pertev;
 
-TEST_CASE("each name of a setting's value leads to the value and back, and no other name does") {
+TEST_CASE("names of a setting's values convert to the value and back, and other names are refused") {
     for (const std::string& name : names_of<SamplerKind>()) CHECK(name_of(*value_named<SamplerKind>(name)) == name);
     for (const std::string& name : names_of<PixelFilter>()) CHECK(name_of(*value_named<PixelFilter>(name)) == name);
     for (const std::string& name : names_of<ToneMap>()) CHECK(name_of(*value_named<ToneMap>(name)) == name);
@@ -36,7 +36,7 @@ TEST_CASE("every value has a name") {
     CHECK(aov_names() == std::vector<std::string>{"albedo", "normal", "depth", "position", "ids", "motion"});
 }
 
-TEST_CASE("names of layers are bits of their own, in their order") {
+TEST_CASE("names of layers have distinct bits in their order") {
     uint32_t before = 0;
     for (const std::string& name : aov_names()) {
         const uint32_t bit = *aov_named(name);

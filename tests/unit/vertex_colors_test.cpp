@@ -54,7 +54,7 @@ TEST_CASE("obj: vertex colours are read as sRGB, and the material is white") {
     CHECK(l.messages.all().empty());
 }
 
-TEST_CASE("obj: colours of 0 to 255 are told by any that is 2 or more, of the whole file, with a notice") {
+TEST_CASE("obj: colours are read as 0 to 255 if any in the file is 2 or more, with a notice") {
     const Loaded bright = load_obj("255 128 0");
     check_color(bright, {1, 0.215861f, 0, 1});
     REQUIRE(bright.messages.all().size() == 1);
@@ -65,7 +65,7 @@ TEST_CASE("obj: colours of 0 to 255 are told by any that is 2 or more, of the wh
     check_color(load_obj("1.0000001 0.5 0"), {srgb_decode(1.0000001f), srgb_decode(0.5f), 0, 1});
 }
 
-TEST_CASE("obj: a vertex without a colour among others is white, whatever the others count to") {
+TEST_CASE("obj: a vertex without a colour among coloured ones is white, in either range") {
     for (const std::string color : {"255 0 0", "1 0 0"}) {
         const Loaded l = load("a.obj", "v 0 0 0\nv 1 0 0 " + color + "\nv 0 1 0\nf 1 2 3\n");
         const std::vector<Vec4>& colors = l.scene.meshes[0].colors;
@@ -85,7 +85,7 @@ TEST_CASE("ply: colours mean the same in bytes, floats and OBJ") {
     check_color(load_ply("uchar", "128 128 128 51"), {0.215861f, 0.215861f, 0.215861f, 0.2f});
 }
 
-TEST_CASE("vertex colours beside a texture are left out with a warning, and count where the texture cannot be read") {
+TEST_CASE("vertex colours with a texture are left out with a warning, but used if the texture cannot be read") {
     const fs::path folder = test::scratch_folder();
     write_png(folder / "t.png", Rgba8Image{.width = 1, .height = 1, .pixels = {255, 0, 0, 255}}, true);
     test::write_text(folder / "a.mtl", "newmtl t\nmap_Kd t.png\nnewmtl broken\nmap_Kd a.mtl\nnewmtl plain\nKd 1 1 1\n");

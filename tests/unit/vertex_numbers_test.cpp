@@ -27,7 +27,7 @@ PathState path_of(uint32_t lane, uint32_t round) {
 
 } // namespace
 
-TEST_CASE("unit/vertex_numbers: bits of eight words are reversed as those of one") {
+TEST_CASE("vertex numbers: bits of eight words are reversed as those of one") {
     for (uint32_t round = 0; round < 100; ++round) {
         Words8 words;
         for (uint32_t i = 0; i < kWords; ++i) words[i] = hash_word(8 * round + i);
@@ -40,7 +40,7 @@ TEST_CASE("unit/vertex_numbers: bits of eight words are reversed as those of one
     }
 }
 
-TEST_CASE("unit/vertex_numbers: a vertex's numbers, drawn for eight paths, are those drawn when they are asked for") {
+TEST_CASE("vertex numbers: numbers drawn for eight paths at once equal those drawn on demand") {
     const DrawOnDemand one;
     for (const SamplerKind kind : kKinds) {
         for (const uint32_t seed : {0u, 7u}) {
@@ -70,7 +70,7 @@ TEST_CASE("unit/vertex_numbers: a vertex's numbers, drawn for eight paths, are t
     }
 }
 
-TEST_CASE("unit/vertex_numbers: paths that begin eight at once are those that begin one by one") {
+TEST_CASE("vertex numbers: eight paths begun at once equal those begun one by one") {
     CameraRays camera = make_camera_rays(Camera{}, {PixelFilter::Box, 0.5f, nullptr}, kWidth, 1080, {0, 0, 0});
     const MotionKey keys[] = {{{0, 0, 0, 1}, {0, 0, 0}}, {{0, 0.6f, 0, 0.8f}, {3, 0, 0}}};
     for (const SamplerKind kind : kKinds) {

@@ -34,7 +34,7 @@ struct Watched {
 
 } // namespace
 
-TEST_CASE("frames of the movement share light and find it as coarsely as is set; the picture at rest does not") {
+TEST_CASE("frames in motion share light at the set resolution, and the picture at rest does not") {
     Watched watched;
     FrameRequest& request = watched.request;
     Session plain = watched.session();
@@ -74,7 +74,7 @@ TEST_CASE("frames of the movement share light and find it as coarsely as is set;
     }
 }
 
-TEST_CASE("a picture at rest is metered and picked in without losing irradiance records") {
+TEST_CASE("metering and picking in a picture at rest keep its irradiance records") {
     Watched watched;
     FrameRequest& request = watched.request;
     RenderSettings& picture = request.view.picture;
@@ -86,7 +86,7 @@ TEST_CASE("a picture at rest is metered and picked in without losing irradiance 
     request.view.finds_exposure = true;
     request.budget_s = 1e-9;    // a pass at a time
     std::vector<double> shares; // progress of the records
-    request.tell_made = [&](double share) { shares.push_back(share); };
+    request.on_progress = [&](double share) { shares.push_back(share); };
     Session session = watched.session();
     SessionFrames frames(session, watched.scene, 0.1);
     std::optional<ShownFrame> rests;
@@ -121,7 +121,7 @@ TEST_CASE("a change of ReSTIR or of the light's resolution restarts accumulation
 }
 
 TEST_CASE(
-    "frames of the movement have their own depth, go on after a rest, and the picture at rest has all scatterings") {
+    "frames in motion have their own depth and continue after a rest, and the picture at rest has the full depth") {
     Watched watched;
     FrameRequest& request = watched.request;
     RenderSettings& picture = request.view.picture;
@@ -159,7 +159,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a change of the depth in motion restarts frames and keeps the picture at rest") {
+TEST_CASE("a change of the depth in motion restarts frames but keeps the picture at rest") {
     Watched watched;
     FrameRequest& request = watched.request;
     Session session = watched.session();
@@ -181,7 +181,7 @@ TEST_CASE("a change of the depth in motion restarts frames and keeps the picture
     CHECK(session.history().samples == 2);
 }
 
-TEST_CASE("pictures of no sequence have the movement's depth, and at rest in real time the exposure that is metered") {
+TEST_CASE("single pictures have the depth in motion, and the metered exposure at rest in real time") {
     Watched watched;
     FrameRequest& request = watched.request;
     request.view.picture.integrator = IntegratorKind::Distributed;
@@ -214,7 +214,7 @@ TEST_CASE("pictures of no sequence have the movement's depth, and at rest in rea
     check_metered();
 }
 
-TEST_CASE("on a GPU the size keeps the rate of the screen, within bounds, and a CPU's its own") {
+TEST_CASE("on a GPU the size keeps the screen's rate within limits, and on a CPU its own rate") {
     Watched watched;
     FrameRequest& request = watched.request;
     request.view.moving_scale = 0;

@@ -49,7 +49,7 @@ struct WatchedGrowth {
     }
 };
 
-TEST_CASE("on a slow machine a picture at rest grows through middle sizes, and on a fast one samples gather at once") {
+TEST_CASE("a picture at rest grows through middle sizes on a slow machine, and accumulates at once on a fast one") {
     CHECK(scales(0.4, 0, true).empty());
     CHECK(scales(14, 0, false) == std::vector<float>{0.125f, 0.25f, 0.5f});
     CHECK(scales(14, 0, true) == std::vector<float>{0.125f, 0.25f, 0.5f, 1});
@@ -69,7 +69,7 @@ TEST_CASE("on a slow machine a picture at rest grows through middle sizes, and o
     }
 }
 
-TEST_CASE("a picture takes the window's shape, with no more pixels than were asked for, nor than the window has") {
+TEST_CASE("a picture has the window's aspect and at most the requested pixels and the window's") {
     CHECK(size_for_window(1280, 720, 1280 * 720) == PictureSize{1280, 720});
     CHECK(size_for_window(3840, 2160, 1280 * 720) == PictureSize{1280, 720});
     CHECK(size_for_window(800, 600, 1280 * 720) == PictureSize{800, 600});
@@ -94,7 +94,7 @@ TEST_CASE("a picture takes the window's shape, with no more pixels than were ask
     CHECK_FALSE(take_window_shape(view, 640, 480));
 }
 
-TEST_CASE("pictures that grow come before the samples of a view that is new, and the film is as if they had not been") {
+TEST_CASE("growing pictures precede the samples of a new view and do not affect the film") {
     WatchedGrowth watched;
     FrameRequest& request = watched.request;
     request.budget_s = 100;
@@ -135,7 +135,7 @@ TEST_CASE("pictures that grow come before the samples of a view that is new, and
     }
 }
 
-TEST_CASE("who waits for another exposure waits for no sample, and no whole sample is lost") {
+TEST_CASE("a change of exposure waits for no sample and loses no complete sample") {
     WatchedGrowth watched;
     if (watched.queue.is_cuda()) return; // a GPU's samples are short
     FrameRequest& request = watched.request;

@@ -47,7 +47,7 @@ struct StandIn {
 
 } // namespace
 
-TEST_CASE("nvJPEG is called as it is declared, with the picture's own bytes, and all that it makes is destroyed") {
+TEST_CASE("nvJPEG is called as declared, with the picture's bytes, and all of its objects are destroyed") {
     StandIn stand_in;
     if (!stand_in.is_there()) return;
     stand_in.fail("");
@@ -67,7 +67,7 @@ TEST_CASE("nvJPEG is called as it is declared, with the picture's own bytes, and
     CHECK(queue.allocated_bytes() == 0);
 }
 
-TEST_CASE("where nvJPEG is not there, or any call of it fails, libjpeg-turbo packs, and nothing is left behind") {
+TEST_CASE("if nvJPEG is missing or any call fails, libjpeg-turbo encodes, and nothing leaks") {
     const Rgba8Image picture = ramp(48, 32);
     const std::vector<std::byte> expected = encode_jpeg_strips(picture, 80, true);
     Queue queue = Queue::make_cpu();

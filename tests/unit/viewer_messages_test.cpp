@@ -108,7 +108,7 @@ TEST_CASE("malformed messages are refused") {
     CHECK_FALSE(parse_client_message(std::string_view("{\"type\":\"ask\"\0}", 15)).has_value());
 }
 
-TEST_CASE("spoiled messages and random bytes are read or refused, and values that are read are in range") {
+TEST_CASE("damaged messages and random bytes are read or refused, and accepted values are in range") {
     test::Random random(5);
     const int rounds = static_cast<int>(test::effort(10'000, 1'000'000));
     int read = 0;

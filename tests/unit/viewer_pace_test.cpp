@@ -90,7 +90,7 @@ TEST_CASE("a slowly moving scene leaves less time for the picture, and an unreac
     CHECK(moves_slowly.scale() > 0.15f); // a speck would be no faster
 }
 
-TEST_CASE("a changed frame rate changes the size both ways") {
+TEST_CASE("a changed frame rate changes the size in both directions") {
     FramePace pace(1.0 / 60);
     const auto settled = [&] {
         for (int i = 0; i < 20; ++i) pace.took(pace.scale(), frame_time(0.012, pace.scale()));
@@ -114,7 +114,7 @@ TEST_CASE("an expensive view makes pictures smaller within a few frames") {
     CHECK(scaled_side(1280, 0.375f) == 480);
 }
 
-TEST_CASE("a picture at rest takes the place of a reconstruction once its own error is the smaller one") {
+TEST_CASE("a picture at rest replaces a reconstruction once its error is smaller") {
     // Grey pictures about a truth of 100; `blur` is what the reconstruction is off by, `noise` a half's deviation.
     const auto picture = [](uint32_t size, auto value) {
         Rgba8Image made = {size, size, std::vector<uint8_t>(std::size_t(4) * size * size, 255)};
@@ -141,7 +141,7 @@ TEST_CASE("a picture at rest takes the place of a reconstruction once its own er
     CHECK(better(4, 10));
 }
 
-TEST_CASE("two pictures at most are under way to a client, and acknowledging one takes those before it along") {
+TEST_CASE("at most two pictures are in flight to a client, and acknowledging one covers earlier ones") {
     LinkPace pace;
     pace.sent(1, 1000, 0);
     CHECK(pace.may_send(0.01));
@@ -193,7 +193,7 @@ Shown pictures_shown(double decode_s, std::size_t at_once) {
 
 } // namespace
 
-TEST_CASE("pictures do not wait at a client that is slower than the renderer, and none is kept from a faster one") {
+TEST_CASE("pictures do not queue for a client slower than the renderer, and a faster one gets all") {
     const Shown slow = pictures_shown(0.02, 1);
     CHECK(slow.wait_s < 0.029); // 22 ms are its own; at once sent, the second would wait for up to 20
     CHECK(slow.rate > 40);      // out of 50
@@ -242,26 +242,26 @@ TEST_CASE("a link with high latency is not treated as slow") {
     CHECK(pace.scale() == 1);
 }
 
-TEST_CASE("the first who comes steers, hands over, and finds the wheel again after a reconnect") {
+TEST_CASE("the first client steers, can hand over, and keeps the wheel after a reconnect") {
     Wheel wheel;
     wheel.join(1, "a", 0);
     wheel.join(2, "b", 0);
     CHECK(wheel.steers(1));
     CHECK_FALSE(wheel.hand(2, 2));
     CHECK_FALSE(wheel.hand(1, 9));
-    wheel.ask(2);
-    CHECK(wheel.seats()[1].asks);
+    wheel.request_wheel(2);
+    CHECK(wheel.seats()[1].wants_wheel);
     CHECK(wheel.hand(1, 2));
     CHECK(wheel.steers(2));
-    CHECK_FALSE(wheel.seats()[1].asks);
+    CHECK_FALSE(wheel.seats()[1].wants_wheel);
     wheel.leave(2, 10);
     CHECK(wheel.holder() == 0); // it waits
     wheel.join(3, "b", 12);
     CHECK(wheel.steers(3));
     wheel.leave(3, 20);
-    wheel.look(25);
+    wheel.tick(25);
     CHECK(wheel.holder() == 0);
-    wheel.look(31);
+    wheel.tick(31);
     CHECK(wheel.steers(1));
     wheel.leave(1, 40);
     CHECK_FALSE(wheel.steers(0));
@@ -269,7 +269,7 @@ TEST_CASE("the first who comes steers, hands over, and finds the wheel again aft
     CHECK(wheel.steers(4));
 }
 
-TEST_CASE("a page that comes back before it was missed takes the wheel from its former self, and no other page does") {
+TEST_CASE("a page that reconnects before its timeout gets back the wheel, and no other page does") {
     Wheel wheel;
     wheel.join(1, "a", 0);
     wheel.join(2, "b", 0);
@@ -284,7 +284,7 @@ TEST_CASE("a page that comes back before it was missed takes the wheel from its 
     CHECK(nameless.steers(1));
 }
 
-TEST_CASE("pieces of a still picture say nothing of how well moving ones come through") {
+TEST_CASE("pieces of a still picture do not affect the estimate for moving ones") {
     LinkPace pace;
     double now = 0;
     for (uint32_t i = 1; i < 30; ++i) {
@@ -299,23 +299,23 @@ TEST_CASE("pieces of a still picture say nothing of how well moving ones come th
     CHECK(pace.quality() == quality);
 }
 
-TEST_CASE("a free wheel goes to the first viewer that asks") {
+TEST_CASE("a free wheel goes to the first client that requests it") {
     Wheel wheel;
     wheel.join(1, "a", 0);
     wheel.join(2, "b", 0);
     wheel.leave(1, 1);
-    wheel.ask(2);
+    wheel.request_wheel(2);
     CHECK(wheel.steers(2));
 }
 
-TEST_CASE("a client is sent nothing before its hello, then the welcome first, and pictures as it acknowledges them") {
+TEST_CASE("a client gets nothing before its hello, then the welcome, then pictures as it acknowledges them") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     CHECK(audience.open(1, 0));
     audience.publish(small_frame(), 0);
     CHECK(next(audience).client == 0);
     CHECK_FALSE(audience.is_anyone_there());
-    CHECK(audience.said(1, kHello, 0).empty());
+    CHECK(audience.received(1, kHello, 0).empty());
     CHECK(audience.is_anyone_there());
     CHECK(next(audience).text == "welcome");
     const SendJob picture = next(audience); // no second text before the first has gone
@@ -327,19 +327,19 @@ TEST_CASE("a client is sent nothing before its hello, then the welcome first, an
     for (int i = 0; i < 5; ++i) audience.publish(small_frame(), 0);
     CHECK(next(audience).client == 0); // two are under way
     CHECK_FALSE(audience.is_behind(0.2));
-    CHECK(audience.said(1, R"({"type":"ack","frame":)" + std::to_string(first) + R"(,"ms":1})", 0.1).empty());
+    CHECK(audience.received(1, R"({"type":"ack","frame":)" + std::to_string(first) + R"(,"ms":1})", 0.1).empty());
     CHECK(audience.is_behind(0.2));
     CHECK(next(audience).picture->number == 7); // the newest, none of those before
 }
 
-TEST_CASE("the last picture goes without loss, in pieces, until a newer one is there") {
+TEST_CASE("the last picture is sent losslessly in pieces until a newer one exists") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     audience.open(1, 0);
-    audience.said(1, kHello, 0);
+    audience.received(1, kHello, 0);
     audience.publish(small_frame(true), 0);
     const auto acknowledge = [&](uint32_t frame) {
-        audience.said(1, R"({"type":"ack","frame":)" + std::to_string(frame) + R"(,"ms":1})", 0.1);
+        audience.received(1, R"({"type":"ack","frame":)" + std::to_string(frame) + R"(,"ms":1})", 0.1);
     };
     SendJob job = next_picture(audience);
     CHECK_FALSE(job.is_piece);
@@ -359,43 +359,43 @@ TEST_CASE("the last picture goes without loss, in pieces, until a newer one is t
     CHECK(next_picture(audience).client == 0);
 }
 
-TEST_CASE("messages reach the renderer from whoever steers alone, and floods and nonsense get their sender dropped") {
+TEST_CASE("only the steering client's messages reach the renderer, and floods and nonsense drop their sender") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     audience.open(1, 0);
     audience.open(2, 0);
-    CHECK_FALSE(audience.said(2, R"({"type":"home","n":1})", 0).empty()); // no hello
-    audience.said(1, kHello, 0);
-    audience.said(2, R"({"type":"hello","key":"b"})", 0);
-    CHECK_FALSE(audience.said(2, kHello, 0).empty());
+    CHECK_FALSE(audience.received(2, R"({"type":"home","n":1})", 0).empty()); // no hello
+    audience.received(1, kHello, 0);
+    audience.received(2, R"({"type":"hello","key":"b"})", 0);
+    CHECK_FALSE(audience.received(2, kHello, 0).empty());
     inbox.take(std::chrono::milliseconds(0));
-    CHECK(audience.said(2, R"({"type":"home","n":1})", 0).empty());
+    CHECK(audience.received(2, R"({"type":"home","n":1})", 0).empty());
     CHECK(inbox.take(std::chrono::milliseconds(0)).empty());
-    CHECK(audience.said(1, R"({"type":"home","n":1})", 0).empty());
+    CHECK(audience.received(1, R"({"type":"home","n":1})", 0).empty());
     CHECK(inbox.take(std::chrono::milliseconds(0)).size() == 1);
-    CHECK_FALSE(audience.said(1, "nonsense", 0).empty());
+    CHECK_FALSE(audience.received(1, "nonsense", 0).empty());
     std::string why;
-    for (int i = 0; i < 2000 && why.empty(); ++i) why = audience.said(1, R"({"type":"home","n":1})", 0.1);
+    for (int i = 0; i < 2000 && why.empty(); ++i) why = audience.received(1, R"({"type":"home","n":1})", 0.1);
     CHECK(why == "too many messages");
     CHECK(inbox.take(std::chrono::milliseconds(0)).size() <= 1000);
 }
 
-TEST_CASE("a client whose message comes while the viewer ends is not told that it sent too many") {
+TEST_CASE("a client that sends a message while the viewer ends is not blamed for a flood") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     audience.open(1, 0);
-    audience.said(1, kHello, 0);
+    audience.received(1, kHello, 0);
     inbox.close();
-    CHECK(audience.said(1, R"({"type":"home","n":1})", 0).empty());
+    CHECK(audience.received(1, R"({"type":"home","n":1})", 0).empty());
 }
 
-TEST_CASE("where the renderer takes nothing, whoever steers is dropped before the messages fill the memory") {
+TEST_CASE("if the renderer is stuck, the steering client is dropped before its messages fill the memory") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     audience.open(1, 0);
-    audience.said(1, kHello, 0);
+    audience.received(1, kHello, 0);
     std::string why;
-    for (int i = 0; i < 10000 && why.empty(); ++i) why = audience.said(1, R"({"type":"home","n":1})", i);
+    for (int i = 0; i < 10000 && why.empty(); ++i) why = audience.received(1, R"({"type":"home","n":1})", i);
     CHECK(why == "too many messages wait");
 }
 
@@ -404,9 +404,9 @@ TEST_CASE("clients over the limit and those without a hello are dropped") {
     Audience audience(inbox, "welcome");
     for (uint32_t i = 1; i <= Audience::kMaxClients; ++i) CHECK(audience.open(i, 0));
     CHECK_FALSE(audience.open(99, 0));
-    audience.said(3, kHello, 0);
-    CHECK(audience.look(5).empty());
-    CHECK(audience.look(11).size() == Audience::kMaxClients - 1);
+    audience.received(3, kHello, 0);
+    CHECK(audience.tick(5).empty());
+    CHECK(audience.tick(11).size() == Audience::kMaxClients - 1);
     audience.close(1, 11);
     CHECK(audience.open(99, 11));
 }
@@ -415,11 +415,11 @@ TEST_CASE("the queue of a client that does not read stays small") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     audience.open(1, 0);
-    audience.said(1, kHello, 0);
+    audience.received(1, kHello, 0);
     CHECK(next(audience).text == "welcome"); // never acknowledged as sent
     for (int i = 0; i < 1000; ++i) {
-        audience.tell(0, "note " + std::to_string(i));
-        audience.tell_state("state");
+        audience.notify(0, "note " + std::to_string(i));
+        audience.report_state("state");
     }
     CHECK(next(audience).client == 0);
     audience.text_was_sent(1);

@@ -20,7 +20,7 @@ RequestText good_request() {
 
 } // namespace
 
-TEST_CASE("two texts are equal to the constant-time comparison as to any other") {
+TEST_CASE("the constant-time comparison agrees with the usual one") {
     CHECK(equal_in_constant_time("abc", "abc"));
     CHECK_FALSE(equal_in_constant_time("abd", "abc"));
     CHECK_FALSE(equal_in_constant_time("ab", "abc"));
@@ -29,13 +29,13 @@ TEST_CASE("two texts are equal to the constant-time comparison as to any other")
     CHECK_FALSE(equal_in_constant_time("", ""));
 }
 
-TEST_CASE("tokens have the length asked for and differ") {
+TEST_CASE("tokens have the requested length and differ") {
     CHECK(make_token().size() == 32);
     CHECK(make_token(4).size() == 8);
     CHECK(make_token() != make_token());
 }
 
-TEST_CASE("the server's own names are known in any case and with any port; others are not") {
+TEST_CASE("the server's names are accepted in any case and with any port, and others are not") {
     for (const char* host : {"localhost", "LOCALHOST:1", "127.0.0.1:8080", "[::1]", "[::1]:65535", "Render1.LAN:9"}) {
         CHECK_MESSAGE(is_own_host(host, "render1.lan"), host);
     }
@@ -48,7 +48,7 @@ TEST_CASE("the server's own names are known in any case and with any port; other
     CHECK_FALSE(is_own_host("render1.lan", "127.0.0.1"));
 }
 
-TEST_CASE("an origin is the same only with the very host and port") {
+TEST_CASE("an origin is the same only with the same host and port") {
     CHECK(is_same_origin("http://localhost:8080", "localhost:8080"));
     CHECK(is_same_origin("http://LOCALHOST:8080", "localhost:8080"));
     CHECK(is_same_origin("https://viewer.lan", "viewer.lan"));
@@ -58,7 +58,7 @@ TEST_CASE("an origin is the same only with the very host and port") {
     }
 }
 
-TEST_CASE("a cookie is found among others by its whole name, and never where it stands twice") {
+TEST_CASE("a cookie is found among others by its whole name, but not if it occurs twice") {
     CHECK(cookie_named("a=1; pertev-1=x; b=2", "pertev-1") == "x");
     CHECK(cookie_named("pertev-1=", "pertev-1") == "");
     CHECK(cookie_named("pertev-1=x=y", "pertev-1") == "x=y");
@@ -70,7 +70,7 @@ TEST_CASE("a cookie is found among others by its whole name, and never where it 
     CHECK_FALSE(query_value("token=t&token=t", "token"));
 }
 
-TEST_CASE("a request with the cookie is answered, and one with the token gets it") {
+TEST_CASE("a request with the cookie is answered, and one with the token gets the cookie") {
     const RequestVerdict with_cookie = check_request(good_request(), kServer);
     CHECK(with_cookie.status == 200);
     CHECK(with_cookie.path == "/main.js");
@@ -89,7 +89,7 @@ TEST_CASE("a request with the cookie is answered, and one with the token gets it
     CHECK(check_request(first, kServer).status == 403);
 }
 
-TEST_CASE("each part of a request can be what it is refused for") {
+TEST_CASE("each invalid part of a request refuses it") {
     const auto status_with = [](auto spoil) {
         RequestText request = good_request();
         spoil(request);
@@ -112,7 +112,7 @@ TEST_CASE("each part of a request can be what it is refused for") {
     CHECK(status_with([](RequestText& r) { r.target = ""; }) == 400);
 }
 
-TEST_CASE("no text of a request breaks the checks or gets in by chance") {
+TEST_CASE("no random request crashes the checks or is accepted") {
     test::Random random(3);
     const std::string_view pieces[] = {"localhost", ":", "8080", "[::1]", "http://", "pertev-1a2b", "=", ";", " ", "/",
                                        "?token=",   "&", "evil", "\x80",  "\0x",     "GET",         "]", "[", "%", "."};

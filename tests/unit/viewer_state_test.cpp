@@ -50,8 +50,7 @@ TEST_CASE("every setting accepts and returns its choices and bounds, and refuses
     CHECK_FALSE(set_view_setting(state, "max_depth", 1.5).empty());
 }
 
-TEST_CASE(
-    "what gathers is broken off for another view or another light, and for nothing that the same samples can show") {
+TEST_CASE("accumulation restarts for another view or light, but not for changes that only affect the display") {
     std::string names;
     for (const ViewSetting& setting : view_settings()) {
         CAPTURE(setting.name);
@@ -63,15 +62,15 @@ TEST_CASE(
         } else {
             set_view_setting(after, setting.name, setting.low);
         }
-        if (begins_anew(before, after)) names += std::string(setting.name) + ' ';
-        CHECK_FALSE(begins_anew(after, after));
+        if (restarts(before, after)) names += std::string(setting.name) + ' ';
+        CHECK_FALSE(restarts(after, after));
         const std::string name = setting.name;
         CHECK(is_shown_otherwise(before, after) == (name == "exposure" || name == "tone_map"));
     }
     CHECK(names == "layer integrator max_depth mode fov focus structure traversal rta ");
     ViewState round; // the lens of this view is a pinhole
     CHECK(set_view_setting(round, "aperture", 0.1) == "");
-    CHECK(begins_anew({}, round));
+    CHECK(restarts({}, round));
 }
 
 TEST_CASE("fixing the exposure keeps its value, and metering resets the stops") {
@@ -112,7 +111,7 @@ TEST_CASE("compatible structures and traversals are chosen together for all kind
     CHECK_FALSE(state.picture.tracers->camera.options.rta);
 }
 
-TEST_CASE("texts to the page are JSON") {
+TEST_CASE("messages to the page are JSON") {
     Scene scene;
     scene.cameras.push_back({.name = "a \"name\""});
     scene.meshes.resize(1);
@@ -165,7 +164,7 @@ TEST_CASE("clients get file names, never paths") {
     CHECK(without_folders("/tmp is full", scene) == "tmp is full");
 }
 
-TEST_CASE("layers have the colours that they are described by") {
+TEST_CASE("layers are displayed in their described colours") {
     const Image normal = {2, 1, 3, {0, 0, 1, 0, 0, 0}};
     CHECK(show_normal(normal).pixels == std::vector<uint8_t>{128, 128, 255, 255, 0, 0, 0, 255});
     const Image depth = {3, 1, 1, {1, 10, 0}};
@@ -196,7 +195,7 @@ TEST_CASE("layers have the colours that they are described by") {
     CHECK(heat.pixels[4] > heat.pixels[0]);
 }
 
-TEST_CASE("a frame's header has its numbers at the places that the page reads") {
+TEST_CASE("a frame's header has its numbers at the offsets that the page reads") {
     const FrameHeader header = {.kind = PictureKind::Piece,
                                 .flags = 1,
                                 .frame = 0x01020304,
@@ -223,7 +222,7 @@ TEST_CASE("a frame's header has its numbers at the places that the page reads") 
     CHECK(bytes[28] == 13);
 }
 
-TEST_CASE("a shrunk picture has the means of its pixels") {
+TEST_CASE("a reduced picture has the means of its pixels") {
     Rgba8Image picture = {4, 3, std::vector<uint8_t>(48, 255)};
     for (std::size_t i = 0; i < 12; ++i) picture.pixels[4 * i] = static_cast<uint8_t>(10 * i);
     const Rgba8Image half = shrunk(picture, 2);

@@ -21,7 +21,7 @@ Vec3 ahead(const Pose& pose) { return normalize(pose.target - pose.eye); }
 
 } // namespace
 
-TEST_CASE("flying goes along the view's axes and takes target and centre along") {
+TEST_CASE("flying moves along the view's axes and carries target and centre along") {
     const Pose forward = fly(kStart, 0, 0, 2);
     CHECK(near(forward.eye, {0, 1, 3}));
     CHECK(near(forward.target, {0, 1, -2}));
@@ -30,7 +30,7 @@ TEST_CASE("flying goes along the view's axes and takes target and centre along")
     CHECK(near(fly(kStart, 0, 1, 0).eye, {0, 2, 5}));
 }
 
-TEST_CASE("turning about the centre keeps the distance; what is dragged to the right comes from the left") {
+TEST_CASE("orbiting keeps the distance, and dragging right brings the left into view") {
     const Pose turned = orbit(kStart, 0.25f, 0);
     CHECK(length(turned.eye - turned.centre) == doctest::Approx(5));
     CHECK(near(turned.centre, kStart.centre, 1e-6f));
@@ -44,27 +44,26 @@ TEST_CASE("turning about the centre keeps the distance; what is dragged to the r
     CHECK(near(orbit(aside, 0, 0).eye, aside.eye));
 }
 
-TEST_CASE("looking turns about the eye by what the drag covers, and turns right when dragged right") {
+TEST_CASE("looking around turns about the eye by the dragged angle, and to the right when dragged right") {
     const float fov = 1;
-    const Pose turned = look(kStart, 0.3f, 0, fov);
+    const Pose turned = turn(kStart, 0.3f, 0, fov);
     CHECK(near(turned.eye, kStart.eye, 1e-6f));
     CHECK(ahead(turned).x == doctest::Approx(std::sin(0.3)));
     CHECK(near(turned.centre, turned.target, 1e-6f));
-    CHECK(ahead(look(kStart, 0, 0.2f, fov)).y == doctest::Approx(-std::sin(0.2)));
+    CHECK(ahead(turn(kStart, 0, 0.2f, fov)).y == doctest::Approx(-std::sin(0.2)));
 }
 
-TEST_CASE("no drag goes over the poles") {
+TEST_CASE("no drag passes the poles") {
     Pose pose = kStart;
     for (int i = 0; i < 50; ++i) pose = orbit(pose, 0.01f, 0.3f);
     CHECK(ahead(pose).y == doctest::Approx(-std::sin(1.55334)).epsilon(1e-4));
-    for (int i = 0; i < 50; ++i) pose = look(pose, 0, -0.9f, 1);
+    for (int i = 0; i < 50; ++i) pose = turn(pose, 0, -0.9f, 1);
     CHECK(ahead(pose).y == doctest::Approx(std::sin(1.55334)).epsilon(1e-4));
     const Transform placed = look_at(pose.eye, pose.target, pose.up);
     CHECK(is_finite(placed.row0));
 }
 
-TEST_CASE(
-    "panning keeps what lies at the centre's distance under the pointer; zooming nears the centre and never meets it") {
+TEST_CASE("panning keeps points at the centre's distance under the pointer, and zooming never reaches the centre") {
     const float fov = 1, height = 2 * std::tan(0.5f * fov);
     const Pose panned = pan(kStart, 0.5f, 0, height, false); // half a picture's height to the right
     CHECK(panned.eye.x == doctest::Approx(-0.5 * static_cast<double>(height) * 5));
@@ -77,7 +76,7 @@ TEST_CASE(
     CHECK(is_finite(look_at(near_centre.eye, near_centre.target, near_centre.up).row0));
 }
 
-TEST_CASE("Shift is fast, Z is slow, and time is what counts") {
+TEST_CASE("Shift is fast, Z is slow, and motion is proportional to time") {
     ClientMessage message;
     message.seconds = 0.1f;
     CHECK(metres_of(message, 2) == doctest::Approx(0.2));
@@ -87,7 +86,7 @@ TEST_CASE("Shift is fast, Z is slow, and time is what counts") {
     CHECK(metres_of(message, 2) < 0.1f);
 }
 
-TEST_CASE("a pose is taken from a camera with what was asked for, and a leaning camera keeps its lean") {
+TEST_CASE("a pose made from a camera keeps requested values and a leaning camera's roll") {
     Camera camera;
     camera.world_from_camera = look_at({1, 2, 3}, {0, 0, 0}, {0, 1, 0});
     const Pose pose = pose_of(camera, {}, {}, 2);
@@ -99,7 +98,7 @@ TEST_CASE("a pose is taken from a camera with what was asked for, and a leaning 
     CHECK(pose_of(camera, {}, {}, 2).up != Vec3{0, 1, 0});
 }
 
-TEST_CASE("angles become degrees of the command line that give the same angle to the bit") {
+TEST_CASE("angles become degrees for the command line that reproduce them to the bit") {
     test::Random random(11);
     int exact = 0;
     constexpr int kRounds = 1000;
@@ -110,7 +109,7 @@ TEST_CASE("angles become degrees of the command line that give the same angle to
     CHECK(exact == kRounds); // each of these came from degrees
 }
 
-TEST_CASE("flags tell eye, target and lens") {
+TEST_CASE("flags contain eye, target and lens") {
     Camera camera;
     camera.fov_y = 50 * (kPi / 180.0f);
     CHECK(camera_flags(kStart, camera, "") == "--eye 0,1,5 --target 0,1,0 --fov 50");
@@ -124,7 +123,7 @@ TEST_CASE("flags tell eye, target and lens") {
     CHECK(camera_flags(kStart, camera, "").find("--projection orthographic --view-height 2") != std::string::npos);
 }
 
-TEST_CASE("a camera through a place of the picture looks where that pixel looks") {
+TEST_CASE("a camera through a point of the picture looks in that pixel's direction") {
     Camera camera;
     camera.world_from_camera = look_at({1, 2, 3}, {0, 0.5f, 0}, {0, 1, 0});
     camera.aperture_radius = 0.1f;

@@ -36,7 +36,7 @@ StartCamera start_at(const Scene& scene) {
 
 } // namespace
 
-TEST_CASE("time begins at 0, runs at its speed, begins anew at its end or stops there, and goes on from there") {
+TEST_CASE("time starts at 0, runs at its speed, loops or stops at its end and continues from there") {
     SceneClock clock = {.end_s = 4};
     clock.advance(1);
     CHECK_FALSE(clock.time_s.has_value()); // it stands
@@ -59,7 +59,7 @@ TEST_CASE("time begins at 0, runs at its speed, begins anew at its end or stops 
     CHECK(clock.time_s == 4);
 }
 
-TEST_CASE("time moves a camera of the scene until somebody steps; then it is their own until they go home") {
+TEST_CASE("time moves a scene's camera until a user moves it, and again after they go home") {
     Scene scene = scene_with_camera();
     const StartCamera start = start_at(scene);
     ViewCamera view(start, scene);
@@ -87,7 +87,7 @@ TEST_CASE("time moves a camera of the scene until somebody steps; then it is the
     CHECK(view.moves_with_time());
 }
 
-TEST_CASE("flags say a camera's place to the bit, or the name of the scene's where words cannot") {
+TEST_CASE("flags state a camera's position to the bit, or the name of the scene's camera if they cannot") {
     Scene scene = scene_with_camera();
     Transform turned = look_at({0, 1, 5}, {0.3f, 1.1f, 0}, {0, 1, 0});
     turned.row0.x = std::nextafter(turned.row0.x, 0.0f); // no look_at gives this value
@@ -95,16 +95,16 @@ TEST_CASE("flags say a camera's place to the bit, or the name of the scene's whe
     const StartCamera start = start_at(scene);
     ViewCamera view(start, scene);
     Camera lens = start.camera;
-    CHECK_FALSE(view.is_said_by_pose());
+    CHECK_FALSE(view.is_given_by_pose());
     CHECK(view.flags(lens, 1.25).starts_with("--camera '0' --fov "));
     CHECK(view.flags(lens, 1.25).ends_with(" --time 1.25"));
     view.step(step_forward(), lens, 1);
-    CHECK(view.is_said_by_pose());
+    CHECK(view.is_given_by_pose());
     CHECK(view.flags(lens, {}).find("--eye") != std::string::npos);
     CHECK(view.flags(lens, {}).find("--time") == std::string::npos);
 }
 
-TEST_CASE("keys that are taken lie in the order of their times, and the camera goes through them to the bit") {
+TEST_CASE("recorded keys are ordered by time, and the camera passes through them to the bit") {
     const Scene scene = scene_with_camera();
     const StartCamera start = start_at(scene);
     ViewCamera view(start, scene);
@@ -125,7 +125,7 @@ TEST_CASE("keys that are taken lie in the order of their times, and the camera g
     CHECK(view.camera(lens).fov_y == first.fov_y);
     view.go_to(2.0, lens);
     CHECK(view.camera(lens).world_from_camera == second.world_from_camera);
-    CHECK(view.is_said_by_pose());
+    CHECK(view.is_given_by_pose());
     CHECK(view.add_key(2, lens)); // in place of the one there
     CHECK(view.path().keys.size() == 2);
     view.remove_key(7);
@@ -140,7 +140,7 @@ TEST_CASE("keys that are taken lie in the order of their times, and the camera g
     CHECK(view.add_key(3, lens));
 }
 
-TEST_CASE("a path of the start leads the camera, and home is that path") {
+TEST_CASE("a path given at the start moves the camera, and home returns to that path") {
     const Scene scene = scene_with_camera();
     StartCamera start = start_at(scene);
     start.path.keys = {{.time_s = 0, .eye = {0, 0, 3}, .target = {0, 0, 0}},
@@ -164,7 +164,7 @@ TEST_CASE("a path of the start leads the camera, and home is that path") {
     CHECK(view.camera(lens) == before);
 }
 
-TEST_CASE("a view that is made up is made up again for another shape of the window, until somebody steps") {
+TEST_CASE("a default view adapts to the window's aspect until a user moves") {
     const Scene scene;
     StartCamera start;
     start.framed = [](float aspect) {
@@ -182,8 +182,8 @@ TEST_CASE("a view that is made up is made up again for another shape of the wind
     CHECK(away() == 2);
     camera.fit(0.5f, lens);
     CHECK(away() == 8);
-    CHECK(camera.is_said_by_pose()); // the flags give the same picture
-    camera.go_to(0.5, lens);         // time leaves it alone
+    CHECK(camera.is_given_by_pose()); // the flags give the same picture
+    camera.go_to(0.5, lens);          // time leaves it alone
     CHECK(away() == 8);
     ClientMessage zoom;
     zoom.kind = MessageKind::Zoom;
@@ -197,7 +197,7 @@ TEST_CASE("a view that is made up is made up again for another shape of the wind
     CHECK(away() == 4);
 }
 
-TEST_CASE("a made-up view is said to the bit by eye and target before anybody steps") {
+TEST_CASE("a default view is stated to the bit by eye and target before any motion") {
     test::Random random(5);
     for (int i = 0; i < 200; ++i) {
         Scene scene;
@@ -208,17 +208,17 @@ TEST_CASE("a made-up view is said to the bit by eye and target before anybody st
         mesh.indices = {0, 1, 2};
         scene.meshes.push_back(std::move(mesh));
         scene.instances.emplace_back();
-        Messages unsaid;
+        Messages ignored;
         const float aspect = random.within(0.5f, 2);
         StartCamera start;
-        start.camera = choose_camera({}, scene, aspect, unsaid);
+        start.camera = choose_camera({}, scene, aspect, ignored);
         start.pose = pose_of(CameraSource{.camera = start.camera}, scene, 3);
         CHECK(length(start.pose.centre - start.pose.eye) == doctest::Approx(3));
         const ViewCamera view(start, scene);
-        CHECK(view.is_said_by_pose());
+        CHECK(view.is_given_by_pose());
         const Pose pose = view.pose();
-        const CameraChoice said = {
+        const CameraChoice choice = {
             .eye = in_file(scene, pose.eye), .target = in_file(scene, pose.target), .up = pose.up};
-        CHECK(choose_camera(said, scene, aspect, unsaid).world_from_camera == start.camera.world_from_camera);
+        CHECK(choose_camera(choice, scene, aspect, ignored).world_from_camera == start.camera.world_from_camera);
     }
 }

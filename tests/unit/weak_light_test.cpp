@@ -67,7 +67,7 @@ void add_emission_texture(Scene& scene, uint8_t value) {
     scene.materials[1].emission_texture.image = 0;
 }
 
-TEST_CASE("a scene with a weak lamp gets a sky in renders, but not in other verbs") {
+TEST_CASE("a scene with a weak emitter gets a sky in renders, but not in other verbs") {
     const Scene scene = make_body_with_emitter();
     CHECK(shares_seen(scene).lit < 0.01);
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
@@ -75,7 +75,7 @@ TEST_CASE("a scene with a weak lamp gets a sky in renders, but not in other verb
     CHECK(light_added(scene, SceneUse::Benchmark) == DefaultLight::None);
 }
 
-TEST_CASE("a lamp that lights what is seen gets no sky, with an emission texture or without") {
+TEST_CASE("a scene whose emitter lights what is visible gets no sky, with or without an emission texture") {
     Scene scene = make_lit_floor();
     CHECK(shares_seen(scene).lit > 0.9);
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::None);
@@ -84,7 +84,7 @@ TEST_CASE("a lamp that lights what is seen gets no sky, with an emission texture
     CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::None);
 }
 
-TEST_CASE("a light that an animation brightens is a light of the file") {
+TEST_CASE("a light that an animation brightens counts as a light of the file") {
     Scene scene;
     scene.materials.push_back({{}, "floor"});
     add_quad(scene, {}, {0, 1, 0}, 2, 0);
@@ -99,14 +99,14 @@ TEST_CASE("a light that an animation brightens is a light of the file") {
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky); // at time 0 it shows nothing
 }
 
-TEST_CASE("a lamp with a black texture emits nothing, so the scene gets a sky") {
+TEST_CASE("an emitter with a black texture emits nothing, so the scene gets a sky") {
     Scene scene = make_lit_floor();
     add_emission_texture(scene, 0);
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
     CHECK(light_added(scene, SceneUse::Measurement) == DefaultLight::Sky);
 }
 
-TEST_CASE("lights without a size get a sky beside them only where they reach nothing that is seen") {
+TEST_CASE("point lights get an additional sky only if they reach nothing visible") {
     Scene scene;
     scene.materials.push_back({{}, "floor"});
     add_quad(scene, {}, {0, 1, 0}, 2, 0);
@@ -130,7 +130,7 @@ TEST_CASE("lights without a size get a sky beside them only where they reach not
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
 }
 
-TEST_CASE("the first camera of the file decides, and how bright the lamp is does not") {
+TEST_CASE("the first camera of the file decides, and the emitter's brightness does not") {
     Scene scene = make_lit_floor();
     for (const float scale : {1e-6f, 1e6f}) {
         scene.materials[1].emission = grey(scale);
@@ -142,7 +142,7 @@ TEST_CASE("the first camera of the file decides, and how bright the lamp is does
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
 }
 
-TEST_CASE("an animation decides as it stands at time 0") {
+TEST_CASE("an animation counts by its state at time 0") {
     Scene scene = make_lit_floor();
     scene.nodes.resize(1);
     scene.instances[1].node = 0; // the lamp
@@ -153,7 +153,7 @@ TEST_CASE("an animation decides as it stands at time 0") {
     CHECK(light_added(scene, SceneUse::Picture) == DefaultLight::Sky);
 }
 
-TEST_CASE("labels that glow past a thing do not light it; lamps of boxes light these") {
+TEST_CASE("glowing labels that face away do not count as light for an object, and emitters within boxes do") {
     struct Expected {
         const char* path;
         DefaultLight added;
@@ -171,7 +171,7 @@ TEST_CASE("labels that glow past a thing do not light it; lamps of boxes light t
     }
 }
 
-TEST_CASE("benchmarks keep the sky that their figures were measured under") {
+TEST_CASE("benchmarks keep the sky of their stored figures") {
     Scene studio, clear;
     for (Scene* scene : {&studio, &clear}) {
         scene->materials.emplace_back();

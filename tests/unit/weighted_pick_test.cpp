@@ -28,7 +28,7 @@ std::vector<double> shares_picked(const std::vector<float>& weights, uint32_t dr
 
 } // namespace
 
-TEST_CASE("each item is picked in proportion to its weight") {
+TEST_CASE("each item is selected in proportion to its weight") {
     const std::vector<float> weights = {1, 0, 3, 0.5f, 0, 2, 10, 0.001f};
     const std::vector<double> shares = shares_picked(weights, 1u << 20);
     double sum = 0;
@@ -39,7 +39,7 @@ TEST_CASE("each item is picked in proportion to its weight") {
     }
 }
 
-TEST_CASE("items whose weight is 0 or NaN are never picked") {
+TEST_CASE("items whose weight is 0 or NaN are never selected") {
     RisSelection pick = {0.5f};
     CHECK_FALSE(pick.takes(0));
     CHECK_FALSE(pick.takes(-1));

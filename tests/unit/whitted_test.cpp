@@ -44,7 +44,7 @@ Scene slab_scene() {
 
 } // namespace
 
-TEST_CASE("a slab of glass has the ray count computed by hand at each depth") {
+TEST_CASE("a glass slab has the ray count computed by hand at each depth") {
     const Scene scene = slab_scene();
     // Each scattering of the ray within sends a ray out, and one to the other side. What has come out by depth d:
     // 1/4, then 3/4 3/4, and a quarter of the last one more each time.
@@ -62,7 +62,7 @@ TEST_CASE("a slab of glass has the ray count computed by hand at each depth") {
     }
 }
 
-TEST_CASE("rays that bring less than a thousandth are not followed") {
+TEST_CASE("rays that contribute less than a thousandth are not followed") {
     // Within go 3/4 4^-k, out of that 3/4 more: the ray within of k = 5 is the first one under 2^-10, and of those out
     // that of k = 5. One is reflected at once, five go on within, five come out.
     const RenderResult result = one_ray(slab_scene(), {0.2f, 3, 0.3f}, 16);
@@ -84,7 +84,7 @@ TEST_CASE("between two mirrors a ray is reflected up to the depth limit") {
     }
 }
 
-TEST_CASE("a diffuse surface that is seen in a mirror asks each light once, however many there are") {
+TEST_CASE("a diffuse surface seen in a mirror samples each light once, however many there are") {
     Scene scene;
     test::add(scene, test::floor_at(0, 50), test::mirror());
     test::add(scene, test::sheet({0, 4, 0}, {50, 0, 0}, {0, 0, 50}), test::white(0.5f)); // a ceiling, seen in the floor
@@ -108,7 +108,7 @@ TEST_CASE("a diffuse surface that is seen in a mirror asks each light once, howe
     CHECK(radiance_of(cast) == 0);
 }
 
-TEST_CASE("distributed equals whitted where the only choice is one light") {
+TEST_CASE("distributed equals whitted if there is only one light to choose") {
     Scene scene = slab_scene();
     scene.environment.reset();
     test::add(scene, test::floor_at(-1, 50), test::white(0.8f));

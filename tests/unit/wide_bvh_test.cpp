@@ -9,7 +9,7 @@
 
 #include "accel/builders/build_bvh.h"
 #include "tests/support/meshes.h"
-#include "tests/support/nasty_meshes.h"
+#include "tests/support/stress_meshes.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -114,8 +114,8 @@ TEST_CASE("the chosen collapse of a small tree has minimal cost") {
     }
 }
 
-TEST_CASE("wide trees of all nasty meshes are sound and lose no triangle") {
-    for (const NastyMesh& mesh : nasty_meshes()) {
+TEST_CASE("wide trees of all stress meshes are valid and lose no triangle") {
+    for (const StressMesh& mesh : stress_meshes()) {
         CAPTURE(mesh.name);
         for (const int build_leaf : {1, 4, 40}) {
             const Bvh bvh = build_bvh(mesh.triangles, {.max_leaf = build_leaf, .leaf_cost = 0.1f});
@@ -136,7 +136,7 @@ TEST_CASE("wide trees of all nasty meshes are sound and lose no triangle") {
     }
 }
 
-TEST_CASE("a wide tree traverses its binary tree's own triangles by the counts in its nodes") {
+TEST_CASE("a wide tree shares its binary tree's triangles and has their counts in its nodes") {
     const Bvh bvh = build_bvh(triangles_of(make_torus(30, 20)));
     const std::vector<WideBvhNode<8>> nodes = make_wide_bvh<8>(bvh, kSimdCollapse).nodes;
     std::vector<int> seen(bvh.triangles.size());
@@ -149,7 +149,7 @@ TEST_CASE("a wide tree traverses its binary tree's own triangles by the counts i
     CHECK(nodes.size() < bvh.nodes.size() / 4);
 }
 
-TEST_CASE("the checker of wide trees notices what is wrong") {
+TEST_CASE("the checker of wide trees detects faults") {
     const WideBvh<8> sound = make_wide_bvh<8>(build_bvh(make_soup(2000, 0)));
     REQUIRE(!find_fault(sound));
     const auto with = [&](auto&& change) {

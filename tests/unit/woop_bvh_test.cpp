@@ -10,7 +10,7 @@
 #include "accel/bvh/woop_bvh.h"
 #include "tests/support/check_traversal.h"
 #include "tests/support/meshes.h"
-#include "tests/support/nasty_meshes.h"
+#include "tests/support/stress_meshes.h"
 #include "trace/binary/while_while_traversal.h"
 #include "trace/intersect/woop_tests.h"
 
@@ -47,7 +47,7 @@ TEST_CASE("Woop's transform maps a triangle to the unit triangle with heights in
     }
 }
 
-TEST_CASE("rays inside a triangle hit it where the exact test says, rays outside pass") {
+TEST_CASE("rays inside a triangle hit it as in the exact test, and rays outside miss it") {
     Random random(12);
     int inside = 0, outside = 0;
     for (int i = 0; i < 20'000; ++i) {
@@ -77,7 +77,7 @@ TEST_CASE("rays inside a triangle hit it where the exact test says, rays outside
     CHECK(outside > 2000);
 }
 
-TEST_CASE("triangles without area, too small and too large are never hit") {
+TEST_CASE("triangles without area, and those too small or too large, are never hit") {
     const Vec3 o = {0, 0, 0}, x = {1, 0, 0}, y = {0, 1, 0};
     const float tiny = 0x1p-149f;
     const Vec3 corners[][3] = {
@@ -99,13 +99,13 @@ TEST_CASE("triangles without area, too small and too large are never hit") {
 }
 
 TEST_CASE("unit-triangle traversals match brute force except for a few rays at edges") {
-    for (const NastyMesh& c : nasty_meshes()) {
+    for (const StressMesh& c : stress_meshes()) {
         if (std::string(c.name).find("soup") != 0 || c.extent != 1) continue; // no ties
         CAPTURE(std::string(c.name));
         const WoopBvh bvh = make_woop_bvh(build_bvh(c.triangles));
         REQUIRE(bvh.transforms.size() == bvh.triangles.size());
         const WoopBvhView view = view_of(bvh);
-        const std::vector<Ray> rays = nasty_rays(2000, c, 5);
+        const std::vector<Ray> rays = stress_rays(2000, c, 5);
         const std::vector<Hit> expected = hits_by_brute_force(c.triangles, rays, AcceptAll{});
         uint64_t differ = 0, hits = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {

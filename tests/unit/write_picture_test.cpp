@@ -42,7 +42,7 @@ std::string text_of(const ExrMetadata& metadata, const std::string& name) {
 
 } // namespace
 
-TEST_CASE("an EXR holds the picture, its layers and how it was made") {
+TEST_CASE("an EXR holds the picture, its layers and its settings") {
     RenderSettings settings;
     RenderResult result = small_result(settings);
     const std::vector<float> albedo = result.layers[0].image.pixels;
@@ -70,7 +70,7 @@ TEST_CASE("an EXR holds the picture, its layers and how it was made") {
     CHECK(text_of(file.metadata, "pertev.tone_map") == "(none)"); // it is shown nowhere
 }
 
-TEST_CASE("a denoised picture's hash is that of its file's channels") {
+TEST_CASE("a denoised picture's hash equals that of its file's channels") {
     RenderSettings settings;
     RenderResult result = small_result(settings);
     const std::vector<std::string> paths = {test::scratch_folder() / "picture.exr"};
@@ -84,7 +84,7 @@ TEST_CASE("a denoised picture's hash is that of its file's channels") {
     CHECK(written.denoised_hash != written.hash);
 }
 
-TEST_CASE("a PNG shows the picture by the display that was chosen, which the EXR beside it names") {
+TEST_CASE("a PNG has the chosen display, which the metadata of its EXR name") {
     RenderSettings settings;
     RenderResult result = small_result(settings);
     const std::filesystem::path folder = test::scratch_folder();
@@ -99,7 +99,7 @@ TEST_CASE("a PNG shows the picture by the display that was chosen, which the EXR
     CHECK(text_of(metadata, "pertev.tone_map") == "aces");
 }
 
-TEST_CASE("a file that cannot be written is named, and keeps no other from being written") {
+TEST_CASE("a file that cannot be written is named and does not prevent others from being written") {
     RenderSettings settings;
     RenderResult result = small_result(settings);
     const std::filesystem::path folder = test::scratch_folder();
@@ -166,7 +166,7 @@ TEST_CASE("metadata records how scene and camera were chosen") {
     CHECK(source_of(choice, {}).fov_deg == 40);
 }
 
-TEST_CASE("ids come with the names of only the visible objects, as JSON") {
+TEST_CASE("ids come with the names of the visible objects only, as JSON") {
     Scene scene;
     for (const char* name : {"floor", "a \"lamp\"", "unseen"}) {
         scene.instances.emplace_back().name = name;

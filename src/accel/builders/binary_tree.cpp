@@ -120,16 +120,16 @@ public:
         bvh_.sah_cost = summary.cost / max(root.box.half_area(), 0x1p-126f);
         // Breadth first until there are enough subtrees to share among threads.
         constexpr std::size_t kSubtrees = 2048;
-        std::vector<Place> level = {{tree_.root, 0, 0}};
+        std::vector<NodeSlot> level = {{tree_.root, 0, 0}};
         while (!level.empty() && level.size() < kSubtrees) {
-            std::vector<Place> next;
-            for (const Place& at : level) copy(at, next);
+            std::vector<NodeSlot> next;
+            for (const NodeSlot& at : level) copy(at, next);
             level = std::move(next);
         }
         parallel_for(level.size(), 1, [&](uint64_t i) {
-            std::vector<Place> pending = {level[i]};
+            std::vector<NodeSlot> pending = {level[i]};
             while (!pending.empty()) {
-                const Place at = pending.back();
+                const NodeSlot at = pending.back();
                 pending.pop_back();
                 copy(at, pending);
             }
@@ -138,32 +138,34 @@ public:
     }
 
 private:
-    struct Place {
+    struct NodeSlot {
         uint32_t from, node, triangle; // positions of its first node and first triangle
     };
 
-    uint32_t link_of(const Place& at) const { return summaries_[at.from].is_leaf() ? kLeafBit | at.triangle : at.node; }
+    uint32_t link_of(const NodeSlot& at) const {
+        return summaries_[at.from].is_leaf() ? kLeafBit | at.triangle : at.node;
+    }
 
     float surface_by_size(const BinaryNode& node, int k, int other) const {
         return tree_.nodes[node.child[k]].box.half_area() * static_cast<float>(summaries_[node.child[other]].size);
     }
 
     /// Copies a leaf, or an inner node whose children are then appended to `pending`.
-    void copy(const Place& at, std::vector<Place>& pending) {
+    void copy(const NodeSlot& at, std::vector<NodeSlot>& pending) {
         if (summaries_[at.from].is_leaf()) return copy_leaf(at);
         const BinaryNode& node = tree_.nodes[at.from];
         // Child 0 is the one where a ray finds a hit sooner: more surface per triangle, as in build_tree.
         const int first = surface_by_size(node, 0, 1) >= surface_by_size(node, 1, 0) ? 0 : 1;
         const NodeSummary& of_first = summaries_[node.child[first]];
-        const Place places[2] = {{node.child[first], at.node + 1, at.triangle},
-                                 {node.child[1 - first], at.node + 1 + of_first.inner, at.triangle + of_first.size}};
+        const NodeSlot slots[2] = {{node.child[first], at.node + 1, at.triangle},
+                                   {node.child[1 - first], at.node + 1 + of_first.inner, at.triangle + of_first.size}};
         for (int k = 0; k < 2; ++k) {
-            set_child(bvh_.nodes[at.node], k, tree_.nodes[places[k].from].box, link_of(places[k]));
-            pending.push_back(places[k]);
+            set_child(bvh_.nodes[at.node], k, tree_.nodes[slots[k].from].box, link_of(slots[k]));
+            pending.push_back(slots[k]);
         }
     }
 
-    void copy_leaf(const Place& at) {
+    void copy_leaf(const NodeSlot& at) {
         thread_local std::vector<uint32_t> held;
         collect_references(tree_, at.from, held);
         for (std::size_t i = 0; i < held.size(); ++i) {

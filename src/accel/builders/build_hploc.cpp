@@ -51,7 +51,7 @@ Bvh build_hploc_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSet
     uint32_t root = 0;
     const hploc::Climb climb = {
         {nodes.data(), plans.data(), sizes.data(), count, {}}, curve.codes.data(), clusters.data(), ends.data(), &root};
-    run(count, hploc::PlaceLeaves{triangles.data(), curve.order.data(), climb});
+    run(count, hploc::StoreLeaves{triangles.data(), curve.order.data(), climb});
     run(count, hploc::ClimbFromLeaves{climb});
 
     BinaryTree tree;

@@ -31,9 +31,9 @@ std::vector<uint32_t> scramble(uint32_t count) {
     return order;
 }
 
-class PlaceFinder {
+class InsertionSearch {
 public:
-    explicit PlaceFinder(const LinkedTree& tree) : tree_(tree) {}
+    explicit InsertionSearch(const LinkedTree& tree) : tree_(tree) {}
 
     /// Returns the node beside which a leaf with this box adds the least area, including the growth of all boxes
     /// above.
@@ -116,8 +116,8 @@ Bvh build_insertion_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuil
     }
     leaves.root = 0;
     LinkedTree tree(std::move(leaves));
-    PlaceFinder places(tree);
-    for (uint32_t i = 1; i < count; ++i) tree.insert(i, places.find(tree.node(i).box), count + i - 1);
+    InsertionSearch search(tree);
+    for (uint32_t i = 1; i < count; ++i) tree.insert(i, search.find(tree.node(i).box), count + i - 1);
     return make_bvh(tree.take(), triangles, settings);
 }
 

@@ -21,13 +21,13 @@ constexpr uint32_t kFewMerges = 16;       // a round with fewer merges than clus
                                           // one round per merge
 constexpr uint32_t kPlocChunk = 1u << 13; // fixed, so that nothing depends on the number of threads
 
-struct CurvePlace {
+struct CurveKey {
     uint64_t code;
     uint32_t id;
 };
 
 /// Sorts triangles along the Morton curve through their centres; equal codes are sorted by id.
-std::vector<CurvePlace> sort_along_curve(const std::vector<BuildReference>& references) {
+std::vector<CurveKey> sort_along_curve(const std::vector<BuildReference>& references) {
     Bounds3 centres;
     for (const BuildReference& r : references) centres.extend(r.lo + r.hi);
     const Vec3 size = centres.size();
@@ -35,29 +35,28 @@ std::vector<CurvePlace> sort_along_curve(const std::vector<BuildReference>& refe
         const float part = extent > 0 ? (x - lo) / extent : 0.0f; // [0, 1]
         return spread_bits(static_cast<uint64_t>(to_int(part * 0x1p21f, 0, (1 << 21) - 1)));
     };
-    std::vector<CurvePlace> places(references.size());
+    std::vector<CurveKey> keys(references.size());
     parallel_for(references.size(), kPlocChunk, [&](uint64_t i) {
         const Vec3 centre = references[i].lo + references[i].hi;
-        places[i] = {cell(centre.x, centres.lo.x, size.x) << 2 | cell(centre.y, centres.lo.y, size.y) << 1 |
-                         cell(centre.z, centres.lo.z, size.z),
-                     static_cast<uint32_t>(i)};
+        keys[i] = {cell(centre.x, centres.lo.x, size.x) << 2 | cell(centre.y, centres.lo.y, size.y) << 1 |
+                       cell(centre.z, centres.lo.z, size.z),
+                   static_cast<uint32_t>(i)};
     });
-    std::sort(places.begin(), places.end(), [](const CurvePlace& a, const CurvePlace& b) {
-        return a.code != b.code ? a.code < b.code : a.id < b.id;
-    });
-    return places;
+    std::sort(keys.begin(), keys.end(),
+              [](const CurveKey& a, const CurveKey& b) { return a.code != b.code ? a.code < b.code : a.id < b.id; });
+    return keys;
 }
 
 class Clusters {
 public:
     explicit Clusters(const std::vector<BuildReference>& references) {
-        const std::vector<CurvePlace> places = sort_along_curve(references);
-        const auto count = static_cast<uint32_t>(places.size());
+        const std::vector<CurveKey> keys = sort_along_curve(references);
+        const auto count = static_cast<uint32_t>(keys.size());
         tree_.nodes.resize(2 * static_cast<std::size_t>(count) - 1);
         tree_.references.resize(count);
         clusters_.resize(count);
         parallel_for(count, kPlocChunk, [&](uint64_t i) {
-            const BuildReference& r = references[places[i].id];
+            const BuildReference& r = references[keys[i].id];
             tree_.references[i] = r.id;
             tree_.nodes[i] = make_leaf({r.lo, r.hi}, static_cast<uint32_t>(i));
             clusters_[i] = {{r.lo, r.hi}, static_cast<uint32_t>(i)};

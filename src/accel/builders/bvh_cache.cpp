@@ -85,13 +85,13 @@ BuiltTree read_tree(const fs::path& path, const Hash128& key, std::size_t triang
     Header header;
     if (size < sizeof header) throw Unusable{"it is cut short"};
     read_values(file, std::span(&header, 1));
-    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) throw Unusable{"it is not a tree of Pertev's"};
+    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) throw Unusable{"it is not a tree that Pertev wrote"};
     if (header.byte_order != kByteOrder || header.version != kVersion) throw Unusable{"another version wrote it"};
-    if (!(header.key == key) || header.triangle_count != triangle_count) throw Unusable{"it is of another mesh"};
+    if (!(header.key == key) || header.triangle_count != triangle_count) throw Unusable{"it belongs to another mesh"};
     if (header.node_count >= kMaxBvhTriangles || header.order_count < header.triangle_count ||
         header.order_count > kMaxCopies * header.triangle_count ||
         size != sizeof header + header.node_count * sizeof(BvhNode) + header.order_count * sizeof(uint32_t)) {
-        throw Unusable{"its size is not what it says"};
+        throw Unusable{"its size is not the stated one"};
     }
     BuiltTree tree;
     tree.nodes.resize(header.node_count);
@@ -205,9 +205,9 @@ std::optional<Bvh> load_cached_bvh(const Hash128& key, const fs::path& folder,
         fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
         return bvh;
     } catch (const Unusable& unusable) {
-        messages.warn({Place{path.string()}, fmt::format("ignored and built anew: {}", unusable.why)});
+        messages.warn({FileLocation{path.string()}, fmt::format("ignored and rebuilt: {}", unusable.why)});
     } catch (const fs::filesystem_error& error) {
-        messages.warn({Place{path.string()}, fmt::format("ignored and built anew: {}", error.code().message())});
+        messages.warn({FileLocation{path.string()}, fmt::format("ignored and rebuilt: {}", error.code().message())});
     }
     return std::nullopt;
 }
@@ -243,10 +243,11 @@ void store_cached_bvh(const Hash128& key, const fs::path& folder, const BuiltTre
         write_file_atomically(file_of(key, folder), bytes);
         remove_oldest(folder, max_bytes);
     } catch (const fs::filesystem_error& error) {
-        messages.warn(
-            {Place{folder.string()}, fmt::format("the structure cache cannot be written: {}", error.code().message())});
+        messages.warn({FileLocation{folder.string()},
+                       fmt::format("the structure cache cannot be written: {}", error.code().message())});
     } catch (const Error& error) {
-        messages.warn({Place{folder.string()}, fmt::format("the structure cache cannot be written: {}", error.what())});
+        messages.warn(
+            {FileLocation{folder.string()}, fmt::format("the structure cache cannot be written: {}", error.what())});
     }
 }
 

@@ -25,7 +25,7 @@ std::unordered_map<uint32_t, std::size_t> firsts_of(const std::vector<BvhTriangl
 std::optional<std::string> why_no_refit(BvhBuilder builder) {
     if (!cuts_triangles(builder)) return std::nullopt;
     return std::string(name_of(builder)) +
-           ": its boxes hold parts of triangles, which are other parts once the triangles move; it is built anew";
+           ": its boxes hold parts of triangles, which change when the triangles move; it is rebuilt";
 }
 
 Bvh refit_bvh(const Bvh& bvh, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings) {
@@ -37,7 +37,7 @@ Bvh refit_bvh(const Bvh& bvh, const std::vector<BvhTriangle>& triangles, const B
         const auto first = firsts.find(t.instance);
         const std::size_t at = first == firsts.end() ? triangles.size() : first->second + t.primitive;
         if (at >= triangles.size() || triangles[at].instance != t.instance || triangles[at].primitive != t.primitive) {
-            throw Error(ErrorCode::BadInput, "a tree can be refitted to the triangles that it was built over alone");
+            throw Error(ErrorCode::BadInput, "a tree can only be refitted to the triangles that it was built over");
         }
         t.a = triangles[at].a, t.b = triangles[at].b, t.c = triangles[at].c;
     });

@@ -173,7 +173,8 @@ private:
 
     /// Tries every node of a subtree, except its root if the node comes from there. `freed` is the area saved so far,
     /// minus the growth of boxes above the node and below the pivot.
-    void search(uint32_t root, uint32_t pivot, float freed, const Bounds3& box, bool is_own_place, Move& best) const {
+    void search(uint32_t root, uint32_t pivot, float freed, const Bounds3& box, bool is_own_position,
+                Move& best) const {
         struct Pending {
             uint32_t node;
             float freed;
@@ -187,7 +188,7 @@ private:
             if (at.freed - own <= best.gain) continue;
             const BinaryNode& node = nodes_[at.node];
             const float with = area_of_both(node.box, box);
-            if (!is_own_place || at.node != root) consider(at.node, pivot, at.freed - with, best);
+            if (!is_own_position || at.node != root) consider(at.node, pivot, at.freed - with, best);
             const float below = at.freed - (with - node.box.half_area());
             if (node.is_leaf() || below - own <= best.gain || count + 2 > 2 * kStack) continue;
             pending[count++] = {node.child[0], below};

@@ -93,10 +93,10 @@ HD inline uint64_t preference(float area, uint32_t i, uint32_t k) {
     return static_cast<uint64_t>(bits_of(area)) << 32 | (i ^ k);
 }
 
-/// Cluster `place` of those that the node with leaves [first, end) left; kNone past the last.
-HD inline Cluster cluster_left(const Climb& climb, uint32_t first, uint32_t end, uint32_t place) {
-    if (end - first <= climb.kept()) return {first + place, first + place}; // its leaves
-    return load_fresh(climb.clusters + first + place);
+/// Cluster `slot` of those that the node with leaves [first, end) left; kNone past the last.
+HD inline Cluster cluster_left(const Climb& climb, uint32_t first, uint32_t end, uint32_t slot) {
+    if (end - first <= climb.kept()) return {first + slot, first + slot}; // its leaves
+    return load_fresh(climb.clusters + first + slot);
 }
 
 /// Merges the clusters of a node in one thread.
@@ -123,9 +123,9 @@ HD inline void join_range(const Climb& climb, const LeafRange& range) {
             for (uint32_t k = i + 1; k < count && k <= i + kSearchRadius; ++k) {
                 Bounds3 both = boxes[i];
                 both.extend(boxes[k]);
-                const uint64_t wish = preference(both.half_area(), i, k);
-                if (wish < best[i]) best[i] = wish;
-                if (wish < best[k]) best[k] = wish;
+                const uint64_t preferred = preference(both.half_area(), i, k);
+                if (preferred < best[i]) best[i] = preferred;
+                if (preferred < best[k]) best[k] = preferred;
             }
         }
         uint32_t kept = 0;
@@ -144,8 +144,9 @@ HD inline void join_range(const Climb& climb, const LeafRange& range) {
         }
         count = kept;
     }
-    const uint32_t room = range.size() < climb.kept() ? range.size() : climb.kept();
-    for (uint32_t i = 0; i < room; ++i) climb.clusters[range.first + i] = i < count ? clusters[i] : Cluster{kNone, 0};
+    const uint32_t capacity = range.size() < climb.kept() ? range.size() : climb.kept();
+    for (uint32_t i = 0; i < capacity; ++i)
+        climb.clusters[range.first + i] = i < count ? clusters[i] : Cluster{kNone, 0};
     if (range.size() == climb.tree.count) *climb.root = clusters[0].node;
 }
 

@@ -123,7 +123,7 @@ struct MakeCodes {
 };
 
 /// One call per leaf; leaf i is triangle order[i].
-struct PlaceLeaves {
+struct StoreLeaves {
     const BvhTriangle* triangles;
     const uint32_t* order;
     Climb climb;

@@ -15,26 +15,26 @@ constexpr uint32_t kParallelKdNode = 1u << 14; // from this many triangles on, t
 enum Kind : uint32_t { kEnd = 0, kPlanar = 1, kBegin = 2 };
 enum Side : uint8_t { kBoth = 0, kBelow = 1, kAbove = 2 };
 
-uint64_t make_event(float at, Kind kind, uint32_t place) {
+uint64_t make_event(float at, Kind kind, uint32_t index) {
     const uint32_t bits = bits_of(at + 0.0f); // -0 becomes 0
     const uint32_t ordered = bits & 0x80000000u ? ~bits : bits | 0x80000000u;
-    return uint64_t(ordered) << 32 | kind << 30 | place;
+    return uint64_t(ordered) << 32 | kind << 30 | index;
 }
 uint32_t position_key(uint64_t event) { return static_cast<uint32_t>(event >> 32); }
 float position_of(uint32_t key) { return float_of(key & 0x80000000u ? key & 0x7fffffffu : ~key); }
 float position_of(uint64_t event) { return position_of(position_key(event)); }
 Kind kind_of(uint64_t event) { return static_cast<Kind>(event >> 30 & 3); }
-uint32_t place_of(uint64_t event) { return static_cast<uint32_t>(event) & 0x3fffffffu; }
-uint64_t at_place(uint64_t event, uint32_t place) { return (event & ~uint64_t(0x3fffffffu)) | place; }
+uint32_t index_of(uint64_t event) { return static_cast<uint32_t>(event) & 0x3fffffffu; }
+uint64_t with_index(uint64_t event, uint32_t index) { return (event & ~uint64_t(0x3fffffffu)) | index; }
 
-void add_events(const Bounds3& box, uint32_t place, std::vector<uint64_t> (&events)[3]) {
+void add_events(const Bounds3& box, uint32_t index, std::vector<uint64_t> (&events)[3]) {
     for (int axis = 0; axis < 3; ++axis) {
         const float lo = component(box.lo, axis), hi = component(box.hi, axis);
         if (lo == hi) {
-            events[axis].push_back(make_event(lo, kPlanar, place));
+            events[axis].push_back(make_event(lo, kPlanar, index));
         } else {
-            events[axis].push_back(make_event(lo, kBegin, place));
-            events[axis].push_back(make_event(hi, kEnd, place));
+            events[axis].push_back(make_event(lo, kBegin, index));
+            events[axis].push_back(make_event(hi, kEnd, index));
         }
     }
 }
@@ -54,7 +54,7 @@ std::vector<Side> find_sides(const SahKdSplitter::Node& node, const KdPlane& pla
     for (const uint64_t event : node.events[plane.axis]) {
         const float at = position_of(event);
         const Kind kind = kind_of(event);
-        Side& side = sides[place_of(event)];
+        Side& side = sides[index_of(event)];
         if (kind == kEnd && at <= plane.at) side = kBelow;
         if (kind == kBegin && at >= plane.at) side = kAbove;
         if (kind == kPlanar) side = at < plane.at || (at == plane.at && planar_below) ? kBelow : kAbove;
@@ -143,15 +143,15 @@ std::optional<KdPlane> SahKdSplitter::split(const Node& node, Node& below, Node&
     const std::vector<Side> sides = find_sides(node, plane, best.planar_below);
     const Bounds3 low = cell_below(node.cell, plane.axis, plane.at), high = cell_above(node.cell, plane.axis, plane.at);
     const double slack = clip_slack(max_abs_);
-    std::vector<uint32_t> places(node.count); // new index, in its half, of a triangle that is in only one
+    std::vector<uint32_t> new_indices(node.count); // new index, in its half, of a triangle that is in only one
     std::vector<uint64_t> fresh_below[3], fresh_above[3];
-    const auto add = [&](Node& half, uint32_t place) {
-        half.triangles.push_back(node.triangles[place]);
+    const auto add = [&](Node& half, uint32_t index) {
+        half.triangles.push_back(node.triangles[index]);
         return half.count++;
     };
     for (uint32_t i = 0; i < node.count; ++i) {
-        if (sides[i] == kBelow) places[i] = add(below, i);
-        if (sides[i] == kAbove) places[i] = add(above, i);
+        if (sides[i] == kBelow) new_indices[i] = add(below, i);
+        if (sides[i] == kAbove) new_indices[i] = add(above, i);
         if (sides[i] != kBoth) continue;
         const BvhTriangle& triangle = triangles_[node.triangles[i]];
         const Bounds3 part_below = clip_triangle(triangle, low, slack),
@@ -166,9 +166,9 @@ std::optional<KdPlane> SahKdSplitter::split(const Node& node, Node& below, Node&
         kept_below.reserve(2 * std::size_t(below.count));
         kept_above.reserve(2 * std::size_t(above.count));
         for (const uint64_t event : node.events[axis]) {
-            const uint32_t i = place_of(event);
-            if (sides[i] == kBelow) kept_below.push_back(at_place(event, places[i]));
-            if (sides[i] == kAbove) kept_above.push_back(at_place(event, places[i]));
+            const uint32_t i = index_of(event);
+            if (sides[i] == kBelow) kept_below.push_back(with_index(event, new_indices[i]));
+            if (sides[i] == kAbove) kept_above.push_back(with_index(event, new_indices[i]));
         }
         std::sort(fresh_below[axis].begin(), fresh_below[axis].end());
         std::sort(fresh_above[axis].begin(), fresh_above[axis].end());

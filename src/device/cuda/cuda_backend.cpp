@@ -68,7 +68,7 @@ public:
     CudaHostCopy& operator=(const CudaHostCopy&) = delete;
 
     void take(const void* device) override;
-    void* place() override { return memory_; } // pinned memory has the same address on both sides
+    void* target() override { return memory_; } // pinned memory has the same address on both sides
     void mark() override;
     const void* wait(const char* stage) override {
         check_cuda(cudaSetDevice(index_), "cudaSetDevice");
@@ -243,7 +243,7 @@ std::string why_no_cuda(int index) {
         return fmt::format("the NVIDIA driver supports CUDA {}.{}, the binary was built with {}.{}", driver / 1000,
                            driver % 1000 / 10, CUDART_VERSION / 1000, CUDART_VERSION % 1000 / 10);
     }
-    if (error != cudaSuccess) return fmt::format("no CUDA device: {}", cudaGetErrorString(error));
+    if (error != cudaSuccess) return fmt::format("there is no CUDA device: {}", cudaGetErrorString(error));
     if (index < 0 || index >= count) {
         return fmt::format("there is no CUDA device {}; this machine has {}", index, count);
     }

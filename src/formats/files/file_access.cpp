@@ -18,7 +18,7 @@ fs::path canonical_folder(const fs::path& folder, const char* setting) {
     const fs::path canonical = fs::canonical(folder.empty() ? fs::path(".") : folder, ec);
     if (ec) throw Error(ErrorCode::BadInput, setting, folder.string(), "the folder cannot be opened: " + ec.message());
     if (!fs::is_directory(canonical, ec))
-        throw Error(ErrorCode::BadInput, setting, folder.string(), "this is no folder");
+        throw Error(ErrorCode::BadInput, setting, folder.string(), "it is not a folder");
     return canonical;
 }
 
@@ -27,12 +27,12 @@ bool is_within(const fs::path& path, const fs::path& root) {
     return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
 }
 
-Error refusal(const Place& from, const std::string& reference, const std::string& why) {
+Error refusal(const FileLocation& from, const std::string& reference, const std::string& why) {
     return Error(ErrorCode::BadInput, from, fmt::format("refers to \"{}\", {}", shortened(reference), why));
 }
 
-void check_is_name(const Place& from, const std::string& reference) {
-    if (reference.empty()) throw refusal(from, reference, "which is no file name");
+void check_is_name(const FileLocation& from, const std::string& reference) {
+    if (reference.empty()) throw refusal(from, reference, "which is not a file name");
     // The system would cut the name there, after the checks have seen all of it.
     if (reference.find('\0') != std::string::npos) throw refusal(from, reference, "a name that holds a zero byte");
 }
@@ -42,7 +42,7 @@ fs::path portable(std::string reference) {
     return reference;
 }
 
-fs::path folder_of(const Place& from) {
+fs::path folder_of(const FileLocation& from) {
     const fs::path folder = fs::path(from.file).parent_path();
     return folder.empty() ? fs::path(".") : folder;
 }
@@ -61,18 +61,18 @@ bool FileAccess::is_allowed(const fs::path& canonical) const {
     return std::any_of(roots_.begin(), roots_.end(), [&](const fs::path& root) { return is_within(canonical, root); });
 }
 
-fs::path FileAccess::resolve(const Place& from, const std::string& reference) const {
+fs::path FileAccess::resolve(const FileLocation& from, const std::string& reference) const {
     check_is_name(from, reference);
     std::error_code ec;
     const fs::path path = fs::weakly_canonical(folder_of(from) / portable(reference), ec);
     if (ec) throw refusal(from, reference, fmt::format("which cannot be opened: {}", ec.message()));
     // A symbolic link that remains after resolving is dangling; its future target is unknown.
     if (fs::is_symlink(fs::symlink_status(path, ec))) {
-        throw refusal(from, reference, "a symbolic link that leads nowhere");
+        throw refusal(from, reference, "a broken symbolic link");
     }
     if (!is_allowed(path)) {
         throw refusal(from, reference,
-                      fmt::format("which is outside the scene's folder; if it is meant, allow it with `allow_path={}`",
+                      fmt::format("which is outside the scene's folder; to allow it, set `allow_path={}`",
                                   path.parent_path().string()));
     }
     return path;
@@ -86,7 +86,8 @@ FileAccess::Located FileAccess::locate(const fs::path& name) const {
 }
 
 /// The file whose path ends like `name`. Nothing after a warning where several fit.
-std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const Place& from, Messages& messages) const {
+std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const FileLocation& from,
+                                                Messages& messages) const {
     const std::vector<std::string> components = components_below(name);
     if (components.empty()) return std::nullopt;
     // Names in the same case below the folder itself are found without a look around.
@@ -105,16 +106,15 @@ std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const Plac
         }
         if (fits.size() == 1) return fits.front();
         if (fits.empty()) continue;
-        messages.warn(
-            {from, fmt::format("\"{}\" is not there, and {} files could be meant, {} and {} for example: none "
-                               "is read",
-                               shortened(name.string()), fits.size(), fits[0].string(), fits[1].string())});
+        messages.warn({from, fmt::format("there is no \"{}\", and {} files match, such as {} and {}; none is read",
+                                         shortened(name.string()), fits.size(), fits[0].string(), fits[1].string())});
         return std::nullopt;
     }
     return std::nullopt;
 }
 
-std::optional<fs::path> FileAccess::find(const Place& from, const std::string& reference, Messages& messages) const {
+std::optional<fs::path> FileAccess::find(const FileLocation& from, const std::string& reference,
+                                         Messages& messages) const {
     check_is_name(from, reference);
     const fs::path name = portable(reference);
     const Located wanted = locate(folder_of(from) / name);
@@ -128,19 +128,18 @@ std::optional<fs::path> FileAccess::find(const Place& from, const std::string& r
     const bool is_same_name = found->filename() == name.filename();
     if (is_same_name && name.has_parent_path()) {
         const fs::path there = found->parent_path().lexically_relative(locate(folder_of(from)).path);
-        messages.warn(
-            {Place{folder}, fmt::format("files named as in \"{}\", {}: those of the same name in {} are read",
-                                        shortened(name.parent_path().string()),
-                                        wanted.is_allowed ? "which are not there" : "outside the scene's folder",
-                                        there == "." ? "the folder itself" : "\"" + there.string() + "\"")});
+        messages.warn({FileLocation{folder},
+                       fmt::format("files named as in \"{}\" are {}; files of the same name in {} are read instead",
+                                   shortened(name.parent_path().string()),
+                                   wanted.is_allowed ? "missing" : "outside the scene's folder",
+                                   there == "." ? "the folder itself" : "\"" + there.string() + "\"")});
     } else if (listing_->may_name_another()) {
         messages.warn(
-            {from, fmt::format("\"{}\" is not there: {} is read, the only file of that name{}", shortened(reference),
-                               found->string(), is_same_name ? "" : " but for upper and lower case")});
+            {from, fmt::format("there is no \"{}\"; {} is read instead, the only file of that name{}",
+                               shortened(reference), found->string(), is_same_name ? "" : " except for its case")});
     } else {
-        messages.warn({Place{folder},
-                       "further files that are not there are read from the only file of that name but for "
-                       "upper and lower case"});
+        messages.warn({FileLocation{folder},
+                       "further missing files are read from the only file of that name except for its case"});
     }
     return found;
 }

@@ -22,14 +22,14 @@ public:
     /// Resolves `reference`, as written at `from` (a location in a file of the scene, to whose folder it is
     /// relative): symbolic links, `..` and backslashes. Throws Error(BadInput) that names `from` and `allow_path` if
     /// it leads outside. The file need not exist.
-    std::filesystem::path resolve(const Place& from, const std::string& reference) const;
+    std::filesystem::path resolve(const FileLocation& from, const std::string& reference) const;
 
     /// Finds the file that `reference` names, for reading. If that path is not readable, it searches below the folder
     /// of `from` or below allowed folders for the file whose path ends like `reference`, ignoring the case of A to Z,
     /// if a single file fits best, because exporters write paths of the machine on which they ran. A warning reports
     /// it. Returns nothing if no file fits, and with a warning if several do. Throws Error(BadInput), which names
     /// `allow_path`, if the only such file is outside.
-    std::optional<std::filesystem::path> find(const Place& from, const std::string& reference,
+    std::optional<std::filesystem::path> find(const FileLocation& from, const std::string& reference,
                                               Messages& messages) const;
 
 private:
@@ -39,7 +39,7 @@ private:
     };
     bool is_allowed(const std::filesystem::path& canonical) const;
     Located locate(const std::filesystem::path& name) const;
-    std::optional<std::filesystem::path> find_end_of(const std::filesystem::path& name, const Place& from,
+    std::optional<std::filesystem::path> find_end_of(const std::filesystem::path& name, const FileLocation& from,
                                                      Messages& messages) const;
 
     std::vector<std::filesystem::path> roots_; // canonical

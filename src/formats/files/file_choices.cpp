@@ -80,14 +80,16 @@ std::size_t choose(const Kind& kind, const std::string& file, std::span<const st
     if (number && *number < names.size()) return *number;
     const std::string wanted = fmt::format("{} \"{}\"", kind.name, shortened(choice));
     if (names.empty()) {
-        throw Error(ErrorCode::BadInput, Place{file}, fmt::format("no {}; the file has no {}s", wanted, kind.name));
+        throw Error(ErrorCode::BadInput, FileLocation{file},
+                    fmt::format("no {}; the file has no {}s", wanted, kind.name));
     }
     if (same > 1) {
-        throw Error(ErrorCode::BadInput, Place{file},
+        throw Error(ErrorCode::BadInput, FileLocation{file},
                     fmt::format("{} {}s are called \"{}\"; choose one by its number:{}", same, kind.name,
                                 shortened(choice), text_of(kind, names)));
     }
-    throw Error(ErrorCode::BadInput, Place{file}, fmt::format("no {}; the file has:{}", wanted, text_of(kind, names)));
+    throw Error(ErrorCode::BadInput, FileLocation{file},
+                fmt::format("no {}; the file has:{}", wanted, text_of(kind, names)));
 }
 
 std::vector<std::string> names_of(std::span<const Clip> clips) {

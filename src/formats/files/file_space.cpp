@@ -57,7 +57,7 @@ std::optional<double> parse_unit(std::string_view text) {
     return number;
 }
 
-void place_in_metres(const FileSpace& space, Scene& scene) {
+void convert_to_metres(const FileSpace& space, Scene& scene) {
     if (space == FileSpace()) return;
     const Transform metres = metres_from(space);
     scene.origin_in_file = in_metres(space, scene.origin_in_file);

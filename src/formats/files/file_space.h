@@ -28,6 +28,6 @@ std::optional<double> parse_unit(std::string_view text);
 
 /// Converts a scene from `space` to metres with y up: z up becomes (x, z, -y), x up (-y, x, z). The scene has only
 /// instances, no cameras, lights or nodes.
-void place_in_metres(const FileSpace& space, Scene& scene);
+void convert_to_metres(const FileSpace& space, Scene& scene);
 
 } // namespace pertev

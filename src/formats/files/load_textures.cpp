@@ -105,12 +105,12 @@ std::string_view extension_of(std::span<const std::byte> picture) {
 
 } // namespace
 
-int32_t TextureLoader::add_file(const Place& from, const std::string& reference) {
+int32_t TextureLoader::add_file(const FileLocation& from, const std::string& reference) {
     const std::optional<fs::path> path = access_.find(from, reference, *messages_);
     if (!path) {
         if (missing_++ < kMissingNamed) {
             messages_->leave_out(
-                {from, fmt::format("there is no texture {}; its factor alone is used", shortened(reference))});
+                {from, fmt::format("there is no texture {}; only its factor is used", shortened(reference))});
         }
         return kNoImage;
     }
@@ -139,9 +139,9 @@ void TextureLoader::check_budget(uint64_t limit) const {
     for (const Source& source : sources_) {
         sum += source.texture_bytes;
         if (sum <= limit) continue;
-        throw Error(ErrorCode::OverLimit, Place{source.path.empty() ? source.name : source.path.string()},
-                    fmt::format("with this picture the scene's images take {} MiB in memory; the limit for files of "
-                                "this size is {} MiB; use one image many times instead of copies, or smaller ones",
+        throw Error(ErrorCode::OverLimit, FileLocation{source.path.empty() ? source.name : source.path.string()},
+                    fmt::format("with this picture the scene's images take {} MiB of memory; the limit for files of "
+                                "this size is {} MiB; share one image instead of copies, or use smaller images",
                                 sum >> 20, limit >> 20));
     }
 }
@@ -157,8 +157,8 @@ void TextureLoader::read(Source& source, uint64_t limit, std::atomic<uint64_t>& 
         source.texture_bytes = texture_bytes(read_image_header(bytes, name));
         if ((all_bytes += source.texture_bytes) > limit) return;
         source.is_png = recognise_image(bytes) == ImageFormat::Png;
-        source.color_matrix = color_matrix_of(bytes, name, &source.said);
-        source.image = decode_image(bytes, name, &source.said);
+        source.color_matrix = color_matrix_of(bytes, name, &source.messages);
+        source.image = decode_image(bytes, name, &source.messages);
     } catch (const Error& error) {
         const std::string_view extension = extension_of(is_embedded ? source.bytes : file);
         source.fault = error.remark();
@@ -197,9 +197,9 @@ void TextureLoader::load_into(Scene& scene, uint64_t scene_bytes) {
     });
     std::vector<int32_t> renumbered(sources_.size(), kNoImage);
     for (std::size_t i = 0; i < sources_.size(); ++i) {
-        messages_->add_all(sources_[i].said);
+        messages_->add_all(sources_[i].messages);
         if (sources_[i].fault) {
-            messages_->leave_out(sources_[i].fault->and_then("; its factor alone is used"));
+            messages_->leave_out(sources_[i].fault->and_then("; only its factor is used"));
             continue;
         }
         PERTEV_CHECK(sources_[i].image);

@@ -30,7 +30,7 @@ public:
     /// `access` and `messages` outlive it.
     TextureLoader(const FileAccess& access, Messages& messages) : access_(access), messages_(&messages) {}
     /// Redirects messages to `messages`, which must outlive the loader.
-    void say_to(Messages& messages) { messages_ = &messages; }
+    void report_to(Messages& messages) { messages_ = &messages; }
 
     /// Sets `advice`, which is appended to messages about pictures that are not decoded: how to convert them. It gets
     /// the glTF extension of the picture's format.
@@ -39,7 +39,7 @@ public:
     /// Image index of the file `reference`, as written at `from` (see FileAccess::resolve); the same file, however
     /// spelled, is one image. kNoImage after a warning if there is no such file. Throws Error(BadInput) if access is
     /// refused.
-    int32_t add_file(const Place& from, const std::string& reference);
+    int32_t add_file(const FileLocation& from, const std::string& reference);
 
     /// Image index of an encoded image in memory, which must stay alive until load_into returns. `name` is for
     /// messages.
@@ -69,7 +69,7 @@ private:
         std::optional<ColorMatrix> color_matrix;              // to Rec. 709, if its colours have other primaries
         bool is_png = false;
         std::optional<Remark> fault; // why it cannot be decoded
-        Messages said = {};
+        Messages messages = {};
     };
     void decode_within(uint64_t limit);
     void read(Source& source, uint64_t limit, std::atomic<uint64_t>& all_bytes) const;

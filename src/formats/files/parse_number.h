@@ -19,13 +19,13 @@ inline bool is_under_one(std::string_view number) {
     const std::string_view digits = number.substr(0, end);
     const auto point = static_cast<int64_t>(std::min(digits.find('.'), digits.size()));
     const auto first = static_cast<int64_t>(digits.find_first_of("123456789"));
-    const int64_t place = first < point ? point - first - 1 : point - first;
+    const int64_t magnitude = first < point ? point - first - 1 : point - first;
     std::string_view power = number.substr(std::min(end + 1, number.size()));
     if (power.starts_with('+')) power.remove_prefix(1);
     int64_t exponent = 0;
     const auto read = std::from_chars(power.data(), power.data() + power.size(), exponent);
     if (read.ec == std::errc::result_out_of_range) return power.starts_with('-');
-    return exponent < -place;
+    return exponent < -magnitude;
 }
 
 /// Parses the number at the start of `text` and removes it; nothing if there is none. Accepts a leading +, and `nan`

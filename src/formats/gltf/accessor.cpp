@@ -39,16 +39,15 @@ ComponentType component_type_of(const JsonValue& value) {
 }
 
 // Throws unless `count` elements of `size` bytes, `stride` apart, from `offset` on lie within `available` bytes.
-void check_range(const JsonValue& place, uint64_t offset, uint64_t count, uint64_t size, uint64_t stride,
+void check_range(const JsonValue& json, uint64_t offset, uint64_t count, uint64_t size, uint64_t stride,
                  uint64_t available) {
-    if (stride < size) throw place.error(fmt::format("elements of {} bytes lie {} bytes apart", size, stride));
+    if (stride < size) throw json.error(fmt::format("elements of {} bytes lie {} bytes apart", size, stride));
     if (count == 0) return;
     const bool first_fits = offset <= available && size <= available - offset;
     if (!first_fits || count - 1 > (available - offset - size) / stride) {
-        throw place.error(
-            fmt::format("{} elements of {} bytes, {} apart, from byte {} leave the buffer view, which has "
-                        "{} bytes",
-                        count, size, stride, offset, available));
+        throw json.error(
+            fmt::format("{} elements of {} bytes, {} apart, from byte {} exceed the buffer view of {} bytes", count,
+                        size, stride, offset, available));
     }
 }
 
@@ -151,10 +150,10 @@ void Accessor::set_sparse(const JsonValue& sparse, Buffers& buffers) {
     if (type != ComponentType::UInt8 && type != ComponentType::UInt16 && type != ComponentType::UInt32) {
         throw indices.error("componentType must be 5121, 5123 or 5125");
     }
-    const auto part = [&](const JsonValue& place, uint64_t size) {
-        const BufferView view = buffers.view(place.at("bufferView"));
-        const uint64_t offset = place.unsigned_or("byteOffset", 0);
-        check_range(place, offset, count, size, size, view.bytes.size());
+    const auto part = [&](const JsonValue& json, uint64_t size) {
+        const BufferView view = buffers.view(json.at("bufferView"));
+        const uint64_t offset = json.unsigned_or("byteOffset", 0);
+        check_range(json, offset, count, size, size, view.bytes.size());
         return count > 0 ? view.bytes.subspan(offset, count * size) : std::span<const std::byte>();
     };
     const std::span<const std::byte> index_bytes = part(indices, bytes_of(type));

@@ -7,7 +7,7 @@
 #include "base/message_text.h"
 #include "formats/files/parse_number.h"
 #include "formats/gltf/leave_out.h"
-#include "formats/gltf/mend_keys.h"
+#include "formats/gltf/repair_keys.h"
 #include "scene/validate/validate_nodes.h"
 
 namespace pertev::gltf {
@@ -63,13 +63,14 @@ constexpr NumberPart kLightNumbers[] = {{"/range", AnimatedPart::LightRange, 1},
                                         {"/spot/innerConeAngle", AnimatedPart::LightInnerCone, 1},
                                         {"/spot/outerConeAngle", AnimatedPart::LightOuterCone, 1}};
 
-Target node_target(const Document& document, const JsonValue& place, uint32_t node, AnimatedPart part,
+Target node_target(const Document& document, const JsonValue& json, uint32_t node, AnimatedPart part,
                    const Scene& scene) {
     if (part == AnimatedPart::Weights && scene.nodes[node].morph_weights.empty()) {
-        throw place.error(fmt::format("the mesh of node {} has no morph targets; expected one that has", node));
+        throw json.error(
+            fmt::format("the mesh of node {} has no morph targets, so that its weights cannot be animated", node));
     }
     if (part != AnimatedPart::Weights && document.table("nodes")[node].find("matrix")) {
-        throw place.error(fmt::format("node {} has a matrix; expected translation, rotation and scale", node));
+        throw json.error(fmt::format("node {} has a matrix; expected translation, rotation and scale", node));
     }
     return {part, {node}, {}, false};
 }
@@ -103,11 +104,11 @@ std::optional<uint32_t> node_of_pointer(const Document& document, std::string_vi
 }
 
 /// Nothing for a property that is not animated here.
-std::optional<Target> pointed_at(const Document& document, const JsonValue& place, const Scene& scene) {
-    const std::string_view pointer = place.to_string();
+std::optional<Target> pointed_at(const Document& document, const JsonValue& json, const Scene& scene) {
+    const std::string_view pointer = json.to_string();
     for (const std::string_view path : kNodePaths) {
         if (const auto node = node_of_pointer(document, pointer, path)) {
-            return node_target(document, place, *node, *part_named(path), scene);
+            return node_target(document, json, *node, *part_named(path), scene);
         }
     }
     const std::vector<JsonValue>& nodes = document.table("nodes");
@@ -150,7 +151,7 @@ std::optional<Target> read_target(const Document& document, const JsonValue& tar
         std::optional<Target> found = pointed_at(document, pointer, scene);
         if (!found) {
             messages.leave_out(
-                {pointer.place(),
+                {pointer.location(),
                  fmt::format("\"{}\" is not animated; expected a node's translation, rotation, scale or "
                              "weights, a camera's /perspective/yfov or /orthographic/ymag, or a light's color, "
                              "intensity, range, /spot/innerConeAngle or /spot/outerConeAngle",
@@ -160,7 +161,7 @@ std::optional<Target> read_target(const Document& document, const JsonValue& tar
     }
     const std::optional<JsonValue> node = target.find("node");
     if (!node) { // the format leaves such to extensions
-        messages.leave_out({target.place(), "the channel names no node and is left out"});
+        messages.leave_out({target.location(), "the channel has no node and is left out"});
         return std::nullopt;
     }
     const uint32_t index = document.index_into("nodes", *node);
@@ -184,15 +185,16 @@ AnimationChannel read_keys(const Document& document, Buffers& buffers, const Jso
     const Accessor times(document, buffers, input, {ElementType::Scalar});
     const Accessor values(document, buffers, output,
                           {target.is_scalar ? ElementType::Scalar : element_of(target.part)});
-    if (times.component_type() != ComponentType::Float) throw input.error("key times are no floats; expected 5126");
+    if (times.component_type() != ComponentType::Float)
+        throw input.error("key times are not floats; expected component type 5126");
     if (values.component_type() != ComponentType::Float && !(takes_integers(channel.part) && values.is_normalized())) {
-        throw output.error("the values are neither floats nor, of a rotation or weights, normalized integers");
+        throw output.error("the values must be floats, or normalized integers for a rotation or weights");
     }
     const bool has_weights = channel.part == AnimatedPart::Weights;
     const uint64_t a_key = (channel.interpolation == Interpolation::CubicSpline ? 3 : 1) *
                            (has_weights ? scene.nodes[target.indices[0]].morph_weights.size() : 1);
     if (times.count() == 0 || values.count() % a_key != 0 || values.count() / a_key != times.count()) {
-        throw output.error(fmt::format("{} for {}; expected at least one time and {} a time",
+        throw output.error(fmt::format("{} for {}; expected at least one key time and {} per time",
                                        counted(values.count(), "element"), counted(times.count(), "key time"), a_key));
     }
     channel.times = times.read_floats();
@@ -234,23 +236,23 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::sp
             nodes.insert(document.index_into("nodes", *node));
         }
     };
-    Messages unsaid; // read_animations tells what cannot be read
+    Messages unreported; // read_animations tells what cannot be read
     auto clip = clips.begin();
-    for (const JsonValue& animation : animations_of(document, unsaid)) {
+    for (const JsonValue& animation : animations_of(document, unreported)) {
         if (!(clip++)->plays) continue;
-        for (const JsonValue& channel : elements_or_none(animation, "channels", unsaid)) {
-            read_or_leave_out(channel, unsaid, [&] { look_at(channel); });
+        for (const JsonValue& channel : elements_or_none(animation, "channels", unreported)) {
+            read_or_leave_out(channel, unreported, [&] { look_at(channel); });
         }
     }
     return nodes;
 }
 
-void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& said) {
+void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& clip_messages) {
     auto clip = scene.clips.begin();
     Messages none; // errors in the list were reported when clips were chosen
     for (const JsonValue& source : animations_of(document, none)) {
-        Messages unsaid; // discards messages about clips that do not play
-        Messages& messages = clip->plays ? said : unsaid;
+        Messages unreported; // discards messages about clips that do not play
+        Messages& messages = clip->plays ? clip_messages : unreported;
         Animation animation;
         animation.name = clip->name;
         animation.origin = source.pointer();
@@ -258,27 +260,27 @@ void read_animations(const Document& document, Buffers& buffers, Scene& scene, M
         const std::vector<JsonValue> samplers = elements_or_none(source, "samplers", messages);
         std::set<std::pair<uint32_t, AnimatedPart>> taken;
         const auto read_channel = [&](const JsonValue& entry) {
-            const JsonValue place = entry.at("target");
-            const std::optional<Target> target = read_target(document, place, scene, messages);
+            const JsonValue json = entry.at("target");
+            const std::optional<Target> target = read_target(document, json, scene, messages);
             if (!target || target->indices.empty()) return;
             AnimationChannel channel = read_keys(document, buffers, entry.at("sampler"), samplers, *target, scene);
             channel.target = target->indices[0];
-            if (const std::string mended = mend_keys(channel, channel.values.size() / channel.times.size());
+            if (const std::string mended = repair_keys(channel, channel.values.size() / channel.times.size());
                 !mended.empty()) {
-                messages.warn({entry.place(), mended});
+                messages.warn({entry.location(), mended});
             }
             if (const std::string fault = fault_of(channel, scene); !fault.empty()) {
-                messages.leave_out({entry.place(), fmt::format("{}; the channel is left out", fault)});
+                messages.leave_out({entry.location(), fmt::format("{}; the channel is left out", fault)});
                 return;
             }
             if (!taken.emplace(target->indices[0], target->part).second) {
                 messages.leave_out(
-                    {place.place(),
-                     fmt::format("{}; the channel is left out",
-                                 target->factor ? "colour and intensity of one light are animated together, "
-                                                  "of which the first alone is played"
-                                                : "an earlier channel of the animation has this node and "
-                                                  "path, and is played")});
+                    {json.location(),
+                     fmt::format(
+                         "{}; the channel is left out",
+                         target->factor
+                             ? "colour and intensity of one light are animated together; only the first is played"
+                             : "an earlier channel of the animation has this node and path; that one is played")});
                 return;
             }
             buffers.charge(channel.values.size() * target->indices.size() * sizeof(float), entry);

@@ -20,7 +20,7 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::sp
 /// with a warning, because a still picture does not need it. It may violate the format (an index out of range, an
 /// unknown path or interpolation, a node that cannot be animated so), contain meaningless numbers (a quaternion of 0,
 /// a number that is not finite), or have the target of an earlier channel of its animation. Keys are repaired
-/// (mend_keys).
+/// (repair_keys).
 void read_animations(const Document& document, Buffers& buffers, Scene& scene, Messages& messages);
 
 } // namespace pertev::gltf

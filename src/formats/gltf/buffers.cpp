@@ -31,7 +31,7 @@ Buffers::Buffers(const Document& document, const FileAccess& access, Messages& m
         if (!buffers_[i] || !length) return;
         const uint64_t bytes = length->to_unsigned();
         if (buffers_[i]->size() < bytes) {
-            messages.warn({buffers[i].place(),
+            messages.warn({buffers[i].location(),
                            fmt::format("byteLength is {}, but there are only {} bytes", bytes, buffers_[i]->size())});
         } else {
             buffers_[i] = buffers_[i]->first(bytes);
@@ -64,7 +64,7 @@ std::span<const std::byte> Buffers::read_uri(const JsonValue& uri, const FileAcc
     if (!name) throw uri.error(fmt::format("\"{}\"; expected a relative path or a data URI", shortened(text)));
     std::optional<std::filesystem::path> path;
     try {
-        path = access.find(uri.place(), *name, messages);
+        path = access.find(uri.location(), *name, messages);
         if (path) {
             const auto [entry, is_new] = by_path_.try_emplace(*path);
             if (is_new) entry->second = own(read_file(*path));
@@ -76,16 +76,16 @@ std::span<const std::byte> Buffers::read_uri(const JsonValue& uri, const FileAcc
     throw uri.error(fmt::format("there is no file {}", shortened(*name)));
 }
 
-std::span<const std::byte> Buffers::slice(const JsonValue& place) const {
-    const JsonValue reference = place.at("buffer");
+std::span<const std::byte> Buffers::slice(const JsonValue& json) const {
+    const JsonValue reference = json.at("buffer");
     const uint32_t index = document_.index_into("buffers", reference);
     if (faults_[index]) throw Error(*faults_[index]);
     const std::optional<std::span<const std::byte>>& buffer = buffers_[index];
     if (!buffer) throw reference.error("this buffer has no data: neither a uri nor the binary chunk of a .glb");
-    const uint64_t offset = place.unsigned_or("byteOffset", 0), length = place.at("byteLength").to_unsigned();
+    const uint64_t offset = json.unsigned_or("byteOffset", 0), length = json.at("byteLength").to_unsigned();
     if (offset > buffer->size() || length > buffer->size() - offset) {
-        throw place.error(
-            fmt::format("{} bytes from byte {} leave the buffer, which has {}", length, offset, buffer->size()));
+        throw json.error(
+            fmt::format("{} bytes from byte {} exceed the buffer of {} bytes", length, offset, buffer->size()));
     }
     return buffer->subspan(offset, length);
 }
@@ -140,13 +140,13 @@ BufferView Buffers::view(const JsonValue& reference) {
     return {*decompressed_[index], view.unsigned_or("byteStride", 0)};
 }
 
-void Buffers::charge(uint64_t bytes, const JsonValue& place) {
+void Buffers::charge(uint64_t bytes, const JsonValue& json) {
     const uint64_t limit = justified_bytes(kFreeMeshBytes, file_bytes_);
     charged_bytes_ += bytes;
     if (bytes > limit || charged_bytes_ > limit) {
-        throw Error(ErrorCode::OverLimit, place.place(),
-                    fmt::format("the scene takes more than {} MB in memory, {} times the size of its files; use "
-                                "one mesh many times instead of many meshes with the same data",
+        throw Error(ErrorCode::OverLimit, json.location(),
+                    fmt::format("the scene takes more than {} MB of memory, {} times the size of its files; share one "
+                                "mesh instead of many meshes with the same data",
                                 limit >> 20, kMaxExpansion));
     }
 }

@@ -33,15 +33,15 @@ public:
     /// decompressed.
     BufferView view(const JsonValue& reference);
 
-    /// Counts `bytes` of memory that the reader fills because of the value at `place`. A scene may use its data many
+    /// Counts `bytes` of memory that the reader fills because of the value `json`. A scene may use its data many
     /// times, but not without bound: throws Error(OverLimit) once the sum is out of proportion to the files.
-    void charge(uint64_t bytes, const JsonValue& place);
+    void charge(uint64_t bytes, const JsonValue& json);
     /// Bytes of all files read: the JSON and the buffers.
     uint64_t file_bytes() const { return file_bytes_; }
 
 private:
     std::span<const std::byte> read_uri(const JsonValue& uri, const FileAccess& access, Messages& messages);
-    std::span<const std::byte> slice(const JsonValue& place) const;
+    std::span<const std::byte> slice(const JsonValue& json) const;
     std::vector<std::byte> decompress(const JsonValue& compressed);
 
     const Document& document_;

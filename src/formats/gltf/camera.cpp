@@ -39,7 +39,7 @@ Camera read_camera(const JsonValue& source, Messages& messages) {
         const float half_width = abs(orthographic.at("xmag").to_float());
         const float half_height = abs(orthographic.at("ymag").to_float());
         if (!(half_width > 0 && half_height > 0))
-            throw orthographic.error("xmag or ymag is 0; expected another number");
+            throw orthographic.error("xmag or ymag is 0; expected any other number");
         if (half_width > kMaxCoordinate || half_height > kMaxCoordinate) {
             throw orthographic.error("xmag or ymag is above 2^40; expected a number of metres");
         }

@@ -71,13 +71,12 @@ std::string version_text(const JsonValue& value) {
 Document::Document(const std::filesystem::path& path, std::vector<std::byte> bytes, Messages& messages)
     : path_(path), file_(path.string()), bytes_(std::move(bytes)), json_chunk_(bytes_) {
     if (bytes_.empty()) {
-        throw Error(ErrorCode::BadInput, Place{file_}, "the file is empty; expected a glTF 2.0 document");
+        throw Error(ErrorCode::BadInput, FileLocation{file_}, "the file is empty; expected a glTF 2.0 document");
     }
     if (bytes_.size() >= sizeof kGlbMagic && read_u32(bytes_, 0) == kGlbMagic) {
         split_glb(messages);
     } else if (lower_case_extension(path) == ".glb") {
-        throw Error(ErrorCode::BadInput, Place{file_},
-                    "byte 0: expected the letters glTF, with which a GLB file starts");
+        throw Error(ErrorCode::BadInput, FileLocation{file_}, "byte 0: expected \"glTF\", the start of a GLB file");
     }
     parse(json_chunk_, messages);
     check_version(messages);
@@ -97,8 +96,9 @@ void Document::read_table(std::string_view name, const JsonValue& holder, Messag
 std::size_t Document::glb_end(Messages& messages) const {
     const uint32_t length = read_u32(bytes_, 8);
     if (length >= kHeaderBytes && length <= bytes_.size()) return length;
-    messages.warn({Place{file_}, fmt::format("byte 8: the header says {} bytes, but the file has {}; these are read",
-                                             length, bytes_.size())});
+    messages.warn({FileLocation{file_},
+                   fmt::format("byte 8: the header states {} bytes, but the file has {}; all of them are read", length,
+                               bytes_.size())});
     return bytes_.size();
 }
 
@@ -120,9 +120,9 @@ Document::ChunkEnd Document::json_chunk_end(std::size_t begin, std::size_t size,
         if (is_whole || end == glb.size()) return {declared, declared};
         next = end;
     }
-    messages.warn(
-        {Place{file_}, fmt::format("byte {}: the chunk says {} bytes, but its text ends after {}; that is read",
-                                   begin - kChunkHeaderBytes, size, end - begin)});
+    messages.warn({FileLocation{file_},
+                   fmt::format("byte {}: the chunk states {} bytes, but its text ends after {}; the text is read",
+                               begin - kChunkHeaderBytes, size, end - begin)});
     return {end, next};
 }
 
@@ -135,14 +135,15 @@ std::size_t Document::binary_chunk_end(std::size_t begin, std::size_t size, Mess
                           read_u32(glb, declared) <= left - kChunkHeaderBytes &&
                           std::ranges::all_of(glb.subspan(declared + 4, 3), is_letter);
     if (is_chunk || std::ranges::all_of(text_of(glb.subspan(declared)), is_padding)) return declared;
-    messages.warn({Place{file_}, fmt::format("byte {}: the chunk says {} bytes, and no other follows; all {} are read",
-                                             begin - kChunkHeaderBytes, size, glb.size() - begin)});
+    messages.warn(
+        {FileLocation{file_}, fmt::format("byte {}: the chunk states {} bytes, but no other follows; all {} are read",
+                                          begin - kChunkHeaderBytes, size, glb.size() - begin)});
     return glb.size();
 }
 
 void Document::split_glb(Messages& messages) {
     const auto fail = [&](std::size_t at, const std::string& what) {
-        return Error(ErrorCode::BadInput, Place{file_}, fmt::format("byte {}: {}", at, what));
+        return Error(ErrorCode::BadInput, FileLocation{file_}, fmt::format("byte {}: {}", at, what));
     };
     if (bytes_.size() < kHeaderBytes) throw fail(bytes_.size(), "the file ends within the GLB header of 12 bytes");
     const uint32_t version = read_u32(bytes_, 4);
@@ -165,9 +166,9 @@ void Document::split_glb(Messages& messages) {
         }
         if (size > available && end_of_chunk.end == glb.size()) {
             messages.leave_out(
-                {Place{file_}, fmt::format("byte {}: the chunk says {} bytes, but {} are left; the file is cut off "
-                                           "or damaged, and what is missing is left out",
-                                           at, size, available)});
+                {FileLocation{file_}, fmt::format("byte {}: the chunk states {} bytes, but {} are left; the file is "
+                                                  "truncated or damaged, and missing data is left out",
+                                                  at, size, available)});
         }
         const std::span<const std::byte> chunk = glb.subspan(begin, end_of_chunk.end - begin);
         if (!has_json)
@@ -188,10 +189,10 @@ void Document::parse(std::span<const std::byte> json, Messages& messages) {
     simdjson::dom::element element;
     // The parser reads past the end in whole vectors: it gets a copy with room for that.
     if (const simdjson::error_code failure = parser_.parse(simdjson::padded_string(text)).get(element)) {
-        std::vector<std::string> said;
-        const std::string mended = mend_json(text, MendJson::All, &said);
+        std::vector<std::string> repairs;
+        const std::string mended = repair_json(text, RepairJson::All, &repairs);
         if (failure == simdjson::DEPTH_ERROR || parser_.parse(mended).get(element)) throw bad_json(text, failure);
-        for (const std::string& what : said) messages.warn({Place{file_}, what});
+        for (const std::string& what : repairs) messages.warn({FileLocation{file_}, what});
     }
     root_.emplace(file_, "", element);
 }
@@ -201,12 +202,12 @@ Error Document::bad_json(std::string_view text, simdjson::error_code failure) co
         fmt::format("not valid JSON: {}; expected a glTF 2.0 document", simdjson::error_message(failure));
     if (failure == simdjson::DEPTH_ERROR) {
         what = fmt::format("JSON nested more than {} levels deep; expected a glTF 2.0 document", parser_.max_depth());
-    } else if (const std::optional<JsonFault> fault = find_json_fault(text, MendJson::All)) {
+    } else if (const std::optional<JsonFault> fault = find_json_fault(text, RepairJson::All)) {
         const auto start = static_cast<std::size_t>(text.data() - reinterpret_cast<const char*>(bytes_.data()));
         what = fmt::format("not valid JSON: {} (byte {} of the file): expected {}", line_and_column(text, fault->byte),
                            start + fault->byte, fault->expected);
     }
-    return Error(ErrorCode::BadInput, Place{file_}, what);
+    return Error(ErrorCode::BadInput, FileLocation{file_}, what);
 }
 
 void Document::check_version(Messages& messages) const {
@@ -221,8 +222,8 @@ void Document::check_version(Messages& messages) const {
             good = minor.ec == std::errc() && minor.ptr == end;
         }
         if (!good) {
-            messages.warn(
-                {value.place(), fmt::format("\"{}\" is not a version; it is read as \"2.0\"", shortened(text))});
+            messages.warn({value.location(),
+                           fmt::format("\"{}\" is not a version; the file is read as glTF 2.0", shortened(text))});
             numbers = {2, 0};
         }
         return numbers;
@@ -230,21 +231,22 @@ void Document::check_version(Messages& messages) const {
     const std::optional<JsonValue> asset = root().find("asset");
     const std::optional<JsonValue> version = asset ? asset->find("version") : std::nullopt;
     if (!version) {
-        messages.warn({root().place(), "\"asset\" with a \"version\" is missing; it is read as glTF 2.0"});
+        messages.warn({root().location(), "\"asset\" with a \"version\" is missing; it is read as glTF 2.0"});
         return;
     }
     if (parts(*version)[0] != 2) {
-        throw version->error(fmt::format("glTF {}; this reader knows 2.0", version_text(*version)));
+        throw version->error(fmt::format("glTF {} is not supported; expected 2.0", version_text(*version)));
     }
     const std::optional<JsonValue> least = asset->find("minVersion");
     if (least && parts(*least) > std::array<unsigned, 2>{2, 0}) {
-        messages.leave_out({least->place(), fmt::format("the file needs glTF {}; what 2.0 does not have is left out",
-                                                        version_text(*least))});
+        messages.leave_out(
+            {least->location(),
+             fmt::format("the file needs glTF {}; features that 2.0 lacks are left out", version_text(*least))});
     }
 }
 
 void Document::check_extensions(Messages& messages) const {
-    std::set<std::string, std::less<>> told;
+    std::set<std::string, std::less<>> reported;
     const auto check = [&](std::string_view list, const char* verb) {
         const std::optional<JsonValue> names = root().find(list);
         if (!names) return;
@@ -253,21 +255,22 @@ void Document::check_extensions(Messages& messages) const {
         for (const JsonValue& name : elements) {
             read_or_leave_out(name, messages, [&] {
                 const std::string_view extension = name.to_string();
-                if (is_known_extension(extension) || !told.emplace(extension).second) return;
+                if (is_known_extension(extension) || !reported.emplace(extension).second) return;
                 messages.leave_out(
-                    {name.place(), fmt::format("the file {} the extension {}, which is not supported: it is left out",
-                                               verb, shortened(extension))});
+                    {name.location(), fmt::format("the file {} the extension {}, which is not supported and left out",
+                                                  verb, shortened(extension))});
             });
         }
     };
     check("extensionsRequired", "requires");
     check("extensionsUsed", "uses");
-    const auto is_news = [&](std::string_view name) { return !is_known_extension(name) && !told.contains(name); };
-    for (const auto& [name, place] : root().extensions_within(is_news)) {
-        if (!told.insert(name).second) continue;
-        messages.leave_out({place.place(), fmt::format("the extension {}, which is not supported and which "
-                                                       "\"extensionsUsed\" does not list: it is left out",
-                                                       shortened(name))});
+    const auto is_news = [&](std::string_view name) { return !is_known_extension(name) && !reported.contains(name); };
+    for (const auto& [name, json] : root().extensions_within(is_news)) {
+        if (!reported.insert(name).second) continue;
+        messages.leave_out(
+            {json.location(),
+             fmt::format("the extension {} is not supported, not listed in \"extensionsUsed\", and left out",
+                         shortened(name))});
     }
 }
 

@@ -28,10 +28,10 @@ template <class Read>
     }
 }
 
-/// Runs `read` in the same way for the value at `place`.
+/// Runs `read` in the same way for the value `json`.
 template <class Read>
-bool read_or_leave_out(const JsonValue& place, Messages& messages, const Read& read) {
-    return read_or_leave_out(place.pointer(), messages, read);
+bool read_or_leave_out(const JsonValue& json, Messages& messages, const Read& read) {
+    return read_or_leave_out(json.pointer(), messages, read);
 }
 
 /// Calls read(member) if `object` has the member. An unreadable one counts as absent.

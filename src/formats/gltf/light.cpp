@@ -26,11 +26,12 @@ void read_cone(const JsonValue& spot, Light& light, Messages& messages) {
     const float inner = clamp(requested_inner, 0.0f, outer);
     if (requested_inner == requested_outer && inner == requested_inner && outer == requested_outer) {
         messages.warn(
-            {spot.place(),
-             fmt::format("inner and outer cone angle are both {}; expected inner < outer, the edge is sharp", inner)});
+            {spot.location(),
+             fmt::format("inner and outer cone angle are both {}; expected inner < outer; the edge becomes sharp",
+                         inner)});
     } else if (inner != requested_inner || outer != requested_outer) {
-        messages.warn({spot.place(),
-                       fmt::format("cone angles {} and {}; expected 0 <= inner < outer <= pi / 2, {} and {} are taken",
+        messages.warn({spot.location(),
+                       fmt::format("cone angles {} and {}; expected 0 <= inner < outer <= pi / 2; {} and {} are used",
                                    requested_inner, requested_outer, inner, outer)});
     }
     set_cone(inner, outer, light);
@@ -39,7 +40,7 @@ void read_cone(const JsonValue& spot, Light& light, Messages& messages) {
 /// Returns the number, or 0 with a warning where it is negative.
 float not_negative(const JsonValue& number, Messages& messages) {
     const float value = number.to_float();
-    if (value < 0) messages.warn({number.place(), fmt::format("{}; expected at least 0, which is taken", value)});
+    if (value < 0) messages.warn({number.location(), fmt::format("{}; expected at least 0, which is used", value)});
     return max(value, 0.0f);
 }
 

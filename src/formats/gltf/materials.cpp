@@ -121,14 +121,13 @@ void Materials::read_specular_glossiness(const JsonValue& source, Material& mate
     const TextureRef both = read_texture(*extension, "specularGlossinessTexture", false);
     if (both.has_image() || (!is_exact && material.base_color_texture.has_image())) {
         material.roughness_texture = both;
-        pending_.push_back({.material = 0, .factors = factors, .place = extension->place()});
+        pending_.push_back({.material = 0, .factors = factors, .location = extension->location()});
         is_exact = false;
     }
     if (is_exact) return;
-    messages_.leave_out({extension->place(),
-                         "the material is converted to metal and roughness: what of its specular colour "
-                         "such a surface does not have, as coloured reflections of what is no metal, is left "
-                         "out"});
+    messages_.leave_out({extension->location(),
+                         "the material is converted to metal and roughness; specular colours that these cannot "
+                         "express, such as coloured reflections of a non-metal, are left out"});
 }
 
 void Materials::convert_textures(uint64_t limit) { gltf::convert_textures(pending_, limit, scene_, messages_); }
@@ -170,8 +169,9 @@ void Materials::read_specular(const JsonValue& material, Material& result) const
         result.kind = MaterialKind::Diffuse;
         return;
     }
-    messages_.leave_out({extension->place(), "KHR_materials_specular is left out, but for a specularFactor of 0 with a "
-                                             "metallicFactor of 0"});
+    messages_.leave_out(
+        {extension->location(),
+         "KHR_materials_specular is left out; only a specularFactor of 0 with a metallicFactor of 0 is supported"});
 }
 
 void Materials::read_transmission(const JsonValue& material, Material& result) const {
@@ -181,16 +181,16 @@ void Materials::read_transmission(const JsonValue& material, Material& result) c
     const std::optional<JsonValue> volume = material.extension("KHR_materials_volume");
     const bool is_solid = volume && volume->float_or("thicknessFactor", 0) > 0;
     if (factor != 1 || transmission->find("transmissionTexture") || !is_solid || result.metallic != 0) {
-        messages_.leave_out({transmission->place(),
-                             "KHR_materials_transmission is left out, and the material opaque, but for solid "
-                             "glass: a transmissionFactor of 1 without texture, a thicknessFactor above 0 and a "
-                             "metallicFactor of 0"});
+        messages_.leave_out(
+            {transmission->location(),
+             "KHR_materials_transmission is left out and the material opaque; only solid glass is supported: a "
+             "transmissionFactor of 1 without texture, a thicknessFactor above 0 and a metallicFactor of 0"});
         return;
     }
     result.kind = MaterialKind::Dielectric;
     if (volume->find("attenuationDistance")) {
         messages_.leave_out(
-            {volume->place(), "glass does not absorb: the attenuation of KHR_materials_volume is left out"});
+            {volume->location(), "the attenuation of KHR_materials_volume is not supported and left out"});
     }
 }
 
@@ -200,7 +200,7 @@ float Materials::read_ior(const JsonValue& material) const {
     const float ior = extension ? extension->float_or("ior", usual) : usual;
     if (ior >= 1) return ior;
     messages_.warn(
-        {extension->place(), fmt::format("ior {} is not supported; expected at least 1, {} is used", ior, usual)});
+        {extension->location(), fmt::format("ior {} is not supported; expected at least 1, {} is used", ior, usual)});
     return usual;
 }
 

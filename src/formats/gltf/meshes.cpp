@@ -80,10 +80,10 @@ void Meshes::check_texture_coordinates(const Part& part) {
     const Material& material = scene_.materials[part.material];
     for (const TextureRef* texture : material.textures()) {
         if (!mesh.uv[texture->uv_set].empty()) continue;
-        messages_.warn({Place{document_.file()},
-                        fmt::format("{}: a texture over TEXCOORD_{}, which a mesh with this material does not have; "
-                                    "one point of the texture is shown",
-                                    material.origin, texture->uv_set)});
+        messages_.warn(
+            {FileLocation{document_.file()},
+             fmt::format("{}: a texture uses TEXCOORD_{}, which a mesh with this material lacks; its corner is shown",
+                         material.origin, texture->uv_set)});
     }
 }
 

@@ -81,10 +81,10 @@ void NodeGraph::cut_cycles(const Document& document, Messages& messages) {
             const uint32_t parent = nodes_[node].parent;
             std::erase(children_[parent], node);
             nodes_[node].parent = kNoNode;
-            messages.leave_out({document.table("nodes")[node].place(),
-                                fmt::format("the node is its own ancestor; expected a tree; its place below node {} is "
-                                            "left out",
-                                            parent)});
+            messages.leave_out(
+                {document.table("nodes")[node].location(),
+                 fmt::format("the node is its own ancestor; expected a tree; its link to node {} is left out",
+                             parent)});
         }
         for (const uint32_t seen : path) states[seen] = State::Seen;
     }
@@ -100,8 +100,8 @@ void NodeGraph::place_nodes(const Document& document, Messages& messages) {
         attempt("the name", [&] { nodes_[node].name = nodes[node].string_or("name", ""); });
         attempt("the transform", [&] { nodes_[node].pose = pose_of(nodes[node], messages); });
     }
-    places_ = places_of(nodes_, order);
-    world_from_node_ = world_from_nodes(places_, {0, 0, 0});
+    transforms_ = transforms_of(nodes_, order);
+    world_from_node_ = world_from_nodes(transforms_, {0, 0, 0});
 }
 
 std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, uint32_t shown, Messages& messages) const {
@@ -132,10 +132,10 @@ std::vector<uint32_t> NodeGraph::scene_roots(const Document& document, uint32_t 
     }
     std::erase_if(roots, [&](uint32_t node) {
         if (!is_below[node]) return false;
-        messages.warn({scenes[shown].place(),
-                       fmt::format("node {}, which the scene lists, is below another one that it lists; it is shown "
-                                   "once",
-                                   node)});
+        messages.warn(
+            {scenes[shown].location(),
+             fmt::format("node {} is listed by the scene and is a descendant of another listed node; it is used once",
+                         node)});
         return true;
     });
     return roots;

@@ -23,7 +23,7 @@ public:
     /// The scene's nodes, each before its children, in the order of the file.
     const std::vector<uint32_t>& scene_nodes() const { return scene_nodes_; }
     /// Transform of any node, in the scene or not, at rest, in double and as floats in the coordinates of the file.
-    const NodePlace& place(uint32_t node) const { return places_[node]; }
+    const NodeTransform& transform(uint32_t node) const { return transforms_[node]; }
     const Transform& world_from_node(uint32_t node) const { return world_from_node_[node]; }
     const std::vector<Transform>& world_from_node() const { return world_from_node_; }
     /// All nodes of the document, in its order.
@@ -39,7 +39,7 @@ private:
 
     std::vector<std::vector<uint32_t>> children_;
     std::vector<Node> nodes_;
-    std::vector<NodePlace> places_;
+    std::vector<NodeTransform> transforms_;
     std::vector<Transform> world_from_node_;
     std::vector<uint32_t> scene_nodes_;
 };

@@ -25,7 +25,7 @@ std::vector<Transform> read_placements(const Document& document, Buffers& buffer
         accessor.emplace(document, buffers, *reference, std::initializer_list<ElementType>{type});
         if (count && *count != accessor->count()) {
             throw reference->error(
-                fmt::format("{} elements; expected {} as in the attributes before it", accessor->count(), *count));
+                fmt::format("{} elements; expected {} as in the previous attributes", accessor->count(), *count));
         }
         count = accessor->count();
         return accessor;
@@ -47,7 +47,7 @@ std::vector<Transform> read_placements(const Document& document, Buffers& buffer
                          static_cast<double>(rotation.z), static_cast<double>(rotation.w)};
         if (!t.empty()) pose.translation = to_double(t[i]);
         if (!s.empty()) pose.scale = to_double(s[i]);
-        placements.push_back(world_from_node(place_of(pose), {0, 0, 0}));
+        placements.push_back(world_from_node(transform_of(pose), {0, 0, 0}));
     }
     return placements;
 }
@@ -59,12 +59,12 @@ bool is_near(const Transform& world_from_local) {
 // Explains why a scene has no instances: what there is, and what would be right.
 std::string describe_nothing(const Document& document, const NodeGraph& nodes) {
     const std::size_t meshes = document.table("meshes").size(), shown = nodes.scene_nodes().size();
-    if (meshes == 0) return "/meshes: there are none; expected one that a node of the scene shows";
+    if (meshes == 0) return "/meshes: there are none; expected one that a node of the scene uses";
     const bool is_shown = std::any_of(nodes.scene_nodes().begin(), nodes.scene_nodes().end(), [&](uint32_t node) {
         return document.table("nodes")[node].find("mesh").has_value();
     });
-    if (is_shown) return "/meshes: none that a node of the scene shows has a triangle; expected a part that does";
-    return fmt::format("/nodes: the scene has {}, and none shows a mesh (of {}); expected a \"mesh\" in one of them",
+    if (is_shown) return "/meshes: none that a node of the scene uses has a triangle; expected at least one";
+    return fmt::format("/nodes: the scene has {}, and none uses a mesh (of {}); expected a \"mesh\" in one of them",
                        counted(shown, "node"), meshes);
 }
 
@@ -85,9 +85,9 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         const std::string& name = scene.nodes[index].name;
         buffers.charge(node_from_local.size() * parts.size() * (sizeof(Instance) + name.size()), node);
         for (const Transform& m : node_from_local) {
-            const Transform world_from_local = has_skin ? Transform() : placed_in(nodes.place(index), m, {0, 0, 0});
+            const Transform world_from_local = has_skin ? Transform() : placed_in(nodes.transform(index), m, {0, 0, 0});
             if (!is_near(world_from_local)) {
-                messages.leave_out({node.place(), "the mesh lies further out than 2^40 metres; it is left out"});
+                messages.leave_out({node.location(), "the mesh lies beyond 2^40 metres and is left out"});
                 continue;
             }
             for (const Meshes::Part& part : parts) {
@@ -100,7 +100,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
             }
         }
         if (scene.instances.size() > kMaxInstances) {
-            throw Error(ErrorCode::OverLimit, node.place(), fmt::format("more than {} instances", kMaxInstances));
+            throw Error(ErrorCode::OverLimit, node.location(), fmt::format("more than {} instances", kMaxInstances));
         }
     };
 
@@ -111,12 +111,12 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         camera.origin = node.pointer();
         camera.node = index;
         const std::optional<Transform> rigid = without_scale(world_from_node);
-        if (rigid && !is_near(*rigid)) throw node.error("the camera lies further out than 2^40 metres");
+        if (rigid && !is_near(*rigid)) throw node.error("the camera lies beyond 2^40 metres");
         if (rigid) {
             camera.world_from_camera = *rigid;
             scene.cameras.push_back(std::move(camera));
         } else {
-            messages.leave_out({node.place(), "the camera is squashed to nothing and left out"});
+            messages.leave_out({node.location(), "the camera's transform is singular; it is left out"});
         }
     };
     const auto place_emitter = [&](const JsonValue& node, uint32_t index, const Transform& world_from_node) {
@@ -127,19 +127,19 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
         light.origin = node.pointer();
         light.node = index;
         if (!is_near(world_from_node)) {
-            throw node.error("the light lies further out than 2^40 metres");
+            throw node.error("the light lies beyond 2^40 metres");
         }
         if (place_light(world_from_node, light)) {
             scene.lights.push_back(std::move(light));
         } else {
-            messages.leave_out({node.place(), "the light is squashed to nothing and left out"});
+            messages.leave_out({node.location(), "the light's transform is singular; it is left out"});
         }
     };
     for (const uint32_t index : nodes.scene_nodes()) {
         const JsonValue& node = document.table("nodes")[index];
         const Transform& world_from_node = nodes.world_from_node(index);
-        const auto attempt = [&](const char* what, const auto& place) {
-            read_or_leave_out(fmt::format("the {} of {}", what, node.pointer()), messages, place);
+        const auto attempt = [&](const char* what, const auto& add) {
+            read_or_leave_out(fmt::format("the {} of {}", what, node.pointer()), messages, add);
         };
         attempt("mesh", [&] {
             if (node.find("mesh")) place_mesh(node, index);

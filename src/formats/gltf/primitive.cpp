@@ -129,10 +129,9 @@ void drop_triangles_past(std::size_t vertices, const JsonValue& primitive, std::
     }
     const std::size_t dropped = (indices.size() - kept) / 3;
     indices.resize(kept);
-    messages.leave_out(
-        {primitive.at("indices").place(),
-         fmt::format("index {} where there are {} vertices; {} with such a corner left out", index, vertices,
-                     dropped == 1 ? "the triangle" : fmt::format("the {} triangles", dropped))});
+    messages.leave_out({primitive.at("indices").location(),
+                        fmt::format("index {} exceeds the {} vertices; {} with such a corner left out", index, vertices,
+                                    dropped == 1 ? "the triangle" : fmt::format("the {} triangles", dropped))});
 }
 
 /// Whether the vertices are in a Draco stream alone.
@@ -146,17 +145,17 @@ bool is_compressed_alone(const PrimitiveRequest& request, const JsonValue& posit
 
 std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Messages& messages) {
     const auto leave_out = [&](const std::string& what) {
-        messages.leave_out({request.primitive.place(), what});
+        messages.leave_out({request.primitive.location(), what});
         return std::nullopt;
     };
     const Topology topology = read_topology(request.primitive);
-    if (!draws_triangles(topology)) return leave_out("a part made of points or lines is left out");
+    if (!draws_triangles(topology)) return leave_out("a primitive of points or lines is left out");
     const JsonValue attributes = request.primitive.at("attributes");
     const std::optional<JsonValue> position = attributes.find("POSITION");
-    if (!position) return leave_out("a part without positions is left out");
+    if (!position) return leave_out("a primitive without positions is left out");
     if (is_compressed_alone(request, *position)) {
         constexpr std::string_view draco = "KHR_draco_mesh_compression";
-        return leave_out(fmt::format("a part compressed by {}, which is not supported, is left out{}", draco,
+        return leave_out(fmt::format("a primitive compressed by {}, which is not supported, is left out{}", draco,
                                      conversion_advice(draco, request.document.path())));
     }
     Primitive result;
@@ -165,13 +164,13 @@ std::optional<Primitive> read_primitive(const PrimitiveRequest& request, Message
     result.targets = read_targets(request, mesh, messages);
     std::vector<uint32_t> corners = read_corners(request, mesh.positions.size());
     if (topology == Topology::Triangles && corners.size() % 3 != 0) {
-        leave_out("a list of triangles whose length is not a multiple of 3; the rest is left out");
+        leave_out("the number of corners of triangles is not a multiple of 3; the rest is left out");
     }
     if (topology != Topology::Triangles)
         request.buffers.charge(corners.size() * 3 * sizeof(uint32_t), request.primitive);
     mesh.indices = triangle_list(topology, std::move(corners));
     drop_triangles_past(mesh.positions.size(), request.primitive, mesh.indices, messages);
-    if (mesh.indices.empty()) return leave_out("a part without a whole triangle is left out");
+    if (mesh.indices.empty()) return leave_out("a primitive without a complete triangle is left out");
     return result;
 }
 

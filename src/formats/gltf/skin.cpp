@@ -46,7 +46,7 @@ std::vector<Transform> read_inverse_bind_matrices(const Document& document, Buff
     const Accessor accessor(document, buffers, *reference, {ElementType::Mat4});
     if (accessor.count() < joint_count || accessor.component_type() != ComponentType::Float) {
         throw reference->error(
-            fmt::format("{} matrices; expected {} of floats, one a joint", accessor.count(), joint_count));
+            fmt::format("{} matrices; expected {} of floats, one per joint", accessor.count(), joint_count));
     }
     const std::vector<float> matrices = accessor.read_floats();
     for (std::size_t i = 0; i < joint_count; ++i) {

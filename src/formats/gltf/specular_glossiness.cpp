@@ -65,12 +65,12 @@ public:
     /// The texel at (x, y) of a picture of `columns` by `rows`.
     Texel at(uint64_t x, uint64_t y, uint64_t columns, uint64_t rows) const {
         if (image_ == nullptr) return {};
-        const std::size_t place = (y * height() / rows * width() + x * width() / columns) * 4;
+        const std::size_t offset = (y * height() / rows * width() + x * width() / columns) * 4;
         if (!image_->rgba8.pixels.empty()) {
-            const uint8_t* p = image_->rgba8.pixels.data() + place;
+            const uint8_t* p = image_->rgba8.pixels.data() + offset;
             return {{decoded_[p[0]], decoded_[p[1]], decoded_[p[2]]}, static_cast<float>(p[3]) / 255};
         }
-        const float* p = image_->rgba_float.pixels.data() + place;
+        const float* p = image_->rgba_float.pixels.data() + offset;
         const Rgb stored = {p[0], p[1], p[2]};
         return {within_0_and_1(is_srgb_ ? stored : srgb_decode(stored)), clamp(p[3], 0.0f, 1.0f)};
     }
@@ -98,9 +98,9 @@ ConvertedImages convert_images(const Scene& scene, const Material& material, con
         for (uint64_t x = 0; x < width; ++x) {
             const Texel d = diffuse.at(x, y, width, height), s = specular.at(x, y, width, height);
             const auto [base, metallic] = convert(factors.diffuse * d.color, factors.specular * s.color);
-            const std::size_t place = (y * width + x) * 4;
-            uint8_t* color = to.base_color.rgba8.pixels.data() + place;
-            uint8_t* surface = to.metallic_roughness.rgba8.pixels.data() + place;
+            const std::size_t offset = (y * width + x) * 4;
+            uint8_t* color = to.base_color.rgba8.pixels.data() + offset;
+            uint8_t* surface = to.metallic_roughness.rgba8.pixels.data() + offset;
             color[0] = to_byte(srgb_encode(base.r));
             color[1] = to_byte(srgb_encode(base.g));
             color[2] = to_byte(srgb_encode(base.b));
@@ -113,7 +113,7 @@ ConvertedImages convert_images(const Scene& scene, const Material& material, con
     return to;
 }
 
-bool are_over_the_same_places(const TextureRef& a, const TextureRef& b) {
+bool use_same_coordinates(const TextureRef& a, const TextureRef& b) {
     const auto members = [](const TextureRef& t) {
         return std::tuple(t.uv_set, t.wrap_s, t.wrap_t, t.m00, t.m01, t.m02, t.m10, t.m11, t.m12);
     };
@@ -141,18 +141,18 @@ void convert_textures(const std::vector<PendingConversion>& pending, uint64_t li
     using Key = std::tuple<int32_t, int32_t, std::array<float, 7>>;
     std::map<Key, int32_t> known; // the first of the two images
     uint64_t bytes = 0;
-    for (const auto& [index, factors, place] : pending) {
+    for (const auto& [index, factors, location] : pending) {
         Material& material = scene.materials[index];
         TextureRef& diffuse = material.base_color_texture;
         TextureRef& specular = material.roughness_texture;
         const TextureRef where = diffuse.has_image() ? diffuse : specular;
         const auto use_factors = [&](const char* why) {
-            messages.leave_out({place, fmt::format("{}; the specular-glossiness texture is left out", why)});
+            messages.leave_out({location, fmt::format("{}; the specular-glossiness texture is left out", why)});
             specular = material.metallic_texture = {};
         };
         if (!diffuse.has_image() && !specular.has_image()) continue; // the loader has told why
-        if (diffuse.has_image() && specular.has_image() && !are_over_the_same_places(diffuse, specular)) {
-            use_factors("its two textures lie over the surface in different ways");
+        if (diffuse.has_image() && specular.has_image() && !use_same_coordinates(diffuse, specular)) {
+            use_factors("its two textures use different coordinates");
             continue;
         }
         const Rgb d = factors.diffuse, s = factors.specular;
@@ -162,7 +162,7 @@ void convert_textures(const std::vector<PendingConversion>& pending, uint64_t li
             const Texels a(scene, diffuse), b(scene, specular);
             bytes += uint64_t(8) * max(a.width(), b.width()) * max(a.height(), b.height());
             if (bytes > limit) {
-                use_factors("its textures as metal and roughness would take too much memory");
+                use_factors("its converted textures would take too much memory");
                 continue;
             }
             ConvertedImages images = convert_images(scene, material, factors);

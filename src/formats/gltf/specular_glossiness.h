@@ -34,7 +34,7 @@ MetallicRoughness metallic_roughness_of(const SpecularGlossiness& from, bool& is
 struct PendingConversion {
     uint32_t material; // index into Scene::materials
     SpecularGlossiness factors;
-    Place place;
+    FileLocation location;
 };
 
 /// Gives each material of `pending` its own textures, two images that are appended to the scene's. `limit` is the

@@ -76,9 +76,9 @@ TextureRef Textures::read(const JsonValue& info) {
                 [&](const JsonValue& sampler) { read_sampler(document_.item("samplers", sampler), texture); });
     if (uv_set > 1) {
         messages_.leave_out(
-            {info.place(), fmt::format("set {} of texture coordinates; only 0 and 1 are supported, the texture is "
-                                       "left out",
-                                       uv_set)});
+            {info.location(),
+             fmt::format("set {} of texture coordinates; only 0 and 1 are supported; the texture is left out",
+                         uv_set)});
         return {};
     }
     texture.uv_set = static_cast<uint8_t>(uv_set);
@@ -95,12 +95,12 @@ void Textures::leave_out_without_image(const JsonValue& texture) {
     for (const std::string_view extension : kOtherImages) {
         if (!texture.extension(extension)) continue;
         messages_.leave_out(
-            {texture.place(), fmt::format("the texture has its picture by {} alone, which is not supported; it is "
-                                          "left out{}",
-                                          extension, conversion_advice(extension, document_.path()))});
+            {texture.location(),
+             fmt::format("the texture's image is given only by {}, which is not supported; it is left out{}", extension,
+                         conversion_advice(extension, document_.path()))});
         return;
     }
-    messages_.leave_out({texture.place(), "the texture has no image that is supported; it is left out"});
+    messages_.leave_out({texture.location(), "the texture has no supported image and is left out"});
 }
 
 void Textures::read_sampler(const JsonValue& sampler, TextureRef& texture) const {
@@ -126,7 +126,7 @@ int32_t Textures::image(const JsonValue& reference) {
 
 int32_t Textures::add_image(const JsonValue& image) {
     const std::string name =
-        fmt::format("{}{}{}", text_of(image.place()), image.find("name") ? " " : "", image.string_or("name", ""));
+        fmt::format("{}{}{}", text_of(image.location()), image.find("name") ? " " : "", image.string_or("name", ""));
     if (const std::optional<JsonValue> view = image.find("bufferView")) {
         const std::span<const std::byte> bytes = buffers_.view(*view).bytes;
         const auto [entry, is_new] = by_bytes_.try_emplace({bytes.data(), bytes.size()}, kNoImage);
@@ -139,11 +139,11 @@ int32_t Textures::add_image(const JsonValue& image) {
     if (!is_data_uri(text)) {
         const std::optional<std::string> path = file_name_of_uri(text, document_.path());
         if (!path) throw uri->error(fmt::format("\"{}\"; expected a relative path or a data URI", shortened(text)));
-        return loader_.add_file(uri->place(), *path);
+        return loader_.add_file(uri->location(), *path);
     }
     std::optional<std::vector<std::byte>> bytes = decode_data_uri(text);
     if (!bytes) {
-        messages_.leave_out({uri->place(), "the data URI cannot be decoded; the texture is left out"});
+        messages_.leave_out({uri->location(), "the data URI cannot be decoded; the texture is left out"});
         return kNoImage;
     }
     return loader_.add_bytes(name, embedded_.emplace_back(*std::move(bytes)));

@@ -10,7 +10,7 @@ namespace {
 
 class Scanner {
 public:
-    Scanner(std::string_view text, MendJson mend) : text_(text), mend_(mend) {}
+    Scanner(std::string_view text, RepairJson repair) : text_(text), repair_(repair) {}
 
     std::optional<JsonFault> run() {
         for (;;) {
@@ -78,7 +78,7 @@ private:
             size = end + 1;
         }
         if (size == 0) return fail(expected);
-        if (const simdjson::error_code failure = parser_.parse(mend_json(rest.substr(0, size), mend_)).error()) {
+        if (const simdjson::error_code failure = parser_.parse(repair_json(rest.substr(0, size), repair_)).error()) {
             return fail(fmt::format("{} ({})", expected, simdjson::error_message(failure)));
         }
         at_ += size;
@@ -86,7 +86,7 @@ private:
     }
 
     std::string_view text_;
-    MendJson mend_;
+    RepairJson repair_;
     std::size_t at_ = 0;
     std::string open_;       // the brackets that are not closed yet
     bool may_close_ = false; // nothing stands yet after the last of them
@@ -96,7 +96,9 @@ private:
 
 } // namespace
 
-std::optional<JsonFault> find_json_fault(std::string_view text, MendJson mend) { return Scanner(text, mend).run(); }
+std::optional<JsonFault> find_json_fault(std::string_view text, RepairJson repair) {
+    return Scanner(text, repair).run();
+}
 
 std::string line_and_column(std::string_view text, std::size_t byte) {
     const std::string_view before = text.substr(0, byte);

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "formats/json/mend_json.h"
+#include "formats/json/repair_json.h"
 
 namespace pertev::gltf {
 
@@ -20,7 +20,7 @@ struct JsonFault {
 };
 
 /// The first fault of `text`; nothing if it is valid JSON after mending.
-std::optional<JsonFault> find_json_fault(std::string_view text, MendJson mend);
+std::optional<JsonFault> find_json_fault(std::string_view text, RepairJson repair);
 
 /// "line 3, column 14", both from 1, columns in characters.
 std::string line_and_column(std::string_view text, std::size_t byte);

@@ -19,13 +19,13 @@ JsonFile::JsonFile(const std::filesystem::path& path) : name_(path.string()) {
         root_.emplace(name_, "", element);
         return;
     }
-    const std::string mended = gltf::mend_json(text, gltf::MendJson::Numbers);
+    const std::string mended = gltf::repair_json(text, gltf::RepairJson::Numbers);
     if (const simdjson::error_code failure = parser_.parse(mended).get(element)) {
         std::string what = simdjson::error_message(failure);
-        if (const auto fault = gltf::find_json_fault(text, gltf::MendJson::Numbers)) {
+        if (const auto fault = gltf::find_json_fault(text, gltf::RepairJson::Numbers)) {
             what = fmt::format("{}: expected {}", gltf::line_and_column(text, fault->byte), fault->expected);
         }
-        throw Error(ErrorCode::BadInput, Place{name_}, fmt::format("not valid JSON: {}", what));
+        throw Error(ErrorCode::BadInput, FileLocation{name_}, fmt::format("not valid JSON: {}", what));
     }
     root_.emplace(name_, "", element);
 }

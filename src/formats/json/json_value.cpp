@@ -48,10 +48,10 @@ std::string escape(std::string_view key) {
 
 } // namespace
 
-Error JsonValue::error(const std::string& what) const { return Error(ErrorCode::BadInput, place(), what); }
+Error JsonValue::error(const std::string& what) const { return Error(ErrorCode::BadInput, location(), what); }
 
 Error JsonValue::error(const Error& cause) const {
-    return cause.place() == place() ? cause : Error(cause.code(), place(), cause.what());
+    return cause.location() == location() ? cause : Error(cause.code(), location(), cause.what());
 }
 
 JsonValue JsonValue::child(std::string_view key, simdjson::dom::element element) const {
@@ -88,7 +88,7 @@ JsonValue::extensions_within(const std::function<bool(std::string_view)>& is_wan
         return text;
     };
     // The parser has refused what is nested so deeply that this recursion could not follow.
-    const auto look = [&](const auto& self, simdjson::dom::element element, bool is_extensions) -> void {
+    const auto visit = [&](const auto& self, simdjson::dom::element element, bool is_extensions) -> void {
         std::size_t i = 0;
         if (element.is_object()) {
             for (const auto& [key, value] : simdjson::dom::object(element)) {
@@ -114,7 +114,7 @@ JsonValue::extensions_within(const std::function<bool(std::string_view)>& is_wan
             }
         }
     };
-    look(look, element_, false);
+    visit(visit, element_, false);
     return found;
 }
 

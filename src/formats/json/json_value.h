@@ -29,7 +29,7 @@ public:
 
     /// Location in the document, RFC 6901; "" is the whole document.
     const std::string& pointer() const { return pointer_; }
-    Place place() const { return {.file = *file_, .pointer = pointer_}; }
+    FileLocation location() const { return {.file = *file_, .pointer = pointer_}; }
     /// Makes an Error(BadInput) with this location.
     Error error(const std::string& what) const;
     /// Makes an error with `cause`, of a file that this value names, and this location.

@@ -81,23 +81,23 @@ public:
                 statement(line);
             } catch (const MtlFault& fault) {
                 messages_.leave_out(
-                    {Place{file_, lines_.number()}, fmt::format("{}; the line is left out", fault.what)});
+                    {FileLocation{file_, lines_.number()}, fmt::format("{}; the line is left out", fault.what)});
             }
         }
         for (const auto& [key, lines] : left_out_) {
             messages_.leave_out(
-                {Place{file_, lines.first_line},
+                {FileLocation{file_, lines.first_line},
                  fmt::format("{} of {} {} left out", counted(lines.times, "line"), key, is_or_are(lines.times))});
         }
         if (too_long_.times > 0) {
-            messages_.leave_out({Place{file_, too_long_.first_line},
-                                 fmt::format("{} with more than the key takes; the rest is left out",
+            messages_.leave_out({FileLocation{file_, too_long_.first_line},
+                                 fmt::format("{} with more numbers than the key has; the rest is left out",
                                              counted(too_long_.times, "line"))});
         }
         if (unknown_.times > 0) {
             messages_.leave_out(
-                {Place{file_, unknown_.first_line},
-                 fmt::format("{} that {} not understood ({} is the first) {} left out", counted(unknown_.times, "line"),
+                {FileLocation{file_, unknown_.first_line},
+                 fmt::format("{} with an unknown key ({} is the first) {} left out", counted(unknown_.times, "line"),
                              is_or_are(unknown_.times), first_unknown_, is_or_are(unknown_.times))});
         }
         return std::move(materials_);

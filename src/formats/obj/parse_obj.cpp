@@ -43,7 +43,7 @@ struct RawGroup {
 };
 
 Error fault_at(const std::string& file, uint32_t line, const std::string& what) {
-    return Error(ErrorCode::BadInput, Place{file, line}, what);
+    return Error(ErrorCode::BadInput, FileLocation{file, line}, what);
 }
 
 /// Parses one piece, and writes its vertices to their positions in arrays that have their final size.
@@ -184,7 +184,7 @@ private:
         const int64_t zero_based = number < 0 ? static_cast<int64_t>(count_so_far) + number : number - 1;
         // An index may lead to what stands further down, so the upper end is checked when all is read.
         if (ec != std::errc{} || number == 0 || zero_based < 0 || zero_based >= int64_t(kNoIndex)) {
-            throw fault_here(fmt::format("{} index {} is out of range; {} stand above, the first has index 1", of,
+            throw fault_here(fmt::format("{} index {} is out of range; there are {} above, counted from 1", of,
                                          std::string_view(text.data(), static_cast<std::size_t>(after - text.data())),
                                          count_so_far));
         }
@@ -258,8 +258,8 @@ public:
         move_to_origin();
         if (!join_groups(false)) {
             messages_.note(
-                {Place{file_}, fmt::format("more than {} objects and groups: faces are put together by material alone",
-                                           kMaxObjGroups)});
+                {FileLocation{file_},
+                 fmt::format("more than {} objects and groups; faces are grouped by material only", kMaxObjGroups)});
             join_groups(true);
         }
         join_colors();
@@ -275,13 +275,13 @@ public:
         leave_out_bad_faces();
         CountedLines no_vertex;
         for (const CountedLines& of_group : without_vertex) no_vertex.add(of_group);
-        leave_out(no_vertex, "face", "with a vertex that is not in the file");
-        leave_out(all_of(&PieceParser::short_faces), "face", "of fewer than three corners");
+        leave_out(no_vertex, "face", "with a missing vertex");
+        leave_out(all_of(&PieceParser::short_faces), "face", "with fewer than three corners");
         leave_out(all_of(&PieceParser::points_and_lines), "statement", "of points or lines");
         leave_out(all_of(&PieceParser::free_form), "statement", "of curves or free-form surfaces");
-        leave_out(all_of(&PieceParser::unknown), "line", "that nothing is known of");
-        warn(missing, "face corner", "with a texture coordinate or normal that is not in the file; it does without");
-        warn(all_of(&PieceParser::bad_numbers), "line", "with a number missing or not readable");
+        leave_out(all_of(&PieceParser::unknown), "line", "of unknown kinds");
+        warn(missing, "face corner", "with a missing texture coordinate or normal, which is ignored");
+        warn(all_of(&PieceParser::bad_numbers), "line", "with a missing or unreadable number");
         return std::move(data_);
     }
 
@@ -303,23 +303,23 @@ private:
             fmt::format("; {} {} left out", counted(bad.times, "such face"), is_or_are(bad.times))));
     }
 
-    Remark told(const CountedLines& what, const char* thing, const char* text) const {
-        return {Place{file_, what.first_line}, fmt::format("{} {}", counted(what.times, thing), text)};
+    Remark remark_on(const CountedLines& what, const char* thing, const char* text) const {
+        return {FileLocation{file_, what.first_line}, fmt::format("{} {}", counted(what.times, thing), text)};
     }
 
     void leave_out(const CountedLines& what, const char* thing, const char* text) const {
         if (what.times == 0) return;
-        messages_.leave_out(told(what, thing, text).and_then(fmt::format(" {} left out", is_or_are(what.times))));
+        messages_.leave_out(remark_on(what, thing, text).and_then(fmt::format(" {} left out", is_or_are(what.times))));
     }
 
     void warn(const CountedLines& what, const char* thing, const char* text) const {
-        if (what.times > 0) messages_.warn(told(what, thing, text));
+        if (what.times > 0) messages_.warn(remark_on(what, thing, text));
     }
 
     void parse_pieces(const FoundMaterials& found_materials) {
         const ObjCounts all = count_before(pieces_, end_of_line_);
         if (std::max({all.positions, all.uvs, all.normals}) >= kNoIndex) {
-            throw Error(ErrorCode::OverLimit, Place{file_}, "more than 2^32 - 1 vertices");
+            throw Error(ErrorCode::OverLimit, FileLocation{file_}, "more than 2^32 - 1 vertices");
         }
         data_.positions.resize(all.positions); // pieces write to disjoint ranges
         exact_.resize(all.positions);

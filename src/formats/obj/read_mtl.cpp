@@ -45,10 +45,10 @@ private:
         TextureRef ref;
         if (from.name.empty()) return ref;
         try {
-            ref.image = loader_.add_file(Place{path_.string(), from.line}, gltf::plain_file_name(from.name));
+            ref.image = loader_.add_file(FileLocation{path_.string(), from.line}, gltf::plain_file_name(from.name));
         } catch (const Error& error) { // it may not be read
             if (error.code() != ErrorCode::BadInput) throw;
-            messages_.leave_out(error.remark().and_then("; its factor alone is used"));
+            messages_.leave_out(error.remark().and_then("; only its factor is used"));
         }
         ref.is_srgb = is_colour && !from.is_linear;
         if (from.clamp) ref.wrap_s = ref.wrap_t = Wrap::ClampToEdge;
@@ -156,7 +156,7 @@ struct AlphaStatistics {
     bool is_binary = false; // nearly all texels clear or solid: an outline, softened at most at its edge
 };
 
-AlphaStatistics look_at_channel(const TextureImage& image, int channel) {
+AlphaStatistics alpha_statistics(const TextureImage& image, int channel) {
     std::size_t between = 0, below = 0;
     for (std::size_t i = 0; i < pixel_count(image); ++i) {
         const float alpha = value(image, i, channel);
@@ -176,11 +176,11 @@ std::map<std::string, MtlMaterial> read_mtl(std::span<const std::byte> bytes, co
                                             TextureLoader& loader, Messages& messages) {
     std::map<std::string, MtlMaterial> materials;
     Converter converter(path, loader, messages);
-    for (const MtlStatements& said : parse_mtl(bytes, path.string(), messages)) {
-        if (said.name.empty() || materials.contains(said.name)) continue;
-        materials.emplace(said.name, converter.convert(said));
+    for (const MtlStatements& statements : parse_mtl(bytes, path.string(), messages)) {
+        if (statements.name.empty() || materials.contains(statements.name)) continue;
+        materials.emplace(statements.name, converter.convert(statements));
     }
-    if (materials.empty()) messages.warn({Place{path.string()}, "no material (newmtl) in it"});
+    if (materials.empty()) messages.warn({FileLocation{path.string()}, "it has no material (newmtl)"});
     return materials;
 }
 
@@ -189,7 +189,7 @@ void finish_mtl_material(MtlMaterial& material, const std::vector<TextureImage>&
     Material& to = material.material;
     if (material.normal_may_be_height && to.normal_texture.has_image()) {
         if (!looks_like_normals(images[static_cast<std::size_t>(to.normal_texture.image)])) {
-            messages.leave_out({Place{file}, "a map_bump that is a height map is left out; normal maps are read"});
+            messages.leave_out({FileLocation{file}, "a height map in map_bump is left out; only normal maps are read"});
             to.normal_texture = {};
         }
     }
@@ -197,9 +197,9 @@ void finish_mtl_material(MtlMaterial& material, const std::vector<TextureImage>&
     const TextureImage& image = images[static_cast<std::size_t>(to.alpha_texture.image)];
     // `m` (matte) is the alpha channel; a grey picture without one is meant by its brightness.
     int channel = material.alpha_channel == 'g' ? 1 : (material.alpha_channel == 'b' ? 2 : 0);
-    if (material.alpha_channel == 'm' && look_at_channel(image, 3).varies) channel = 3;
+    if (material.alpha_channel == 'm' && alpha_statistics(image, 3).varies) channel = 3;
     to.alpha_texture.channel = static_cast<uint8_t>(channel);
-    const AlphaStatistics statistics = look_at_channel(image, channel);
+    const AlphaStatistics statistics = alpha_statistics(image, channel);
     if (to.alpha_texture.image == to.base_color_texture.image) {
         // Its alpha counts by itself: the same again would be its square. Without one, an exporter wrote the name
         // twice.

@@ -43,9 +43,9 @@ void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& dat
     }
     if (materials.empty()) return;
     messages.warn(
-        {Place{file}, fmt::format("{} with a texture, but on faces without texture coordinates ({} is the first): "
-                                  "its corner is seen there",
-                                  counted(materials.size(), "material"), shortened(first))});
+        {FileLocation{file},
+         fmt::format("{} with a texture on faces without texture coordinates ({} is the first); its corner is shown",
+                     counted(materials.size(), "material"), shortened(first))});
 }
 
 /// A texture tells the colour where there is one: scanners write the same colours to the vertices as well.
@@ -58,7 +58,7 @@ void drop_colors_beside_textures(Scene& scene, const std::string& file, Messages
         ++dropped;
     }
     if (dropped == 0) return;
-    messages.leave_out({Place{file}, "vertex colours beside a texture are left out: the texture tells the colour"});
+    messages.leave_out({FileLocation{file}, "vertex colours are left out, because a texture defines the colour"});
 }
 
 Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
@@ -110,14 +110,14 @@ void wind_after_normals(Mesh& mesh) {
 
 std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs::path& obj, const FileAccess& access,
                                           Messages& messages) {
-    const Place place = {obj.string(), line.line};
+    const FileLocation location = {obj.string(), line.line};
     bool is_refused = false; // where a file may not be read, that has been told
     const auto find = [&](const std::string& name) -> std::optional<fs::path> {
         try {
-            return access.find(place, name, messages);
+            return access.find(location, name, messages);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::BadInput) throw;
-            messages.leave_out(error.remark().and_then("; what it describes is grey"));
+            messages.leave_out(error.remark().and_then("; its materials are grey"));
             is_refused = true;
             return std::nullopt;
         }
@@ -132,7 +132,7 @@ std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs
             found.push_back(*path);
         } else if (!is_refused) {
             messages.leave_out(
-                {place, fmt::format("there is no material file {}; what it describes is grey", shortened(name))});
+                {location, fmt::format("there is no material file {}; its materials are grey", shortened(name))});
         }
     }
     return found;
@@ -220,15 +220,15 @@ Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& 
 
     if (data.groups.empty()) {
         scene.no_instances =
-            fmt::format("{} and no face; expected a line such as f 1 2 3", counted(data.positions.size(), "position"));
+            fmt::format("{} but no face; expected a line such as f 1 2 3", counted(data.positions.size(), "position"));
         const std::vector<std::string> left_out = messages.left_out();
         if (!left_out.empty()) scene.no_instances += fmt::format("; left out: {}", left_out.front());
     }
 
     if (unknown > 0 && !options.geometry_only) {
-        messages.leave_out({Place{file}, fmt::format("{} that {} in no .mtl file ({} is the first) {} shown grey",
-                                                     counted(unknown, "material"), is_or_are(unknown),
-                                                     shortened(first_unknown), is_or_are(unknown))});
+        messages.leave_out({FileLocation{file}, fmt::format("{} that {} in no .mtl file ({} is the first) {} grey",
+                                                            counted(unknown, "material"), is_or_are(unknown),
+                                                            shortened(first_unknown), is_or_are(unknown))});
     }
 
     parallel_invoke([&] { loader.load_into(scene); },
@@ -270,7 +270,7 @@ Scene read_obj(const fs::path& path, const FileAccess& access, const ReadOptions
         throw;
     }
     messages.add_all(of_materials);
-    loader.say_to(messages);
+    loader.report_to(messages);
     return make_scene(data, materials, loader, path.string(), options, messages);
 }
 

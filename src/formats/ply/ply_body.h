@@ -39,10 +39,10 @@ public:
 
     Error fault(const std::string& what) const {
         const std::string value = fmt::format("{} {}: {}", element_, number_, what);
-        if (format_ == PlyFormat::Ascii) return Error(ErrorCode::BadInput, Place{file_, line()}, value);
-        return Error(ErrorCode::BadInput, Place{file_}, fmt::format("byte {}: {}", at_ - begin_, value));
+        if (format_ == PlyFormat::Ascii) return Error(ErrorCode::BadInput, FileLocation{file_, line()}, value);
+        return Error(ErrorCode::BadInput, FileLocation{file_}, fmt::format("byte {}: {}", at_ - begin_, value));
     }
-    void set_place(const std::string& element, uint64_t number) {
+    void set_location(const std::string& element, uint64_t number) {
         element_ = element;
         number_ = number;
     }
@@ -57,7 +57,7 @@ public:
         // The last value of a text may have no space after it.
         const uint64_t left = static_cast<uint64_t>(end_ - at_) + (format_ == PlyFormat::Ascii ? 1 : 0);
         if (count > left / least) {
-            throw fault(fmt::format("{} {} do not fit into the {} bytes that are left", count, what, end_ - at_));
+            throw fault(fmt::format("{} {} do not fit into the remaining {} bytes", count, what, end_ - at_));
         }
     }
 
@@ -80,11 +80,11 @@ public:
         const bool is_count = count >= 0 && count < 0x1p32;
         const auto whole = is_count ? static_cast<uint64_t>(count) : 0;
         if (has_lines_ && !(is_count && whole <= static_cast<uint64_t>(end_ - at_))) {
-            if (!std::isnan(count)) note_bad_value("a list's count does not fit what follows");
+            if (!std::isnan(count)) note_bad_value("a list's count exceeds the file");
             is_line_bad_ = true;
             return 0;
         }
-        if (!is_count) throw fault("a list's count is not within 0 and 2^32 - 1");
+        if (!is_count) throw fault("a list's count is not between 0 and 2^32 - 1");
         expect(whole, min_size(property.type), "entries of a list");
         return whole;
     }
@@ -117,9 +117,9 @@ public:
                                  : fmt::format("; this and {} more are left out", bad_values_ - 1)));
         }
         if (long_lines_ == 0) return;
-        messages.leave_out(
-            {Place{file_, first_long_line_}, fmt::format("{} with more numbers than the header says: the rest left out",
-                                                         counted(long_lines_, "line"))});
+        messages.leave_out({FileLocation{file_, first_long_line_},
+                            fmt::format("{} with more numbers than the header states; the rest is left out",
+                                        counted(long_lines_, "line"))});
     }
 
 private:

@@ -51,16 +51,16 @@ public:
     PlyHeader run() {
         if (text_.starts_with("\xef\xbb\xbf")) at_ = 3; // byte order mark
         if (words_of(next_line()) != std::vector<std::string_view>{"ply"}) {
-            throw fault("a PLY file starts with the line 'ply'");
+            throw fault("expected the line 'ply', the start of a PLY file");
         }
         auto format = next_words();
         for (; format[0] != "format"; format = next_words()) {
             if (is_one_of_elements(format[0])) {
-                throw fault("after 'ply' comes the line 'format ascii|binary_little_endian|binary_big_endian 1.0'");
+                throw fault("expected the line 'format ascii|binary_little_endian|binary_big_endian 1.0' after 'ply'");
             }
             take_as_comment();
         }
-        if (format.size() < 2) throw fault("the format is ascii, binary_little_endian or binary_big_endian");
+        if (format.size() < 2) throw fault("unknown format; expected ascii, binary_little_endian or binary_big_endian");
         header_.format = format_of(format[1]);
         if (format.size() != 3 || format[2] != "1.0") {
             repaired(fmt::format("version {}; it is read as 1.0", format.size() > 2 ? format[2] : "is missing"));
@@ -81,21 +81,25 @@ public:
     }
 
 private:
-    Error fault(const std::string& what) const { return Error(ErrorCode::BadInput, Place{file_, line_number_}, what); }
+    Error fault(const std::string& what) const {
+        return Error(ErrorCode::BadInput, FileLocation{file_, line_number_}, what);
+    }
 
     static bool is_one_of_elements(std::string_view word) {
         return word == "element" || word == "property" || word == "end_header";
     }
 
-    void repaired(std::string what) { header_.repairs.emplace_back(Place{file_, line_number_}, std::move(what)); }
+    void repaired(std::string what) {
+        header_.repairs.emplace_back(FileLocation{file_, line_number_}, std::move(what));
+    }
 
     /// Blender 2.4 wrote "Created by Blender3D ...", and old Assimp its own name, without the word comment.
     void take_as_comment() {
         if (!header_.elements.empty() && header_.format != PlyFormat::Ascii) { // it may stand for bytes of the body
-            throw fault("a header line is element, property, comment, obj_info or end_header");
+            throw fault("unknown header line; expected element, property, comment, obj_info or end_header");
         }
         if (!std::exchange(has_unknown_line_, true)) {
-            repaired("a header line that is not understood is taken as a comment");
+            repaired("an unknown header line is read as a comment");
         }
     }
 
@@ -130,7 +134,7 @@ private:
         if (name == "ascii") return PlyFormat::Ascii;
         if (name == "binary_little_endian") return PlyFormat::LittleEndian;
         if (name == "binary_big_endian") return PlyFormat::BigEndian;
-        throw fault("the format is ascii, binary_little_endian or binary_big_endian");
+        throw fault("unknown format; expected ascii, binary_little_endian or binary_big_endian");
     }
 
     PlyType type_of(std::string_view name) {
@@ -138,15 +142,16 @@ private:
             if (known.name == name) return known.type;
         }
         if (header_.format == PlyFormat::Ascii) { // where a value is a word, however many bytes it would have
-            repaired(fmt::format("\"{}\" is no type; its values are read as numbers", shortened(name)));
+            repaired(fmt::format("\"{}\" is not a type; its values are read as numbers", shortened(name)));
             return PlyType::Float64;
         }
-        throw fault(fmt::format("\"{}\" is no type; types are char uchar short ushort int uint float double", name));
+        throw fault(
+            fmt::format("\"{}\" is not a type; expected char, uchar, short, ushort, int, uint, float or double", name));
     }
 
     void element(const std::vector<std::string_view>& words) {
         PlyElement element;
-        if (words.size() != 3) throw fault("an element line is 'element NAME COUNT'");
+        if (words.size() != 3) throw fault("expected 'element NAME COUNT'");
         const char* end = words[2].data() + words[2].size();
         const auto [after, ec] = std::from_chars(words[2].data(), end, element.count);
         if (ec != std::errc{} || after != end) {
@@ -167,12 +172,12 @@ private:
             property.count_type = type_of(words[2]);
             property.type = type_of(words[3]);
             if (property.count_type == PlyType::Float32 || property.count_type == PlyType::Float64) {
-                throw fault("the count of a list is a whole number, of type uchar for example");
+                throw fault("the count of a list must have an integer type, such as uchar");
             }
         } else if (words.size() == 3) {
             property.type = type_of(words[1]);
         } else {
-            throw fault("a property line is 'property TYPE NAME' or 'property list COUNT_TYPE TYPE NAME'");
+            throw fault("expected 'property TYPE NAME' or 'property list COUNT_TYPE TYPE NAME'");
         }
         property.name = words.back();
         header_.elements.back().properties.push_back(std::move(property));

@@ -14,21 +14,21 @@
 namespace pertev {
 namespace {
 
-/// The values of `from` at `places`; none where it is empty.
+/// The values of `from` at `selected`; none where it is empty.
 template <class T>
-std::vector<T> gathered(const std::vector<T>& from, const std::vector<uint32_t>& places) {
+std::vector<T> gathered(const std::vector<T>& from, const std::vector<uint32_t>& selected) {
     std::vector<T> to;
     if (from.empty()) return to;
-    to.reserve(places.size());
-    for (const uint32_t place : places) to.push_back(from[place]);
+    to.reserve(selected.size());
+    for (const uint32_t index : selected) to.push_back(from[index]);
     return to;
 }
 
-void gather_vertices(Mesh& mesh, const std::vector<uint32_t>& places) {
-    mesh.positions = gathered(mesh.positions, places);
-    mesh.normals = gathered(mesh.normals, places);
-    mesh.colors = gathered(mesh.colors, places);
-    mesh.uv[0] = gathered(mesh.uv[0], places);
+void gather_vertices(Mesh& mesh, const std::vector<uint32_t>& selected) {
+    mesh.positions = gathered(mesh.positions, selected);
+    mesh.normals = gathered(mesh.normals, selected);
+    mesh.colors = gathered(mesh.colors, selected);
+    mesh.uv[0] = gathered(mesh.uv[0], selected);
 }
 
 struct Part {
@@ -40,17 +40,17 @@ struct Part {
 Mesh part_of(const Mesh& mesh, const std::vector<int32_t>& of_triangles, int32_t texture) {
     Mesh part = mesh;
     part.indices.clear();
-    std::vector<uint32_t> places, vertices(mesh.positions.size(), 0xffffffffu);
+    std::vector<uint32_t> selected, vertices(mesh.positions.size(), 0xffffffffu);
     for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
         if (of_triangles[i / 3] != texture) continue;
         uint32_t& vertex = vertices[mesh.indices[i]];
         if (vertex == 0xffffffffu) {
-            vertex = static_cast<uint32_t>(places.size());
-            places.push_back(mesh.indices[i]);
+            vertex = static_cast<uint32_t>(selected.size());
+            selected.push_back(mesh.indices[i]);
         }
         part.indices.push_back(vertex);
     }
-    gather_vertices(part, places);
+    gather_vertices(part, selected);
     return part;
 }
 
@@ -83,14 +83,14 @@ void split_vertices(const std::vector<Vec2>& uvs, std::vector<uint32_t>& corners
         corners[i] =
             table.number_of({corners[i], std::bit_cast<uint32_t>(uvs[i].x), std::bit_cast<uint32_t>(uvs[i].y)});
     }
-    std::vector<uint32_t> places;
+    std::vector<uint32_t> selected;
     std::vector<Vec2> uv;
     for (const VertexKey& vertex : table.keys()) {
-        places.push_back(vertex.position);
+        selected.push_back(vertex.position);
         uv.push_back({std::bit_cast<float>(vertex.uv), std::bit_cast<float>(vertex.normal)});
     }
     mesh.uv[0].clear();
-    gather_vertices(mesh, places);
+    gather_vertices(mesh, selected);
     mesh.uv[0] = std::move(uv);
 }
 
@@ -100,7 +100,7 @@ Scene make_ply_scene(Mesh mesh, const std::vector<uint32_t>& sizes, const PlyFac
     const std::string name = mesh.name;
     const bool has_uv = !mesh.uv[0].empty();
     if (!header.textures.empty() && !has_uv) {
-        messages.leave_out({Place{file, header.textures.front().line},
+        messages.leave_out({FileLocation{file, header.textures.front().line},
                             fmt::format("{} left out: neither vertices nor faces have texture coordinates",
                                         counted(header.textures.size(), "texture"))});
     }
@@ -111,7 +111,7 @@ Scene make_ply_scene(Mesh mesh, const std::vector<uint32_t>& sizes, const PlyFac
             const PlyTexture& texture = header.textures[static_cast<std::size_t>(part.texture)];
             if (header.textures.size() > 1) material.name = fmt::format("{} {}", name, texture.name);
             material.base_color_texture.image =
-                loader.add_file(Place{file, texture.line}, gltf::plain_file_name(texture.name));
+                loader.add_file(FileLocation{file, texture.line}, gltf::plain_file_name(texture.name));
             material.base_color_texture.is_srgb = true;
         }
         const auto number = static_cast<uint32_t>(scene.meshes.size());
@@ -129,7 +129,7 @@ Scene make_ply_scene(Mesh mesh, const std::vector<uint32_t>& sizes, const PlyFac
         has_colors_beside = true;
     }
     if (has_colors_beside) {
-        messages.leave_out({Place{file}, "vertex colours beside a texture are left out: the texture tells the colour"});
+        messages.leave_out({FileLocation{file}, "vertex colours are left out, because a texture defines the colour"});
     }
     return scene;
 }

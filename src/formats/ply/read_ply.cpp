@@ -56,12 +56,11 @@ public:
     /// The file's mesh. Its faces are those of sizes() and of_faces().
     Mesh run(Messages& messages) {
         if (std::none_of(header_.elements.begin(), header_.elements.end(), is_surface)) {
-            throw Error(ErrorCode::BadInput, file_ +
-                                                 ": no faces: a cloud of points, or nothing; a surface has an element "
-                                                 "face with a list vertex_indices");
+            throw Error(ErrorCode::BadInput,
+                        file_ + ": it has no faces; a surface has an element face with a list vertex_indices");
         }
         for (const PlyElement& element : header_.elements) {
-            body_.set_place(element.name, 0);
+            body_.set_location(element.name, 0);
             if (element.properties.empty() && element.name != "vertex") continue; // takes no bytes, whatever its count
             std::size_t least = 0;
             for (const PlyProperty& p : element.properties) least += body_.min_size(p.is_list ? p.count_type : p.type);
@@ -79,14 +78,14 @@ public:
                 if (!of_faces_.textures.empty())
                     sizes_.resize(of_faces_.textures.size()); // the last may lack its texture
                 corners_.resize(std::accumulate(sizes_.begin(), sizes_.end(), std::size_t(0)));
-                messages.leave_out(error.remark().and_then("; what follows is left out"));
+                messages.leave_out(error.remark().and_then("; the rest is left out"));
                 break;
             }
         }
         move_to_origin();
         if (has_float_colors_) decode_vertex_colors(mesh_.colors, file_, messages);
         if (!of_faces_.textures.empty() && of_faces_.textures.size() != sizes_.size()) {
-            messages.leave_out({Place{file_}, "textures of faces beside triangle strips are left out"});
+            messages.leave_out({FileLocation{file_}, "textures of faces in a file with triangle strips are left out"});
             of_faces_ = {};
         }
         if (!of_faces_.uvs.empty()) split_vertices(of_faces_.uvs, corners_, mesh_);
@@ -99,12 +98,13 @@ public:
                 bad_indices_ == 1 ? "has that corner is" : fmt::format("has such a corner, of {}, is", bad_indices_))));
         }
         if (bad_textures_ > 0) {
-            messages.leave_out({Place{file_}, fmt::format("{} of a texture that is not in the header {} without it",
-                                                          counted(bad_textures_, "face"), is_or_are(bad_textures_))});
+            messages.leave_out(
+                {FileLocation{file_}, fmt::format("{} with a texture that the header does not list {} without it",
+                                                  counted(bad_textures_, "face"), is_or_are(bad_textures_))});
         }
         if (strays_ > 0) {
-            messages.leave_out({Place{file_}, fmt::format("{} of fewer than three corners {} left out",
-                                                          counted(strays_, "face"), is_or_are(strays_))});
+            messages.leave_out({FileLocation{file_}, fmt::format("{} with fewer than three corners {} left out",
+                                                                 counted(strays_, "face"), is_or_are(strays_))});
         }
         return std::move(mesh_);
     }
@@ -133,10 +133,12 @@ private:
                 has_uv |= is_face_uv(p) && header_.textures.empty();
             }
             if (has_colour)
-                messages.leave_out({Place{file_}, "colours of faces are left out; those of vertices are read"});
+                messages.leave_out(
+                    {FileLocation{file_}, "colours of faces are left out; only those of vertices are read"});
             if (has_uv)
                 messages.leave_out(
-                    {Place{file_}, "texture coordinates of faces are left out: no comment TextureFile has a texture"});
+                    {FileLocation{file_},
+                     "texture coordinates of faces are left out, because no comment TextureFile names a texture"});
         }
     }
 
@@ -159,7 +161,7 @@ private:
 
     void vertices(const PlyElement& element) {
         if (element.count > std::numeric_limits<uint32_t>::max()) {
-            throw Error(ErrorCode::OverLimit, Place{file_}, "more than 2^32 - 1 vertices");
+            throw Error(ErrorCode::OverLimit, FileLocation{file_}, "more than 2^32 - 1 vertices");
         }
         std::vector<std::size_t> slots;
         std::array<bool, kSlots + 1> has = {};
@@ -349,7 +351,7 @@ private:
         std::size_t triangles = 0;
         for (const uint32_t size : sizes_) triangles += size - 2;
         if (triangles > kMaxTrianglesPerMesh) {
-            throw Error(ErrorCode::OverLimit, Place{file_},
+            throw Error(ErrorCode::OverLimit, FileLocation{file_},
                         fmt::format("{} triangles; a mesh has at most {}", triangles, kMaxTrianglesPerMesh));
         }
         if (triangles == sizes_.size()) {

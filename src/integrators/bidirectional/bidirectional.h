@@ -18,7 +18,7 @@ namespace pertev {
 
 struct BothDirections {
     static constexpr bool kIsConnected = true;
-    static SubpathRoom room(const SubpathSettings& settings, uint32_t subpaths) {
+    static SubpathCapacity capacity(const SubpathSettings& settings, uint32_t subpaths) {
         const uint32_t kept = settings.max_depth > 1 ? settings.max_depth - 1 : 1;
         return {subpaths, kept, kept < kConnectedAtOnce ? kept : kConnectedAtOnce};
     }

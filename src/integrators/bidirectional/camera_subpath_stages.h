@@ -40,9 +40,9 @@ struct ShadeCameraSubpaths {
         if (!surface.bsdf.has_delta_only()) {
             sample_direct_light(surface, state, wo, key);
             if (state.depth() + 1 < scene.settings.max_depth && subpaths.kept_counts[subpath] > 0) {
-                const uint32_t place = atomic_add(&subpaths.counts->vertices, 1u);
-                subpaths.present.store(place, {hit, ray.direction, state.throughput, state.mis});
-                subpaths.present_owners[place] = subpath;
+                const uint32_t slot = atomic_add(&subpaths.counts->vertices, 1u);
+                subpaths.present.store(slot, {hit, ray.direction, state.throughput, state.mis});
+                subpaths.present_owners[slot] = subpath;
             }
         }
         go_on(surface, subpath, state, wo, key);
@@ -65,7 +65,7 @@ private:
         if (light == kNoLight) return {}; // only this subpath can find it
         const EmissiveTriangle& triangle = lights.triangles[light];
         const float cosine = dot(normalize(cross(triangle.ab, triangle.ac)), direction);
-        return {pdf_place(triangle), pdf_emission(triangle, cosine)};
+        return {pdf_position(triangle), pdf_emission(triangle, cosine)};
     }
 
     /// Samples one point of one light, as path tracing does.
@@ -157,7 +157,7 @@ HD inline ConnectedEnd connect_end(const SceneView& scene, const SubpathVertex& 
 
 HD inline Vec3 position_of(const SceneView& scene, const Hit& hit) {
     const InstanceView& instance = scene.instances[hit.instance];
-    return place_triangle(instance, scene.meshes[instance.mesh], hit).position;
+    return world_triangle(instance, scene.meshes[instance.mesh], hit).position;
 }
 
 /// Connects pair i: the current round's vertex i % vertices and vertex first + i / vertices of its sample's light
@@ -172,7 +172,7 @@ struct ConnectSubpaths {
         const uint32_t vertices = subpaths.counts->vertices, present = i % vertices, number = first + i / vertices;
         const uint32_t subpath = subpaths.present_owners[present];
         if (number >= subpaths.kept_counts[subpath] || round + number + 2 > scene.settings.max_depth) return;
-        const std::size_t at = subpaths.kept_place(subpath, number);
+        const std::size_t at = subpaths.kept_index(subpath, number);
         if (!subpaths.kept.is_there(at)) return;
         const SceneView& view = scene.picture.scene;
         const SubpathVertex ends[2] = {subpaths.present.load(present), subpaths.kept.load(at)};

@@ -45,7 +45,7 @@ struct CacheSubpathsView {
     float* ways;          // [paths] distance from the camera, metres
     SubpathAim* aims;     // [paths]
     // Lookups of a round, contiguous; SubpathCounts::vertices is their number.
-    Float4 *places, *directions, *throughputs;
+    Float4 *hits, *directions, *throughputs;
     uint32_t* scatterings;
     // Cells of hemispheres.
     FixedSum* light; // [3 * cells]
@@ -66,13 +66,13 @@ struct CacheSubpathsView {
         const Hit& hit = lookup.hit;
         const Vec3 d = lookup.direction;
         const Rgb t = lookup.throughput;
-        places[at] = {hit.u, hit.v, float_of(hit.instance), float_of(hit.primitive)};
+        hits[at] = {hit.u, hit.v, float_of(hit.instance), float_of(hit.primitive)};
         directions[at] = {d.x, d.y, d.z, lookup.way};
         throughputs[at] = {t.r, t.g, t.b, float_of(lookup.subpath)};
         scatterings[at] = lookup.scatterings;
     }
     HD CacheLookup load(uint32_t at) const {
-        const Float4 p = places[at], d = directions[at], t = throughputs[at];
+        const Float4 p = hits[at], d = directions[at], t = throughputs[at];
         return {{0, p.x, p.y, bits_of(p.z), bits_of(p.w)},
                 {d.x, d.y, d.z},
                 d.w,
@@ -83,25 +83,25 @@ struct CacheSubpathsView {
 };
 
 /// The sizes of the arrays.
-struct CacheRoom {
+struct CacheCapacity {
     uint32_t count; // paths
     uint32_t cells; // cells of hemispheres
 };
 
 /// Places the arrays in one piece of memory (lay_out_arrays).
-inline std::size_t lay_out(CacheSubpathsView& view, std::byte* memory, const CacheRoom& room) {
-    return lay_out_arrays(memory, [&](const auto& place) {
-        const std::size_t subpaths = room.count, cells = room.cells;
-        place(view.cache_states, subpaths);
-        place(view.paths, subpaths);
-        place(view.ways, subpaths);
-        place(view.aims, subpaths);
-        place(view.places, subpaths);
-        place(view.directions, subpaths);
-        place(view.throughputs, subpaths);
-        place(view.scatterings, subpaths);
-        place(view.light, 3 * cells);
-        place(view.cells, cells);
+inline std::size_t lay_out(CacheSubpathsView& view, std::byte* memory, const CacheCapacity& capacity) {
+    return lay_out_arrays(memory, [&](const auto& add_array) {
+        const std::size_t subpaths = capacity.count, cells = capacity.cells;
+        add_array(view.cache_states, subpaths);
+        add_array(view.paths, subpaths);
+        add_array(view.ways, subpaths);
+        add_array(view.aims, subpaths);
+        add_array(view.hits, subpaths);
+        add_array(view.directions, subpaths);
+        add_array(view.throughputs, subpaths);
+        add_array(view.scatterings, subpaths);
+        add_array(view.light, 3 * cells);
+        add_array(view.cells, cells);
     });
 }
 

@@ -105,7 +105,7 @@ private:
     };
 
     HD bool adds_light() const { return film.sums != nullptr; }
-    HD uint32_t place_in_film(uint32_t subpath, const SubpathState& state) const {
+    HD uint32_t film_index(uint32_t subpath, const SubpathState& state) const {
         return is_hemisphere ? first_cell + subpath : state.pixel;
     }
 
@@ -115,7 +115,7 @@ private:
                       float light_pdf) const {
         if (is_black(cache_state.seen)) return;
         const float weight = light_pdf > 0 ? power_heuristic(cache_state.pdf, light_pdf) : 1.0f;
-        add_radiance(film, place_in_film(subpath, state), (weight * cache_state.seen) * emission);
+        add_radiance(film, film_index(subpath, state), (weight * cache_state.seen) * emission);
     }
     HD void add_background(uint32_t subpath, const SubpathState& state, const CacheState& cache_state,
                            const Ray& ray) const {
@@ -151,7 +151,7 @@ private:
         connection.key = coin;
         connection.light = (weight / light.pdf) * (state.throughput * scattered.f * light.radiance);
         subpaths.queue_connection(atomic_add(&subpaths.counts->connections, 1u), connection,
-                                  place_in_film(subpath, state));
+                                  film_index(subpath, state));
     }
 
     HD INLINE_ON_DEVICE void go_on(const Vertex& vertex, uint32_t subpath, SubpathState& state,

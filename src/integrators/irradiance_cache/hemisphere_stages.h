@@ -209,7 +209,7 @@ struct FinishRecords {
         });
         limit_radius(sum, kMinPixels * pixel, kMaxPixels * pixel);
         IrradianceRecord record;
-        record.place = place_of(surface, side, site.scatterings);
+        record.point = cache_point(surface, side, site.scatterings);
         record.radius = sum.radius;
         record.light = sum.light;
         for (int k = 0; k < 3; ++k) {

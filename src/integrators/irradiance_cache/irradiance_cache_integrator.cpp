@@ -18,7 +18,7 @@ FilmView film_of_cells(const CacheSubpathsView& cache, uint64_t* invalid, uint32
 } // namespace
 
 void IrradianceCacheIntegrator::reserve(const WorkSize& size) {
-    store_.make_room(size.pixels());
+    store_.allocate(size.pixels());
     counts_.grow(queue_, kCounts, "counts of irradiance caching");
     mirrored_.grow(queue_, 1, "counts of mirrors and lamps");
     if (goes_by_loop(size)) return;
@@ -28,7 +28,7 @@ void IrradianceCacheIntegrator::reserve(const WorkSize& size) {
     const uint64_t most =
         std::min<uint64_t>({wanted, batch_, kMaxBytes / (bytes_of({kMinCount, kMinCount}) / kMinCount)});
     const auto subpaths = static_cast<uint32_t>(std::max<uint64_t>(most, cells));
-    take_room({subpaths, subpaths}, "subpaths of irradiance caching");
+    allocate_capacity({subpaths, subpaths}, "subpaths of irradiance caching");
 }
 
 void IrradianceCacheIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
@@ -66,7 +66,7 @@ void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const Fil
     PERTEV_CHECK(film.is_whole_picture());
     if (count == 0) return;
     if (!prepare([this](double) { return !is_abandoned(); })) return;
-    if (first == 0) tell_invalid(film.invalid);
+    if (first == 0) report_invalid(film.invalid);
     CacheJob job = make_job(0);
     job.film = film;
     job.shows_records = picture_settings_.cache.show_records;
@@ -80,7 +80,7 @@ void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const Fil
 }
 
 /// Adds invalid samples of the records to the count together with sample 0, thus once, however the work is split.
-void IrradianceCacheIntegrator::tell_invalid(uint64_t* invalid) {
+void IrradianceCacheIntegrator::report_invalid(uint64_t* invalid) {
     uint64_t of_records = 0, so_far = 0;
     queue_.copy_to_host(&of_records, counts_.data() + kInvalid, sizeof of_records);
     if (of_records == 0) return;
@@ -115,7 +115,7 @@ bool IrradianceCacheIntegrator::make_round(uint32_t round, OvertureProgress& pro
     const PartSizes parts =
         trees_of_loop() != nullptr
             ? PartSizes{uint64_t(kLoopCount) * static_cast<uint64_t>(thread_count()), job.grid.count()}
-            : PartSizes{room_.count, room_.count};
+            : PartSizes{capacity_.count, capacity_.count};
     const bool went_on = do_in_parts(job.grid.count(), parts, goes_on, [&](uint64_t begin, uint64_t end) {
         run_subpaths(job, begin, end, [](auto& way, const CacheJob& part) { run_overture(way, part); });
         rays_.camera += end - begin;
@@ -139,10 +139,10 @@ bool IrradianceCacheIntegrator::make_hemispheres(CacheJob job, uint32_t records,
         return do_in_parts(records, parts, goes_on,
                            [&](uint64_t begin, uint64_t end) { make_hemispheres_in_loop(*trees, job, begin, end); });
     }
-    const uint32_t at_once = room_.count / cells;
+    const uint32_t at_once = capacity_.count / cells;
     return do_in_parts(records, {at_once, at_once}, goes_on, [&](uint64_t begin, uint64_t end) {
         CacheJob part = job;
-        use_room(part);
+        lay_out_job(part);
         part.hemispheres.begin = static_cast<uint32_t>(begin);
         const auto here = static_cast<uint32_t>(end - begin);
         part.film = film_of_cells(part.cache, counts_.data() + kInvalid, here * cells);

@@ -59,7 +59,7 @@ private:
     void run_subpaths(const CacheJob& job, uint64_t begin, uint64_t end, const Run& run) {
         run_stages(job, begin, end, {kLoopCount, 0}, 1, run);
     }
-    void tell_invalid(uint64_t* invalid);
+    void report_invalid(uint64_t* invalid);
 
     bool is_same_picture_ = false; // whether the next begin() gets the same picture
     bool has_records_ = false;

@@ -22,7 +22,7 @@ namespace pertev {
 inline constexpr uint32_t kBareDiffuse = 0xffffffffu;
 
 /// A point whose light is looked up, or the point of a record.
-struct CachePlace {
+struct CachePoint {
     Vec3 position;        // translated world, metres
     Vec3 normal;          // shading normal, unit, on the visible side
     uint32_t scatterings; // scatterings between the camera and the point
@@ -30,7 +30,7 @@ struct CachePlace {
 };
 
 struct alignas(16) IrradianceRecord {
-    CachePlace place;
+    CachePoint point;
     float radius;    // mean distance to the surroundings, metres
     Rgb light;       // irradiance over pi, W/(sr m2)
     Vec3 by_turn[3]; // rotational gradient of `light` per channel; perpendicular to the normal
@@ -39,9 +39,9 @@ struct alignas(16) IrradianceRecord {
 };
 static_assert(sizeof(IrradianceRecord) == 128);
 
-/// The light at `place`, extrapolated from the record.
-HD inline Rgb extrapolate(const IrradianceRecord& record, const CachePlace& place) {
-    const Vec3 turn = place.normal - record.place.normal, move = place.position - record.place.position;
+/// The light at `point`, extrapolated from the record.
+HD inline Rgb extrapolate(const IrradianceRecord& record, const CachePoint& point) {
+    const Vec3 turn = point.normal - record.point.normal, move = point.position - record.point.position;
     return {record.light.r + dot(record.by_turn[0], turn) + dot(record.by_move[0], move),
             record.light.g + dot(record.by_turn[1], turn) + dot(record.by_move[1], move),
             record.light.b + dot(record.by_turn[2], turn) + dot(record.by_move[2], move)};
@@ -57,13 +57,13 @@ struct IrradianceCacheView {
     /// Weight of a record in [0, 1]: 1 - e / accuracy, e = distance / radius + sqrt(1 - cosine of the rotation),
     /// which bounds the relative error in Ward's split sphere model. It is 0 if the record belongs to other surfaces,
     /// or lies above the surface there, because it does not see what is between.
-    HD float weight(uint32_t index, const CachePlace& place, float distance_squared) const {
-        const CachePlace& own = records[index].place;
-        if (own.scatterings != place.scatterings || own.material != place.material) return 0;
+    HD float weight(uint32_t index, const CachePoint& point, float distance_squared) const {
+        const CachePoint& own = records[index].point;
+        if (own.scatterings != point.scatterings || own.material != point.material) return 0;
         const float distance = sqrt(distance_squared);
-        const float height = 0.5f * dot(place.position - own.position, place.normal + own.normal);
+        const float height = 0.5f * dot(point.position - own.position, point.normal + own.normal);
         if (height < -0.1f * distance) return 0;
-        const float turned = max(1.0f - dot(place.normal, own.normal), 0.0f);
+        const float turned = max(1.0f - dot(point.normal, own.normal), 0.0f);
         const float along = reaches[index] > 0 ? distance / reaches[index] : 0.0f;
         return max(1.0f - along - sqrt(turned) / accuracy, 0.0f);
     }
@@ -74,13 +74,13 @@ struct CachedLight {
     float weight = 0; // sum of all records' weights; 0 if there is none
 };
 
-/// Interpolates the records at `place`, in the tree's order.
-HD inline CachedLight look_up(const IrradianceCacheView& cache, const CachePlace& place) {
+/// Interpolates the records at `point`, in the tree's order.
+HD inline CachedLight look_up(const IrradianceCacheView& cache, const CachePoint& point) {
     CachedLight found;
-    visit_covering(cache.tree, place.position, [&](const NearPoint& near) {
-        const float weight = cache.weight(near.index, place, near.distance_squared);
+    visit_covering(cache.tree, point.position, [&](const NearPoint& near) {
+        const float weight = cache.weight(near.index, point, near.distance_squared);
         if (!(weight > 0)) return;
-        found.light += weight * extrapolate(cache.records[near.index], place);
+        found.light += weight * extrapolate(cache.records[near.index], point);
         found.weight += weight;
     });
     if (!(found.weight > 0)) return {};
@@ -114,7 +114,7 @@ struct CachedSurface {
 };
 
 /// The point of a surface that is_cached.
-HD inline CachePlace place_of(const Surface& surface, float side, uint32_t scatterings) {
+HD inline CachePoint cache_point(const Surface& surface, float side, uint32_t scatterings) {
     return {surface.position, side * surface.frame.normal, scatterings,
             surface.bsdf.layer_count == 0 ? kBareDiffuse : surface.material};
 }

@@ -13,7 +13,7 @@ namespace pertev {
 
 /// Lookup i of a picture.
 template <ShadingVariant kVariant>
-struct LookUpLight {
+struct LookUpRadiance {
     SubpathScene scene;
     SubpathsView subpaths;
     CacheSubpathsView cache;
@@ -26,7 +26,7 @@ struct LookUpLight {
         const Vec3 wo = -lookup.direction;
         const Surface surface = make_surface<kVariant>(scene.picture.scene, lookup.hit, lookup.direction);
         const CachedSurface cached(surface, wo);
-        const CachedLight found = look_up(records, place_of(surface, cached.side, lookup.scatterings));
+        const CachedLight found = look_up(records, cache_point(surface, cached.side, lookup.scatterings));
         SubpathState& state = subpaths.states[lookup.subpath];
         if (found.weight > 0) {
             add_radiance(film, state.pixel, lookup.throughput * sent_on(surface, wo, cached.side, found.light));
@@ -56,7 +56,7 @@ inline constexpr float kServedWeight = 0.25f;
 
 /// Lookup i of a round of the overture; each of its paths has a site, from `first` on.
 template <ShadingVariant kVariant>
-struct SeekPlaces {
+struct FindRecordSites {
     SubpathScene scene;
     CacheSubpathsView cache;
     IrradianceCacheView records;
@@ -69,7 +69,7 @@ struct SeekPlaces {
         const Surface surface = make_surface<kVariant>(scene.picture.scene, lookup.hit, lookup.direction);
         const CachedSurface cached(surface, wo);
         if (is_black(surface.bsdf.diffuse_albedo())) return;
-        const CachedLight found = look_up(records, place_of(surface, cached.side, lookup.scatterings));
+        const CachedLight found = look_up(records, cache_point(surface, cached.side, lookup.scatterings));
         if (found.weight >= kServedWeight) return;
         cache.aims[lookup.subpath] = SubpathAim::End;
         const Hit& hit = lookup.hit;
@@ -100,12 +100,12 @@ struct DrawRecords {
         const SubpathState& state = subpaths.states[subpath];
         const CachedSurface cached(surface, -ray.direction);
         if (!cached.is_cached) return;
-        const CachePlace place = place_of(surface, cached.side, state.depth());
+        const CachePoint point = cache_point(surface, cached.side, state.depth());
         const float radius = kPixels * pixel_size(scene.picture.camera.view, cache.ways[subpath] + hit.t);
         bool is_marked = false;
-        visit_within(records.tree, place.position, radius, [&](const NearPoint& near) {
-            const CachePlace& own = records.records[near.index].place;
-            is_marked = is_marked || (own.scatterings == place.scatterings && dot(own.normal, place.normal) > 0);
+        visit_within(records.tree, point.position, radius, [&](const NearPoint& near) {
+            const CachePoint& own = records.records[near.index].point;
+            is_marked = is_marked || (own.scatterings == point.scatterings && dot(own.normal, point.normal) > 0);
         });
         if (!is_marked) return;
         if (state.depth() == 0) {

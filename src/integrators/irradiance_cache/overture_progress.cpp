@@ -22,13 +22,13 @@ uint32_t OvertureProgress::grid_count(uint32_t round) const {
 
 /// Expected rays of the rounds from `round` on, if the share `wanting` of the previous grid requested records.
 double OvertureProgress::rays_from(uint32_t round, double wanting) const {
-    double rays = 0, room = static_cast<double>(room_) - records_ - wanted_, falls_by = falls_by_;
+    double rays = 0, capacity = static_cast<double>(capacity_) - records_ - wanted_, falls_by = falls_by_;
     for (; round < kOvertureRounds; ++round) {
         const double subpaths = grid_count(round);
         falls_by = next_fall(falls_by);
         wanting *= falls_by;
-        const double records = std::min(wanting * subpaths, std::max(room, 0.0));
-        room -= records;
+        const double records = std::min(wanting * subpaths, std::max(capacity, 0.0));
+        capacity -= records;
         rays += subpaths * rays_a_subpath_ + records * rays_a_record_;
     }
     return rays;

@@ -16,10 +16,10 @@ namespace pertev {
 
 class OvertureProgress {
 public:
-    /// Starts a picture of this size in pixels. `record_rays` are the rays of one record, `room` is the maximum
+    /// Starts a picture of this size in pixels. `record_rays` are the rays of one record, `capacity` is the maximum
     /// number of records.
-    OvertureProgress(uint32_t width, uint32_t height, uint32_t record_rays, uint32_t room)
-        : width_(width), height_(height), room_(room), rays_a_record_(3.0 * record_rays) {}
+    OvertureProgress(uint32_t width, uint32_t height, uint32_t record_rays, uint32_t capacity)
+        : width_(width), height_(height), capacity_(capacity), rays_a_record_(3.0 * record_rays) {}
 
     /// Starts the paths of the next round's grid. `rays` counts the overture's rays so far, here and in the next two.
     void begin_subpaths(uint64_t rays);
@@ -32,7 +32,7 @@ private:
     uint32_t grid_count(uint32_t round) const;
     double rays_from(uint32_t round, double wanting) const;
 
-    uint32_t width_, height_, room_;
+    uint32_t width_, height_, capacity_;
     uint32_t round_ = 0;                        // current round
     bool has_begun_ = false;                    // whether the first round has begun
     uint64_t began_at_ = 0;                     // rays before the current paths or records

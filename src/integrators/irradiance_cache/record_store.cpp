@@ -115,7 +115,7 @@ std::size_t RecordStore::max_host_bytes(uint64_t pixels) {
     return most * (2 * sizeof(Sphere) + 2 * sizeof(float)) + max_octree_bytes(most);
 }
 
-void RecordStore::make_room(uint64_t pixels) {
+void RecordStore::allocate(uint64_t pixels) {
     const std::size_t most = max_records(pixels);
     sites_.grow(queue_, pixels, "places of the overture");
     records_.grow(queue_, most, "irradiance records");
@@ -147,7 +147,7 @@ void RecordStore::take(uint32_t made, float accuracy) {
     accuracy_ = accuracy;
     std::vector<IrradianceRecord> copy;
     for (const IrradianceRecord& record : on_host(queue_, records_.data() + count(), made, copy)) {
-        spheres_.push_back({record.place.position, record.radius});
+        spheres_.push_back({record.point.position, record.radius});
         luminances_.push_back(luminance(record.light));
     }
     std::vector<float> reaches = clamp_by_neighbours(spheres_);

@@ -22,7 +22,7 @@ public:
     /// Maximum additional host memory, in bytes, for the octree and the spacing of records.
     static std::size_t max_host_bytes(uint64_t pixels);
     /// Allocates for a picture of `pixels` pixels. Throws Error(OutOfMemory).
-    void make_room(uint64_t pixels);
+    void allocate(uint64_t pixels);
     /// Maximum host memory that it has taken, in bytes.
     std::size_t host_bytes() const { return host_bytes_; }
 

@@ -10,7 +10,7 @@
 namespace pertev {
 
 struct CacheJob : SubpathJob {
-    using Room = CacheRoom;
+    using Capacity = CacheCapacity;
 
     CacheSubpathsView cache;
     IrradianceCacheView records;
@@ -28,9 +28,9 @@ struct CacheJob : SubpathJob {
     IrradianceRecord* made;
 };
 
-inline std::size_t lay_out(CacheJob& job, std::byte* memory, const CacheRoom& room) {
-    const std::size_t of_subpaths = lay_out(job.subpaths, memory, {room.count, 0, 1});
-    return of_subpaths + lay_out(job.cache, memory != nullptr ? memory + of_subpaths : nullptr, room);
+inline std::size_t lay_out(CacheJob& job, std::byte* memory, const CacheCapacity& capacity) {
+    const std::size_t of_subpaths = lay_out(job.subpaths, memory, {capacity.count, 0, 1});
+    return of_subpaths + lay_out(job.cache, memory != nullptr ? memory + of_subpaths : nullptr, capacity);
 }
 
 /// Purpose of a job's paths.
@@ -61,11 +61,12 @@ void run_cache_rounds(Schedule& schedule, const CacheJob& job) {
                          ShadeCacheSubpaths<kVariant>{job.scene, subpaths, job.cache, job.film, job.mirrored,
                                                       kIsHemisphere, first, round});
             if (kSubpaths == CacheSubpaths::Picture) {
-                schedule.run("look_up_light", lookups,
-                             LookUpLight<kVariant>{job.scene, subpaths, job.cache, job.records, job.film, job.missed});
+                schedule.run(
+                    "look_up_light", lookups,
+                    LookUpRadiance<kVariant>{job.scene, subpaths, job.cache, job.records, job.film, job.missed});
             } else if (kSubpaths == CacheSubpaths::Overture) {
                 schedule.run("seek_places", lookups,
-                             SeekPlaces<kVariant>{job.scene, job.cache, job.records, job.sites, first});
+                             FindRecordSites<kVariant>{job.scene, job.cache, job.records, job.sites, first});
             }
         });
         if (kSubpaths != CacheSubpaths::Overture) {

@@ -50,7 +50,7 @@ IrradianceCacheRequest irradiance_cache_request(const IntegratorSettings& settin
 }
 
 RasterSettings raster_settings(const IntegratorSettings& settings) {
-    return {.look = settings.look,
+    return {.display = settings.display,
             .max_depth = settings.path.max_depth,
             .seed = settings.path.seed,
             .has_ambient = settings.ambient.has_value(),
@@ -149,7 +149,7 @@ std::span<const IntegratorDescriptor> integrators() { return kIntegrators; }
 const IntegratorDescriptor& describe(IntegratorKind kind) { return kIntegrators[static_cast<std::size_t>(kind)]; }
 
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b) {
-    return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient && a.look == b.look &&
+    return a.integrator == b.integrator && a.path == b.path && a.ambient == b.ambient && a.display == b.display &&
            a.shading_rate == b.shading_rate && same_heights(a, b) && a.photon_map == b.photon_map &&
            a.irradiance_cache == b.irradiance_cache && a.radiosity == b.radiosity && a.light_paths == b.light_paths &&
            a.irradiance == b.irradiance;

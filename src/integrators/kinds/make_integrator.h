@@ -13,7 +13,7 @@
 #include "integrators/irradiance_cache/irradiance_cache_settings.h"
 #include "integrators/path/path_settings.h"
 #include "integrators/photon_map/photon_map_settings.h"
-#include "integrators/radiosity/radiosity_look.h"
+#include "integrators/radiosity/radiosity_display.h"
 #include "integrators/raster/raster_settings.h"
 #include "integrators/reyes/reyes_settings.h"
 #include "math/rgb.h"
@@ -44,12 +44,12 @@ struct IntegratorSettings {
     // For Cast, Whitted, Raster and Reyes: radiance from all directions that diffuse surfaces reflect, W/(sr m2).
     // Without a value, all but Cast use the mean of the environment.
     std::optional<Rgb> ambient;
-    RasterLook look;                           // for Raster
+    RasterDisplay display;                     // for Raster
     float shading_rate = 1;                    // for Reyes: maximum length of a micropolygon's edge, pixels
     std::shared_ptr<const HeightMaps> heights; // for Reyes: displacement; null: none
     PhotonMapSettings photon_map;              // for PhotonMap
     IrradianceCacheSettings irradiance_cache;  // for IrradianceCache
-    RadiosityLook radiosity;                   // for Radiosity
+    RadiosityDisplay radiosity;                // for Radiosity
 
     // For Path and Hybrid: additional film layers, each of selected light paths. Null: none.
     std::shared_ptr<const LightPathLayers> light_paths;

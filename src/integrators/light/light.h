@@ -32,7 +32,7 @@ struct ShadeSeen {
 /// Runs the stages in order.
 struct ParticlesAlone {
     static constexpr bool kIsConnected = false;
-    static SubpathRoom room(const SubpathSettings&, uint32_t subpaths) { return {subpaths, 0, 1}; }
+    static SubpathCapacity capacity(const SubpathSettings&, uint32_t subpaths) { return {subpaths, 0, 1}; }
 
     template <class Schedule>
     static void render(Schedule& schedule, const SubpathJob& job) {

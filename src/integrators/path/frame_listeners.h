@@ -15,7 +15,7 @@ public:
     HD void missed(const PathState& path) {
         if (path.depth != 0) return;
         const NoisyFrameView& frame = film_.frame;
-        frame.place[path.pixel] = {float_of(kNoHit), float_of(kNoHit), 0, 0};
+        frame.hit[path.pixel] = {float_of(kNoHit), float_of(kNoHit), 0, 0};
         frame.normal[path.pixel] = {0, 0, 0, kFarAway};
         frame.albedo[path.pixel] = {0, 0, 0, 1};
         frame.gloss[path.pixel] = {0, 0, 0, kFarAway};
@@ -25,7 +25,7 @@ public:
         if (path.depth == 1) film_.frame.gloss[path.pixel].w = hit.t;
     }
     HD void emitted(const PathState& path, Rgb light) {
-        if (path.depth == 0) film_.frame.emission[path.pixel] = {light.r, light.g, light.b, passage_};
+        if (path.depth == 0) film_.frame.emission[path.pixel] = {light.r, light.g, light.b, transmittance_};
     }
     HD void ended(uint32_t pixel, Rgb radiance, const Kept&) const { store_sample(film_, pixel, radiance, {}); }
 
@@ -36,16 +36,16 @@ private:
         const float cosine = dot(normal, path.direction);
         const Vec3 seen = cosine > 0 ? -normal : normal;
         const Gloss gloss = surface.bsdf.gloss(abs(cosine));
-        frame.place[path.pixel] = {float_of(hit.instance), float_of(hit.primitive), hit.u, hit.v};
+        frame.hit[path.pixel] = {float_of(hit.instance), float_of(hit.primitive), hit.u, hit.v};
         frame.normal[path.pixel] = {seen.x, seen.y, seen.z, dot(surface.position - path.origin, axis_)};
         frame.albedo[path.pixel] = {surface.albedo.r, surface.albedo.g, surface.albedo.b, gloss.alpha};
         frame.gloss[path.pixel] = {gloss.reflectance.r, gloss.reflectance.g, gloss.reflectance.b, kFarAway};
-        passage_ = gloss.transmittance;
+        transmittance_ = gloss.transmittance;
     }
 
     const FilmView& film_;
     const Vec3& axis_;
-    float passage_ = 1; // transmittance of Gloss
+    float transmittance_ = 1; // transmittance of Gloss
 };
 
 /// Separates the part of a path's radiance that diffuse lobes of its first vertex scatter, if a frame splits light.
@@ -146,9 +146,9 @@ public:
         if (leaves()) left().light[path.pixel] = {};
         if (tells()) begin_bounce(path, {}, false);
     }
-    HD bool takes(const PathState& path, const EmitterPoint& place, float light_pdf) {
+    HD bool takes(const PathState& path, const EmitterPoint& point, float light_pdf) {
         if (!leaves() || path.depth != 1 || !(light_pdf > 0)) return false;
-        left().light[path.pixel] = place;
+        left().light[path.pixel] = point;
         return true;
     }
     HD void emitted(const PathState& path, Rgb light) {
@@ -193,10 +193,10 @@ public:
 private:
     HD const FirstBounceView& left() const { return frame_.first_bounce; }
     HD bool leaves() const { return left().leaves_direct_light(); }
-    HD bool tells() const { return left().tells_bounce(); }
+    HD bool tells() const { return left().records_bounce(); }
     /// Stores the point that the first bounce hit before light is added there; none if it cannot be shared.
     HD void begin_bounce(const PathState& path, const Hit& hit, bool is_shared) const {
-        left().place[path.pixel] = {float_of(is_shared ? hit.instance : kNoHit), float_of(hit.primitive), hit.u, hit.v};
+        left().hit[path.pixel] = {float_of(is_shared ? hit.instance : kNoHit), float_of(hit.primitive), hit.u, hit.v};
         left().way[path.pixel] = {path.throughput.r, path.throughput.g, path.throughput.b, path.bsdf_pdf};
         left().sent[path.pixel] = left().onwards[path.pixel] = {0, 0, 0, 0};
     }

@@ -70,7 +70,7 @@ PathIntegrator::Wavefront::Wavefront(Queue& queue, uint32_t paths)
       path_starts(queue, paths, "path rays"), shadow_starts(queue, paths, "shadow rays"),
       shadow_targets(queue, paths, "shadow rays"), path_keys(queue, paths, "path rays"),
       shadow_keys(queue, paths, "shadow rays"), contribution(queue, paths, "shadow rays"),
-      hit_places(queue, paths, "hits"), hit_instances(queue, paths, "hits"), counts(queue, 2, "path counts"),
+      hit_records(queue, paths, "hits"), hit_instances(queue, paths, "hits"), counts(queue, 2, "path counts"),
       seen(queue) {}
 
 void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
@@ -87,7 +87,7 @@ void PathIntegrator::Wavefront::take(Queue& queue, const PathParts& parts) {
         for (Paths& set : sets) set.diffuse = {queue, capacity, "paths"};
         shadow_diffuse = {queue, capacity, "shadow rays"};
     }
-    if (parts.tells_bounce && shadow_sent.size() == 0) shadow_sent = {queue, capacity, "shadow rays"};
+    if (parts.records_bounce && shadow_sent.size() == 0) shadow_sent = {queue, capacity, "shadow rays"};
 }
 
 PathQueueView PathIntegrator::Wavefront::paths(uint32_t of_round) const {
@@ -136,7 +136,7 @@ void PathIntegrator::reserve(const WorkSize& size) {
     take_wavefronts(size.all(), {.has_times = size.has_times,
                                  .has_layers = settings_.layers != nullptr,
                                  .splits_light = size.splits_light,
-                                 .tells_bounce = size.tells_bounce});
+                                 .records_bounce = size.records_bounce});
 }
 
 void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
@@ -155,7 +155,7 @@ void PathIntegrator::take_wavefronts(uint64_t samples, const PathParts& parts) {
     parts_.has_times |= parts.has_times;
     parts_.has_layers |= parts.has_layers;
     parts_.splits_light |= parts.splits_light;
-    parts_.tells_bounce |= parts.tells_bounce;
+    parts_.records_bounce |= parts.records_bounce;
     const Size size = size_for(samples, batch_, queue_.is_cuda(), settings_.path.max_depth, parts_);
     // Two wavefronts can serve as one, so that passes of few samples and of many use the same memory.
     const uint64_t held = wavefronts_.empty() ? 0 : wavefronts_.size() * uint64_t(wavefronts_.front().capacity);
@@ -208,7 +208,7 @@ void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView&
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
     take_wavefronts(
         uint64_t(picture_.camera.width) * picture_.camera.height * count,
-        {.splits_light = film.frame.splits_light(), .tells_bounce = film.frame.first_bounce.tells_bounce()});
+        {.splits_light = film.frame.splits_light(), .records_bounce = film.frame.first_bounce.records_bounce()});
     const uint32_t pixels = film.width * film.height;
     const Work work = {{0, pixels, first, count}, job_for(film)};
     // Ray kinds can only be timed one after the other.
@@ -263,7 +263,7 @@ void PathIntegrator::launch_round(Wavefront& w, const Work& work) {
     const PathQueueView paths = w.paths(w.round), next = w.paths(w.round + 1);
     const ShadowQueueView shadows = w.shadows();
     const ListenerQueues listened = w.listened(w.round);
-    const HitQueueView hits = {w.hit_places.data(), w.hit_instances.data()};
+    const HitQueueView hits = {w.hit_records.data(), w.hit_instances.data()};
     RoundCounts* const counts = w.counts.data() + w.round % 2;
     // After all paths have begun, a round has no more of them than the previous one.
     const uint32_t most = w.known.all_begun != 0 ? w.known.active : w.in_flight;
@@ -271,7 +271,7 @@ void PathIntegrator::launch_round(Wavefront& w, const Work& work) {
     {
         const Queue::OnStream on(queue_, w.path_stream);
         launch(queue_, "plan_round", 1,
-               PlanRound{w.counts.data() + (w.round + 1) % 2, counts, w.seen.place(), render_counts_.data(),
+               PlanRound{w.counts.data() + (w.round + 1) % 2, counts, w.seen.target(), render_counts_.data(),
                          w.in_flight, work.samples.count()});
         w.seen.mark();
         if (w.round > 0) {
@@ -282,7 +282,7 @@ void PathIntegrator::launch_round(Wavefront& w, const Work& work) {
             const WorkCount fresh = {most, &counts->fresh};
             launch(queue_, "generate_paths", fresh,
                    GeneratePaths{work.job, work.samples, counts, last, any_alpha, paths});
-            const HitQueueView camera_hits = {hits.places + last, hits.instances + last, -1};
+            const HitQueueView camera_hits = {hits.records + last, hits.instances + last, -1};
             if (raster_) {
                 tracer_->timed(RayKind::Camera,
                                [&] { raster_->find_hits(paths.query_back(last), fresh, camera_hits); });

@@ -94,7 +94,7 @@ private:
         Buffer<Ray> shadow_rays;
         Buffer<Uint2> path_starts, shadow_starts, shadow_targets;
         Buffer<uint32_t> path_keys, shadow_keys;
-        Buffer<Float4> contribution, hit_places;
+        Buffer<Float4> contribution, hit_records;
         Buffer<Float4> shadow_diffuse;          // if frames split light
         Buffer<Float4> shadow_sent;             // if frames store the first bounce
         Buffer<float> path_times, shadow_times; // if something moves while the shutter is open

@@ -65,7 +65,7 @@ struct PathListener {
     HD void vertex(const PathState&, const Hit&, Surface&) {}
     /// The ray has hit no surface: it leaves the scene, or a medium scatters it first.
     HD void missed(const PathState&) {}
-    /// Called before light at `place`, which the ray hit, is added; next-event estimation would have sampled it with
+    /// Called before light at `point`, which the ray hit, is added; next-event estimation would have sampled it with
     /// density `light_pdf` (0: it could not). Returns true to take that light away from the path.
     HD bool takes(const PathState&, const EmitterPoint&, float) { return false; }
     /// Light that the ray hit, possibly black, is added next.
@@ -119,8 +119,8 @@ struct Listeners : Ls... {
     HD void take_up(const Kept& kept) { (Ls::take_up(static_cast<const typename Ls::Kept&>(kept)), ...); }
     HD void vertex(const PathState& path, const Hit& hit, Surface& surface) { (Ls::vertex(path, hit, surface), ...); }
     HD void missed(const PathState& path) { (Ls::missed(path), ...); }
-    HD bool takes(const PathState& path, const EmitterPoint& place, [[maybe_unused]] float pdf) {
-        return (Ls::takes(path, place, pdf) || ...);
+    HD bool takes(const PathState& path, const EmitterPoint& point, [[maybe_unused]] float pdf) {
+        return (Ls::takes(path, point, pdf) || ...);
     }
     HD void emitted(const PathState& path, [[maybe_unused]] Rgb light) { (Ls::emitted(path, light), ...); }
     HD bool wants_direct(const PathState& path, const Hit& hit, const Surface& surface) {

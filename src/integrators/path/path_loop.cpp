@@ -161,7 +161,7 @@ void render_group(const PathJob& job, const LoopTrees& trees, const BeginOrder& 
         while (group.is_full()) group.advance(counts);
     };
     for (uint32_t i = 0; i < work.pixels; ++i) {
-        const uint32_t pixel = film.window.pixel_at(ordered_pixel(work.first_place + i, film.width, film.height));
+        const uint32_t pixel = film.window.pixel_at(ordered_pixel(work.first_index + i, film.width, film.height));
         for (uint32_t k = 0; k < work.samples; ++k) {
             samples.add(pixel, work.first_sample + k);
             if (samples.is_full()) samples.begin(trace);

@@ -124,8 +124,8 @@ using RoundAppend = BlockAppend<3>;
 HD inline RoundSlots append_to_round(const RoundAppend& lists, RoundCounts& round, uint32_t last, bool is_there,
                                      bool goes_on, bool wants_shadow) {
     const bool ends = is_there && !goes_on;
-    const ListSlots<3> places = lists.take({&round.next, &round.ended, &round.shadows}, {goes_on, ends, wants_shadow});
-    return {ends ? last - places.at[1] : places.at[0], places.at[2]};
+    const ListSlots<3> slots = lists.take({&round.next, &round.ended, &round.shadows}, {goes_on, ends, wants_shadow});
+    return {ends ? last - slots.at[1] : slots.at[0], slots.at[2]};
 }
 
 /// Counts of all rounds of a render.

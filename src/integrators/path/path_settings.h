@@ -28,10 +28,10 @@ enum class PathBody : uint8_t { Loop, Wavefront };
 
 /// Optional parts of a path in flight in the queues of a wavefront, which take memory there.
 struct PathParts {
-    bool has_times = false;    // something moves while the shutter is open
-    bool has_layers = false;   // the film has layers of light paths
-    bool splits_light = false; // a frame of samples separates kinds of light (FilmView::frame)
-    bool tells_bounce = false; // a frame stores its first bounce
+    bool has_times = false;      // something moves while the shutter is open
+    bool has_layers = false;     // the film has layers of light paths
+    bool splits_light = false;   // a frame of samples separates kinds of light (FilmView::frame)
+    bool records_bounce = false; // a frame stores its first bounce
 };
 
 struct PathSettings {

@@ -24,10 +24,11 @@ struct PlanRound {
 
     HD void operator()(uint32_t) const {
         const uint32_t going_on = before->next;
-        const uint32_t room = (capacity - going_on) / 32 * 32; // whole warps, so that their camera rays stay together
-        const uint64_t first = atomic_add(&render->begun, uint64_t(room));
+        const uint32_t capacity_left =
+            (capacity - going_on) / 32 * 32; // whole warps, so that their camera rays stay together
+        const uint64_t first = atomic_add(&render->begun, uint64_t(capacity_left));
         const uint64_t left = first < samples ? samples - first : 0;
-        const uint32_t fresh = left < room ? static_cast<uint32_t>(left) : room;
+        const uint32_t fresh = left < capacity_left ? static_cast<uint32_t>(left) : capacity_left;
         atomic_add(&render->bounces, uint64_t(going_on));
         atomic_add(&render->shadows, uint64_t(before->shadows));
         *round = {};
@@ -35,7 +36,7 @@ struct PlanRound {
         round->fresh = fresh;
         round->active = going_on + fresh;
         round->first = first;
-        round->all_begun = left <= room ? 1 : 0;
+        round->all_begun = left <= capacity_left ? 1 : 0;
         *seen = {round->active, round->all_begun};
     }
 };
@@ -85,37 +86,37 @@ struct Shade {
         uint32_t key = 0;
         bool goes_on = false, wants_shadow = false;
         if (is_there) {
-            const uint32_t place = i < round->going_on ? i : last - (i - round->going_on);
-            path = paths.load(place);
+            const uint32_t slot = i < round->going_on ? i : last - (i - round->going_on);
+            path = paths.load(slot);
             if (kMoves) path.time = time_of(job.picture.camera, job.settings, path);
-            const Hit hit = hits.load(place);
+            const Hit hit = hits.load(slot);
             key = path_key(path, job.settings.seed, true);
             if (path.depth == 0) {
                 listener.begins(path);
             } else {
                 typename Listener::Kept kept{};
-                Listener::load(listened, place, kept);
+                Listener::load(listened, slot, kept);
                 listener.take_up(kept);
             }
             goes_on = shade_vertex<kFeatures>(job, path, hit, DrawOnDemand(), shadow, wants_shadow, listener);
         }
-        const RoundSlots places = append_to_round(lists, *round, last, is_there, goes_on, wants_shadow);
+        const RoundSlots slots = append_to_round(lists, *round, last, is_there, goes_on, wants_shadow);
         if (!is_there) return;
         if (goes_on) {
-            next.store(places.path, path, job.settings.seed, job.picture.scene.any_alpha != 0);
-            if (kMoves && next.times != nullptr) next.times[places.path] = path.time;
+            next.store(slots.path, path, job.settings.seed, job.picture.scene.any_alpha != 0);
+            if (kMoves && next.times != nullptr) next.times[slots.path] = path.time;
         } else {
-            next.store_ended(places.path, path);
+            next.store_ended(slots.path, path);
         }
         typename Listener::Kept kept{};
         listener.put_down(kept);
-        Listener::store_next(listened, places.path, kept);
+        Listener::store_next(listened, slots.path, kept);
         if (!wants_shadow) return;
-        shadows.store(places.shadow, shadow, places.path, key);
-        if (kMoves && shadows.times != nullptr) shadows.times[places.shadow] = path.time;
+        shadows.store(slots.shadow, shadow, slots.path, key);
+        if (kMoves && shadows.times != nullptr) shadows.times[slots.shadow] = path.time;
         typename Listener::ShadowData shadow_data{};
         listener.hand_over(shadow_data);
-        Listener::store_shadow_data(listened, places.shadow, shadow_data);
+        Listener::store_shadow_data(listened, slots.shadow, shadow_data);
     }
 };
 

@@ -46,10 +46,10 @@ struct EstimateRadiance {
         const Lookup lookup = gather.load(i);
         const Surface surface = make_surface<kVariant>(scene.picture.scene, lookup.hit, lookup.direction);
         if (gather.nearest_count > 0) {
-            const Place place = place_of(lookup, surface);
+            const Receiver receiver = receiver_of(lookup, surface);
             Rgb light = {};
-            if (needs_caustic(lookup)) light = of_nearest(maps.caustic, place, i);
-            if (lookup.wants_all) light += of_nearest(maps.global, place, i);
+            if (needs_caustic(lookup)) light = of_nearest(maps.caustic, receiver, i);
+            if (lookup.wants_all) light += of_nearest(maps.global, receiver, i);
             return add(lookup, light);
         }
         if (is_crowded(lookup, surface.position)) {
@@ -59,8 +59,8 @@ struct EstimateRadiance {
             return;
         }
         GatheredSums sums;
-        if (needs_caustic(lookup)) visit(maps.caustic, place_of(lookup, surface), sums.caustic);
-        if (lookup.wants_all) visit(maps.global, place_of(lookup, surface), sums.global);
+        if (needs_caustic(lookup)) visit(maps.caustic, receiver_of(lookup, surface), sums.caustic);
+        if (lookup.wants_all) visit(maps.global, receiver_of(lookup, surface), sums.global);
         add_sums(lookup, sums);
     }
 
@@ -69,8 +69,8 @@ struct EstimateRadiance {
         const Lookup lookup = gather.load(gather.crowded[at]);
         const Surface surface = make_surface<kVariant>(scene.picture.scene, lookup.hit, lookup.direction);
         GatheredSums sums;
-        if (needs_caustic(lookup)) visit(maps.caustic, place_of(lookup, surface), sums.caustic, share);
-        if (lookup.wants_all) visit(maps.global, place_of(lookup, surface), sums.global, share);
+        if (needs_caustic(lookup)) visit(maps.caustic, receiver_of(lookup, surface), sums.caustic, share);
+        if (lookup.wants_all) visit(maps.global, receiver_of(lookup, surface), sums.global, share);
         GatheredSums& all = gather.shared_sums[at];
         for (int c = 0; c < 3; ++c) {
             atomic_add(&all.caustic[c], sums.caustic[c]);
@@ -81,13 +81,13 @@ struct EstimateRadiance {
     HD void add_shared(uint32_t at) const { add_sums(gather.load(gather.crowded[at]), gather.shared_sums[at]); }
 
 private:
-    struct Place {
+    struct Receiver {
         const Surface& surface;
         Vec3 wo, normal;
         uint32_t max_scatterings;
     };
 
-    HD Place place_of(const Lookup& lookup, const Surface& surface) const {
+    HD Receiver receiver_of(const Lookup& lookup, const Surface& surface) const {
         const Vec3 wo = -lookup.direction;
         // Maximum number of scatterings of a photon; the surface itself adds one.
         return {surface, wo, normal_towards(surface, wo), scene.settings.max_depth - lookup.scatterings - 1};
@@ -115,22 +115,22 @@ private:
         return dot(surface.geometric_normal, wo) < 0 ? -surface.geometric_normal : surface.geometric_normal;
     }
     /// Scattered power f(wo, wi) power of photon `number`, W/sr.
-    HD static Rgb sent_on(const PhotonMapView& map, const Place& place, uint32_t number) {
+    HD static Rgb sent_on(const PhotonMapView& map, const Receiver& receiver, uint32_t number) {
         const Float4 power = map.photons.powers[number], way = map.photons.ways[number];
-        if (bits_of(power.w) > place.max_scatterings) return {};
-        if (!(dot(unpack_normal(bits_of(way.w)), place.normal) > 0.7071f)) return {};
+        if (bits_of(power.w) > receiver.max_scatterings) return {};
+        if (!(dot(unpack_normal(bits_of(way.w)), receiver.normal) > 0.7071f)) return {};
         const Vec3 wi = {way.x, way.y, way.z};
-        const float cosine = abs(dot(wi, place.surface.geometric_normal));
-        const Rgb f = place.surface.evaluate(place.wo, wi, only(LobeClass::Diffuse)).f;
+        const float cosine = abs(dot(wi, receiver.surface.geometric_normal));
+        const Rgb f = receiver.surface.evaluate(receiver.wo, wi, only(LobeClass::Diffuse)).f;
         if (is_black(f) || !(cosine > 0)) return {};
         return (1.0f / cosine) * (f * Rgb{power.x, power.y, power.z});
     }
 
     /// Adds the scattered light of the photons in a share that are within the radius.
-    HD void visit(const PhotonMapView& map, const Place& place, FixedSum* sums, Share share = {}) const {
+    HD void visit(const PhotonMapView& map, const Receiver& receiver, FixedSum* sums, Share share = {}) const {
         if (map.count == 0) return;
         const auto add_light = [&](const NearPoint& near) {
-            const Rgb light = sent_on(map, place, near.index);
+            const Rgb light = sent_on(map, receiver, near.index);
             if (is_black(light)) return;
             if (!(max_component(light) <= kMaxSampleValue)) {
                 atomic_add(film.invalid, 1);
@@ -141,25 +141,25 @@ private:
             sums[2] = sums[2] + to_fixed(light.b);
         };
         if constexpr (kSearch == PhotonSearch::Grid) {
-            visit_within(map.grid, place.surface.position, map.radius, add_light, share);
+            visit_within(map.grid, receiver.surface.position, map.radius, add_light, share);
         } else {
-            visit_within(structure_of<kSearch>(map), place.surface.position, map.radius, add_light);
+            visit_within(structure_of<kSearch>(map), receiver.surface.position, map.radius, add_light);
         }
     }
     HD static Rgb radiance_of(const PhotonMapView& map, const FixedSum* sums) {
         if (map.count == 0) return {};
         return (kInvPi / square(map.radius)) * Rgb{mean_of(sums[0], 1), mean_of(sums[1], 1), mean_of(sums[2], 1)};
     }
-    HD Rgb of_nearest(const PhotonMapView& map, const Place& place, uint32_t number) const {
+    HD Rgb of_nearest(const PhotonMapView& map, const Receiver& receiver, uint32_t number) const {
         if (map.count == 0) return {};
         NearPoint* nearest = gather.nearest + std::size_t(number) * gather.nearest_count;
-        uint32_t count =
-            find_nearest(structure_of<kSearch>(map), place.surface.position, map.radius, gather.nearest_count, nearest);
+        uint32_t count = find_nearest(structure_of<kSearch>(map), receiver.surface.position, map.radius,
+                                      gather.nearest_count, nearest);
         float radius_squared = square(map.radius);
         if (count == gather.nearest_count) radius_squared = nearest[--count].distance_squared;
         if (!(radius_squared >= square(kMinPhotonRadius))) return {}; // all at one point
         Rgb all = {};
-        for (uint32_t k = 0; k < count; ++k) all += sent_on(map, place, nearest[k].index);
+        for (uint32_t k = 0; k < count; ++k) all += sent_on(map, receiver, nearest[k].index);
         return (kInvPi / radius_squared) * all;
     }
 };

@@ -31,7 +31,7 @@ struct GatheredSums {
 };
 
 /// Sizes of the arrays.
-struct GatherRoom {
+struct GatherCapacity {
     uint32_t count;   // subpaths
     uint32_t nearest; // photons per subpath; 0: all within a radius count
     bool can_share;   // several threads may share a lookup
@@ -42,7 +42,7 @@ struct GatherView {
     uint32_t* marks; // [subpaths] for a photon 1 if other than delta lobes have scattered it; for a camera subpath
                      // whether it has continued at a diffuse surface
     // Lookups of a round, contiguous; SubpathCounts::vertices is their number.
-    Float4 *places, *directions, *throughputs;
+    Float4 *hits, *directions, *throughputs;
     NearPoint* nearest; // [subpaths * nearest_count]
     uint32_t nearest_count;
     // Lookups of a round with many photons, which several threads share. SubpathCounts::crowded is their number.
@@ -64,12 +64,12 @@ struct GatherView {
         const Hit& hit = lookup.hit;
         const Vec3 d = lookup.direction;
         const Rgb t = lookup.throughput;
-        places[at] = {hit.u, hit.v, float_of(hit.instance), float_of(hit.primitive)};
+        hits[at] = {hit.u, hit.v, float_of(hit.instance), float_of(hit.primitive)};
         directions[at] = {d.x, d.y, d.z, float_of(lookup.scatterings << 1 | (lookup.wants_all ? 1u : 0u))};
         throughputs[at] = {t.r, t.g, t.b, float_of(lookup.pixel)};
     }
     HD Lookup load(uint32_t at) const {
-        const Float4 p = places[at], d = directions[at], t = throughputs[at];
+        const Float4 p = hits[at], d = directions[at], t = throughputs[at];
         const uint32_t bits = bits_of(d.w);
         return {{0, p.x, p.y, bits_of(p.z), bits_of(p.w)},
                 {d.x, d.y, d.z},
@@ -81,18 +81,18 @@ struct GatherView {
 };
 
 /// Places the arrays in one piece of memory (lay_out_arrays).
-inline std::size_t lay_out(GatherView& view, std::byte* memory, const GatherRoom& room) {
-    view.nearest_count = room.nearest;
-    return lay_out_arrays(memory, [&](const auto& place) {
-        const std::size_t subpaths = room.count, shared = room.can_share ? subpaths : 0;
-        place(view.gather_states, subpaths);
-        place(view.marks, subpaths);
-        place(view.places, subpaths);
-        place(view.directions, subpaths);
-        place(view.throughputs, subpaths);
-        place(view.nearest, subpaths * room.nearest);
-        place(view.crowded, shared);
-        place(view.shared_sums, shared);
+inline std::size_t lay_out(GatherView& view, std::byte* memory, const GatherCapacity& capacity) {
+    view.nearest_count = capacity.nearest;
+    return lay_out_arrays(memory, [&](const auto& add_array) {
+        const std::size_t subpaths = capacity.count, shared = capacity.can_share ? subpaths : 0;
+        add_array(view.gather_states, subpaths);
+        add_array(view.marks, subpaths);
+        add_array(view.hits, subpaths);
+        add_array(view.directions, subpaths);
+        add_array(view.throughputs, subpaths);
+        add_array(view.nearest, subpaths * capacity.nearest);
+        add_array(view.crowded, shared);
+        add_array(view.shared_sums, shared);
     });
 }
 

@@ -21,14 +21,14 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kLooksForEmitters = 2;  // mark in GatherView::marks of a subpath that only looks for
+inline constexpr uint32_t kSearchesEmitters = 2;  // mark in GatherView::marks of a subpath that only looks for
                                                   // emitters
 inline constexpr uint32_t kSeesEmittersWhole = 4; // mark, combined with others: except for emitters and sky that
                                                   // the ray hits, the throughput is Sight::past_mirrors
-inline constexpr uint32_t kNumberOfLook = 2;      // index among a vertex's choices: whether a ray looks for
+inline constexpr uint32_t kNumberOfSearch = 2;    // index among a vertex's choices: whether a ray looks for
                                                   // emitters
-inline constexpr float kMinChanceToLook = 0.125f; // minimum probability of that ray
-inline constexpr float kLookWithin = 4.0f;        // its probability is 1 if an emitter's area is more than 1/4 of the
+inline constexpr float kMinSearchChance = 0.125f; // minimum probability of that ray
+inline constexpr float kSearchWithin = 4.0f;      // its probability is 1 if an emitter's area is more than 1/4 of the
                                                   // squared distance
 
 /// Starts camera subpaths 0, 1, ... of a pass.
@@ -61,13 +61,13 @@ struct ShadeGather {
         const Hit hit = subpaths.hits().load(i);
         SubpathState state = subpaths.states[subpath];
         const GatherState gather_state = gather.gather_state_of(subpath);
-        const bool looks_for_emitters = gather.marks[subpath] == kLooksForEmitters;
+        const bool searches_emitters = gather.marks[subpath] == kSearchesEmitters;
         const bool sees_emitters_whole = (gather.marks[subpath] & kSeesEmittersWhole) != 0;
         if (hit.instance == kNoHit) {
-            if (!looks_for_emitters) add_background(state, gather_state, ray);
+            if (!searches_emitters) add_background(state, gather_state, ray);
             return;
         }
-        if (looks_for_emitters && light_of(picture.scene.lights, hit.instance, hit.primitive) == kNoLight) return;
+        if (searches_emitters && light_of(picture.scene.lights, hit.instance, hit.primitive) == kNoLight) return;
         const Surface surface = make_surface<kVariant>(picture.scene, hit, ray.direction);
         if (state.depth() == 0) {
             add_seen(picture, film, state, ray, hit, surface);
@@ -79,7 +79,7 @@ struct ShadeGather {
                       may_be_drawn ? pdf_light_hit(picture.scene.lights, light, ray.origin, surface.position) : 0.0f);
         }
         const uint32_t depth = state.depth(), max_depth = scene.settings.max_depth;
-        if (looks_for_emitters || surface.is_unlit || depth >= max_depth) return;
+        if (searches_emitters || surface.is_unlit || depth >= max_depth) return;
         if (sees_emitters_whole) {
             if (is_black(gather_state.past_mirrors)) return;
             state.throughput = gather_state.past_mirrors;
@@ -89,13 +89,13 @@ struct ShadeGather {
         const bool is_diffuse = surface.bsdf.has(LobeClass::Diffuse), is_glossy = surface.bsdf.has(LobeClass::Glossy);
         const bool is_near = gather_state.pdf > 0 && hit.t < near;
         const bool turns = is_diffuse && how == PhotonGather::Final && (gather.marks[subpath] == 0 || is_near);
-        const bool may_look = is_diffuse && !is_glossy && !turns;
+        const bool may_search = is_diffuse && !is_glossy && !turns;
         const Vertex vertex = {surface,
                                -ray.direction,
                                is_diffuse,
                                is_glossy,
                                turns,
-                               may_look,
+                               may_search,
                                {state.pixel, state.sample, scene.settings.seed}};
         const float nearness = is_diffuse || is_glossy ? sample_direct_light(vertex, state) : 0.0f;
         if (is_diffuse && depth + 2 <= max_depth) {
@@ -110,8 +110,8 @@ private:
         const Surface& surface;
         Vec3 wo;
         bool is_diffuse, is_glossy;
-        bool turns;    // the subpath continues by diffuse lobes too
-        bool may_look; // a ray may look for emitters only, by diffuse lobes
+        bool turns;      // the subpath continues by diffuse lobes too
+        bool may_search; // a ray may look for emitters only, by diffuse lobes
         SampleKey key;
     };
 
@@ -163,7 +163,7 @@ private:
     /// Part of the scattered light of a sampled light that the subpath's own ray does not find.
     HD Rgb drawn_share(const Vertex& vertex, const LightSample& light, const BsdfValue& all) const {
         const bool is_sky = !light.is_delta && light.instance == kNoLight;
-        if (light.is_delta || (vertex.may_look && is_sky)) return all.f;
+        if (light.is_delta || (vertex.may_search && is_sky)) return all.f;
         return power_heuristic(light.pdf, all.pdf) * all.f;
     }
 
@@ -184,9 +184,9 @@ private:
                 const Rgb glossy = surface.evaluate(vertex.wo, sample.wi, only(LobeClass::Glossy)).f;
                 past_mirrors = (1.0f / sample.pdf) * glossy;
             }
-            if (vertex.may_look) {
-                sample.weight = share_that_looks(vertex, nearness, choices) * sample.weight;
-                gather.marks[subpath] = kLooksForEmitters;
+            if (vertex.may_search) {
+                sample.weight = search_share(vertex, nearness, choices) * sample.weight;
+                gather.marks[subpath] = kSearchesEmitters;
             } else if (!vertex.turns) {
                 gather.marks[subpath] |= kSeesEmittersWhole;
             }
@@ -211,10 +211,10 @@ private:
     }
 
     /// Returns 0 if no ray looks for emitters; otherwise the factor that compensates for those that do not.
-    HD float share_that_looks(const Vertex& vertex, float nearness, uint32_t choices) const {
+    HD float search_share(const Vertex& vertex, float nearness, uint32_t choices) const {
         if (scene.picture.scene.lights.triangle_count == 0) return 0;
-        const float chance = clamp(kLookWithin * nearness, kMinChanceToLook, 1.0f);
-        const float u = sample_1d(scene.settings.sampler, vertex.key, choices, kNumberOfLook);
+        const float chance = clamp(kSearchWithin * nearness, kMinSearchChance, 1.0f);
+        const float u = sample_1d(scene.settings.sampler, vertex.key, choices, kNumberOfSearch);
         return u < chance ? 1.0f / chance : 0.0f;
     }
 };

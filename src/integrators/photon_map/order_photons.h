@@ -27,7 +27,7 @@ struct OrderPhotons {
 
     HD void operator()(uint32_t i) const {
         const uint32_t from = order[i];
-        ordered.places[i] = stored.places[from];
+        ordered.positions[i] = stored.positions[from];
         ordered.ways[i] = stored.ways[from];
         ordered.powers[i] = stored.powers[from];
     }
@@ -35,13 +35,13 @@ struct OrderPhotons {
 
 /// Sets the key of photon i to its bucket.
 struct MakeBuckets {
-    const Float4* places;
+    const Float4* positions;
     PhotonCells cells;
     uint64_t* keys;
     uint32_t* order;
 
     HD void operator()(uint32_t i) const {
-        const Float4 p = places[i];
+        const Float4 p = positions[i];
         keys[i] = cells.bucket_of({p.x, p.y, p.z});
         order[i] = i;
     }
@@ -77,14 +77,14 @@ struct KeepPhotons {
     HD void operator()(uint32_t i) const {
         const auto bucket = static_cast<uint32_t>(sorted_keys[i]);
         const uint32_t begin = starts[bucket], n = starts[bucket + 1] - begin, number = sorted_order[i];
-        Float4& place = photons.places[number];
+        Float4& position = photons.positions[number];
         uint32_t at = i;
-        place.w = 1;
+        position.w = 1;
         if (n > most) {
             const uint64_t offset = uint64_t(hash_words(bucket, pass, seed, kDrawsOffset).x) * n >> 32;
             const uint64_t before = (uint64_t(i - begin) * most + offset) / n;
             if ((uint64_t(i - begin + 1) * most + offset) / n == before) {
-                place.w = 0;
+                position.w = 0;
                 return;
             }
             at = begin + static_cast<uint32_t>(before);
@@ -92,7 +92,7 @@ struct KeepPhotons {
             const float all = static_cast<float>(n) / static_cast<float>(most);
             power = {all * power.x, all * power.y, all * power.z, power.w};
         }
-        points[at] = {place.x, place.y, place.z, float_of(number)};
+        points[at] = {position.x, position.y, position.z, float_of(number)};
     }
 
 private:

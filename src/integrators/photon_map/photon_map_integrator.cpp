@@ -9,32 +9,32 @@ namespace pertev {
 namespace {
 
 /// `in_loop` means the room of a CPU thread, which has other lookups to do when one is long.
-GatherRoom gather_room(uint32_t subpaths, const PhotonMapSettings& map, bool in_loop) {
+GatherCapacity gather_capacity(uint32_t subpaths, const PhotonMapSettings& map, bool in_loop) {
     return {subpaths, map.nearest, !in_loop && map.search == PhotonSearch::Grid && map.nearest == 0};
 }
 
 } // namespace
 
-GatherRoom PhotonMapIntegrator::loop_room() const {
+GatherCapacity PhotonMapIntegrator::loop_capacity() const {
     constexpr std::size_t kLoopBytes = std::size_t(1) << 18; // per thread, so that it fits the cache
-    return room_within(kLoopBytes, kLoopCount,
-                       [&](uint32_t subpaths) { return gather_room(subpaths, picture_settings_.map, true); });
+    return capacity_within(kLoopBytes, kLoopCount,
+                           [&](uint32_t subpaths) { return gather_capacity(subpaths, picture_settings_.map, true); });
 }
 
 void PhotonMapIntegrator::reserve(const WorkSize& size) {
     const PhotonMapSettings& map = settings_.map;
-    maps_.make_room(map, settings_.subpaths.max_depth);
+    maps_.allocate(map, settings_.subpaths.max_depth);
     targets_.grow(queue_, kMaxTargets, "targets of photons");
     if (goes_by_loop(size)) return;
     const uint64_t subpaths =
         std::max<uint64_t>(size.pixels(), 2 * uint64_t(map.photons)); // camera subpaths or photons
-    take_room(room_within(kMaxBytes, std::min<uint64_t>(subpaths, batch_),
-                          [&](uint32_t count) { return gather_room(count, map, false); }),
-              "subpaths of photon mapping");
+    allocate_capacity(capacity_within(kMaxBytes, std::min<uint64_t>(subpaths, batch_),
+                                      [&](uint32_t count) { return gather_capacity(count, map, false); }),
+                      "subpaths of photon mapping");
 }
 
 void PhotonMapIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
-    PERTEV_CHECK(has_room_for_photons(settings_.map.photons, settings_.subpaths.max_depth));
+    PERTEV_CHECK(photons_fit(settings_.map.photons, settings_.subpaths.max_depth));
     TwoSchedules::begin(picture, tracer, samples);
     const PhotonMapSettings& map = picture_settings_.map;
     world_ = sphere_round(tracer.bounds());
@@ -84,14 +84,14 @@ void PhotonMapIntegrator::render_pass(uint32_t pass, const FilmView& film) {
     const SubpathSettings& subpaths = picture_settings_.subpaths;
     // Shadow rays alone find light that is scattered once.
     const uint64_t kinds = subpaths.max_depth < 2 ? 0 : target_count_ > 0 ? 2 : 1;
-    run_stages(job, 0, kinds * picture_settings_.map.photons, loop_room(), 1,
+    run_stages(job, 0, kinds * picture_settings_.map.photons, loop_capacity(), 1,
                [this](auto& schedule, const PhotonJob& part) {
                    if (!is_abandoned()) run_photons(schedule, part);
                });
     const float shrunk = radius_of_pass(pass), largest = length(world_.centre) + world_.radius;
     job.near = max(shrunk * global_radius_, kMinPhotonRadius);
     job.maps = maps_.build(job.near, max(shrunk * caustic_radius_, kMinPhotonRadius), largest, pass, subpaths.seed);
-    run_stages(job, 0, pixels(), loop_room(), 1, [this](auto& schedule, const PhotonJob& part) {
+    run_stages(job, 0, pixels(), loop_capacity(), 1, [this](auto& schedule, const PhotonJob& part) {
         if (!is_abandoned()) run_gather(schedule, part);
     });
     rays_.camera += pixels();

@@ -34,12 +34,12 @@ public:
     const PhotonMapsView& maps() const { return maps_.view(); }
     /// Records what happens to photons from the next pass on, which takes time; null stops it. `energy` is in the
     /// queue's memory.
-    void tell_energy(PhotonEnergy* energy) { energy_ = energy; }
+    void record_energy_in(PhotonEnergy* energy) { energy_ = energy; }
     /// Radius of a pass of the current picture, in metres.
     float global_radius(uint32_t pass) const { return global_radius_ * radius_of_pass(pass); }
 
 private:
-    GatherRoom loop_room() const;
+    GatherCapacity loop_capacity() const;
     void find_targets();
     PhotonJob make_job(uint32_t pass, const FilmView& film);
     void render_pass(uint32_t pass, const FilmView& film);

@@ -43,7 +43,7 @@ inline constexpr float kRadiusOfScene = 1.0f / 50; // fraction of the radius of 
 inline constexpr float kCausticRadius = 1.0f / 4;  // fraction of the global map's radius
 
 /// Whether the photons of paths with up to max_depth scatterings can be stored.
-constexpr bool has_room_for_photons(uint32_t photons, uint32_t max_depth) {
+constexpr bool photons_fit(uint32_t photons, uint32_t max_depth) {
     return uint64_t(photons) * 2 * (max_depth > 1 ? max_depth - 1 : 1) <= kMaxStored;
 }
 

@@ -43,15 +43,15 @@ HD inline uint64_t photon_key(uint32_t path, uint32_t scatterings) { return uint
 struct PhotonsView {
     // Position, with 1 in a map, or 0 if it was removed (order_photons.h); wi, bits of the normal; power, bits of the
     // scatterings.
-    Float4 *places, *ways, *powers;
+    Float4 *positions, *ways, *powers;
 
     HD void store(std::size_t at, const Photon& photon) const {
         const Vec3 p = photon.position, wi = photon.wi;
-        places[at] = {p.x, p.y, p.z, 0};
+        positions[at] = {p.x, p.y, p.z, 0};
         ways[at] = {wi.x, wi.y, wi.z, float_of(pack_normal(photon.normal))};
         powers[at] = {photon.power.r, photon.power.g, photon.power.b, float_of(photon.scatterings)};
     }
-    HD PhotonsView from(uint32_t first) const { return {places + first, ways + first, powers + first}; }
+    HD PhotonsView from(uint32_t first) const { return {positions + first, ways + first, powers + first}; }
 };
 
 struct PhotonCounts {

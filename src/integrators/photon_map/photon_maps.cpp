@@ -15,36 +15,36 @@ namespace pertev {
 namespace {
 
 /// Maximum number of photons that one kind may store.
-uint64_t room_of_kind(const PhotonMapSettings& settings, uint32_t max_depth) {
+uint64_t capacity_of_kind(const PhotonMapSettings& settings, uint32_t max_depth) {
     return uint64_t(settings.photons) * (max_depth > 1 ? max_depth - 1 : 1);
 }
 /// Gathering rays look up all light in the global map (Jensen 1996, section 5).
 bool global_has_all(const PhotonMapSettings& settings) { return settings.gather == PhotonGather::Final; }
 /// Maximum number of photons in both maps together.
-uint64_t room_of_maps(const PhotonMapSettings& settings, uint32_t max_depth) {
-    return (global_has_all(settings) ? 3 : 2) * room_of_kind(settings, max_depth);
+uint64_t capacity_of_maps(const PhotonMapSettings& settings, uint32_t max_depth) {
+    return (global_has_all(settings) ? 3 : 2) * capacity_of_kind(settings, max_depth);
 }
-std::size_t max_starts(uint64_t room) { return std::bit_ceil(room) + 1; }
+std::size_t max_starts(uint64_t capacity) { return std::bit_ceil(capacity) + 1; }
 
 } // namespace
 
-void PhotonMaps::make_room(const PhotonMapSettings& settings, uint32_t max_depth) {
-    const uint64_t of_kind = room_of_kind(settings, max_depth), room = 2 * of_kind;
-    const uint64_t in_maps = room_of_maps(settings, max_depth);
+void PhotonMaps::allocate(const PhotonMapSettings& settings, uint32_t max_depth) {
+    const uint64_t of_kind = capacity_of_kind(settings, max_depth), capacity = 2 * of_kind;
+    const uint64_t in_maps = capacity_of_maps(settings, max_depth);
     search_ = settings.search;
     max_kept_ = settings.nearest > 0 ? 0xffffffffu : kMaxKept; // the nearest photons are selected from all
     global_has_all_ = global_has_all(settings);
     for (int k = 0; k < 3; ++k) {
-        stored_[k].grow(queue_, room, "photons as they come");
+        stored_[k].grow(queue_, capacity, "photons as they come");
         ordered_[k].grow(queue_, in_maps, "photons");
     }
     for (int k = 0; k < 2; ++k) {
-        keys_[k].grow(queue_, room, "numbers of photons");
-        order_[k].grow(queue_, room, "order of photons");
+        keys_[k].grow(queue_, capacity, "numbers of photons");
+        order_[k].grow(queue_, capacity, "order of photons");
         starts_[k].grow(queue_, max_starts(k == 0 ? in_maps - of_kind : of_kind), "hash grid over photons");
     }
     if (queue_.is_cuda()) {
-        scratch_.grow(queue_, sort_scratch_bytes(queue_, static_cast<uint32_t>(room)), "room for sorting photons");
+        scratch_.grow(queue_, sort_scratch_bytes(queue_, static_cast<uint32_t>(capacity)), "room for sorting photons");
     }
     counts_.grow(queue_, 1, "counts of photons");
     if (search_ == PhotonSearch::KdTree) kd_nodes_.grow(queue_, in_maps, "kd-tree over photons");
@@ -53,7 +53,7 @@ void PhotonMaps::make_room(const PhotonMapSettings& settings, uint32_t max_depth
         octree_spheres_.grow(queue_, in_maps, "octree over photons");
         octree_indices_.grow(queue_, in_maps, "octree over photons");
     }
-    room_ = room;
+    capacity_ = capacity;
 }
 
 StoredPhotonsView PhotonMaps::clear() {
@@ -64,7 +64,7 @@ StoredPhotonsView PhotonMaps::clear() {
 const PhotonMapsView& PhotonMaps::build(float global_radius, float caustic_radius, float largest, uint32_t pass,
                                         uint32_t seed) {
     queue_.copy_to_host(&found_, counts_.data(), sizeof found_);
-    PERTEV_CHECK(found_.stored <= room_);
+    PERTEV_CHECK(found_.stored <= capacity_);
     const uint32_t all = found_.stored;
     const PhotonsView stored = {stored_[0].data(), stored_[1].data(), stored_[2].data()};
     launch(queue_, "number photons", all, NumberPhotons{order_[0].data()});
@@ -97,8 +97,8 @@ const PhotonMapsView& PhotonMaps::build(float global_radius, float caustic_radiu
 void PhotonMaps::fill_grid(PhotonMapView& map, Float4* points, Buffer<uint32_t>& starts, float largest, uint32_t pass,
                            uint32_t seed) {
     const PhotonCells cells = make_photon_cells(map.radius, largest, map.count);
-    const Float4* places = map.photons.places;
-    launch(queue_, "make buckets", map.count, MakeBuckets{places, cells, keys_[0].data(), order_[0].data()});
+    const Float4* positions = map.photons.positions;
+    launch(queue_, "make buckets", map.count, MakeBuckets{positions, cells, keys_[0].data(), order_[0].data()});
     sort_photons(queue_, scratch_, keys_[0].data(), order_[0].data(), keys_[1].data(), order_[1].data(), map.count,
                  std::max(static_cast<int>(std::bit_width(cells.buckets)) - 1, 1));
     launch(queue_, "find buckets", map.count + 1,
@@ -109,30 +109,30 @@ void PhotonMaps::fill_grid(PhotonMapView& map, Float4* points, Buffer<uint32_t>&
 }
 
 void PhotonMaps::build_trees(PhotonMapView& map, uint32_t first) {
-    std::vector<Float4> places(map.count);
-    queue_.copy_to_host(places.data(), map.photons.places, places.size() * sizeof(Float4));
+    std::vector<Float4> positions(map.count);
+    queue_.copy_to_host(positions.data(), map.photons.positions, positions.size() * sizeof(Float4));
     std::vector<uint32_t> kept; // the grid keeps them
     for (uint32_t i = 0; i < map.count; ++i) {
-        if (places[i].w == 0) continue;
-        places[kept.size()] = places[i];
+        if (positions[i].w == 0) continue;
+        positions[kept.size()] = positions[i];
         kept.push_back(i);
     }
-    places.resize(kept.size());
+    positions.resize(kept.size());
     if (search_ == PhotonSearch::KdTree) {
-        std::vector<Vec3> points(places.size());
-        std::ranges::transform(places, points.begin(), [](const Float4& p) { return Vec3{p.x, p.y, p.z}; });
+        std::vector<Vec3> points(positions.size());
+        std::ranges::transform(positions, points.begin(), [](const Float4& p) { return Vec3{p.x, p.y, p.z}; });
         PointKdTree tree = build_point_kd_tree(points);
         for (PointKdNode& node : tree.nodes) node = kd_node(node.position, kept[node.index()], node.axis());
         kd_nodes_.upload_at(first, tree.nodes);
         map.kd_tree = {kd_nodes_.data() + first, static_cast<uint32_t>(tree.nodes.size())};
         return;
     }
-    std::vector<Sphere> spheres(places.size());
-    std::ranges::transform(places, spheres.begin(), [](const Float4& p) { return Sphere{{p.x, p.y, p.z}, 0}; });
+    std::vector<Sphere> spheres(positions.size());
+    std::ranges::transform(positions, spheres.begin(), [](const Float4& p) { return Sphere{{p.x, p.y, p.z}, 0}; });
     PointOctree tree = build_point_octree(spheres);
     for (uint32_t& index : tree.indices) index = kept[index];
     const std::size_t first_node = 2 * std::size_t(first);
-    PERTEV_CHECK(tree.nodes.size() <= 2 * places.size());
+    PERTEV_CHECK(tree.nodes.size() <= 2 * positions.size());
     octree_nodes_.upload_at(first_node, tree.nodes);
     octree_spheres_.upload_at(first, tree.spheres);
     octree_indices_.upload_at(first, tree.indices);

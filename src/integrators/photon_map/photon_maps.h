@@ -17,7 +17,7 @@ public:
     explicit PhotonMaps(Queue& queue) : queue_(queue) {}
 
     /// Allocates for passes with these settings. Throws Error(OutOfMemory).
-    void make_room(const PhotonMapSettings& settings, uint32_t max_depth);
+    void allocate(const PhotonMapSettings& settings, uint32_t max_depth);
 
     /// Starts a pass: empties the maps and returns the arrays that photons are appended to.
     StoredPhotonsView clear();
@@ -38,7 +38,7 @@ private:
     PhotonSearch search_ = PhotonSearch::Grid;
     bool global_has_all_ = false;
     uint32_t max_kept_ = 0;       // photons per bucket
-    uint64_t room_ = 0;           // in photons
+    uint64_t capacity_ = 0;       // in photons
     Buffer<Float4> stored_[3];    // stored photons; then the points of the grids: [0] of the global map, [1] of the
                                   // caustic map
     Buffer<Float4> ordered_[3];   // in the order of their numbers; first the global map, then the caustic map

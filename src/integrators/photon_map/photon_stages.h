@@ -42,7 +42,7 @@ struct PhotonPass {
         return {static_cast<uint32_t>(number >> 32), static_cast<uint32_t>(number),
                 seed ^ (is_caustic(path) ? 0x51ed270bu : 0x2545f491u)};
     }
-    HD void tell(FixedSum PhotonEnergy::*of, Rgb power) const {
+    HD void add_energy(FixedSum PhotonEnergy::*of, Rgb power) const {
         if (energy != nullptr) atomic_add(&(energy->*of), to_fixed(power.r + power.g + power.b));
     }
 };
@@ -59,14 +59,14 @@ struct BeginPhotons {
         const SubpathSettings& settings = scene.settings;
         const uint32_t path = first + i;
         const SampleKey key = pass.key(path, settings.seed);
-        const SampleBits place = sample_bits(settings.sampler, key, kGroupLight);
+        const SampleBits bits = sample_bits(settings.sampler, key, kGroupLight);
         const Vec2 direction = sample_2d(settings.sampler, key, kGroupLight, Pair::Last);
         const uint32_t coin = coin_key(key, 0, false);
         Particle particle;
         const bool leaves =
             pass.is_caustic(path)
-                ? aim_particle(scene.picture.scene, pass.targets, scene.world, place, direction, coin, particle)
-                : emit_particle(scene.picture.scene, scene.world, place, direction, coin, particle);
+                ? aim_particle(scene.picture.scene, pass.targets, scene.world, bits, direction, coin, particle)
+                : emit_particle(scene.picture.scene, scene.world, bits, direction, coin, particle);
         if (!leaves) return;
         SubpathState state = {};
         state.throughput = (1.0f / static_cast<float>(pass.count)) * particle.power;
@@ -79,7 +79,7 @@ struct BeginPhotons {
         subpaths.states[i] = state;
         gather.marks[i] = 0;
         gather.store_index(i, 1);
-        pass.tell(&PhotonEnergy::emitted, state.throughput);
+        pass.add_energy(&PhotonEnergy::emitted, state.throughput);
         subpaths.queue_ray(atomic_add(&subpaths.counts->next, 1u), i, particle.ray, particle.start, coin, 0);
     }
 };
@@ -97,16 +97,16 @@ struct ShadePhotons {
         const Hit hit = subpaths.hits().load(i);
         const uint32_t subpath = subpaths.owners[round % 2][i];
         SubpathState state = subpaths.states[subpath];
-        if (hit.instance == kNoHit) return pass.tell(&PhotonEnergy::escaped, state.throughput);
+        if (hit.instance == kNoHit) return pass.add_energy(&PhotonEnergy::escaped, state.throughput);
         const Rgb arrived = state.throughput;
-        pass.tell(&PhotonEnergy::arrived, arrived);
+        pass.add_energy(&PhotonEnergy::arrived, arrived);
         const Ray ray = load_ray(subpaths.rays[round % 2] + i);
         const Surface surface = make_surface<kVariant>(scene.picture.scene, hit, ray.direction);
         if (state.depth() == 0) state.throughput = left_at(hit.t, ray.t_max) * state.throughput;
         const bool is_caustic = pass.is_caustic(state.pixel);
         const bool is_kept = state.depth() > 0 && (is_caustic || gather.marks[subpath] != 0) && !surface.is_unlit &&
                              surface.bsdf.has(LobeClass::Diffuse);
-        if (!is_kept) pass.tell(&PhotonEnergy::left_none, arrived);
+        if (!is_kept) pass.add_energy(&PhotonEnergy::left_none, arrived);
         if (surface.is_unlit || is_black(state.throughput)) return;
         if (is_kept) keep(surface, subpath, state, -ray.direction, is_caustic);
         if (state.depth() + 1 < scene.settings.max_depth && !(is_caustic && !surface.bsdf.has_delta())) {
@@ -151,7 +151,7 @@ private:
         state.throughput = state.throughput * sample.weight;
         ++state.scatterings;
         subpaths.states[subpath] = state;
-        pass.tell(&PhotonEnergy::went_on, state.throughput);
+        pass.add_energy(&PhotonEnergy::went_on, state.throughput);
         const Vec3 wo = sample.wi;
         const Ray ray = {offset_ray_origin(surface.position, surface.error, surface.geometric_normal, wo), 0, wo,
                          kInfinity};

@@ -110,17 +110,17 @@ struct AimFromKind {
     const PhotonTargetsView& targets;
 
     HD bool triangle(uint32_t light, Vec2 at, float) const {
-        EmissionPoint place;
-        if (!find_emission_point(freely.scene, light, at, freely.key, place)) return false;
-        if (!(depth_of_cones(targets, place.point) < 1)) return freely.triangle(light, place);
+        EmissionPoint emission;
+        if (!find_emission_point(freely.scene, light, at, freely.key, emission)) return false;
+        if (!(depth_of_cones(targets, emission.point) < 1)) return freely.triangle(light, emission);
         const EmissiveTriangle& triangle = freely.scene.lights.triangles[light];
-        const Direction direction = draw_direction(targets, place.point, freely.u);
-        Vec3 normal = place.normal;
+        const Direction direction = draw_direction(targets, emission.point, freely.u);
+        Vec3 normal = emission.normal;
         if (triangle.is_two_sided == 0 ? triangle.is_mirrored != 0 : dot(normal, direction.to) < 0) normal = -normal;
         const float cosine = dot(normal, direction.to);
         if (!(cosine > 0)) return false; // the target is behind the emitter
-        leave_emitter(triangle, place, normal, direction.to, freely.particle);
-        freely.particle.power = (cosine / (place.pdf * direction.pdf)) * place.radiance;
+        leave_emitter(triangle, emission, normal, direction.to, freely.particle);
+        freely.particle.power = (cosine / (emission.pdf * direction.pdf)) * emission.radiance;
         return true;
     }
     HD bool punctual(uint32_t number, float pmf) const {
@@ -147,10 +147,10 @@ struct AimFromKind {
         }
         return freely.punctual(number, pmf);
     }
-    HD bool environment(float pmf, SampleBits place) const {
-        if (!are_narrow()) return freely.environment(pmf, place);
+    HD bool environment(float pmf, SampleBits bits) const {
+        if (!are_narrow()) return freely.environment(pmf, bits);
         EnvironmentSample sample;
-        if (!(pmf > 0) || !sample_environment(freely.scene.lights.environment, place, sample)) return false;
+        if (!(pmf > 0) || !sample_environment(freely.scene.lights.environment, bits, sample)) return false;
         const float pdf = pmf * sample.pdf;
         if (!(pdf > 0)) return false;
         const Start start = draw_start(targets, freely.world, -sample.wi, freely.u);
@@ -169,11 +169,11 @@ private:
 /// Emits a particle like emit_particle, but towards `targets`, of which there is at least one. The power is divided
 /// by the density of all that was sampled. Its `mis` is not set.
 HD inline bool aim_particle(const SceneView& scene, const PhotonTargetsView& targets, const WorldSphere& world,
-                            SampleBits u_place, Vec2 u, uint32_t key, Particle& particle) {
+                            SampleBits u_position, Vec2 u, uint32_t key, Particle& particle) {
     if (!(world.radius > 0)) return false;
     particle.start = {};
     particle.is_from_far = false;
-    return draw_light(scene.lights, u_place, aim::AimFromKind{{scene, world, u, key, particle}, targets});
+    return draw_light(scene.lights, u_position, aim::AimFromKind{{scene, world, u, key, particle}, targets});
 }
 
 // Finds the target spheres of caustic photons from a scene's triangles on the device: the bounds of all surfaces that
@@ -205,10 +205,10 @@ struct FindSpecular {
         if (instance.is_hidden != 0 || !may_be_specular(scene.materials[instance.material])) return;
         const MeshView& mesh = scene.meshes[instance.mesh];
         const TriangleIndices corners = triangle_indices(mesh, i - scene.first_triangle[low]);
-        const auto place = [&](uint32_t corner) {
+        const auto corner_position = [&](uint32_t corner) {
             return transform_point(instance.world_from_local, mesh.positions[corner]);
         };
-        const Vec3 at[3] = {place(corners.a), place(corners.b), place(corners.c)};
+        const Vec3 at[3] = {corner_position(corners.a), corner_position(corners.b), corner_position(corners.c)};
         Bounds3 box;
         for (const Vec3 corner : at) box.extend(corner);
         if (!in_cells) return extend(bounds->all, box);

@@ -9,7 +9,7 @@
 namespace pertev {
 
 struct PhotonJob : SubpathJob {
-    using Room = GatherRoom;
+    using Capacity = GatherCapacity;
 
     GatherView gather;
     PhotonPass pass;
@@ -19,9 +19,9 @@ struct PhotonJob : SubpathJob {
     float near; // metres, ShadeGather::near
 };
 
-inline std::size_t lay_out(PhotonJob& job, std::byte* memory, const GatherRoom& room) {
-    const std::size_t of_subpaths = lay_out(job.subpaths, memory, {room.count, 0, 1});
-    return of_subpaths + lay_out(job.gather, memory != nullptr ? memory + of_subpaths : nullptr, room);
+inline std::size_t lay_out(PhotonJob& job, std::byte* memory, const GatherCapacity& capacity) {
+    const std::size_t of_subpaths = lay_out(job.subpaths, memory, {capacity.count, 0, 1});
+    return of_subpaths + lay_out(job.gather, memory != nullptr ? memory + of_subpaths : nullptr, capacity);
 }
 
 /// Traces photons [job.first, + job.count) of the pass to their ends.

@@ -25,7 +25,7 @@ struct Radiosity {
             const TriangleId at = vertex.surface.triangle;
             const uint32_t side = dot(vertex.surface.geometric_normal, vertex.wo()) > 0 ? 0 : 1;
             const uint32_t face = 2 * (scene.first_triangle[at.instance] + at.primitive) + side;
-            const Rgb light = vertex.settings.radiosity.irradiance(face, vertex.place.x, vertex.place.y);
+            const Rgb light = vertex.settings.radiosity.irradiance(face, vertex.uv.x, vertex.uv.y);
             vertex.state.radiance += vertex.ray.weight * albedo * (kInvPi * light);
         }
         vertex.follow_specular(kLeast);

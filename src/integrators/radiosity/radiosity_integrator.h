@@ -3,7 +3,7 @@
 // Pictures of a radiosity solution: copies the solution to the device and renders it with ray trees
 // (integrators/radiosity/radiosity.h).
 
-#include "integrators/radiosity/radiosity_look.h"
+#include "integrators/radiosity/radiosity_display.h"
 #include "integrators/ray_tree/ray_tree_integrator.h"
 
 namespace pertev {
@@ -12,11 +12,11 @@ class RadiosityIntegrator final : public RayTreeIntegrator<Radiosity> {
 public:
     struct Settings {
         RayTreeSettings trees;
-        RadiosityLook look;
+        RadiosityDisplay display;
     };
     /// `queue`, `in_loop` and `batch` have the meanings of RayTreeIntegrator's.
     RadiosityIntegrator(Queue& queue, const Settings& settings, bool in_loop, uint32_t batch)
-        : RayTreeIntegrator(queue, settings.trees, in_loop, batch), look_(settings.look) {}
+        : RayTreeIntegrator(queue, settings.trees, in_loop, batch), display_(settings.display) {}
 
     void reserve(const WorkSize& size) override;
     /// Throws Error(BadInput) too, if there is no solution or it belongs to another scene.
@@ -25,11 +25,11 @@ public:
     /// The settings take effect at the next begin().
     void set_settings(const Settings& settings) {
         RayTreeIntegrator::set_settings(settings.trees);
-        look_ = settings.look;
+        display_ = settings.display;
     }
 
 private:
-    RadiosityLook look_;
+    RadiosityDisplay display_;
     std::shared_ptr<const RadiositySolution> uploaded_; // the solution in the buffers
     Buffer<PatchCode> roots_;
     Buffer<PatchQuad> quads_;

@@ -25,7 +25,7 @@ void RasterIntegrator::reserve(const WorkSize& size) {
 void RasterIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
     if (picture.scene.triangle_count >= kNoHit) {
         throw Error(ErrorCode::OverLimit, "integrator", "raster",
-                    fmt::format("{} triangles in all instances of the scene; it draws {} at most",
+                    fmt::format("{} triangles in all instances of the scene; the limit is {}",
                                 picture.scene.triangle_count, kNoHit - 1));
     }
     IntegratorBase::begin(picture, tracer, samples);
@@ -42,7 +42,7 @@ void RasterIntegrator::render(uint32_t first, uint32_t count, const FilmView& fi
         const RasterPass pass = {camera_,      picture_,          picture_settings_, depths_.data(),
                                  rows_.data(), row_count_.data(), rows_.size(),      sample};
         depths_.fill(0xff); // kNoDepth
-        if (picture_settings_.look.is_wireframe) {
+        if (picture_settings_.display.is_wireframe) {
             launch(queue_, "draw_edges", triangles, DrawEdges{pass});
         } else {
             row_count_.zero();

@@ -12,14 +12,14 @@ namespace pertev {
 /// with interpolated normals (Phong 1975).
 enum class RasterShading : uint8_t { Flat, Gouraud, Phong };
 
-struct RasterLook {
+struct RasterDisplay {
     RasterShading shading = RasterShading::Phong;
     bool is_wireframe = false; // draws only the edges of triangles
-    bool operator==(const RasterLook&) const = default;
+    bool operator==(const RasterDisplay&) const = default;
 };
 
 struct RasterSettings {
-    RasterLook look;
+    RasterDisplay display;
     uint32_t max_depth = 16; // 0: emission only; otherwise direct light too
     uint32_t seed = 0;
     bool has_ambient = false; // `ambient` was given; otherwise it is the mean of the environment

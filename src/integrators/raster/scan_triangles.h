@@ -29,7 +29,7 @@ struct RasterPass {
 
     /// Sample 0 lies in the middle. Further ones follow a sequence that covers the filter evenly from its start, with
     /// the same position in every pixel: Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018.
-    HD SamplePlace place() const {
+    HD SamplePosition sample_position() const {
         const uint32_t x = 0x80000000u + sample * 3242174889u, y = 0x80000000u + sample * 2447445413u;
         const auto unit = [](uint32_t bits) { return (static_cast<float>(bits >> 9) + 0.5f) * 0x1p-23f; };
         const Vec2 offset = sample_filter(picture.camera.filter, {unit(x), unit(y)});
@@ -39,8 +39,8 @@ struct RasterPass {
         return {rounded(offset.x), rounded(offset.y)};
     }
     /// Picture position of the sample in the pixel at column `x`, row `y`.
-    HD Vec2 place_in_picture(int32_t x, int32_t y) const {
-        const SamplePlace at = place();
+    HD Vec2 picture_position(int32_t x, int32_t y) const {
+        const SamplePosition at = sample_position();
         constexpr float kStep = 1.0f / static_cast<float>(kSubpixels);
         return {static_cast<float>(x) + kStep * static_cast<float>(at.x),
                 static_cast<float>(y) + kStep * static_cast<float>(at.y)};
@@ -75,17 +75,17 @@ struct TriangleScan {
         return !accept.meets_hidden_back(corners.instance, corners.primitive);
     }
     HD void scan(int32_t row) const {
-        const SamplePlace place = pass.place();
+        const SamplePosition position = pass.sample_position();
         for (int k = 1; k + 1 < projected.count; ++k) {
-            const PixelSpan span = span_of(projected, k, row, place, pass.camera.width);
-            for (int32_t x = span.first; x <= span.last; ++x) put(x, row, place);
+            const PixelSpan span = span_of(projected, k, row, position, pass.camera.width);
+            for (int32_t x = span.first; x <= span.last; ++x) put(x, row, position);
         }
     }
 
 private:
-    HD void put(int32_t column, int32_t row, SamplePlace place) const {
+    HD void put(int32_t column, int32_t row, SamplePosition position) const {
         constexpr double kStep = 1.0 / kSubpixels;
-        const double x = pass.camera.x_of(column + kStep * place.x), y = pass.camera.y_of(row + kStep * place.y);
+        const double x = pass.camera.x_of(column + kStep * position.x), y = pass.camera.y_of(row + kStep * position.y);
         const double depth = clamp(projected.plane.depth_at(x, y), projected.nearest, projected.farthest);
         const auto pixel = static_cast<uint32_t>(row) * pass.camera.width + static_cast<uint32_t>(column);
         if (has_alpha) {
@@ -105,7 +105,7 @@ struct ScanTriangles {
     HD void operator()(uint32_t i) const {
         TriangleScan scan = {pass, i, {}, {}, false};
         if (!scan.begin()) return;
-        const PixelSpan rows = rows_of(scan.projected, pass.place(), pass.camera.height);
+        const PixelSpan rows = rows_of(scan.projected, pass.sample_position(), pass.camera.height);
         if (int64_t(rows.last - rows.first) * (columns_of(scan.projected) + 8) >= 1024) {
             const auto count = static_cast<uint64_t>(rows.last - rows.first + 1);
             const uint64_t first = atomic_add(pass.row_count, count);
@@ -157,7 +157,7 @@ private:
     };
     /// Ends of a degenerate polygon: its first corner and the one farthest from it in the picture.
     HD Ends farthest_pair(const ClippedTriangle& seen) const {
-        const SamplePlace place = pass.place();
+        const SamplePosition position = pass.sample_position();
         Ends ends = {};
         double farthest = -1;
         double x0 = 0, y0 = 0;
@@ -170,8 +170,8 @@ private:
             if (!(distance > farthest)) continue;
             farthest = i == 0 ? -1 : distance;
             // The pixel whose sample is nearest.
-            ends.x[end] = static_cast<int32_t>(floor_divide(to_subpixels(x) - place.x + kSubpixels / 2, kSubpixels));
-            ends.y[end] = static_cast<int32_t>(floor_divide(to_subpixels(y) - place.y + kSubpixels / 2, kSubpixels));
+            ends.x[end] = static_cast<int32_t>(floor_divide(to_subpixels(x) - position.x + kSubpixels / 2, kSubpixels));
+            ends.y[end] = static_cast<int32_t>(floor_divide(to_subpixels(y) - position.y + kSubpixels / 2, kSubpixels));
             ends.depth[end] = p.depth;
         }
         return ends;

@@ -25,18 +25,20 @@ public:
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
 
 private:
-    static TreeRoom room_for(const RayTreeSettings& settings, bool has_times, std::size_t bytes, uint64_t most) {
+    static TreeCapacity capacity_for(const RayTreeSettings& settings, bool has_times, std::size_t bytes,
+                                     uint64_t most) {
         // A stack holds the current ray and, for each vertex above it, all branches but the current one.
         const uint32_t entries =
             Algorithm::kMaxBranches > 1 ? 1 + (Algorithm::kMaxBranches - 1) * settings.max_depth : 1;
-        return room_within(bytes, most, [&](uint32_t trees) { return TreeRoom{trees, entries, has_times}; });
+        return capacity_within(bytes, most, [&](uint32_t trees) { return TreeCapacity{trees, entries, has_times}; });
     }
 };
 
 template <class Algorithm>
 void RayTreeIntegrator<Algorithm>::reserve(const WorkSize& size) {
     if (goes_by_loop(size)) return;
-    take_room(room_for(settings_, size.has_times, kMaxBytes, std::min<uint64_t>(size.all(), batch_)), "ray trees");
+    allocate_capacity(capacity_for(settings_, size.has_times, kMaxBytes, std::min<uint64_t>(size.all(), batch_)),
+                      "ray trees");
 }
 
 template <class Algorithm>
@@ -55,7 +57,7 @@ void RayTreeIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const 
     const bool has_times = picture_.scene.motions.is_there();
     const BeginOrder samples = {0, pixels(), first, count};
     run_stages({.picture = picture_, .settings = picture_settings_, .film = film, .samples = samples}, 0,
-               samples.count(), room_for(picture_settings_, has_times, kLoopBytes, kMaxInLoop), count,
+               samples.count(), capacity_for(picture_settings_, has_times, kLoopBytes, kMaxInLoop), count,
                [this](auto& schedule, const TreeJob& part) {
                    if (!is_abandoned()) run_trees<Algorithm>(schedule, part);
                });

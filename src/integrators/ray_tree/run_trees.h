@@ -16,7 +16,7 @@ class TreesLoop;
 
 /// The job of TwoSchedules: a range of samples, each the root of a tree.
 struct TreeJob {
-    using Room = TreeRoom;
+    using Capacity = TreeCapacity;
     using Counts = TreeCounts;
     using Loop = TreesLoop;
     using Wavefront = TreesWavefront;
@@ -31,8 +31,8 @@ struct TreeJob {
 
     TreeCounts* counts() const { return trees.counts; }
 };
-inline std::size_t lay_out(TreeJob& job, std::byte* memory, const TreeRoom& room) {
-    return lay_out(job.trees, memory, room);
+inline std::size_t lay_out(TreeJob& job, std::byte* memory, const TreeCapacity& capacity) {
+    return lay_out(job.trees, memory, capacity);
 }
 inline RayCounts rays_of(const TreeCounts& counts) { return {0, counts.bounces, counts.all_shadows}; }
 

@@ -71,7 +71,7 @@ struct TreesView {
     uint32_t* keys; // keys of coins
     float* times;   // the times of RayQueueView; null unless something moves while the shutter is open
     uint32_t* owners[2];
-    Float4* hit_places;
+    Float4* hit_records;
     uint32_t* hit_instances;
 
     // Shadow rays, [kShadowsAtOnce * capacity].
@@ -92,11 +92,11 @@ struct TreesView {
                 .keys = shadow_keys,
                 .times = shadow_times};
     }
-    HD HitQueueView hits() const { return {hit_places, hit_instances}; }
+    HD HitQueueView hits() const { return {hit_records, hit_instances}; }
 
-    HD std::size_t entry(uint32_t tree, uint32_t place) const { return std::size_t(place) * capacity + tree; }
-    HD PendingRay load_ray(uint32_t tree, uint32_t place) const {
-        const std::size_t at = entry(tree, place);
+    HD std::size_t entry(uint32_t tree, uint32_t slot) const { return std::size_t(slot) * capacity + tree; }
+    HD PendingRay load_ray(uint32_t tree, uint32_t slot) const {
+        const std::size_t at = entry(tree, slot);
         const Float4 o = origins[at], d = directions[at], w = weights[at];
         PendingRay ray;
         ray.origin = {o.x, o.y, o.z};
@@ -107,67 +107,66 @@ struct TreesView {
         ray.start = {bits_of(w.w), primitives[at]};
         return ray;
     }
-    HD void store_ray(uint32_t tree, uint32_t place, const PendingRay& ray) const {
-        const std::size_t at = entry(tree, place);
+    HD void store_ray(uint32_t tree, uint32_t slot, const PendingRay& ray) const {
+        const std::size_t at = entry(tree, slot);
         origins[at] = {ray.origin.x, ray.origin.y, ray.origin.z, float_of(ray.depth)};
         directions[at] = {ray.direction.x, ray.direction.y, ray.direction.z, ray.bsdf_pdf};
         weights[at] = {ray.weight.r, ray.weight.g, ray.weight.b, float_of(ray.start.instance)};
         primitives[at] = ray.start.primitive;
     }
-    /// Stores `ray` of `tree` at slot `place` of the current rays. `key` is that of its coin, and `time` that of all
+    /// Stores `ray` of `tree` at `slot` of the current rays. `key` is that of its coin, and `time` that of all
     /// rays of the tree.
-    HD void queue_ray(uint32_t place, uint32_t tree, const PendingRay& ray, uint32_t key, float time,
+    HD void queue_ray(uint32_t slot, uint32_t tree, const PendingRay& ray, uint32_t key, float time,
                       uint32_t round) const {
-        pertev::store_ray(rays + place, {ray.origin, 0.0f, ray.direction, kInfinity});
-        starts[place] = {ray.start.instance, ray.start.primitive};
-        keys[place] = key;
-        if (times != nullptr) times[place] = time;
-        owners[round % 2][place] = tree;
+        pertev::store_ray(rays + slot, {ray.origin, 0.0f, ray.direction, kInfinity});
+        starts[slot] = {ray.start.instance, ray.start.primitive};
+        keys[slot] = key;
+        if (times != nullptr) times[slot] = time;
+        owners[round % 2][slot] = tree;
     }
-    HD void queue_shadow(uint32_t place, const TreeShadowRay& shadow, TriangleId start, uint32_t key,
-                         float time) const {
-        pertev::store_ray(shadow_rays + place, shadow.ray);
-        shadow_starts[place] = {start.instance, start.primitive};
-        shadow_targets[place] = {shadow.target.instance, shadow.target.primitive};
-        shadow_keys[place] = key;
-        if (shadow_times != nullptr) shadow_times[place] = time;
-        contributions[place] = {shadow.contribution.r, shadow.contribution.g, shadow.contribution.b, 0};
+    HD void queue_shadow(uint32_t slot, const TreeShadowRay& shadow, TriangleId start, uint32_t key, float time) const {
+        pertev::store_ray(shadow_rays + slot, shadow.ray);
+        shadow_starts[slot] = {start.instance, start.primitive};
+        shadow_targets[slot] = {shadow.target.instance, shadow.target.primitive};
+        shadow_keys[slot] = key;
+        if (shadow_times != nullptr) shadow_times[slot] = time;
+        contributions[slot] = {shadow.contribution.r, shadow.contribution.g, shadow.contribution.b, 0};
     }
 };
 
 /// The sizes of the arrays.
-struct TreeRoom {
+struct TreeCapacity {
     uint32_t count;   // trees
     uint32_t entries; // rays per stack
     bool has_times;   // rays have a time
 };
 
 /// Places the arrays in one piece of memory (lay_out_arrays).
-inline std::size_t lay_out(TreesView& view, std::byte* memory, const TreeRoom& room) {
-    view.capacity = room.count;
-    return lay_out_arrays(memory, [&](const auto& place) {
-        const std::size_t trees = room.count, stacked = trees * room.entries, shadows = trees * kShadowsAtOnce;
-        place(view.states, trees);
-        place(view.origins, stacked);
-        place(view.directions, stacked);
-        place(view.weights, stacked);
-        place(view.primitives, stacked);
-        place(view.rays, trees);
-        place(view.starts, trees);
-        place(view.keys, trees);
-        place(view.times, room.has_times ? trees : 0);
-        place(view.owners[0], trees);
-        place(view.owners[1], trees);
-        place(view.hit_places, trees);
-        place(view.hit_instances, trees);
-        place(view.shadow_rays, shadows);
-        place(view.shadow_starts, shadows);
-        place(view.shadow_targets, shadows);
-        place(view.shadow_keys, shadows);
-        place(view.shadow_times, room.has_times ? shadows : 0);
-        place(view.contributions, shadows);
-        place(view.shadow_slots, trees);
-        place(view.counts, 1);
+inline std::size_t lay_out(TreesView& view, std::byte* memory, const TreeCapacity& capacity) {
+    view.capacity = capacity.count;
+    return lay_out_arrays(memory, [&](const auto& add_array) {
+        const std::size_t trees = capacity.count, stacked = trees * capacity.entries, shadows = trees * kShadowsAtOnce;
+        add_array(view.states, trees);
+        add_array(view.origins, stacked);
+        add_array(view.directions, stacked);
+        add_array(view.weights, stacked);
+        add_array(view.primitives, stacked);
+        add_array(view.rays, trees);
+        add_array(view.starts, trees);
+        add_array(view.keys, trees);
+        add_array(view.times, capacity.has_times ? trees : 0);
+        add_array(view.owners[0], trees);
+        add_array(view.owners[1], trees);
+        add_array(view.hit_records, trees);
+        add_array(view.hit_instances, trees);
+        add_array(view.shadow_rays, shadows);
+        add_array(view.shadow_starts, shadows);
+        add_array(view.shadow_targets, shadows);
+        add_array(view.shadow_keys, shadows);
+        add_array(view.shadow_times, capacity.has_times ? shadows : 0);
+        add_array(view.contributions, shadows);
+        add_array(view.shadow_slots, trees);
+        add_array(view.counts, 1);
     });
 }
 

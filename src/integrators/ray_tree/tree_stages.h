@@ -102,17 +102,17 @@ private:
     HD void sample_direct_lights(const TreeVertex& vertex) const {
         const uint32_t all = Algorithm::shadow_rays(picture.scene.lights);
         const uint32_t key = tree_key(vertex.state, settings.seed, vertex.number(), true);
-        uint32_t places[kShadowsAtOnce] = {};
+        uint32_t slots[kShadowsAtOnce] = {};
         uint32_t count = 0;
         for (uint32_t number = first_shadow; number < min(all, first_shadow + kShadowsAtOnce); ++number) {
             TreeShadowRay shadow;
             if (!Algorithm::sample_direct_light(vertex, number, shadow)) continue;
-            const uint32_t place = atomic_add(&trees.counts->shadows, 1u);
-            trees.queue_shadow(place, shadow, vertex.surface.triangle, key, vertex.time);
-            places[count++] = place;
+            const uint32_t slot = atomic_add(&trees.counts->shadows, 1u);
+            trees.queue_shadow(slot, shadow, vertex.surface.triangle, key, vertex.time);
+            slots[count++] = slot;
         }
         vertex.state.shadows = count;
-        if (count > 0) trees.shadow_slots[vertex.tree] = {places[0], places[1], places[2], places[3]};
+        if (count > 0) trees.shadow_slots[vertex.tree] = {slots[0], slots[1], slots[2], slots[3]};
     }
 };
 static_assert(kShadowsAtOnce == 4, "TreesView::asked");
@@ -127,11 +127,11 @@ struct AddTreeLight {
         TreeState& state = trees.states[tree];
         if (state.shadows == 0) return;
         const Uint4 shadow_slots = trees.shadow_slots[tree];
-        const uint32_t places[] = {shadow_slots.x, shadow_slots.y, shadow_slots.z, shadow_slots.w};
+        const uint32_t slots[] = {shadow_slots.x, shadow_slots.y, shadow_slots.z, shadow_slots.w};
         Rgb radiance = state.radiance;
         for (uint32_t k = 0; k < state.shadows; ++k) {
-            if (trees.shadow_keys[places[k]] != kNoHit) continue;
-            const Float4 c = trees.contributions[places[k]];
+            if (trees.shadow_keys[slots[k]] != kNoHit) continue;
+            const Float4 c = trees.contributions[slots[k]];
             radiance += Rgb{c.x, c.y, c.z};
         }
         state.radiance = radiance;

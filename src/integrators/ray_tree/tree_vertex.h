@@ -51,7 +51,7 @@ struct TreeVertex {
     const Surface& surface;
     float time; // time of all rays of the tree
     bool moves; // something moves while the shutter is open
-    Vec2 place; // on the triangle: weights of its second and third corner
+    Vec2 uv;    // on the triangle: weights of its second and third corner
 
     HD Vec3 wo() const { return -ray.direction; }
     HD uint32_t number() const { return state.rays - 1; }

@@ -45,7 +45,7 @@ struct DisplacementsView {
 /// Weights of a triangle's second and third corner, and the point in camera space.
 struct DicedPoint {
     Vec2 at;
-    PinholePoint base, place; // before and after displacement
+    PinholePoint base, position; // before and after displacement
 };
 
 struct DicedTriangle {
@@ -102,12 +102,13 @@ struct DicedTriangle {
         DicedPoint point;
         point.at = at;
         point.base = {mix(a.x, b.x, c.x), mix(a.y, b.y, c.y), 1, mix(a.depth, b.depth, c.depth)};
-        point.place = point.base;
+        point.position = point.base;
         if (displacement != nullptr) {
             const DoubleVec3 by = moved(at);
-            point.place.x += dot(row_x, by), point.place.y += dot(row_y, by), point.place.depth += dot(row_depth, by);
+            point.position.x += dot(row_x, by), point.position.y += dot(row_y, by),
+                point.position.depth += dot(row_depth, by);
         }
-        if (is_perspective) point.base.w = point.base.depth, point.place.w = point.place.depth;
+        if (is_perspective) point.base.w = point.base.depth, point.position.w = point.position.depth;
         return point;
     }
 
@@ -118,8 +119,8 @@ struct DicedTriangle {
         if (!(floor(u) == u && floor(v) == v)) return false; // its middle would have no exact weights
         if (is_long(camera, rate, a.base, b.base)) return true;
         if (displacement == nullptr) return false;
-        const PinholePoint middle = point(camera.is_perspective, 0.5f * (a.at + b.at)).place; // it may bulge
-        return is_long(camera, 0.5 * rate, a.place, middle) || is_long(camera, 0.5 * rate, middle, b.place);
+        const PinholePoint middle = point(camera.is_perspective, 0.5f * (a.at + b.at)).position; // it may bulge
+        return is_long(camera, 0.5 * rate, a.position, middle) || is_long(camera, 0.5 * rate, middle, b.position);
     }
 
     /// Whether no part of the triangle between the points can be in the picture.

@@ -31,13 +31,13 @@ inline constexpr uint64_t kNothingThere = ~uint64_t(0);
 
 /// Arrays of one pass; sample s of pixel p is at s * pixels + p.
 struct SampleLists {
-    SamplePlace* places; // 1/256 pixels from the picture's upper left corner
-    uint64_t* nearest;   // (bits of the depth, triangle) of the nearest one, or kNothingThere
-    uint64_t* ways;      // that triangle's micropolygon (Piece::way)
-    uint32_t* next;      // next on the list, or kNoSample
-    uint32_t* heads;     // [pixels] head of each cell's list
-    float* far;          // [pixels] depth beyond which everything is hidden for all samples on the list, updated by
-                         // FindFar
+    SamplePosition* positions; // 1/256 pixels from the picture's upper left corner
+    uint64_t* nearest;         // (bits of the depth, triangle) of the nearest one, or kNothingThere
+    uint64_t* ways;            // that triangle's micropolygon (Piece::way)
+    uint32_t* next;            // next on the list, or kNoSample
+    uint32_t* heads;           // [pixels] head of each cell's list
+    float* far; // [pixels] depth beyond which everything is hidden for all samples on the list, updated by
+                // FindFar
     uint32_t width, height;
     uint32_t first, count; // samples of each pixel in this pass
 
@@ -58,7 +58,7 @@ struct SampleLists {
 };
 
 /// Finds the position of sample i of a pass.
-struct PlaceSamples {
+struct PositionSamples {
     CameraRays camera;
     SamplerKind sampler;
     uint32_t seed;
@@ -68,12 +68,13 @@ struct PlaceSamples {
         const uint32_t pixels = samples.pixels(), pixel = i % pixels;
         const SampleKey key = {pixel, samples.first + i / pixels, seed};
         const Vec2 offset = sample_filter(camera.filter, sample_2d(sampler, key, kGroupCamera));
-        const auto place = [](uint32_t at, float off) {
+        const auto coordinate = [](uint32_t at, float off) {
             const float rounded = floor((0.5f + off) * static_cast<float>(kSubpixels) + 0.5f);
             return static_cast<int32_t>(at) * kSubpixels + to_int(rounded, -(1 << 24), 1 << 24);
         };
-        const SamplePlace at = {place(pixel % samples.width, offset.x), place(pixel / samples.width, offset.y)};
-        samples.places[i] = at;
+        const SamplePosition at = {coordinate(pixel % samples.width, offset.x),
+                                   coordinate(pixel / samples.width, offset.y)};
+        samples.positions[i] = at;
         uint32_t* head = samples.heads + static_cast<uint32_t>(samples.row_of(at.y)) * samples.width +
                          static_cast<uint32_t>(samples.column_of(at.x));
         samples.next[i] = atomic_exchange(head, i); // the order does not matter
@@ -125,7 +126,7 @@ HD inline uint64_t max_work(uint64_t pixels) { return kMaxWorkOfPixel * max(pixe
 HD inline uint64_t max_wide(uint64_t pixels) { return min(max_work(pixels) / kWideCells, uint64_t(1) << 30); }
 
 /// Returns false if wide micropolygons have visited so many cells that the pass is aborted.
-HD inline bool may_look(const ReyesPass& pass, uint64_t cells) {
+HD inline bool may_search(const ReyesPass& pass, uint64_t cells) {
     if (pass.wide == nullptr || cells <= kWideCells) return true;
     constexpr uint64_t kMost = 1u << 15; // prevents overflow of the count, whatever a round of pieces adds
     const auto more = static_cast<uint32_t>(min(cells / kWideCells, kMost));
@@ -137,7 +138,7 @@ enum class HidingPass : uint8_t { FindNearest, FindMicropolygon };
 template <HidingPass kPass>
 HD void hide_micropolygon(const ReyesPass& pass, const DicedTriangle& triangle, const Piece& piece,
                           const DicedPoint (&points)[3]) {
-    const PinholePoint corners[3] = {points[0].place, points[1].place, points[2].place};
+    const PinholePoint corners[3] = {points[0].position, points[1].position, points[2].position};
     ProjectedTriangle projected;
     if (!project_triangle(pass.camera, corners, projected)) return;
     if (is_hidden_back(*triangle.placed, projected.plane)) return;
@@ -150,11 +151,11 @@ HD void hide_micropolygon(const ReyesPass& pass, const DicedTriangle& triangle, 
     const Vec2 middle = middle_of(piece);
     const int32_t first_row = samples.row_of(top), last_row = samples.row_of(bottom);
     const int32_t first_column = samples.column_of(left), last_column = samples.column_of(right);
-    if (!may_look(pass, uint64_t(last_row - first_row + 1) * uint64_t(last_column - first_column + 1))) return;
+    if (!may_search(pass, uint64_t(last_row - first_row + 1) * uint64_t(last_column - first_column + 1))) return;
     for (int32_t row = first_row; row <= last_row; ++row) {
         for (int32_t column = first_column; column <= last_column; ++column) {
             for (uint32_t i = samples.head(column, row); i != kNoSample; i = samples.next[i]) {
-                const SamplePlace at = samples.places[i];
+                const SamplePosition at = samples.positions[i];
                 if (at.x < left || at.x > right || !has_sample(projected, at)) continue;
                 constexpr double kStep = 1.0 / kSubpixels;
                 const double x = pass.camera.x_of(kStep * at.x), y = pass.camera.y_of(kStep * at.y);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr uint64_t kMaxSamplesAtOnce = uint64_t(1) << 23; // samples of all pixels, but at least one of each
 constexpr double kMaxPiecesOfTriangle = 64;               // added to kMaxWorkOfPixel
-constexpr uint32_t kRoundsWithOneLook = 8;                // rounds between updates of the farthest depths
+constexpr uint32_t kRoundsPerUpdate = 8;                  // rounds between updates of the farthest depths
 constexpr uint32_t kStack = 1u << 19, kMaxUnderWay = 1u << 16;
 
 // Why the stack suffices: a round takes at least `kLeast` pieces off the top and leaves at most four of each, one
@@ -25,8 +25,8 @@ constexpr uint32_t kStack = 1u << 19, kMaxUnderWay = 1u << 16;
 constexpr uint32_t kLeast = 1024, kReserve = 4 * kLeast * (kMostLevels + 2);
 
 uint32_t pieces_at_once(uint32_t height) {
-    const uint32_t room = height < kStack - kReserve ? (kStack - kReserve - height) / 4 : 0;
-    return std::min({height, std::max(kLeast, room), kMaxUnderWay});
+    const uint32_t capacity_left = height < kStack - kReserve ? (kStack - kReserve - height) / 4 : 0;
+    return std::min({height, std::max(kLeast, capacity_left), kMaxUnderWay});
 }
 
 uint64_t samples_held(uint64_t pixels, uint32_t samples) {
@@ -62,7 +62,7 @@ uint32_t ReyesIntegrator::samples_at_once(uint64_t pixels) {
 void ReyesIntegrator::reserve(const WorkSize& size) {
     const uint64_t all = samples_held(size.pixels(), size.samples);
     count_.grow(queue_, 2, "pieces of triangles");
-    places_.grow(queue_, all, "places of samples");
+    positions_.grow(queue_, all, "places of samples");
     nearest_.grow(queue_, all, "samples' nearest triangles");
     ways_.grow(queue_, all, "samples' micropolygons");
     next_.grow(queue_, all, "lists of samples");
@@ -80,7 +80,7 @@ void ReyesIntegrator::reserve(const WorkSize& size) {
 void ReyesIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) {
     if (picture.scene.triangle_count >= kNoHit) {
         throw Error(ErrorCode::OverLimit, "integrator", "reyes",
-                    fmt::format("{} triangles in all instances of the scene; it dices {} at most",
+                    fmt::format("{} triangles in all instances of the scene; the limit is {}",
                                 picture.scene.triangle_count, kNoHit - 1));
     }
     IntegratorBase::begin(picture, tracer, samples);
@@ -113,11 +113,10 @@ void ReyesIntegrator::check_work(uint64_t pieces, uint32_t wide) const {
     const double most = kMaxPiecesOfTriangle * static_cast<double>(picture_.scene.triangle_count) +
                         static_cast<double>(max_work(pixels)) * finer * finer;
     if (static_cast<double>(pieces) <= most && wide <= max_wide(pixels)) return;
-    throw Error(
-        ErrorCode::OverLimit, "displacement", "",
-        fmt::format("surfaces are moved so far that dicing them does not end (over {} pieces a pixel); a smaller "
-                    "SCALE makes fewer, and so does a larger `shading_rate`",
-                    kMaxWorkOfPixel));
+    throw Error(ErrorCode::OverLimit, "displacement", "",
+                fmt::format("surfaces are displaced so far that dicing does not end (over {} pieces per pixel); use a "
+                            "smaller SCALE or a larger `shading_rate`",
+                            kMaxWorkOfPixel));
 }
 
 template <HidingPass kPass>
@@ -134,7 +133,7 @@ bool ReyesIntegrator::hide(const ReyesPass& pass, const std::function<bool()>& g
             if (!goes_on()) return false;
             since_request = {};
         }
-        const bool is_news = kPass == HidingPass::FindNearest ? round % kRoundsWithOneLook == 0 : round == 0;
+        const bool is_news = kPass == HidingPass::FindNearest ? round % kRoundsPerUpdate == 0 : round == 0;
         if (is_news) launch(queue_, "find_far", pass.samples.pixels(), FindFar{pass.samples});
         const uint32_t taken = pieces_at_once(height);
         const uint32_t more = taken == height ? std::min(kMaxUnderWay - taken, triangles - begun) : 0;
@@ -159,7 +158,7 @@ uint32_t ReyesIntegrator::render_while(uint32_t first, uint32_t count, const Fil
                                        const std::function<bool()>& goes_on) {
     PERTEV_CHECK(film.is_whole_picture());
     const uint32_t pixels = picture_.camera.width * picture_.camera.height;
-    const auto at_once = static_cast<uint32_t>(std::min<uint64_t>(count, places_.size() / pixels));
+    const auto at_once = static_cast<uint32_t>(std::min<uint64_t>(count, positions_.size() / pixels));
     DisplacementsView displacements;
     if (settings_.heights) displacements = {displacements_.data(), static_cast<uint32_t>(displacements_.size())};
     for (uint32_t done = 0; done < count; done += at_once) {
@@ -171,13 +170,13 @@ uint32_t ReyesIntegrator::render_while(uint32_t first, uint32_t count, const Fil
                                 light_,
                                 settings_.seed,
                                 settings_.heights ? count_.data() + 1 : nullptr,
-                                {places_.data(), nearest_.data(), ways_.data(), next_.data(), heads_.data(),
+                                {positions_.data(), nearest_.data(), ways_.data(), next_.data(), heads_.data(),
                                  far_.data(), picture_.camera.width, picture_.camera.height, first + done, now}};
         nearest_.fill(0xff); // kNothingThere
         ways_.fill(0xff);    // kNoWay
         heads_.fill(0xff);   // kNoSample
         launch(queue_, "place_samples", pixels * now,
-               PlaceSamples{picture_.camera, settings_.sampler, settings_.seed, pass.samples});
+               PositionSamples{picture_.camera, settings_.sampler, settings_.seed, pass.samples});
         if (!hide<HidingPass::FindNearest>(pass, goes_on) || !hide<HidingPass::FindMicropolygon>(pass, goes_on)) {
             queue_.wait();
             return done;

@@ -38,7 +38,7 @@ private:
     LocalLight light_{};
     std::shared_ptr<const HeightMaps> uploaded_; // the maps on the device
 
-    Buffer<SamplePlace> places_;
+    Buffer<SamplePosition> positions_;
     Buffer<uint64_t> nearest_, ways_;
     Buffer<uint32_t> next_, heads_, count_;
     Buffer<float> far_;

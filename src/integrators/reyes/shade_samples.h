@@ -29,7 +29,7 @@ struct Micropolygon {
     }
 
     /// Displaced position in the world.
-    HD DoubleVec3 world_place(Vec2 at) const {
+    HD DoubleVec3 world_position(Vec2 at) const {
         const MeshView& mesh = *triangle.mesh;
         const TriangleIndices i = triangle.indices;
         const auto u = static_cast<double>(at.x), v = static_cast<double>(at.y), w = 1 - u - v;
@@ -51,8 +51,8 @@ struct Micropolygon {
         const TriangleCorners& of = triangle.corners;
         Surface s = make_surface(scene, {0, at.x, at.y, of.instance, of.primitive}, direction);
         if (triangle.displacement == nullptr) return s;
-        const DoubleVec3 a = world_place(piece.corners[0]);
-        const DoubleVec3 ab = world_place(piece.corners[1]) - a, ac = world_place(piece.corners[2]) - a;
+        const DoubleVec3 a = world_position(piece.corners[0]);
+        const DoubleVec3 ab = world_position(piece.corners[1]) - a, ac = world_position(piece.corners[2]) - a;
         const Vec3 bare = bare_normal();
         const bool is_turned = dot(bare, s.geometric_normal) < 0; // its vertex normals define the other side as the
                                                                   // front
@@ -76,7 +76,7 @@ struct Micropolygon {
         const Vec2 middle = middle_of(piece);
         Vec3 direction = camera.axis;
         if (pass.camera.is_perspective) {
-            direction = normalize_or(to_float(world_place(middle) - pass.camera.eye), camera.axis);
+            direction = normalize_or(to_float(world_position(middle) - pass.camera.eye), camera.axis);
         }
         const Surface s = surface(pass.picture.scene, middle, {kThird, kThird}, direction);
         return local_light(pass.picture.scene.lights, s, -direction, pass.light);
@@ -110,9 +110,9 @@ struct ShadeSamples {
         for (uint32_t s = 0; s < samples.count; ++s) {
             const uint32_t i = s * samples.pixels() + pixel;
             constexpr float kStep = 1.0f / static_cast<float>(kSubpixels);
-            const SamplePlace at = samples.places[i];
-            const Vec2 place = {kStep * static_cast<float>(at.x), kStep * static_cast<float>(at.y)};
-            const Ray ray = make_camera_ray(pass.picture.camera.view, place, {});
+            const SamplePosition at = samples.positions[i];
+            const Vec2 position = {kStep * static_cast<float>(at.x), kStep * static_cast<float>(at.y)};
+            const Ray ray = make_camera_ray(pass.picture.camera.view, position, {});
             const uint64_t nearest = samples.nearest[i];
             if (nearest == kNothingThere) {
                 add_no_first_hit(film, pixel, samples.first + s);
@@ -125,18 +125,18 @@ struct ShadeSamples {
                 if (!seen.begin(pass, number, way)) continue;
                 color = seen.color(pass);
             }
-            add_layers(pixel, samples.first + s, seen, place, ray);
+            add_layers(pixel, samples.first + s, seen, position, ray);
             add_radiance(film, pixel, color);
         }
     }
 
 private:
-    HD void add_layers(uint32_t pixel, uint32_t sample, const Micropolygon& seen, Vec2 place, const Ray& ray) const {
+    HD void add_layers(uint32_t pixel, uint32_t sample, const Micropolygon& seen, Vec2 position, const Ray& ray) const {
         const bool is_background = shows_background(pass.picture.scene, seen.triangle.corners.instance);
         if (film.aovs == 0 && !is_background) return add_channel(film, pixel, kFilmHits, 1.0f);
-        const PinholePoint corners[3] = {seen.points[0].place, seen.points[1].place, seen.points[2].place};
-        const Vec2 inside = weights_at(corners, pass.camera.x_of(static_cast<double>(place.x)),
-                                       pass.camera.y_of(static_cast<double>(place.y)));
+        const PinholePoint corners[3] = {seen.points[0].position, seen.points[1].position, seen.points[2].position};
+        const Vec2 inside = weights_at(corners, pass.camera.x_of(static_cast<double>(position.x)),
+                                       pass.camera.y_of(static_cast<double>(position.y)));
         const Vec2* c = seen.piece.corners;
         const Vec2 at = c[0] + (inside.x * (c[1] - c[0]) + inside.y * (c[2] - c[0]));
         const TriangleCorners& of = seen.triangle.corners;

@@ -3,7 +3,7 @@
 #include "integrators/reyes/split_stages.h"
 
 namespace pertev {
-template void launch(Queue&, const char*, WorkCount, const PlaceSamples&);
+template void launch(Queue&, const char*, WorkCount, const PositionSamples&);
 template void launch(Queue&, const char*, WorkCount, const FindFar&);
 template void launch(Queue&, const char*, WorkCount, const TakePieces&);
 template void launch(Queue&, const char*, WorkCount, const SplitPieces<HidingPass::FindNearest>&);

@@ -28,7 +28,7 @@ HD inline float pdf_emission(const EmissiveTriangle& triangle, float cosine) {
     return (triangle.is_two_sided != 0 ? 0.5f * kInvPi : kInvPi) * abs(cosine);
 }
 /// Density of a point on a triangle light, 1/m2, including the selection of the light.
-HD inline float pdf_place(const EmissiveTriangle& triangle) {
+HD inline float pdf_position(const EmissiveTriangle& triangle) {
     const float pdf = 2.0f * triangle.pmf / length(cross(triangle.ab, triangle.ac));
     return is_finite(pdf) ? pdf : 0.0f;
 }
@@ -50,26 +50,26 @@ struct EmissionPoint {
 /// Finds the point with the weights `at` of a triangle light's second and third vertex. Returns false if it emits
 /// nothing. `key` is that of the coin of a blended emitter.
 HD inline bool find_emission_point(const SceneView& scene, uint32_t light, Vec2 at, uint32_t key,
-                                   EmissionPoint& place) {
+                                   EmissionPoint& emission) {
     const EmissiveTriangle& triangle = scene.lights.triangles[light];
     if (scene.any_alpha != 0 &&
         !AcceptHit{scene, {}, {}, key}.passes_alpha(triangle.instance, triangle.primitive, at.x, at.y)) {
         return false; // transparent part of the light
     }
     const Vec2 uv = (1.0f - at.x - at.y) * triangle.uv0 + at.x * triangle.uv1 + at.y * triangle.uv2;
-    place.radiance = surface_emission<true>(scene.lights, triangle.material, uv);
-    place.pdf = pdf_place(triangle);
-    if (is_black(place.radiance) || !(place.pdf > 0)) return false;
-    place.point = triangle.a + (at.x * triangle.ab + at.y * triangle.ac);
-    place.normal = normalize(cross(triangle.ab, triangle.ac));
+    emission.radiance = surface_emission<true>(scene.lights, triangle.material, uv);
+    emission.pdf = pdf_position(triangle);
+    if (is_black(emission.radiance) || !(emission.pdf > 0)) return false;
+    emission.point = triangle.a + (at.x * triangle.ab + at.y * triangle.ac);
+    emission.normal = normalize(cross(triangle.ab, triangle.ac));
     return true;
 }
 
 /// Makes the ray from that point, on the side of `normal`.
-HD inline void leave_emitter(const EmissiveTriangle& triangle, const EmissionPoint& place, Vec3 normal, Vec3 direction,
-                             Particle& particle) {
-    particle.ray = {offset_ray_origin(place.point, light_point_error(place.point), normal, direction), 0, direction,
-                    kInfinity};
+HD inline void leave_emitter(const EmissiveTriangle& triangle, const EmissionPoint& emission, Vec3 normal,
+                             Vec3 direction, Particle& particle) {
+    particle.ray = {offset_ray_origin(emission.point, light_point_error(emission.point), normal, direction), 0,
+                    direction, kInfinity};
     particle.start = {triangle.instance, triangle.primitive};
 }
 
@@ -82,12 +82,12 @@ struct EmitFromKind {
     Particle& particle;
 
     HD bool triangle(uint32_t light, Vec2 at, float) const {
-        EmissionPoint place;
-        return find_emission_point(scene, light, at, key, place) && triangle(light, place);
+        EmissionPoint emission;
+        return find_emission_point(scene, light, at, key, emission) && triangle(light, emission);
     }
-    HD bool triangle(uint32_t light, const EmissionPoint& place) const {
+    HD bool triangle(uint32_t light, const EmissionPoint& emission) const {
         const EmissiveTriangle& triangle = scene.lights.triangles[light];
-        Vec3 normal = place.normal;
+        Vec3 normal = emission.normal;
         Vec2 about = u;
         if (triangle.is_two_sided != 0 && u.x < 0.5f) normal = -normal;
         if (triangle.is_two_sided != 0) about.x = u.x < 0.5f ? 2.0f * u.x : 2.0f * u.x - 1.0f;
@@ -95,9 +95,9 @@ struct EmitFromKind {
         const Vec3 local = sample_cosine_hemisphere(about);
         const float pdf = pdf_emission(triangle, local.z);
         if (!(pdf > 0)) return false;
-        leave_emitter(triangle, place, normal, normalize(make_frame(normal).to_world(local)), particle);
-        particle.power = (local.z / (place.pdf * pdf)) * place.radiance;
-        particle.mis = {square(1.0f / pdf), min(square(local.z / (place.pdf * pdf)), kMaxWeightSum)};
+        leave_emitter(triangle, emission, normal, normalize(make_frame(normal).to_world(local)), particle);
+        particle.power = (local.z / (emission.pdf * pdf)) * emission.radiance;
+        particle.mis = {square(1.0f / pdf), min(square(local.z / (emission.pdf * pdf)), kMaxWeightSum)};
         return true;
     }
     HD bool punctual(uint32_t number, float pmf) const {
@@ -123,9 +123,9 @@ struct EmitFromKind {
         particle.mis = {square(1.0f / pdf), 0};
         return true;
     }
-    HD bool environment(float pmf, SampleBits place) const {
+    HD bool environment(float pmf, SampleBits bits) const {
         EnvironmentSample sample;
-        if (!(pmf > 0) || !sample_environment(scene.lights.environment, place, sample)) return false;
+        if (!(pmf > 0) || !sample_environment(scene.lights.environment, bits, sample)) return false;
         const float pdf = pmf * sample.pdf, through_disc = pdf_disc(world);
         if (!(pdf > 0)) return false;
         from_disc(-sample.wi);
@@ -144,24 +144,24 @@ private:
     }
 };
 
-/// Samples a particle; `u_place` is used as in sample_light, and `u` for the rest. Returns false if there is none,
+/// Samples a particle; `u_position` is used as in sample_light, and `u` for the rest. Returns false if there is none,
 /// which counts as black. `key` is that of the coin of a blended emitter.
-HD inline bool emit_particle(const SceneView& scene, const WorldSphere& world, SampleBits u_place, Vec2 u, uint32_t key,
-                             Particle& particle) {
+HD inline bool emit_particle(const SceneView& scene, const WorldSphere& world, SampleBits u_position, Vec2 u,
+                             uint32_t key, Particle& particle) {
     if (!(world.radius > 0)) return false;
     particle.start = {};
     particle.is_from_far = false;
-    return draw_light(scene.lights, u_place, EmitFromKind{scene, world, u, key, particle});
+    return draw_light(scene.lights, u_position, EmitFromKind{scene, world, u, key, particle});
 }
 
 /// Densities of a light that a camera subpath has hit: of the point (1/m2; for distant light of the direction, 1/sr),
 /// and of the direction from there (1/sr; for distant light of the point on the disc, 1/m2).
 struct LightDensities {
-    float place = 0, onwards = 0;
+    float position = 0, onwards = 0;
 
     /// MIS weight sum of all techniques that find this light, except the subpath's own.
     HD float weight_sum(const MisSums& subpath) const {
-        return squared_density(place) * min(subpath.weight_sum(onwards), kMaxWeightSum);
+        return squared_density(position) * min(subpath.weight_sum(onwards), kMaxWeightSum);
     }
 };
 

@@ -93,13 +93,13 @@ struct BeginParticles {
     HD void operator()(uint32_t i) const {
         const SubpathSettings& settings = scene.settings;
         SubpathState state = state_of_sample(samples, first + i, scene.picture.camera);
-        if (subpaths.room.kept > 0) subpaths.kept_counts[i] = 0;
+        if (subpaths.capacity.kept > 0) subpaths.kept_counts[i] = 0;
         const SampleKey key = particle_sample_key(scene, state.pixel, state.sample);
-        const SampleBits place = sample_bits(settings.sampler, key, kGroupLight);
+        const SampleBits bits = sample_bits(settings.sampler, key, kGroupLight);
         const Vec2 direction = sample_2d(settings.sampler, key, kGroupLight, Pair::Last);
         const uint32_t coin = coin_key({state.pixel, state.sample, settings.seed ^ kParticleCoins}, 0, false);
         Particle particle;
-        if (!emit_particle(scene.picture.scene, scene.world, place, direction, coin, particle)) return;
+        if (!emit_particle(scene.picture.scene, scene.world, bits, direction, coin, particle)) return;
         if (!(max_component(particle.power) > 0)) return;
         state.throughput = particle.power;
         state.mis = particle.mis;
@@ -131,8 +131,8 @@ struct ShadeParticles {
         state.is_from_far = 0;
 
         const bool can_be_connected = !surface.bsdf.has_delta_only();
-        if (state.depth() < subpaths.room.kept) {
-            const std::size_t at = subpaths.kept_place(subpath, state.depth());
+        if (state.depth() < subpaths.capacity.kept) {
+            const std::size_t at = subpaths.kept_index(subpath, state.depth());
             if (can_be_connected) {
                 subpaths.kept.store(
                     at, {hit, ray.direction, (1.0f / subpaths.squared_indices[subpath]) * state.throughput, state.mis});
@@ -179,9 +179,9 @@ private:
         connection.light = (weight * seen.density / seen.distance_squared) * (scattered.particle.f * state.throughput);
         connection.light =
             (1.0f / squared_index_along(surface, wi, wo, subpaths.squared_indices[subpath])) * connection.light;
-        const uint32_t place = atomic_add(&subpaths.counts->connections, 1u);
-        subpaths.queue_connection(place, connection, state.pixel);
-        subpaths.connection_rasters[place] = seen.raster;
+        const uint32_t slot = atomic_add(&subpaths.counts->connections, 1u);
+        subpaths.queue_connection(slot, connection, state.pixel);
+        subpaths.connection_rasters[slot] = seen.raster;
     }
     HD INLINE_ON_DEVICE void go_on(const Surface& surface, uint32_t subpath, SubpathState& state, Vec3 wi,
                                    SampleKey key) const {

@@ -16,7 +16,7 @@ class SubpathsLoop;
 
 /// The job of TwoSchedules: a range of samples, each with a subpath from a light or the camera.
 struct SubpathJob {
-    using Room = SubpathRoom;
+    using Capacity = SubpathCapacity;
     using Counts = SubpathCounts;
     using Loop = SubpathsLoop;
     using Wavefront = SubpathsWavefront;
@@ -30,8 +30,8 @@ struct SubpathJob {
 
     SubpathCounts* counts() const { return subpaths.counts; }
 };
-inline std::size_t lay_out(SubpathJob& job, std::byte* memory, const SubpathRoom& room) {
-    return lay_out(job.subpaths, memory, room);
+inline std::size_t lay_out(SubpathJob& job, std::byte* memory, const SubpathCapacity& capacity) {
+    return lay_out(job.subpaths, memory, capacity);
 }
 inline RayCounts rays_of(const SubpathCounts& counts) { return {0, counts.bounces, counts.all_connections}; }
 
@@ -54,14 +54,14 @@ public:
     void find_connections_of_camera(const SubpathJob& job, WorkCount connections) {
         if (job.scene.picture.scene.any_hidden_back == 0) return find_connections(job, connections);
         tracer_.find_hits(RayKind::Camera, job.subpaths.connection_query(), connections,
-                          {job.subpaths.hit_places, job.subpaths.connection_keys});
+                          {job.subpaths.hit_records, job.subpaths.connection_keys});
     }
 };
 
 class SubpathsLoop : public LoopSchedule<SubpathCounts> {
 public:
     SubpathsLoop(const HostTrees& trees, const SubpathJob& job)
-        : LoopSchedule(trees), hits_(std::size_t(job.subpaths.room.count) * job.subpaths.room.connections),
+        : LoopSchedule(trees), hits_(std::size_t(job.subpaths.capacity.count) * job.subpaths.capacity.connections),
           met_(std::make_unique<bool[]>(hits_.size())) {}
 
     void find_hits(RayKind kind, const SubpathJob& job, WorkCount rays, uint32_t round) {

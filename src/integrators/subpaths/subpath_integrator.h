@@ -21,15 +21,15 @@ public:
     void render(uint32_t first, uint32_t count, const FilmView& film) override;
 
 private:
-    static SubpathRoom room_for(const SubpathSettings& settings, std::size_t bytes, uint64_t most) {
-        return room_within(bytes, most, [&](uint32_t subpaths) { return Algorithm::room(settings, subpaths); });
+    static SubpathCapacity capacity_for(const SubpathSettings& settings, std::size_t bytes, uint64_t most) {
+        return capacity_within(bytes, most, [&](uint32_t subpaths) { return Algorithm::capacity(settings, subpaths); });
     }
 };
 
 template <class Algorithm>
 void SubpathIntegrator<Algorithm>::reserve(const WorkSize& size) {
     if (goes_by_loop(size)) return;
-    take_room(room_for(settings_, kMaxBytes, std::min<uint64_t>(size.all(), batch_)), "light paths");
+    allocate_capacity(capacity_for(settings_, kMaxBytes, std::min<uint64_t>(size.all(), batch_)), "light paths");
 }
 
 template <class Algorithm>
@@ -40,7 +40,7 @@ void SubpathIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const 
     job.scene = {picture_, picture_settings_, sphere_round(tracer_->bounds()), Algorithm::kIsConnected};
     job.film = film;
     job.samples = {0, pixels(), first, count};
-    run_stages(job, 0, job.samples.count(), room_for(picture_settings_, kLoopBytes, kLoopCount), count,
+    run_stages(job, 0, job.samples.count(), capacity_for(picture_settings_, kLoopBytes, kLoopCount), count,
                [this](auto& schedule, const SubpathJob& part) {
                    if (!is_abandoned()) Algorithm::render(schedule, part);
                });

@@ -87,18 +87,18 @@ struct SubpathVertex {
 };
 
 struct SubpathVerticesView {
-    Float4 *places, *directions, *throughputs;
+    Float4 *hits, *directions, *throughputs;
 
     HD void store(std::size_t at, const SubpathVertex& vertex) const {
         const Hit& hit = vertex.hit;
-        places[at] = {hit.u, hit.v, float_of(hit.instance), float_of(hit.primitive)};
+        hits[at] = {hit.u, hit.v, float_of(hit.instance), float_of(hit.primitive)};
         directions[at] = {vertex.direction.x, vertex.direction.y, vertex.direction.z, vertex.mis.last};
         throughputs[at] = {vertex.throughput.r, vertex.throughput.g, vertex.throughput.b, vertex.mis.earlier};
     }
-    HD void store_none(std::size_t at) const { places[at] = {0, 0, float_of(kNoHit), 0}; }
-    HD bool is_there(std::size_t at) const { return bits_of(places[at].z) != kNoHit; }
+    HD void store_none(std::size_t at) const { hits[at] = {0, 0, float_of(kNoHit), 0}; }
+    HD bool is_there(std::size_t at) const { return bits_of(hits[at].z) != kNoHit; }
     HD SubpathVertex load(std::size_t at) const {
-        const Float4 p = places[at], d = directions[at], t = throughputs[at];
+        const Float4 p = hits[at], d = directions[at], t = throughputs[at];
         SubpathVertex vertex;
         vertex.hit = {0, p.x, p.y, bits_of(p.z), bits_of(p.w)};
         vertex.direction = {d.x, d.y, d.z};
@@ -128,14 +128,14 @@ struct SubpathCounts {
 };
 
 /// Sizes of the arrays.
-struct SubpathRoom {
+struct SubpathCapacity {
     uint32_t count;       // subpaths
     uint32_t kept;        // stored vertices per light subpath
     uint32_t connections; // connections per subpath at once
 };
 
 struct SubpathsView {
-    SubpathRoom room;
+    SubpathCapacity capacity;
     SubpathState* states;   // [subpaths]
     float* squared_indices; // [subpaths] for light subpaths: squared index at their vertex, over that at their light
 
@@ -144,7 +144,7 @@ struct SubpathsView {
     Uint2* starts;
     uint32_t* keys; // keys of coins
     uint32_t* owners[2];
-    Float4* hit_places;
+    Float4* hit_records;
     uint32_t* hit_instances;
 
     // Vertices of the light subpaths: vertex k of subpath i at k * subpaths + i, and how many each has.
@@ -169,59 +169,59 @@ struct SubpathsView {
                 .targets = connection_targets,
                 .keys = connection_keys};
     }
-    HD HitQueueView hits() const { return {hit_places, hit_instances}; }
-    HD std::size_t kept_place(uint32_t subpath, uint32_t number) const {
-        return std::size_t(number) * room.count + subpath;
+    HD HitQueueView hits() const { return {hit_records, hit_instances}; }
+    HD std::size_t kept_index(uint32_t subpath, uint32_t number) const {
+        return std::size_t(number) * capacity.count + subpath;
     }
 
-    HD void queue_ray(uint32_t place, uint32_t subpath, const Ray& ray, TriangleId start, uint32_t key,
+    HD void queue_ray(uint32_t slot, uint32_t subpath, const Ray& ray, TriangleId start, uint32_t key,
                       uint32_t round) const {
-        store_ray(rays[round % 2] + place, ray);
-        starts[place] = {start.instance, start.primitive};
-        keys[place] = key;
-        owners[round % 2][place] = subpath;
+        store_ray(rays[round % 2] + slot, ray);
+        starts[slot] = {start.instance, start.primitive};
+        keys[slot] = key;
+        owners[round % 2][slot] = subpath;
     }
-    HD void queue_connection(uint32_t place, const Connection& connection, uint32_t pixel) const {
-        store_ray(connection_rays + place, connection.ray);
-        connection_starts[place] = {connection.start.instance, connection.start.primitive};
-        connection_targets[place] = {connection.target.instance, connection.target.primitive};
-        connection_keys[place] = connection.key;
-        connection_light[place] = {connection.light.r, connection.light.g, connection.light.b, float_of(pixel)};
+    HD void queue_connection(uint32_t slot, const Connection& connection, uint32_t pixel) const {
+        store_ray(connection_rays + slot, connection.ray);
+        connection_starts[slot] = {connection.start.instance, connection.start.primitive};
+        connection_targets[slot] = {connection.target.instance, connection.target.primitive};
+        connection_keys[slot] = connection.key;
+        connection_light[slot] = {connection.light.r, connection.light.g, connection.light.b, float_of(pixel)};
     }
 };
 
 /// Places the arrays in one piece of memory (lay_out_arrays).
-inline std::size_t lay_out(SubpathsView& view, std::byte* memory, const SubpathRoom& room) {
-    view.room = room;
-    return lay_out_arrays(memory, [&](const auto& place) {
-        const auto place_vertices = [&](SubpathVerticesView& vertices, std::size_t count) {
-            place(vertices.places, count);
-            place(vertices.directions, count);
-            place(vertices.throughputs, count);
+inline std::size_t lay_out(SubpathsView& view, std::byte* memory, const SubpathCapacity& capacity) {
+    view.capacity = capacity;
+    return lay_out_arrays(memory, [&](const auto& add_array) {
+        const auto add_vertices = [&](SubpathVerticesView& vertices, std::size_t count) {
+            add_array(vertices.hits, count);
+            add_array(vertices.directions, count);
+            add_array(vertices.throughputs, count);
         };
-        const std::size_t subpaths = room.count, connects = room.kept > 0 ? subpaths : 0,
-                          connections = subpaths * room.connections;
-        place(view.states, subpaths);
-        place(view.squared_indices, subpaths);
-        place(view.rays[0], subpaths);
-        place(view.rays[1], subpaths);
-        place(view.starts, subpaths);
-        place(view.keys, subpaths);
-        place(view.owners[0], subpaths);
-        place(view.owners[1], subpaths);
-        place(view.hit_places, subpaths);
-        place(view.hit_instances, subpaths);
-        place_vertices(view.kept, subpaths * room.kept);
-        place(view.kept_counts, connects);
-        place_vertices(view.present, connects);
-        place(view.present_owners, connects);
-        place(view.connection_rays, connections);
-        place(view.connection_starts, connections);
-        place(view.connection_targets, connections);
-        place(view.connection_keys, connections);
-        place(view.connection_light, connections);
-        place(view.connection_rasters, subpaths);
-        place(view.counts, 1);
+        const std::size_t subpaths = capacity.count, connects = capacity.kept > 0 ? subpaths : 0,
+                          connections = subpaths * capacity.connections;
+        add_array(view.states, subpaths);
+        add_array(view.squared_indices, subpaths);
+        add_array(view.rays[0], subpaths);
+        add_array(view.rays[1], subpaths);
+        add_array(view.starts, subpaths);
+        add_array(view.keys, subpaths);
+        add_array(view.owners[0], subpaths);
+        add_array(view.owners[1], subpaths);
+        add_array(view.hit_records, subpaths);
+        add_array(view.hit_instances, subpaths);
+        add_vertices(view.kept, subpaths * capacity.kept);
+        add_array(view.kept_counts, connects);
+        add_vertices(view.present, connects);
+        add_array(view.present_owners, connects);
+        add_array(view.connection_rays, connections);
+        add_array(view.connection_starts, connections);
+        add_array(view.connection_targets, connections);
+        add_array(view.connection_keys, connections);
+        add_array(view.connection_light, connections);
+        add_array(view.connection_rasters, subpaths);
+        add_array(view.counts, 1);
     });
 }
 

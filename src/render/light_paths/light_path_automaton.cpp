@@ -16,7 +16,7 @@ namespace {
 using StateSet = std::vector<uint32_t>; // sorted states of all automata
 
 [[noreturn]] void refuse(const std::string& why) {
-    throw Error(ErrorCode::OverLimit, "lpe", "", why + "; render some of the expressions apart");
+    throw Error(ErrorCode::OverLimit, "lpe", "", why + "; render some of the expressions separately");
 }
 
 /// The automata of all expressions, side by side as one.
@@ -38,7 +38,7 @@ public:
                                        {moved(state.empty[0], states), moved(state.empty[1], states)}});
             }
             if (nfa_.states.size() > kMaxLightPathParts) {
-                refuse(fmt::format("too many letters in {} together", counted(expressions.size(), "expression")));
+                refuse(fmt::format("too many letters in {} in total", counted(expressions.size(), "expression")));
             }
             for (const LightPathLetter& letter : expression.letters) {
                 letters_.push_back(&letter);
@@ -115,7 +115,7 @@ private:
     }
     void spend(uint64_t steps) {
         if (steps > steps_left_) {
-            refuse(fmt::format("to make one automaton of {} takes too long", counted(layers_, "expression")));
+            refuse(fmt::format("the automaton of {} takes too long to build", counted(layers_, "expression")));
         }
         steps_left_ -= steps;
     }
@@ -133,10 +133,10 @@ private:
 class ReaderSets {
 public:
     uint16_t number_of(std::vector<bool> readers) {
-        const auto [place, is_new] = numbers_.try_emplace(std::move(readers), static_cast<uint16_t>(sets_.size()));
-        if (is_new) sets_.push_back(&place->first);
-        if (sets_.size() > UINT16_MAX) refuse("the names tell more than 65535 things apart");
-        return place->second;
+        const auto [offset, is_new] = numbers_.try_emplace(std::move(readers), static_cast<uint16_t>(sets_.size()));
+        if (is_new) sets_.push_back(&offset->first);
+        if (sets_.size() > UINT16_MAX) refuse("the names distinguish more than 65535 objects");
+        return offset->second;
     }
     const std::vector<const std::vector<bool>*>& all() const { return sets_; }
     uint32_t count() const { return static_cast<uint32_t>(sets_.size()); }
@@ -176,16 +176,16 @@ LightPathAutomaton determinise(AllExpressions& all, StateSet firsts, const Light
     std::unordered_map<StateSet, uint16_t, HashOfStates> numbers;
     std::vector<const StateSet*> sets;
     const auto number_of = [&](StateSet set) {
-        const auto [place, is_new] = numbers.try_emplace(std::move(set), static_cast<uint16_t>(numbers.size()));
-        if (is_new) sets.push_back(&place->first);
+        const auto [offset, is_new] = numbers.try_emplace(std::move(set), static_cast<uint16_t>(numbers.size()));
+        if (is_new) sets.push_back(&offset->first);
         if (sets.size() > kMaxLightPathStates) {
-            refuse(fmt::format("the expressions need more than {} states together", kMaxLightPathStates));
+            refuse(fmt::format("the expressions need more than {} states in total", kMaxLightPathStates));
         }
         if (sets.size() * entries_of_state > kMaxLightPathEntries) {
-            refuse(fmt::format("the names tell {} things apart, too many for {} states",
+            refuse(fmt::format("the names distinguish {} objects, too many for {} states",
                                automaton.column_count + automaton.light_count, sets.size()));
         }
-        return place->second;
+        return offset->second;
     };
     number_of({});
     all.close(firsts);

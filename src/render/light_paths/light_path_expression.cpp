@@ -22,24 +22,24 @@ std::string_view why_no_atom(char letter) {
     case '+':
     case '?':
     case '{':
-        return "nothing stands before it that it could repeat";
+        return "there is nothing before it to repeat";
     case '<':
-        return "names stand once and behind one letter, in brackets too: D<R 'a'>, [D<'a'>G<'a'>]";
+        return "names come once, after a single letter, also in brackets: D<R 'a'>, [D<'a'>G<'a'>]";
     case '\'':
     case '"':
-        return "names stand between < and >: L<'lamp'>";
+        return "names are enclosed in < and >: L<'lamp'>";
     case ',':
-        return "each expression has a `lpe` NAME=EXPRESSION of its own";
+        return "each expression needs its own `lpe` NAME=EXPRESSION";
     case 'C':
-        return "from the light to the eye: LD*E is what is CD*L elsewhere";
+        return "expressions go from the light to the eye: LD*E is CD*L elsewhere";
     case 'l':
     case 'd':
     case 'g':
     case 's':
     case 'e':
-        return "letters are capitals: L, D, G, S, E";
+        return "letters are upper case: L, D, G, S, E";
     default:
-        return "no letter of an expression: L, D, G, S, ., E, ( and [ begin one";
+        return "unknown letter; expected L, D, G, S, ., E, ( or [";
     }
 }
 
@@ -48,15 +48,15 @@ public:
     explicit Parser(LightPathExpression& expression) : expression_(expression), text_(expression.text) {}
 
     void parse() {
-        if (text_.find_first_not_of(kBlanks) == std::string_view::npos) fail(0, "an expression stands here: as LD*E");
+        if (text_.find_first_not_of(kBlanks) == std::string_view::npos) fail(0, "expected an expression, such as LD*E");
         expression_.root = parse_choice(0);
-        if (peek() == ')') fail(at_, "no ( before it");
+        if (peek() == ')') fail(at_, "there is no ( before it");
         if (at_ < text_.size()) fail(at_, why_no_atom(text_[at_]));
     }
 
 private:
-    [[noreturn]] void fail(std::size_t place, std::string_view why) const {
-        throw Error(ErrorCode::BadInput, point_at(expression_, place, why));
+    [[noreturn]] void fail(std::size_t offset, std::string_view why) const {
+        throw Error(ErrorCode::BadInput, point_at(expression_, offset, why));
     }
     /// Returns the next letter that is not blank; 0 at the end.
     char peek() {
@@ -79,7 +79,7 @@ private:
     }
 
     uint32_t parse_choice(uint32_t nesting) {
-        if (nesting > kMaxNesting) fail(at_, fmt::format("more than {} parentheses within each other", kMaxNesting));
+        if (nesting > kMaxNesting) fail(at_, fmt::format("more than {} nested parentheses", kMaxNesting));
         LightPathNode choice = {.kind = LightPathNode::Kind::Choice};
         choice.parts.push_back(parse_branch(nesting));
         while (take('|')) choice.parts.push_back(parse_branch(nesting));
@@ -115,7 +115,7 @@ private:
         repeat.least = repeat.most = parse_count();
         if (take(',')) repeat.most = peek() == '}' ? LightPathNode::kAny : parse_count();
         if (!take('}')) fail(at_, "} is missing: {2}, {2,} or {2,5}");
-        if (repeat.most < repeat.least) fail(open, "the second number is the smaller one");
+        if (repeat.most < repeat.least) fail(open, "the second number is smaller than the first");
     }
     uint32_t parse_count() {
         peek();
@@ -124,18 +124,18 @@ private:
         for (; at_ < text_.size() && text_[at_] >= '0' && text_[at_] <= '9'; ++at_) {
             count = std::min(count * 10 + static_cast<uint32_t>(text_[at_] - '0'), kMaxRepeats + 1);
         }
-        if (at_ == first) fail(at_, "a whole number stands here: {2}, {2,} or {2,5}");
+        if (at_ == first) fail(at_, "expected a whole number: {2}, {2,} or {2,5}");
         if (count > kMaxRepeats) fail(first, fmt::format("at most {}", kMaxRepeats));
         return count;
     }
     uint32_t parse_atom(uint32_t nesting) {
         const char letter = peek();
-        const std::size_t place = at_;
+        const std::size_t offset = at_;
         switch (letter) {
         case '(': {
             ++at_;
             const uint32_t inner = parse_choice(nesting + 1);
-            if (!take(')')) fail(place, "this ( is not closed");
+            if (!take(')')) fail(offset, "this ( is not closed");
             return inner;
         }
         case '[':
@@ -145,7 +145,7 @@ private:
             LightPathLetter light = {.kind = LightPathLetter::Kind::Light};
             uint8_t ways = 0;
             if (peek() == '<') light.names = parse_filter(ways);
-            if (ways != 0) fail(place, "R and T are ways of scattering: a light has a name alone, L<'lamp'>");
+            if (ways != 0) fail(offset, "R and T apply only to scattering; a light has only a name, L<'lamp'>");
             return add(std::move(light));
         }
         case 'E':
@@ -156,7 +156,7 @@ private:
             break;
         }
         if (const auto term = parse_term()) return add(LightPathLetter{.terms = {*term}});
-        fail(place, why_no_atom(letter));
+        fail(offset, why_no_atom(letter));
     }
     /// Parses D, G, S or . with its filter.
     std::optional<ScatteringTerm> parse_term() {
@@ -190,10 +190,10 @@ private:
         set.is_negated = take('^');
         while (const auto term = parse_term()) set.terms.push_back(*term);
         const char next = peek();
-        if (next == 'L' || next == 'E') fail(at_, "a set holds scatterings: D, G, S or .");
+        if (next == 'L' || next == 'E') fail(at_, "a set can hold only scatterings: D, G, S or .");
         if (next == 0) fail(open, "this [ is not closed");
-        if (next != ']') fail(at_, "no letter of a set: D, G, S or .");
-        if (set.terms.empty()) fail(at_, "a set has one letter at least: [DS]");
+        if (next != ']') fail(at_, "unknown letter of a set; expected D, G, S or .");
+        if (set.terms.empty()) fail(at_, "a set needs at least one letter: [DS]");
         ++at_;
         return add(std::move(set));
     }
@@ -211,9 +211,9 @@ private:
         filter.is_negated = take('^');
         while (peek() == '\'' || peek() == '"') filter.names.push_back(parse_name());
         if (peek() == 0) fail(open, "this < is not closed");
-        if (peek() != '>') fail(at_, "between < and > stand R or T, then names: <T 'glass' 'wine*'>");
-        if (filter.is_negated && filter.names.empty()) fail(caret, "^ stands before names: <^'wall'>");
-        if (filter.names.empty() && ways == 0) fail(at_, "between < and > stand R or T, then names: <T 'glass'>");
+        if (peek() != '>') fail(at_, "expected R or T, then names between < and >: <T 'glass' 'wine*'>");
+        if (filter.is_negated && filter.names.empty()) fail(caret, "^ comes before names: <^'wall'>");
+        if (filter.names.empty() && ways == 0) fail(at_, "expected R or T, then names between < and >: <T 'glass'>");
         ++at_;
         if (filter.names.empty()) return kNoNames;
         expression_.filters.push_back(std::move(filter));
@@ -228,7 +228,7 @@ private:
             pattern += text_[at_];
         }
         if (at_ == text_.size()) fail(open, "this quotation mark is not closed");
-        if (pattern.empty()) fail(at_, "a name stands here");
+        if (pattern.empty()) fail(at_, "expected a name");
         ++at_;
         return {std::move(pattern), open + 1};
     }
@@ -246,15 +246,15 @@ bool is_name(std::string_view name) {
 }
 
 /// Number of visible letters before byte `place`; UTF-8 has up to four bytes per letter.
-std::size_t letters_before(std::string_view text, std::size_t place) {
+std::size_t letters_before(std::string_view text, std::size_t offset) {
     return static_cast<std::size_t>(
-        std::ranges::count_if(text.substr(0, place), [](char c) { return (static_cast<uint8_t>(c) & 0xc0) != 0x80; }));
+        std::ranges::count_if(text.substr(0, offset), [](char c) { return (static_cast<uint8_t>(c) & 0xc0) != 0x80; }));
 }
 
 } // namespace
 
-Remark point_at(const LightPathExpression& expression, std::size_t place, std::string_view why) {
-    const std::size_t column = letters_before(expression.text, place);
+Remark point_at(const LightPathExpression& expression, std::size_t offset, std::string_view why) {
+    const std::size_t column = letters_before(expression.text, offset);
     std::string shown = expression.text;
     std::ranges::replace_if(
         shown, [](char c) { return static_cast<uint8_t>(c) < ' '; }, ' ');

@@ -28,7 +28,7 @@ namespace pertev {
 struct NameFilter {
     struct Name {
         std::string pattern;
-        std::size_t place; // position of its first letter in the expression
+        std::size_t offset; // position of its first letter in the expression
     };
     std::vector<Name> names = {};
     bool is_negated = false; // matches all names but these
@@ -85,6 +85,6 @@ inline constexpr uint64_t kMaxLightPathLetters = 4096;
 LightPathExpression parse_light_path(std::string_view text);
 
 /// A remark on the setting `lpe`: the reason, the expression, and a caret under the letter at `place`.
-Remark point_at(const LightPathExpression& expression, std::size_t place, std::string_view why);
+Remark point_at(const LightPathExpression& expression, std::size_t offset, std::string_view why);
 
 } // namespace pertev

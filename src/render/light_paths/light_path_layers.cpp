@@ -55,9 +55,9 @@ public:
                 for (const NameFilter::Name& name : expression.filters[i].names) {
                     const auto has = [&](const Names& names) { return has_name(names, name.pattern); };
                     if (std::ranges::any_of(things.names, has)) continue;
-                    throw Error(ErrorCode::BadInput, point_at(expression, name.place,
-                                                              fmt::format("no {} has this name; {}", things.kind,
-                                                                          some_names(things.names))));
+                    throw Error(ErrorCode::BadInput, point_at(expression, name.offset,
+                                                              fmt::format("there is no {} with this name; {}",
+                                                                          things.kind, some_names(things.names))));
                 }
             }
         }
@@ -81,12 +81,12 @@ std::vector<uint16_t> tag(const Things& things, const Chooser& chooser, std::vec
     std::unordered_map<std::vector<bool>, uint16_t> numbers;
     std::vector<uint16_t> of_things;
     for (const Names& names : things.names) {
-        const auto [place, is_new] = numbers.try_emplace(chooser.choose(names), static_cast<uint16_t>(tags.size()));
-        if (is_new) tags.push_back(place->first);
+        const auto [offset, is_new] = numbers.try_emplace(chooser.choose(names), static_cast<uint16_t>(tags.size()));
+        if (is_new) tags.push_back(offset->first);
         if (tags.size() > UINT16_MAX) {
-            throw Error(ErrorCode::OverLimit, "lpe", "", "the names tell more than 65535 things apart");
+            throw Error(ErrorCode::OverLimit, "lpe", "", "the names distinguish more than 65535 objects");
         }
-        of_things.push_back(place->second);
+        of_things.push_back(offset->second);
     }
     if (tags.empty()) tags.push_back(chooser.choose({}));
     return of_things;

@@ -31,7 +31,7 @@ private:
     uint32_t add_state(State state = {}) {
         if (nfa_.states.size() >= 4 * kMaxLightPathLetters) {
             throw Error(ErrorCode::OverLimit, "lpe", expression_.name,
-                        fmt::format("with its {{n}} written out it has more than {} letters", kMaxLightPathLetters));
+                        fmt::format("with its {{n}} expanded it has more than {} letters", kMaxLightPathLetters));
         }
         nfa_.states.push_back(state);
         return static_cast<uint32_t>(nfa_.states.size() - 1);
@@ -176,12 +176,14 @@ void check_matches_something(const LightPathExpression& expression) {
     bool reads_eye = false;
     if (takes_a_path(expression, make_nfa(expression), reads_eye)) return;
     const std::string& text = expression.text;
-    throw Error(ErrorCode::BadInput,
-                reads_eye ? point_at(expression, std::min(text.find_first_not_of(" \t"), text.size()),
-                                     "no path is like this: it begins with one L, the light, and between "
-                                     "that and the last E are scatterings alone")
-                          : point_at(expression, text.empty() ? 0 : text.find_last_not_of(" \t"),
-                                     "no path is like this: it ends with one E, the eye"));
+    throw Error(
+        ErrorCode::BadInput,
+        reads_eye
+            ? point_at(
+                  expression, std::min(text.find_first_not_of(" \t"), text.size()),
+                  "no path matches: a path begins with one L, the light, followed only by scatterings up to the last E")
+            : point_at(expression, text.empty() ? 0 : text.find_last_not_of(" \t"),
+                       "no path matches: a path ends with one E, the eye"));
 }
 
 } // namespace pertev

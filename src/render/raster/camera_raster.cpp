@@ -45,8 +45,8 @@ void CameraRaster::begin(const PictureView& picture) {
     scene_ = picture.scene;
     if (scene_.triangle_count > UINT32_MAX) {
         throw Error(ErrorCode::OverLimit, "integrator", "hybrid",
-                    fmt::format("{} triangles in all instances of the scene; it rasterises {} at most",
-                                scene_.triangle_count, UINT32_MAX));
+                    fmt::format("{} triangles in all instances of the scene; the limit is {}", scene_.triangle_count,
+                                UINT32_MAX));
     }
     reserve(scene_.triangle_count, picture.camera.width, picture.camera.height);
     const Pinhole camera = make_pinhole(picture.camera);
@@ -73,10 +73,9 @@ bool CameraRaster::make_lists(const Pinhole& camera, uint32_t shift) {
     launch(queue_, "bin_triangles", static_cast<uint32_t>(scene_.triangle_count), BinTriangles{camera, scene_, lists});
     const TileCounts first = counts_.download().front();
     if (first.triangles > triangles_.size()) {
-        throw Error(
-            ErrorCode::OverLimit, "integrator", "hybrid",
-            fmt::format("{} triangles are in view; it rasterises {} at most (`integrator=path` has no such limit)",
-                        first.triangles, triangles_.size()));
+        throw Error(ErrorCode::OverLimit, "integrator", "hybrid",
+                    fmt::format("{} triangles are in view; the limit is {} (`integrator=path` has none)",
+                                first.triangles, triangles_.size()));
     }
     if (first.entries > codes_.size() || first.rows > rows_.size()) return false;
     launch(queue_, "bin_rows", static_cast<uint32_t>(first.rows), BinRows{camera, scene_, lists});

@@ -63,12 +63,12 @@ struct FindInTiles {
     HitQueueView hits;
 
     HD void operator()(uint32_t i) const {
-        const int64_t place = rays.place(i);
-        Ray ray = load_ray(rays.rays + place);
+        const int64_t index = rays.index(i);
+        Ray ray = load_ray(rays.rays + index);
         const uint32_t pixel = bits_of(ray.t_min);
         ray.t_min = 0;
         ray.t_max = kInfinity;
-        hits.store(i, find_in_tile(raster, scene, ray, pixel, scene.any_alpha != 0 ? rays.keys[place] : 0));
+        hits.store(i, find_in_tile(raster, scene, ray, pixel, scene.any_alpha != 0 ? rays.keys[index] : 0));
     }
 };
 

@@ -52,11 +52,11 @@ Pinhole make_pinhole(const CameraRays& camera) {
 
 std::string why_no_raster(const Camera& camera) {
     if (camera.aperture_radius > 0) {
-        return "a rasteriser has no depth of field, and this camera has a lens (`aperture=0` removes it; "
-               "`integrator=path` supports it)";
+        return "rasterisation does not support this camera's lens (`aperture=0` removes it; `integrator=path` supports "
+               "it)";
     }
     if (is_light_meter(camera.projection)) {
-        return "a rasteriser supports only perspective and orthographic cameras";
+        return "rasterisation supports only perspective and orthographic cameras";
     }
     return {};
 }

@@ -40,8 +40,8 @@ struct Pinhole {
         return {dot(row_x, p), dot(row_y, p), is_perspective ? depth : 1.0, depth};
     }
     /// Converts a position in the picture, in pixels from its left (upper) edge, to x (y), and back.
-    HD double x_of(double place) const { return (2 * place / width - 1) * half_width; }
-    HD double y_of(double place) const { return (2 * place / height - 1) * half_height; }
+    HD double x_of(double coordinate) const { return (2 * coordinate / width - 1) * half_width; }
+    HD double y_of(double coordinate) const { return (2 * coordinate / height - 1) * half_height; }
     HD double column_of(double x) const { return (x / half_width + 1) * 0.5 * width; }
     HD double row_of(double y) const { return (y / half_height + 1) * 0.5 * height; }
 };

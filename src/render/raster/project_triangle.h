@@ -80,7 +80,9 @@ HD inline ClippedTriangle clip_to_picture(const Pinhole& camera, const PinholePo
 }
 
 /// Rounds to 1/256 of a pixel.
-HD inline int32_t to_subpixels(double place) { return pixel_of(place * kSubpixels + 0.5, -(1 << 28), 1 << 28); }
+HD inline int32_t to_subpixels(double coordinate) {
+    return pixel_of(coordinate * kSubpixels + 0.5, -(1 << 28), 1 << 28);
+}
 
 /// Returns false if no part of the triangle is visible.
 HD inline bool project_triangle(const Pinhole& camera, const PinholePoint (&corners)[3], ProjectedTriangle& out) {

@@ -11,7 +11,7 @@
 namespace pertev {
 
 /// Position of the sample in every pixel, in 1/256 pixels from its upper left corner; the filter may move it outside.
-struct SamplePlace {
+struct SamplePosition {
     int32_t x, y;
 };
 
@@ -32,10 +32,10 @@ HD inline int32_t columns_of(const ProjectedTriangle& t) {
 }
 
 /// Rows whose samples may lie in the polygon.
-HD inline PixelSpan rows_of(const ProjectedTriangle& t, SamplePlace place, uint32_t height) {
+HD inline PixelSpan rows_of(const ProjectedTriangle& t, SamplePosition position, uint32_t height) {
     int32_t top = t.y[0], bottom = t.y[0];
     for (int i = 1; i < t.count; ++i) top = min(top, t.y[i]), bottom = max(bottom, t.y[i]);
-    const auto row = [&](int32_t y) { return static_cast<int32_t>(floor_divide(y - place.y, kSubpixels)); };
+    const auto row = [&](int32_t y) { return static_cast<int32_t>(floor_divide(y - position.y, kSubpixels)); };
     return {max(row(top - 1) + 1, 0), min(row(bottom), static_cast<int32_t>(height) - 1)};
 }
 
@@ -60,16 +60,16 @@ struct WoundTriangle {
 HD inline bool has_edge(int64_t dx, int64_t dy) { return dy < 0 || (dy == 0 && dx > 0); }
 
 /// Pixels of row `y` whose samples lie in the triangle of corners 0, k and k + 1.
-HD inline PixelSpan span_of(const ProjectedTriangle& t, int k, int32_t y, SamplePlace place, uint32_t width) {
+HD inline PixelSpan span_of(const ProjectedTriangle& t, int k, int32_t y, SamplePosition position, uint32_t width) {
     PixelSpan span = {0, -1};
     WoundTriangle wound;
     if (!wound.begin(t, k)) return span;
     int64_t first = 0, last = static_cast<int64_t>(width) - 1;
-    const int64_t at_y = int64_t(y) * kSubpixels + place.y;
+    const int64_t at_y = int64_t(y) * kSubpixels + position.y;
     for (int i = 0; i < 3; ++i) {
         const int64_t x0 = wound.x[i], y0 = wound.y[i], dx = wound.x[(i + 1) % 3] - x0, dy = wound.y[(i + 1) % 3] - y0;
         // Inside: at - 256 dy pixel >= 0.
-        const int64_t at = dx * (at_y - y0) + dy * (x0 - place.x) - (has_edge(dx, dy) ? 0 : 1);
+        const int64_t at = dx * (at_y - y0) + dy * (x0 - position.x) - (has_edge(dx, dy) ? 0 : 1);
         if (dy > 0) {
             last = min(last, floor_divide(at, kSubpixels * dy));
         } else if (dy < 0) {
@@ -85,7 +85,7 @@ HD inline PixelSpan span_of(const ProjectedTriangle& t, int k, int32_t y, Sample
 
 /// Whether the polygon contains the single sample at `at`, from the picture's upper left corner; consistent with
 /// span_of.
-HD inline bool has_sample(const ProjectedTriangle& t, SamplePlace at) {
+HD inline bool has_sample(const ProjectedTriangle& t, SamplePosition at) {
     for (int k = 1; k + 1 < t.count; ++k) {
         WoundTriangle wound;
         if (!wound.begin(t, k)) continue;

@@ -84,16 +84,16 @@ struct BinTriangles {
         const PinholeTriangle seen = see(camera, scene, triangle);
         ScreenBounds bounds;
         if (!screen_bounds(camera, seen, 0, camera.height - 1, bounds)) return;
-        const uint64_t place = atomic_add(&lists.counts->triangles, uint64_t(1));
-        if (place >= lists.max_triangles) return;
-        lists.triangles[place] = triangle;
+        const uint64_t slot = atomic_add(&lists.counts->triangles, uint64_t(1));
+        if (slot >= lists.max_triangles) return;
+        lists.triangles[slot] = triangle;
         const auto from = static_cast<uint32_t>(bounds.top) >> lists.shift,
                    to = static_cast<uint32_t>(bounds.bottom) >> lists.shift;
-        if (from == to) return add_row(lists, camera, static_cast<uint32_t>(place), from, bounds);
+        if (from == to) return add_row(lists, camera, static_cast<uint32_t>(slot), from, bounds);
         const uint64_t waiting = atomic_add(&lists.counts->rows, uint64_t(to - from + 1));
         if (waiting + (to - from) >= lists.max_rows) return;
         for (uint32_t row = from; row <= to; ++row) {
-            lists.rows[waiting + (row - from)] = {static_cast<uint32_t>(place), row};
+            lists.rows[waiting + (row - from)] = {static_cast<uint32_t>(slot), row};
         }
     }
 
@@ -124,7 +124,7 @@ struct BinTriangles {
     }
 
     /// Adds a triangle to the lists of its tiles in a row.
-    HD static void add_row(const TileListsView& lists, const Pinhole& camera, uint32_t place, uint32_t row,
+    HD static void add_row(const TileListsView& lists, const Pinhole& camera, uint32_t slot, uint32_t row,
                            const ScreenBounds& bounds) {
         const auto from = static_cast<uint32_t>(bounds.left) >> lists.shift,
                    to = static_cast<uint32_t>(bounds.right) >> lists.shift;
@@ -137,7 +137,7 @@ struct BinTriangles {
             const uint64_t entry = first_entry + (tile - from);
             lists.codes[entry] = uint64_t(row * lists.tiles_x + tile) << 32 | bits_of(nearest);
             lists.order[entry] = static_cast<uint32_t>(entry);
-            lists.entry_triangles[entry] = place;
+            lists.entry_triangles[entry] = slot;
         }
     }
 };

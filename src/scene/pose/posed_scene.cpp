@@ -44,8 +44,8 @@ bool same_bits(const T& a, const T& b) {
 PosedScene::PosedScene(Scene rest, bool leaves_vertices)
     : scene_(std::move(rest)), cameras_at_rest_(scene_.cameras), lights_at_rest_(scene_.lights),
       parents_first_(parents_first(scene_.nodes)), node_moves_(moving_nodes(scene_)), instance_moves_(may_move(scene_)),
-      places_(places_of(scene_.nodes, parents_first_)),
-      world_from_node_(world_from_nodes(places_, scene_.origin_in_file)), cameras_(scene_.cameras),
+      node_transforms_(transforms_of(scene_.nodes, parents_first_)),
+      world_from_node_(world_from_nodes(node_transforms_, scene_.origin_in_file)), cameras_(scene_.cameras),
       lights_(scene_.lights), leaves_vertices_(leaves_vertices), moved_(scene_.instances.size()),
       deformed_(scene_.meshes.size()), replaced_(scene_.meshes.size()) {
     for (const Node& node : scene_.nodes) {
@@ -88,44 +88,45 @@ bool PosedScene::is_animated() const {
 
 SceneUpdate PosedScene::set_time(double time_s) {
     if (!std::isfinite(time_s)) {
-        throw Error(ErrorCode::BadInput, fmt::format("time {}: expected seconds, a finite number", time_s));
+        throw Error(ErrorCode::BadInput, fmt::format("time {} is not finite; expected seconds", time_s));
     }
     if (!is_animated()) return {};
     read_channels(time_s);
     place_nodes();
     place_instances();
     shape_meshes();
-    check_places(time_s);
+    check_placements(time_s);
     place_cameras();
     place_lights();
     return take_changes();
 }
 
-PosedScene::Places PosedScene::places_at(double time_s) {
+PosedScene::Placements PosedScene::placements_at(double time_s) {
     const auto node_poses = node_poses_;
     const auto morph_weights = morph_weights_;
-    const auto node_places = places_;
+    const auto saved_transforms = node_transforms_;
     const auto world_from_node = world_from_node_;
     const auto cameras = cameras_, placed_cameras = scene_.cameras;
     const auto lights = lights_;
     read_channels(time_s);
     place_nodes();
     place_cameras();
-    Places places = {std::vector<std::optional<Transform>>(scene_.instances.size()), scene_.cameras};
+    Placements placements = {std::vector<std::optional<Transform>>(scene_.instances.size()), scene_.cameras};
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         const Instance& instance = scene_.instances[i];
         if (!instance_moves_[i] || scene_.nodes[instance.node].skin != kNoSkin) continue;
-        const Transform world = placed_in(places_[instance.node], instance.node_from_local, scene_.origin_in_file);
-        if (!is_singular(world)) places.instances[i] = world;
+        const Transform world =
+            placed_in(node_transforms_[instance.node], instance.node_from_local, scene_.origin_in_file);
+        if (!is_singular(world)) placements.instances[i] = world;
     }
     node_poses_ = node_poses;
     morph_weights_ = morph_weights;
-    places_ = node_places;
+    node_transforms_ = saved_transforms;
     world_from_node_ = world_from_node;
     cameras_ = cameras;
     scene_.cameras = placed_cameras;
     lights_ = lights;
-    return places;
+    return placements;
 }
 
 void PosedScene::read_channels(double time_s) {
@@ -176,10 +177,10 @@ void PosedScene::place_nodes() {
     for (const uint32_t node : parents_first_) {
         if (!node_moves_[node]) continue; // stays at rest
         const DoubleTransform* matrix = std::get_if<DoubleTransform>(&scene_.nodes[node].pose);
-        const NodePlace local = matrix == nullptr ? place_of(node_poses_[node]) : place_of(*matrix);
+        const NodeTransform local = matrix == nullptr ? transform_of(node_poses_[node]) : transform_of(*matrix);
         const uint32_t parent = scene_.nodes[node].parent;
-        places_[node] = parent == kNoNode ? local : compose(places_[parent], local);
-        world_from_node_[node] = world_from_node(places_[node], scene_.origin_in_file);
+        node_transforms_[node] = parent == kNoNode ? local : compose(node_transforms_[parent], local);
+        world_from_node_[node] = world_from_node(node_transforms_[node], scene_.origin_in_file);
     }
 }
 
@@ -224,16 +225,17 @@ void PosedScene::place_instances() {
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         Instance& instance = scene_.instances[i];
         if (!instance_moves_[i] || scene_.nodes[instance.node].skin != kNoSkin) continue;
-        const Transform world = placed_in(places_[instance.node], instance.node_from_local, scene_.origin_in_file);
+        const Transform world =
+            placed_in(node_transforms_[instance.node], instance.node_from_local, scene_.origin_in_file);
         const bool is_hidden = is_singular(world);
-        const Transform place = is_hidden ? Transform() : world;
-        if (!same_bits(place, instance.world_from_local) || is_hidden != instance.is_hidden) moved_[i] = true;
-        instance.world_from_local = place;
+        const Transform placement = is_hidden ? Transform() : world;
+        if (!same_bits(placement, instance.world_from_local) || is_hidden != instance.is_hidden) moved_[i] = true;
+        instance.world_from_local = placement;
         instance.is_hidden = is_hidden;
     }
 }
 
-void PosedScene::check_places(double time_s) const {
+void PosedScene::check_placements(double time_s) const {
     std::vector<bool> is_left(scene_.meshes.size());
     for (std::size_t i = 0; i < poses_.size(); ++i) is_left[scene_.shapes[i].mesh] = !poses_[i].is_on_host;
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
@@ -242,7 +244,7 @@ void PosedScene::check_places(double time_s) const {
         const Bounds3& local = bounds_[instance.mesh];
         if (local.is_empty() || lies_near(instance.world_from_local, local)) continue;
         throw Error(ErrorCode::OverLimit,
-                    fmt::format("{} lies further out than 2^40 metres at {} s; scale the scene down",
+                    fmt::format("{} lies beyond 2^40 metres at {} s; scale the scene down",
                                 numbered("instance", i, instance.name, origin_of(instance)), time_s));
     }
 }
@@ -256,7 +258,7 @@ void PosedScene::place_cameras() {
         const std::optional<Transform> rigid = without_scale(world_from_node_[camera.node]);
         const bool stands = rigid && lies_near(*rigid, Bounds3{{0, 0, 0}, {0, 0, 0}});
         camera.world_from_camera = stands ? *rigid : cameras_at_rest_[i].world_from_camera;
-        camera.world_from_camera.translation = told_in_file(scene_, camera.world_from_camera.translation);
+        camera.world_from_camera.translation = rounded_to_file(scene_, camera.world_from_camera.translation);
     }
 }
 

@@ -38,12 +38,12 @@ public:
     SceneUpdate set_time(double time_s);
 
     /// Positions of things at a time, without moving the scene there.
-    struct Places {
+    struct Placements {
         /// [instance]; metres; nothing if no transform moves it, or if its transform is singular then.
         std::vector<std::optional<Transform>> instances;
         std::vector<Camera> cameras;
     };
-    Places places_at(double time_s);
+    Placements placements_at(double time_s);
 
 private:
     void drop_shapes_at_rest();
@@ -52,7 +52,7 @@ private:
     void place_nodes();
     void place_instances();
     void shape_meshes();
-    void check_places(double time_s) const;
+    void check_placements(double time_s) const;
     void place_cameras();
     void place_lights();
     SceneUpdate take_changes();
@@ -65,7 +65,7 @@ private:
 
     // Per node, at the time.
     std::vector<NodePose> node_poses_; // for nodes without a matrix
-    std::vector<NodePlace> places_;
+    std::vector<NodeTransform> node_transforms_;
     std::vector<Transform> world_from_node_; // from places_, relative to the scene's origin
     std::vector<std::vector<float>> morph_weights_;
     std::vector<Camera> cameras_; // only field of view and height are used

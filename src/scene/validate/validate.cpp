@@ -19,7 +19,7 @@
 namespace pertev {
 namespace {
 
-constexpr const char* kTooFar = "lies further out than 2^40 metres";
+constexpr const char* kTooFar = "lies beyond 2^40 metres";
 
 class Validator {
 public:
@@ -39,7 +39,7 @@ public:
         drop_singular_instances();
         if (scene_.instances.empty()) {
             if (first_misplaced_.ends_with(kTooFar)) {
-                throw Error(ErrorCode::OverLimit, Place{file_},
+                throw Error(ErrorCode::OverLimit, FileLocation{file_},
                             fmt::format("{}; scale the scene down", first_misplaced_));
             }
             if (!first_misplaced_.empty()) throw bad(first_misplaced_);
@@ -52,46 +52,48 @@ public:
     }
 
 private:
-    Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, Place{file_}, what); }
+    Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, FileLocation{file_}, what); }
     Error too_far(const std::string& what) const {
-        return Error(ErrorCode::OverLimit, Place{file_}, fmt::format("{} {}; scale the scene down", what, kTooFar));
+        return Error(ErrorCode::OverLimit, FileLocation{file_},
+                     fmt::format("{} {}; scale the scene down", what, kTooFar));
     }
 
     Error no_geometry(std::size_t without_triangles, std::size_t singular) const {
         std::vector<std::string> reasons;
         if (without_triangles > 0) {
-            reasons.push_back(fmt::format("{} of meshes that lost all their triangles, the first of them {}; expected "
-                                          "triangles with an area and finite vertices",
+            reasons.push_back(fmt::format("{} of meshes without valid triangles ({} is the first); expected triangles "
+                                          "with an area and finite vertices",
                                           counted(without_triangles, "instance"), first_empty_mesh_));
         }
         if (singular > 0) {
-            reasons.push_back(fmt::format("{} with a singular transform, the first of them {}; expected scales other "
-                                          "than 0",
-                                          counted(singular, "instance"), first_singular_));
+            reasons.push_back(
+                fmt::format("{} with a singular transform ({} is the first); expected scales other than 0",
+                            counted(singular, "instance"), first_singular_));
         }
-        if (reasons.empty()) reasons.push_back(scene_.no_instances.empty() ? "no mesh is placed" : scene_.no_instances);
-        return bad(fmt::format("no geometry, not one triangle to see: {}", fmt::join(reasons, "; ")));
+        if (reasons.empty())
+            reasons.push_back(scene_.no_instances.empty() ? "no instance uses a mesh" : scene_.no_instances);
+        return bad(fmt::format("the scene has no visible triangle: {}", fmt::join(reasons, "; ")));
     }
 
-    static std::string place_of(std::size_t i, const Mesh& mesh) { return numbered("mesh", i, mesh.name, mesh.origin); }
+    static std::string name_of(std::size_t i, const Mesh& mesh) { return numbered("mesh", i, mesh.name, mesh.origin); }
 
-    static std::string place_of(std::size_t i, const Instance& instance) {
+    static std::string name_of(std::size_t i, const Instance& instance) {
         return numbered("instance", i, instance.name, origin_of(instance));
     }
 
     void references() const {
         if (scene_.instances.size() > kMaxInstances) {
-            throw Error(ErrorCode::OverLimit, Place{file_},
+            throw Error(ErrorCode::OverLimit, FileLocation{file_},
                         fmt::format("{} instances; the limit is {}", scene_.instances.size(), kMaxInstances));
         }
         for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
             const Instance& instance = scene_.instances[i];
             if (instance.mesh >= scene_.meshes.size()) {
-                throw bad(fmt::format("{}: mesh {} is out of range; there are {}", place_of(i, instance), instance.mesh,
+                throw bad(fmt::format("{}: mesh {} is out of range; there are {}", name_of(i, instance), instance.mesh,
                                       scene_.meshes.size()));
             }
             if (instance.material >= scene_.materials.size()) {
-                throw bad(fmt::format("{}: material {} is out of range; there are {}", place_of(i, instance),
+                throw bad(fmt::format("{}: material {} is out of range; there are {}", name_of(i, instance),
                                       instance.material, scene_.materials.size()));
             }
         }
@@ -106,13 +108,14 @@ private:
         for (MeshShape& shape : scene_.shapes) {
             if (shape.mesh >= shapes.size() || (shape.node != kNoNode && shape.node >= scene_.nodes.size()) ||
                 (shape.skin != kNoSkin && shape.skin >= scene_.skins.size())) {
-                throw bad(fmt::format("what shapes mesh {}: its mesh, node or skin is out of range", shape.mesh));
+                throw bad(fmt::format("the skin or morph targets of mesh {}: its mesh, node or skin is out of range",
+                                      shape.mesh));
             }
             shapes[shape.mesh] = &shape;
         }
         for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
             Mesh& mesh = scene_.meshes[i];
-            const std::string of = fmt::format("{}: {}", file_, place_of(i, mesh));
+            const std::string of = fmt::format("{}: {}", file_, name_of(i, mesh));
             MeshShape* shape = shapes[i];
             repairs_ += repair_mesh(mesh, shape != nullptr && moves[i], of);
             if (shape == nullptr) continue;
@@ -134,11 +137,10 @@ private:
             messages_.leave_out(text(repairs_.not_finite, "triangle", "with a vertex that is not finite", "left out"));
         }
         if (repairs_.too_far > 0) {
-            messages_.leave_out(
-                text(repairs_.too_far, "triangle", "that reaches further out than 2^40 metres", "left out"));
+            messages_.leave_out(text(repairs_.too_far, "triangle", "that reaches beyond 2^40 metres", "left out"));
         }
         warn(repairs_.without_area, "triangle", "without area", "left out");
-        warn(repairs_.normals, "normal", "of length zero or not finite", "replaced by the surface's own");
+        warn(repairs_.normals, "normal", "of length zero or not finite", "replaced by the geometric normal");
         warn(repairs_.tangents, "tangent", "of length zero or not finite", "replaced");
         warn(repairs_.texture_coordinates, "texture coordinate", "that is not finite", "set to 0");
         warn(repairs_.colors, "vertex colour", "outside [0, 1]", "clamped");
@@ -150,7 +152,7 @@ private:
         uint32_t kept = 0;
         for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
             if (scene_.meshes[i].indices.empty()) {
-                if (first_empty_mesh_.empty()) first_empty_mesh_ = place_of(i, scene_.meshes[i]);
+                if (first_empty_mesh_.empty()) first_empty_mesh_ = name_of(i, scene_.meshes[i]);
                 continue;
             }
             if (kept != i) scene_.meshes[kept] = std::move(scene_.meshes[i]);
@@ -171,19 +173,18 @@ private:
         std::size_t i = 0, dropped = 0;
         std::erase_if(scene_.instances, [&](const Instance& instance) {
             const std::size_t number = i++;
-            if (const std::string fault = fault_of_place(instance, bounds[instance.mesh]); !fault.empty()) {
-                const std::string what = fmt::format("{} {}", place_of(number, instance), fault);
+            if (const std::string fault = fault_of_transform(instance, bounds[instance.mesh]); !fault.empty()) {
+                const std::string what = fmt::format("{} {}", name_of(number, instance), fault);
                 if (first_misplaced_.empty()) first_misplaced_ = what;
-                messages_.leave_out({Place{file_}, fmt::format("{}; it is left out", what)});
+                messages_.leave_out({FileLocation{file_}, fmt::format("{}; it is left out", what)});
                 return true;
             }
             const bool drops = is_singular(instance.world_from_local) && !moves_[number];
-            if (drops && dropped++ == 0) first_singular_ = place_of(number, instance);
+            if (drops && dropped++ == 0) first_singular_ = name_of(number, instance);
             if (drops && is_flat(instance.world_from_local)) {
-                messages_.leave_out(
-                    {Place{file_}, fmt::format("{} is squeezed flat by its transform, such as by one scale of 0: it "
-                                               "is left out",
-                                               place_of(number, instance))});
+                messages_.leave_out({FileLocation{file_},
+                                     fmt::format("{} has a singular transform, such as one scale of 0, and is left out",
+                                                 name_of(number, instance))});
             }
             return drops;
         });
@@ -193,9 +194,9 @@ private:
             instance.world_from_local = {};
         }
         if (dropped == 0) return;
-        messages_.warn(
-            {Place{file_}, fmt::format("{} with a singular transform, such as a scale of 0: hidden; the first is {}",
-                                       counted(dropped, "instance"), first_singular_)});
+        messages_.warn({FileLocation{file_},
+                        fmt::format("{} with a singular transform, such as a scale of 0, hidden ({} is the first)",
+                                    counted(dropped, "instance"), first_singular_)});
     }
 
     /// Whether a transform removes all area of surfaces.
@@ -205,7 +206,7 @@ private:
     }
 
     /// Returns why an instance cannot be placed there; empty if it can.
-    static std::string fault_of_place(const Instance& instance, const Bounds3& local) {
+    static std::string fault_of_transform(const Instance& instance, const Bounds3& local) {
         const Transform& m = instance.world_from_local;
         if (!is_finite(m)) return "has a transform that is not finite";
         return local.is_empty() || lies_near(m, local) ? "" : kTooFar;
@@ -221,19 +222,19 @@ private:
         if (!is_near(camera.world_from_camera.translation)) throw too_far(of);
         const bool is_flat = has_parallel_rays(camera.projection);
         if (!is_flat && !(camera.fov_y > 0 && camera.fov_y < kPi)) {
-            throw bad(fmt::format("{}: its angle of view is {} radians; it lies between 0 and pi", of, camera.fov_y));
+            throw bad(fmt::format("{}: its field of view is {} radians; expected between 0 and pi", of, camera.fov_y));
         }
         if (is_flat && !(camera.ortho_height > 0 && camera.ortho_height <= kMaxCoordinate)) {
-            throw bad(fmt::format("{}: the height of its view is {}; it is above 0", of, camera.ortho_height));
+            throw bad(fmt::format("{}: its view height is {}; expected above 0", of, camera.ortho_height));
         }
         if (!(camera.aspect >= 0 && is_finite(camera.aspect))) {
-            throw bad(fmt::format("{}: its aspect is {}; it is above 0, or 0 for none", of, camera.aspect));
+            throw bad(fmt::format("{}: its aspect is {}; expected above 0, or 0 for none", of, camera.aspect));
         }
         if (!(camera.aperture_radius >= 0 && camera.aperture_radius <= kMaxCoordinate)) {
-            throw bad(fmt::format("{}: its aperture is {}; it is 0 or above", of, camera.aperture_radius));
+            throw bad(fmt::format("{}: its aperture is {}; expected at least 0", of, camera.aperture_radius));
         }
         if (!(camera.focus_distance > 0 && camera.focus_distance <= kMaxCoordinate)) {
-            throw bad(fmt::format("{}: its focus distance is {}; it is above 0", of, camera.focus_distance));
+            throw bad(fmt::format("{}: its focus distance is {}; expected above 0", of, camera.focus_distance));
         }
     }
 
@@ -242,23 +243,23 @@ private:
         const std::string of = numbered("light", i, light.name, light.origin);
         const Rgb e = light.intensity;
         if (!(is_finite(e) && e.r >= 0 && e.g >= 0 && e.b >= 0)) {
-            throw bad(
-                fmt::format("{}: its intensity is ({}, {}, {}); it is finite and not negative", of, e.r, e.g, e.b));
+            throw bad(fmt::format("{}: its intensity is ({}, {}, {}); expected finite numbers of at least 0", of, e.r,
+                                  e.g, e.b));
         }
         const LightParts parts = parts_of(light.kind);
-        if (parts.place) {
+        if (parts.position) {
             if (!is_near(light.position)) throw too_far(of);
-            if (!(light.range >= 0)) throw bad(fmt::format("{}: its range is {}; it is 0 or above", of, light.range));
+            if (!(light.range >= 0))
+                throw bad(fmt::format("{}: its range is {}; expected at least 0", of, light.range));
         }
         if (!parts.direction) return;
         light.direction = normalize_safely(light.direction);
         if (!is_finite(light.direction)) throw bad(of + ": its direction is zero or not finite");
         if (!parts.cone) return;
         if (!(light.cos_outer >= -1 && light.cos_inner <= 1 && light.cos_outer < light.cos_inner)) {
-            throw bad(
-                fmt::format("{}: the cosines of its cone are {} (inner) and {} (outer); outer is the smaller, both "
-                            "within -1 and 1",
-                            of, light.cos_inner, light.cos_outer));
+            throw bad(fmt::format("{}: the cosines of its cone are {} (inner) and {} (outer); expected outer < inner, "
+                                  "both between -1 and 1",
+                                  of, light.cos_inner, light.cos_outer));
         }
     }
 

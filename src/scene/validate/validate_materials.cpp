@@ -21,22 +21,22 @@ public:
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) material(i);
         if (clamped_ > 0) {
             messages_.warn(
-                {Place{file_}, fmt::format("{} of materials outside the range {} clamped; the first is {}",
-                                           counted(clamped_, "number"), is_or_are(clamped_), first_clamped_)});
+                {FileLocation{file_}, fmt::format("{} of materials outside the range {} clamped; the first is {}",
+                                                  counted(clamped_, "number"), is_or_are(clamped_), first_clamped_)});
         }
         if (scene_.environment) environment(*scene_.environment);
     }
 
 private:
-    Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, Place{file_}, what); }
+    Error bad(const std::string& what) const { return Error(ErrorCode::BadInput, FileLocation{file_}, what); }
 
     void check_size(uint64_t width, uint64_t height, uint64_t values, uint64_t values_per_pixel,
                     const std::string& of) const {
         if (width == 0 || height == 0) throw bad(of + ": it has no pixels");
         if (width > kMaxImageSide || height > kMaxImageSide || width * height > kMaxImagePixels) {
-            throw Error(ErrorCode::OverLimit, Place{file_},
-                        fmt::format("{}: {} x {} pixels; a side has at most {}, an image {}", of, width, height,
-                                    kMaxImageSide, kMaxImagePixels));
+            throw Error(ErrorCode::OverLimit, FileLocation{file_},
+                        fmt::format("{}: {} x {} pixels; the limits are {} per side and {} per image", of, width,
+                                    height, kMaxImageSide, kMaxImagePixels));
         }
         if (values != width * height * values_per_pixel) {
             throw bad(fmt::format("{}: {} x {} pixels, but {} values", of, width, height, values));
@@ -52,7 +52,7 @@ private:
             ++bad_values;
         }
         if (bad_values > 0) {
-            messages_.warn({Place{file_},
+            messages_.warn({FileLocation{file_},
                             fmt::format("{}: {} negative or not finite: set to 0", of, counted(bad_values, "value"))});
         }
     }
@@ -64,9 +64,9 @@ private:
             check_size(image.rgba8.width, image.rgba8.height, image.rgba8.pixels.size(), 4, of);
             return;
         }
-        if (!image.rgba8.pixels.empty()) throw bad(of + ": it holds pixels twice");
+        if (!image.rgba8.pixels.empty()) throw bad(of + ": it has both 8-bit and float pixels");
         check_size(image.rgba_float.width, image.rgba_float.height, image.rgba_float.pixels.size(), 4, of);
-        if (image.rgba_float.channels != 4) throw bad(of + ": a float texture has 4 channels");
+        if (image.rgba_float.channels != 4) throw bad(of + ": expected 4 channels of a float texture");
         clean(image.rgba_float.pixels, -kMaxSampleValue, of);
     }
 
@@ -74,12 +74,12 @@ private:
         if (!environment.image.pixels.empty()) {
             check_size(environment.image.width, environment.image.height, environment.image.pixels.size(), 3,
                        "environment");
-            if (environment.image.channels != 3) throw bad("environment: it has 3 channels");
+            if (environment.image.channels != 3) throw bad("environment: expected 3 channels");
             clean(environment.image.pixels, 0, "environment");
         }
         const Rgb scale = environment.scale;
         if (!(is_finite(scale) && scale.r >= 0 && scale.g >= 0 && scale.b >= 0 && is_finite(environment.rotation))) {
-            throw bad("environment: its scale and rotation are finite, its scale not negative");
+            throw bad("environment: expected a finite rotation and a finite scale of at least 0");
         }
     }
 
@@ -91,7 +91,7 @@ private:
     }
 
     void number(float& value, const char* name, float lo, float hi) {
-        if (!is_finite(value)) throw bad(fmt::format("{}: {} is {}; it is a finite number", of_, name, value));
+        if (!is_finite(value)) throw bad(fmt::format("{}: {} is {}; expected a finite number", of_, name, value));
         if (value >= lo && value <= hi) return;
         if (clamped_++ == 0)
             first_clamped_ = fmt::format("{} of {}, {}, kept within {} and {}", name, of_, value, lo, hi);
@@ -105,8 +105,9 @@ private:
                                   scene_.images.size()));
         }
         if (ref.uv_set > 1)
-            throw bad(fmt::format("{}: {}: set {} of texture coordinates; 0 and 1 are read", of_, name, ref.uv_set));
-        if (ref.channel > 3) throw bad(fmt::format("{}: {}: channel {}; there are 4", of_, name, ref.channel));
+            throw bad(fmt::format("{}: {}: set {} of texture coordinates; only 0 and 1 are supported", of_, name,
+                                  ref.uv_set));
+        if (ref.channel > 3) throw bad(fmt::format("{}: {}: channel {}; expected 0 to 3", of_, name, ref.channel));
         for (const float m : {ref.m00, ref.m01, ref.m02, ref.m10, ref.m11, ref.m12}) {
             if (!(abs(m) <= kMaxUvScale)) throw bad(fmt::format("{}: {}: its transform is not finite", of_, name));
         }

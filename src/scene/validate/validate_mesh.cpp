@@ -49,7 +49,7 @@ void check_sizes(const Mesh& mesh, const std::string& of) {
     check(mesh.colors.size(), "colours");
     if (mesh.indices.size() % 3 != 0) {
         throw Error(ErrorCode::BadInput,
-                    fmt::format("{}: {} indices; a triangle takes three", of, mesh.indices.size()));
+                    fmt::format("{}: {} indices; expected a multiple of 3", of, mesh.indices.size()));
     }
     if (mesh.indices.size() / 3 > kMaxTrianglesPerMesh) {
         throw Error(ErrorCode::OverLimit, fmt::format("{}: {} triangles; the limit is {}", of, mesh.indices.size() / 3,
@@ -63,7 +63,7 @@ void check_sizes(const Mesh& mesh, const std::string& of) {
     });
 }
 
-bool is_place(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
+bool is_valid_position(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
 
 enum class Fault : uint8_t { None, NotFinite, TooFar, WithoutArea };
 
@@ -71,7 +71,7 @@ Fault fault_of(const Mesh& mesh, uint64_t triangle) {
     const uint32_t* i = mesh.indices.data() + 3 * triangle;
     const Vec3 a = mesh.positions[i[0]], b = mesh.positions[i[1]], c = mesh.positions[i[2]];
     if (!(is_finite(a) && is_finite(b) && is_finite(c))) return Fault::NotFinite;
-    if (!(is_place(a) && is_place(b) && is_place(c))) return Fault::TooFar;
+    if (!(is_valid_position(a) && is_valid_position(b) && is_valid_position(c))) return Fault::TooFar;
     const DoubleVec3 area = area_vector(a, b, c);
     return area.x == 0 && area.y == 0 && area.z == 0 ? Fault::WithoutArea : Fault::None;
 }
@@ -152,15 +152,14 @@ void check_shape_sizes(const MeshShape& shape, const Mesh& mesh, const std::stri
         }
     }
     if (!fit || shape.joints.size() != influences || shape.weights.size() != influences) {
-        throw Error(ErrorCode::BadInput, fmt::format("{}: its morph targets or its skin have another number of "
-                                                     "vertices than its {}",
-                                                     of, vertices));
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("{}: the vertices of its morph targets or skin do not match its {}", of, vertices));
     }
 }
 
-void put_zeros_for_no_places(std::vector<Vec3>& positions) {
+void zero_invalid_positions(std::vector<Vec3>& positions) {
     parallel_for(positions.size(), kGrain, [&](uint64_t i) {
-        if (!is_place(positions[i])) positions[i] = {};
+        if (!is_valid_position(positions[i])) positions[i] = {};
     });
 }
 
@@ -187,7 +186,7 @@ MeshRepairs repair_mesh(Mesh& mesh, bool reshaped, const std::string& of) {
     check_sizes(mesh, of);
     MeshRepairs repairs;
     drop_triangles(mesh, reshaped, repairs);
-    put_zeros_for_no_places(mesh.positions);
+    zero_invalid_positions(mesh.positions);
     repairs.normals = repair_normals(mesh);
     repairs.tangents = repair_tangents(mesh);
     for (std::vector<Vec2>& uv : mesh.uv) {
@@ -216,7 +215,7 @@ MeshRepairs repair_shape(MeshShape& shape, const Mesh& mesh, std::size_t joint_c
                                                      "the skin's joints",
                                                      of, i / shape.joints_per_vertex, shape.joints[i], joint_count));
     }
-    put_zeros_for_no_places(shape.positions);
+    zero_invalid_positions(shape.positions);
     for (MorphTarget& target : shape.targets) {
         for (std::vector<Vec3>* offsets : {&target.positions, &target.normals, &target.tangents}) {
             put_zeros_for_not_finite(*offsets);

@@ -45,7 +45,7 @@ std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
     const std::vector<float>& times = channel.times;
     const std::vector<float>& values = channel.values;
     if (channel.part == AnimatedPart::Weights && scene.nodes[channel.target].morph_weights.empty()) {
-        return "its node's mesh has no morph targets; expected one that has";
+        return "its node's mesh has no morph targets, so that its weights cannot be animated";
     }
     if (places_node(channel.part) && std::holds_alternative<DoubleTransform>(scene.nodes[channel.target].pose)) {
         return "its node has a matrix; expected translation, rotation and scale";
@@ -53,13 +53,13 @@ std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
     if (times.empty()) return "it has no key times; expected at least one";
     for (std::size_t i = 0; i < times.size(); ++i) {
         if (!is_finite(times[i]) || (i > 0 && times[i] < times[i - 1])) {
-            return fmt::format("key time {} is {}; expected finite seconds, none below the one before", i, times[i]);
+            return fmt::format("key time {} is {}; expected finite seconds in order", i, times[i]);
         }
     }
     const std::size_t numbers = numbers_in_value(channel, scene);
     const std::size_t per_key = channel.interpolation == Interpolation::CubicSpline ? 3 : 1;
     if (values.size() != times.size() * per_key * numbers) {
-        return fmt::format("{} numbers for {}; expected {}: {} a key of {} each", values.size(),
+        return fmt::format("{} numbers for {}; expected {}: {} per key of {} each", values.size(),
                            counted(times.size(), "key time"), times.size() * per_key * numbers,
                            counted(per_key, "value"), counted(numbers, "number"));
     }
@@ -75,9 +75,9 @@ std::string fault_of(const AnimationChannel& channel, const Scene& scene) {
 }
 
 void validate_nodes(const Scene& scene, const std::string& file) {
-    const auto bad = [&](const std::string& what) { return Error(ErrorCode::BadInput, Place{file}, what); };
+    const auto bad = [&](const std::string& what) { return Error(ErrorCode::BadInput, FileLocation{file}, what); };
     const std::size_t count = scene.nodes.size();
-    const auto place_of = [&](std::size_t i) {
+    const auto name_of = [&](std::size_t i) {
         return numbered("node", i, scene.nodes[i].name, fmt::format("/nodes/{}", i));
     };
     const auto check_node = [&](uint32_t node, const auto& of) {
@@ -86,25 +86,25 @@ void validate_nodes(const Scene& scene, const std::string& file) {
     };
     for (std::size_t i = 0; i < count; ++i) {
         const Node& node = scene.nodes[i];
-        check_node(node.parent, [&] { return place_of(i) + ": its parent"; });
+        check_node(node.parent, [&] { return name_of(i) + ": its parent"; });
         if (node.skin != kNoSkin && node.skin >= scene.skins.size()) {
             throw bad(
-                fmt::format("{}: skin {} is out of range; there are {}", place_of(i), node.skin, scene.skins.size()));
+                fmt::format("{}: skin {} is out of range; there are {}", name_of(i), node.skin, scene.skins.size()));
         }
         const NodePose* pose = std::get_if<NodePose>(&node.pose);
         if (pose != nullptr ? !is_finite_pose(*pose) : !is_finite(to_float(std::get<DoubleTransform>(node.pose)))) {
-            throw bad(place_of(i) + ": its transform is not finite");
+            throw bad(name_of(i) + ": its transform is not finite");
         }
         if (pose != nullptr && is_zero(pose->rotation)) {
-            throw bad(place_of(i) + ": its rotation is 0; expected a unit quaternion");
+            throw bad(name_of(i) + ": its rotation is 0; expected a unit quaternion");
         }
         if (!std::ranges::all_of(node.morph_weights, [](float w) { return is_finite(w); })) {
-            throw bad(place_of(i) + ": a morph weight is not finite");
+            throw bad(name_of(i) + ": a morph weight is not finite");
         }
     }
     if (const std::size_t placed = parents_first(scene.nodes).size(); placed != count) {
-        throw bad(
-            fmt::format("{} of {} nodes are their own ancestors or below such; expected trees", count - placed, count));
+        throw bad(fmt::format("{} of {} nodes are their own ancestors or descendants of such; expected trees",
+                              count - placed, count));
     }
     for (std::size_t i = 0; i < scene.skins.size(); ++i) {
         const Skin& skin = scene.skins[i];

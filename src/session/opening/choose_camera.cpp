@@ -10,7 +10,7 @@
 #include "math/portable_math.h"
 #include "scene/scene_origin.h"
 #include "session/degrees.h"
-#include "session/place_text.h"
+#include "session/position_text.h"
 #include "session/survey/aim_camera.h"
 #include "session/survey/default_camera.h"
 
@@ -39,7 +39,7 @@ void place_camera(const CameraChoice& choice, const Scene& scene, Camera& camera
     if (!is_finite(placed.row0) || !is_finite(placed.row1) || !is_finite(placed.row2)) {
         throw Error(ErrorCode::BadInput, "target", text_of(in_file(scene, target)),
                     fmt::format("it must differ from `eye={}`{}", text_of(in_file(scene, eye)),
-                                choice.up ? fmt::format(" and not lie along `up={}`", text_of(up)) : ""));
+                                choice.up ? fmt::format(" and its direction from `up={}`", text_of(up)) : ""));
     }
     camera.world_from_camera = placed;
     if (choice.target) camera.focus_distance = length(target - eye);
@@ -51,8 +51,8 @@ Camera make_camera(const CameraChoice& choice, const Scene& scene, float aspect,
     Messages unsaid; // discards messages about a view that is not used
     const Camera camera = make_default_camera(scene, aspect, unsaid);
     const Vec3 eye = camera.world_from_camera.translation;
-    messages.make_up(fmt::format("no camera in the scene: a made-up eye looks at the target (`eye={}` `target={}`)",
-                                 place_text(scene, eye, 4), text_of(*choice.target)));
+    messages.make_up(fmt::format("the scene has no camera: a default eye looks at the target (`eye={}` `target={}`)",
+                                 position_text(scene, eye, 4), text_of(*choice.target)));
     return camera;
 }
 
@@ -77,26 +77,25 @@ void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera&
     const float away = length(middle - camera.world_from_camera.translation);
     const float distance = seen.value_or(max(away, 0x1p-40f));
     camera.focus_distance = rounded(distance, 4);
-    messages.make_up({"aperture", "",
-                      fmt::format("without `focus` it is sharp at {:.4g} m, {} (`focus={:.4g}`)", distance,
-                                  seen ? "the distance of what is in the middle of the picture"
-                                       : "the distance of the scene's middle, for nothing is in that of the picture",
-                                  distance)});
+    messages.make_up(
+        {"aperture", "",
+         fmt::format("without `focus` the lens focuses at {:.4g} m, {} (`focus={:.4g}`)", distance,
+                     seen ? "the distance of the surface in the middle of the picture"
+                          : "the distance of the scene's middle, because the middle of the picture shows nothing",
+                     distance)});
 }
 
 /// `flattened`: the camera's angle of view has become a height.
 void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, bool flattened, Messages& messages) {
     const bool is_perspective = !has_parallel_rays(camera.projection);
     if (choice.view_height && is_perspective) {
-        messages.warn(
-            {"view_height", "", "the camera is a perspective one; `projection=orthographic` makes use of it"});
+        messages.warn({"view_height", "", "the camera is perspective; it applies with `projection=orthographic`"});
     }
     if (choice.fov_deg && !is_perspective && (!flattened || choice.view_height)) {
-        messages.warn(
-            {"fov", "", "the camera is an orthographic one, whose view has a height; `view_height` sets that"});
+        messages.warn({"fov", "", "the camera is orthographic; set `view_height` instead"});
     }
     if (choice.focus && camera.aperture_radius == 0) {
-        messages.warn({"focus", "", "the lens has no aperture, so all is sharp; `aperture` gives it one"});
+        messages.warn({"focus", "", "the lens has no aperture, so that everything is in focus; set `aperture`"});
     }
 }
 
@@ -105,10 +104,11 @@ void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, boo
 void check_camera_choice(const CameraChoice& choice) {
     if (choice.view_height && choice.projection && !has_parallel_rays(*choice.projection)) {
         throw Error(ErrorCode::BadInput, "view_height", "",
-                    "a perspective view has none; say `fov`, or `projection=orthographic`");
+                    "a perspective view has none; set `fov`, or `projection=orthographic`");
     }
     if (choice.focus && choice.aperture == 0.0f) {
-        throw Error(ErrorCode::BadInput, "focus", "", "with `aperture=0` all is sharp; give the lens a radius");
+        throw Error(ErrorCode::BadInput, "focus", "",
+                    "with `aperture=0` everything is in focus; set a radius of the lens");
     }
 }
 
@@ -131,12 +131,12 @@ const Camera* scene_camera(const std::string& name, const Scene& scene) {
 void aim_eye(CameraChoice& choice, const Scene& scene, Messages& messages) {
     if (!choice.eye || choice.target) return;
     const Target target = target_from(scene, in_scene(scene, *choice.eye));
-    choice.target = told_place(scene, target.position, 6);
+    choice.target = stated_position(scene, target.position, 6);
     choice.is_aimed = true;
     messages.make_up({"eye", "",
-                      fmt::format("without `target` it looks {} (`eye={}` `target={}`)",
+                      fmt::format("without `target` the camera looks {} (`eye={}` `target={}`)",
                                   target.is_middle ? "at the middle of the scene" : "along the scene from its middle",
-                                  text_of(*choice.eye), place_text(scene, target.position, 6))});
+                                  text_of(*choice.eye), position_text(scene, target.position, 6))});
 }
 
 Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Messages& messages) {
@@ -147,8 +147,8 @@ Camera choose_camera(CameraChoice choice, const Scene& scene, float aspect, Mess
     } else if (!choice.eye) {
         camera = make_camera(choice, scene, aspect, messages);
     }
-    Vec3& place = camera.world_from_camera.translation;
-    place = told_in_file(scene, place); // so that numbers in the coordinates of the file state it to the bit
+    Vec3& position = camera.world_from_camera.translation;
+    position = rounded_to_file(scene, position); // so that numbers in the coordinates of the file state it to the bit
     place_camera(choice, scene, camera);
     if (choice.fov_deg) camera.fov_y = *choice.fov_deg * kRadiansPerDegree;
     if (choice.aperture) camera.aperture_radius = *choice.aperture;

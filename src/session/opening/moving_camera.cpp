@@ -47,9 +47,9 @@ CameraChoice MovingCamera::choice_at(std::optional<double> time_s) const {
 
 Camera MovingCamera::at(const Scene& scene, std::optional<double> time_s) const {
     if (made_up_) return *made_up_;
-    Messages said_already;
+    Messages already_reported;
     try {
-        return choose_camera(choice_at(time_s), scene, aspect_, said_already);
+        return choose_camera(choice_at(time_s), scene, aspect_, already_reported);
     } catch (const Error& error) {
         if (!path_) throw;
         Remark remark = error.remark();

@@ -49,7 +49,7 @@ void turn_and_scale(const OpenOptions& options, Scene& scene, Messages& messages
         return;
     }
     const auto warn = [&](const char* setting) {
-        messages.warn({setting, "", "the scene has no environment; `environment` gives it one"});
+        messages.warn({setting, "", "the scene has no environment; set `environment`"});
     };
     if (options.environment_rotation_deg != 0) warn("environment_rotation");
     if (options.environment_scale != 1) warn("environment_scale");
@@ -69,7 +69,7 @@ bool names_emitter_of_file(const Scene& scene, const EmitterStrength& emitter) {
 void show_back_faces(Scene& scene, Messages& messages) {
     bool any_hidden = false;
     for (Material& material : scene.materials) any_hidden |= !std::exchange(material.double_sided, true);
-    if (!any_hidden) messages.warn({"show_back_faces", "", "no surface of the scene hides its back"});
+    if (!any_hidden) messages.warn({"show_back_faces", "", "no surface of the scene has a hidden back"});
 }
 
 /// `light` is the light that was added. `around` describes the scene if that is a sky.
@@ -94,22 +94,20 @@ std::string in_a_row(const std::vector<std::string>& list) {
 }
 
 /// Says which animation plays if the file has several and none was chosen.
-void say_which_clip(const Scene& scene, const std::string& file, Messages& messages) {
+void report_animation(const Scene& scene, const std::string& file, Messages& messages) {
     if (scene.clips.size() < 2) return;
     const std::vector<std::string> clips = list_clips(scene.clips);
-    messages.note({Place{file},
-                   fmt::format("the file has {} animations, of which the first plays, {}; `animation` (NAME, N or all) "
-                               "plays another or all of {}",
-                               clips.size(), shortened(clips.front()), in_a_row(clips))});
+    messages.note({FileLocation{file}, fmt::format("the file has {} animations and plays the first, {}; `animation` "
+                                                   "(NAME, N or all) plays another or all of {}",
+                                                   clips.size(), shortened(clips.front()), in_a_row(clips))});
 }
 
-void say_which_scene(const Scene& scene, const std::string& file, Messages& messages) {
+void report_file_scene(const Scene& scene, const std::string& file, Messages& messages) {
     if (scene.file_scenes.size() < 2) return;
     const std::vector<std::string> scenes = list_file_scenes(scene);
-    messages.note(
-        {Place{file},
-         fmt::format("the file has {} scenes, of which {} is shown; `file_scene` (NAME or N) shows another of {}",
-                     scenes.size(), shortened(scenes[scene.file_scene]), in_a_row(scenes))});
+    messages.note({FileLocation{file},
+                   fmt::format("the file has {} scenes and shows {}; `file_scene` (NAME or N) shows another of {}",
+                               scenes.size(), shortened(scenes[scene.file_scene]), in_a_row(scenes))});
 }
 
 } // namespace
@@ -172,18 +170,19 @@ std::string environment_text(const OpenOptions& options) {
 
 Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptions& options, Messages& messages) {
     Scene scene = read_scene(path, options, messages);
-    if (options.file_scene.empty()) say_which_scene(scene, path.string(), messages);
-    if (!(options.space == FileSpace()) && tells_space(path)) {
-        messages.warn(
-            {Place{path.string()}, "the file is in metres with y up; `up_axis` and `unit` are for .obj and .ply"});
+    if (options.file_scene.empty()) report_file_scene(scene, path.string(), messages);
+    if (!(options.space == FileSpace()) && defines_space(path)) {
+        messages.warn({FileLocation{path.string()},
+                       "the file is in metres with y up; `up_axis` and `unit` are for .obj and .ply"});
     }
-    if (!options.two_sided_lights && !tells_emitter_sides(path)) say_emitter_fronts(scene, path.string(), messages);
+    if (!options.two_sided_lights && !defines_emitter_sides(path))
+        report_emitter_fronts(scene, path.string(), messages);
     return scene;
 }
 
 Scene open_scene(const OpenOptions& options, Messages& messages) {
     Scene scene = read_scene_and_emitters(options.scene, read_options(options), messages);
-    if (options.animation.empty()) say_which_clip(scene, options.scene, messages);
+    if (options.animation.empty()) report_animation(scene, options.scene, messages);
     if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
         messages.warn({"two_sided_lights", "", "no surface of the scene emits light"});
     }
@@ -202,7 +201,7 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
         is_turned_off ? DefaultLight::None : add_default_light(scene, options.use, messages, &around);
     if (wants_ground(options, scene, light, around)) {
         add_ground(scene);
-        messages.make_up("a made-up ground catches the shadow; `ground=off` leaves it out");
+        messages.make_up("a default ground receives the shadow; `ground=off` leaves it out");
     }
     turn_and_scale(options, scene, messages);
     set_emitters(scene, others, efficacy);

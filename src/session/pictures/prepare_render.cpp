@@ -23,7 +23,7 @@ namespace {
 Ground ground_of(const PictureOptions& options) {
     if (options.scene.ground == "on" && options.render.transparent) {
         throw Error(ErrorCode::BadInput, "ground", "on",
-                    "the ground is a part of the background, which `transparent` leaves out; leave out one of them");
+                    "the ground is part of the background, which `transparent` removes; leave out one of them");
     }
     if (options.scene.ground == "on") return Ground::On;
     const CameraChoice& camera = options.scene.camera;
@@ -34,14 +34,14 @@ Ground ground_of(const PictureOptions& options) {
 }
 
 /// Reports all given settings and their sources, with the resulting size and number of samples.
-void tell_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source) {
+void report_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source) {
     const CameraChoice& choice = options.scene.camera;
     const Camera* const own = scene_camera(choice.camera, scene);
     const bool is_own = own != nullptr && !choice.eye && options.camera_path.empty();
-    auto told = options.given; // the scene's own camera has no value that a settings file could contain
-    if (is_own) told.try_emplace("camera", SettingOrigin::Scene);
-    if (own != nullptr && own->aspect > 0) told.try_emplace("size", SettingOrigin::Scene);
-    for (const auto& [name, origin] : told) {
+    auto origins = options.given; // the scene's own camera has no value that a settings file could contain
+    if (is_own) origins.try_emplace("camera", SettingOrigin::Scene);
+    if (own != nullptr && own->aspect > 0) origins.try_emplace("size", SettingOrigin::Scene);
+    for (const auto& [name, origin] : origins) {
         std::string& names = origin == SettingOrigin::Flag   ? source.by_flags
                              : origin == SettingOrigin::File ? source.by_settings
                                                              : source.by_scene;
@@ -64,7 +64,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     ComingMachine machine(options.machine, messages);
     std::optional<TracerChoice> tracers; // a tracer that does not fit the device is refused before the scene is read
     if (!options.tracer.are_empty()) tracers = tracer_choice(options.tracer, machine.is_cuda());
-    sink.say_messages();
+    sink.report_messages();
     sink.set_work(fmt::format("loading {}", options.scene.scene));
     const Stopwatch watch;
     auto ready = std::make_unique<RenderSetup>();
@@ -95,10 +95,10 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     if (settings.integrator == IntegratorKind::Radiosity) {
         if (ready->moving->is_animated() && !options.frames.empty()) {
             throw Error(ErrorCode::BadInput, "frames", "",
-                        "radiosity is solved for one time, and this scene moves; `time` shows it at one (`camera_path` "
-                        "and `turntable` take it as it is)");
+                        "radiosity is solved for one time, and this scene moves; set `time` (`camera_path` and "
+                        "`turntable` work with the scene at rest)");
         }
-        sink.say_messages();
+        sink.report_messages();
         settings.radiosity = solve(*ready);
     }
     return ready;
@@ -112,7 +112,7 @@ PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, 
                             .frame = {},
                             .display = {}};
     if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
-    tell_settings(options, ready.settings, ready.scene(), record.scene);
+    report_settings(options, ready.settings, ready.scene(), record.scene);
     record.scene.made_up = messages.made_up();
     record.scene.left_out = messages.left_out();
     record.scene.load_seconds = ready.load_s;

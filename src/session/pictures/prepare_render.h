@@ -29,7 +29,7 @@ struct RenderSetup {
 };
 
 /// Computes the radiosity solution of a scene.
-using SolveRadiosity = std::function<RadiosityLook(RenderSetup& ready)>;
+using SolveRadiosity = std::function<RadiosityDisplay(RenderSetup& ready)>;
 
 /// Prepares everything and reports progress to `sink`. Adds to `options` what the scene's file suggests for the
 /// settings of `verbs`. Calls `solve` if the integrator is radiosity. Throws Error.

@@ -14,8 +14,8 @@ Target target_from(const Scene& scene, Vec3 eye) {
 }
 
 std::optional<float> distance_in_the_middle(const Scene& scene, const Camera& camera) {
-    const LookRay ray = {camera.world_from_camera.translation, normalize(-column(camera.world_from_camera, 2))};
-    const LookHit hit = cast_rays(scene, {&ray, 1}, Backs::Shown).front();
+    const SurveyRay ray = {camera.world_from_camera.translation, normalize(-column(camera.world_from_camera, 2))};
+    const SurveyHit hit = cast_rays(scene, {&ray, 1}, Backs::Shown).front();
     return hit.is_hit() ? std::optional(hit.distance) : std::nullopt;
 }
 

@@ -5,8 +5,8 @@
 namespace pertev {
 
 float distance_along(const Scene& scene, Vec3 from, Vec3 direction, float otherwise) {
-    const LookRay ray = {from, direction};
-    const LookHit hit = cast_rays(scene, {&ray, 1}).front();
+    const SurveyRay ray = {from, direction};
+    const SurveyHit hit = cast_rays(scene, {&ray, 1}).front();
     return hit.is_hit() ? hit.distance : otherwise;
 }
 

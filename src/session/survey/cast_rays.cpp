@@ -65,7 +65,7 @@ std::vector<RayPack> pack(const std::vector<LocalRay>& rays) {
     return packs;
 }
 
-void cast_at_mesh(const Mesh& mesh, bool has_back, const std::vector<LocalRay>& rays, std::vector<LookHit>& hits) {
+void cast_at_mesh(const Mesh& mesh, bool has_back, const std::vector<LocalRay>& rays, std::vector<SurveyHit>& hits) {
     const std::vector<RayPack> start = pack(rays);
     std::mutex merging;
     parallel_for_ranges(mesh.triangle_count(), kGrain, [&](uint64_t begin, uint64_t end) {
@@ -79,7 +79,7 @@ void cast_at_mesh(const Mesh& mesh, bool has_back, const std::vector<LocalRay>& 
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const RayPack& from = packs[i / RayPack::kWidth];
             const std::size_t k = i % RayPack::kWidth;
-            LookHit& hit = hits[rays[i].index];
+            SurveyHit& hit = hits[rays[i].index];
             const bool is_front = from.facing[k] > 0;
             if (from.distance[k] < hit.distance || (from.distance[k] == hit.distance && is_front)) {
                 hit = {from.distance[k], is_front};
@@ -90,8 +90,8 @@ void cast_at_mesh(const Mesh& mesh, bool has_back, const std::vector<LocalRay>& 
 
 } // namespace
 
-std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays, Backs backs, Glass glass) {
-    std::vector<LookHit> hits(rays.size());
+std::vector<SurveyHit> cast_rays(const Scene& scene, std::span<const SurveyRay> rays, Backs backs, Glass glass) {
+    std::vector<SurveyHit> hits(rays.size());
     std::vector<Bounds3> bounds;
     for (const Mesh& mesh : scene.meshes) bounds.push_back(bounds_of(mesh));
     std::vector<LocalRay> local;

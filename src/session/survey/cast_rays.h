@@ -11,11 +11,11 @@
 
 namespace pertev {
 
-struct LookRay {
+struct SurveyRay {
     Vec3 origin, direction; // world space; the direction is unit
 };
 
-struct LookHit {
+struct SurveyHit {
     float distance = kInfinity; // metres; infinite if nothing is hit
     bool is_front = false;      // whether the mesh's front is hit, even under a mirroring transform
     bool is_hit() const { return distance < kInfinity; }
@@ -29,7 +29,7 @@ enum class Glass { Stops, LetsThrough };
 /// The nearest hit of each ray; the front if a front and a back have the same distance. A generated ground is
 /// ignored. The time is proportional to rays times triangles of all instances whose box is hit. The scene has passed
 /// validate().
-std::vector<LookHit> cast_rays(const Scene& scene, std::span<const LookRay> rays, Backs backs = Backs::All,
-                               Glass glass = Glass::Stops);
+std::vector<SurveyHit> cast_rays(const Scene& scene, std::span<const SurveyRay> rays, Backs backs = Backs::All,
+                                 Glass glass = Glass::Stops);
 
 } // namespace pertev

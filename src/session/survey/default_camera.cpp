@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "math/portable_math.h"
-#include "session/place_text.h"
+#include "session/position_text.h"
 #include "session/survey/aisle.h"
 #include "session/survey/cast_rays.h"
 #include "session/survey/surroundings.h"
@@ -18,9 +18,9 @@ constexpr float kFovOutside = 0.6981317f, kFovInside = 1.1344640f; // 40 and 65 
 constexpr float kAside = 28, kAbove = 18;                          // degrees, for a view from outside
 constexpr float kAboveFlat = 38;                                   // degrees, for flat objects
 constexpr uint64_t kMaxTrianglesSeen = 8'000'000;                  // a second on one core
-constexpr int kLooks = 8;                                          // rays along each side of a candidate view
+constexpr int kViewRays = 8;                                       // rays along each side of a candidate view
 
-Camera look(Vec3 eye, Vec3 target, float fov_y, const char* name) {
+Camera camera_at(Vec3 eye, Vec3 target, float fov_y, const char* name) {
     Camera camera;
     camera.name = name;
     camera.world_from_camera = look_at(eye, target, {0, 1, 0});
@@ -59,7 +59,7 @@ Camera fitted(const Scene& scene, const Bounds3& box, Vec3 direction, float aspe
         }
     }
     if (distance == 0) distance = length(box.size());
-    return look(centre + (1.08f * distance) * direction, centre, o.fov_y, name);
+    return camera_at(centre + (1.08f * distance) * direction, centre, o.fov_y, name);
 }
 
 /// Unit direction towards the eye: `aside` degrees to the right of +z as seen from there, and `above` degrees above
@@ -74,19 +74,19 @@ int count_hits(const Scene& scene, const Bounds3& box, Vec3 direction, Backs bac
     const Transform view = look_at(direction, {}, {0, 1, 0}); // columns: right, up, back
     const Vec3 size = box.size(), right = column(view, 0), up = column(view, 1);
     const float half_x = 0.5f * dot(abs(right), size), half_y = 0.5f * dot(abs(up), size);
-    std::vector<LookRay> rays;
-    for (int i = 0; i < kLooks * kLooks; ++i) {
-        const float x = (2 * static_cast<float>(i % kLooks) + 1) / kLooks - 1;
-        const float y = (2 * static_cast<float>(i / kLooks) + 1) / kLooks - 1;
+    std::vector<SurveyRay> rays;
+    for (int i = 0; i < kViewRays * kViewRays; ++i) {
+        const float x = (2 * static_cast<float>(i % kViewRays) + 1) / kViewRays - 1;
+        const float y = (2 * static_cast<float>(i / kViewRays) + 1) / kViewRays - 1;
         rays.push_back(
             {box.centre() + length(size) * direction + (x * half_x) * right + (y * half_y) * up, -direction});
     }
-    return static_cast<int>(std::ranges::count_if(cast_rays(scene, rays, backs), &LookHit::is_hit));
+    return static_cast<int>(std::ranges::count_if(cast_rays(scene, rays, backs), &SurveyHit::is_hit));
 }
 
 /// Viewing direction: a little to the side of +z, the front of glTF models, and above. If hardly anything but culled
 /// backs were visible from there, it is the first other direction that shows at least half of the maximum.
-Vec3 way_to_look_from(const Scene& scene, const Bounds3& box) {
+Vec3 view_direction(const Scene& scene, const Bounds3& box) {
     const Vec3 size = box.size();
     const float flat = clamp(1 - 4 * size.y / max(size.x, size.z), 0.0f, 1.0f); // NaN, for a point, becomes a bound
     const float above = kAbove + (kAboveFlat - kAbove) * flat;
@@ -117,7 +117,7 @@ Camera inside(const Scene& scene, const Surroundings& room, float aspect) {
     const Aisle aisle = find_aisle(scene, room);
     const Vec3 eye = aisle.middle - (0.42f * aisle.length) * aisle.along;
     const Vec3 target = aisle.middle + (0.5f * aisle.length) * aisle.along + Vec3{0, 0.12f * aisle.height, 0};
-    return look(eye, target, opening(kFovInside, aspect).fov_y, "default, inside");
+    return camera_at(eye, target, opening(kFovInside, aspect).fov_y, "default, inside");
 }
 
 } // namespace
@@ -129,7 +129,7 @@ Camera make_default_camera(const Scene& scene, float aspect, Messages& messages)
     Camera camera;
     switch (around.kind) {
     case SurroundingsKind::Object:
-        camera = fitted(scene, around.bounds, way_to_look_from(scene, around.bounds), aspect, "default, outside");
+        camera = fitted(scene, around.bounds, view_direction(scene, around.bounds), aspect, "default, outside");
         break;
     case SurroundingsKind::Stage:
         camera = fitted(scene, around.bounds, around.open_side, aspect, "default, in front");
@@ -142,8 +142,8 @@ Camera make_default_camera(const Scene& scene, float aspect, Messages& messages)
     }
     const Vec3 eye = camera.world_from_camera.translation;
     const Vec3 target = eye - camera.focus_distance * column(camera.world_from_camera, 2);
-    messages.make_up(fmt::format("no camera in the scene: {} (`eye={}` `target={}`)", what, place_text(scene, eye, 4),
-                                 place_text(scene, target, 4)));
+    messages.make_up(fmt::format("the scene has no camera: {} (`eye={}` `target={}`)", what,
+                                 position_text(scene, eye, 4), position_text(scene, target, 4)));
     return camera;
 }
 

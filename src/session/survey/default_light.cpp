@@ -90,9 +90,9 @@ DefaultLight add_default_light(Scene& scene, SceneUse use, Messages& messages, S
     const bool is_weak =
         may_be_weak && (own == OwnLight::Glowing ? is_light_too_weak(scene) : lights_nothing_seen(scene));
     if (own != OwnLight::None && !is_weak) return DefaultLight::None;
-    const char* why = !is_weak                    ? "no light in the scene"
-                      : own == OwnLight::Punctual ? "the lights of the scene reach nothing that is seen"
-                                                  : "what glows in the scene lights too little of it to see by";
+    const char* why = !is_weak                    ? "the scene has no light"
+                      : own == OwnLight::Punctual ? "the lights of the scene reach nothing visible"
+                                                  : "the emitters of the scene light too little of it";
     const Surroundings around = look_around(scene);
     if (seen != nullptr) *seen = around;
     if (around.is_dark) {

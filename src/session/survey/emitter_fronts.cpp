@@ -20,9 +20,9 @@ constexpr float kMuchMore = 20;                    // room behind per metre in f
 bool is_one_sided_emitter(const Material& material) { return material.is_emitter() && !material.two_sided_emission; }
 
 /// Two rays from the middle of each tested triangle: along its front normal, and along its back normal.
-std::vector<LookRay> rays_from(const Scene& scene, const Instance& emitter) {
+std::vector<SurveyRay> rays_from(const Scene& scene, const Instance& emitter) {
     const Mesh& mesh = scene.meshes[emitter.mesh];
-    std::vector<LookRay> rays;
+    std::vector<SurveyRay> rays;
     const std::size_t count = mesh.triangle_count(), looked_at = std::min(count, kMostOfEmitter);
     for (std::size_t k = 0; k < looked_at; ++k) {
         const uint32_t* index = mesh.indices.data() + 3 * (k * count / looked_at);
@@ -52,32 +52,34 @@ void warn_of_turned_emitters(const Scene& scene, const std::vector<const Instanc
     if (triangles > kMaxSceneTriangles) return;
     const Bounds3 box = bounds_of(scene);
     for (std::size_t i = 0; i < std::min(emitters.size(), kMostEmitters); ++i) {
-        const std::vector<LookRay> rays = rays_from(scene, *emitters[i]);
+        const std::vector<SurveyRay> rays = rays_from(scene, *emitters[i]);
         if (rays.empty()) continue;
-        const std::vector<LookHit> hits = cast_rays(scene, rays);
+        const std::vector<SurveyHit> hits = cast_rays(scene, rays);
         std::size_t turned = 0;
         float before = kInfinity, behind = kInfinity; // `behind` is the least distance to a surface there
         for (std::size_t k = 0; k < hits.size(); k += 2) {
             const float off = 0.5f * length(rays[k].origin - rays[k + 1].origin);
             const float front = off + hits[k].distance, back = off + hits[k + 1].distance;
             // No hit behind may mean the sky above a lamp that correctly shines down; then the scene's extent counts.
-            const float room = back < kInfinity ? back : reach_of(box, rays[k + 1].origin, rays[k + 1].direction);
-            if (!(kMuchMore * front < room)) continue;
+            const float distance_text =
+                back < kInfinity ? back : reach_of(box, rays[k + 1].origin, rays[k + 1].direction);
+            if (!(kMuchMore * front < distance_text)) continue;
             ++turned;
             before = min(before, front);
             behind = min(behind, back);
         }
         if (2 * turned <= hits.size() / 2) continue; // most of the tested triangles
-        const std::string room = behind < kInfinity ? fmt::format("{:.3g} m", behind) : "most of the scene";
-        messages.warn({Place{file}, fmt::format("the lamp {} shines at a surface {:.3g} m before its front and has {} "
-                                                "behind it: flip its faces, or use `two_sided_lights`",
-                                                shortened(emitters[i]->name), before, room)});
+        const std::string distance_text = behind < kInfinity ? fmt::format("{:.3g} m", behind) : "most of the scene";
+        messages.warn(
+            {FileLocation{file}, fmt::format("the lamp {} shines at a surface {:.3g} m before its front and has {} "
+                                             "behind it: flip its faces, or use `two_sided_lights`",
+                                             shortened(emitters[i]->name), before, distance_text)});
     }
 }
 
 } // namespace
 
-void say_emitter_fronts(const Scene& scene, const std::string& file, Messages& messages) {
+void report_emitter_fronts(const Scene& scene, const std::string& file, Messages& messages) {
     std::vector<const Instance*> emitters;
     std::string names;
     for (const Instance& instance : scene.instances) {
@@ -87,7 +89,7 @@ void say_emitter_fronts(const Scene& scene, const std::string& file, Messages& m
     }
     if (emitters.empty()) return;
     if (emitters.size() > kMaxNames) names += fmt::format(" and {} more", emitters.size() - kMaxNames);
-    messages.note({Place{file},
+    messages.note({FileLocation{file},
                    fmt::format("{} with light on the front only: {}; the front is where normals point or, without any, "
                                "from where corners run counter-clockwise (`two_sided_lights`: both faces)",
                                counted(emitters.size(), "lamp"), names)});

@@ -13,6 +13,6 @@ namespace pertev {
 /// Adds a notice that names the lamps, and a warning for each that has a wall right in front and room behind it: up
 /// to the next surface or, without any, most of the scene's box. Nothing is added if no lamp is one-sided. `file`
 /// begins the messages. The scene has passed validate().
-void say_emitter_fronts(const Scene& scene, const std::string& file, Messages& messages);
+void report_emitter_fronts(const Scene& scene, const std::string& file, Messages& messages);
 
 } // namespace pertev

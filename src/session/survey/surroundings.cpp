@@ -11,7 +11,7 @@ namespace {
 constexpr uint64_t kMaxTriangles = 8'000'000; // half a second on one core
 constexpr int kAxes = 6;                      // +x -x +y -y +z -z
 constexpr int kUp = 2;
-constexpr float kMostOfRoom = 0.12f; // share seen from outside: Sponza 0.00, Sibenik 0.03, a shoe 0.23
+constexpr float kMaxOutsideShare = 0.12f; // share seen from outside: Sponza 0.00, Sibenik 0.03, a shoe 0.23
 
 Vec3 axis_direction(int axis) {
     const float sign = axis % 2 == 0 ? 1.0f : -1.0f;
@@ -29,7 +29,7 @@ std::array<Vec3, 5> bundle(int axis) {
 }
 
 /// Hits from a point along each axis.
-struct Sight {
+struct RayHits {
     std::array<int, kAxes> hits = {}; // out of 5 rays
     int all = 0, front = 0;
 
@@ -44,23 +44,23 @@ struct Sight {
     bool is_in_the_open() const { return 2 * front >= all; }
 };
 
-std::vector<Sight> look_from(const Scene& scene, const std::vector<Vec3>& points) {
-    std::vector<LookRay> rays;
+std::vector<RayHits> cast_sights(const Scene& scene, const std::vector<Vec3>& points) {
+    std::vector<SurveyRay> rays;
     for (const Vec3 point : points) {
         for (int axis = 0; axis < kAxes; ++axis) {
             for (const Vec3 direction : bundle(axis)) rays.push_back({point, direction});
         }
     }
-    const std::vector<LookHit> hits = cast_rays(scene, rays, Backs::All, Glass::LetsThrough);
-    std::vector<Sight> sights(points.size());
+    const std::vector<SurveyHit> hits = cast_rays(scene, rays, Backs::All, Glass::LetsThrough);
+    std::vector<RayHits> all_hits(points.size());
     for (std::size_t i = 0; i < hits.size(); ++i) {
-        Sight& sight = sights[i / (5 * kAxes)];
+        RayHits& hits_there = all_hits[i / (5 * kAxes)];
         if (!hits[i].is_hit()) continue;
-        ++sight.hits[i / 5 % kAxes];
-        ++sight.all;
-        sight.front += hits[i].is_front;
+        ++hits_there.hits[i / 5 % kAxes];
+        ++hits_there.all;
+        hits_there.front += hits[i].is_front;
     }
-    return sights;
+    return all_hits;
 }
 
 /// Whether it is thinner than any room: a panel, whose two sheets see each other.
@@ -71,18 +71,18 @@ bool is_long(Vec3 size) { return max(size.x, size.z) > 1.25f * min(size.x, size.
 /// Share of rays that hit nothing, among rays that leave the fronts of some triangles, slightly upwards to all sides.
 /// It is small for a room, most of whose surfaces face inwards, but not for a shoe or a boat, which are hollow too.
 float share_seen_from_outside(const Scene& scene, uint64_t triangles) {
-    constexpr uint64_t kLookedAt = 24;
+    constexpr uint64_t kVisited = 24;
     constexpr int kWays = 8;
     const float size = max_component(bounds_of(scene).size());
-    std::vector<LookRay> rays;
+    std::vector<SurveyRay> rays;
     uint64_t before = 0, next = 0; // triangles of the previous instances; the next triangle to test
     int all = 0;
     for (const Instance& instance : scene.instances) {
         const Mesh& mesh = scene.meshes[instance.mesh];
         const uint64_t count = mesh.triangle_count();
         const float sign = is_mirroring(instance.world_from_local) ? -1.0f : 1.0f;
-        for (; next < kLookedAt; ++next) {
-            const uint64_t number = (2 * next + 1) * triangles / (2 * kLookedAt);
+        for (; next < kVisited; ++next) {
+            const uint64_t number = (2 * next + 1) * triangles / (2 * kVisited);
             if (number >= before + count) break;
             if (instance.is_hidden || instance.is_background) continue;
             const uint32_t* index = mesh.indices.data() + 3 * (number - before);
@@ -102,7 +102,7 @@ float share_seen_from_outside(const Scene& scene, uint64_t triangles) {
         before += count;
     }
     int free = 0;
-    for (const LookHit& hit : cast_rays(scene, rays, Backs::All, Glass::LetsThrough)) free += !hit.is_hit();
+    for (const SurveyHit& hit : cast_rays(scene, rays, Backs::All, Glass::LetsThrough)) free += !hit.is_hit();
     return all > 0 ? static_cast<float>(free) / static_cast<float>(all) : 0;
 }
 
@@ -119,25 +119,25 @@ Surroundings look_around(const Scene& scene) {
     const Vec3 along = size.x >= size.z ? Vec3{0.2f * size.x, 0, 0} : Vec3{0, 0, 0.2f * size.z};
     const Vec3 down = {0, 0.2f * size.y, 0};
     const std::vector<Vec3> points = {centre, centre - down, centre - down + along, centre - down - along};
-    const std::vector<Sight> sights = look_from(scene, points);
+    const std::vector<RayHits> all_hits = cast_sights(scene, points);
 
     int rooms = 0, ways_out = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const Sight& sight = sights[i];
-        if (!sight.is_in_the_open()) continue;
-        const int closed = sight.closed_sides();
-        if (closed == kAxes || (closed == kAxes - 1 && !sight.is_closed(kUp) && is_long(size))) {
+        const RayHits& hits_there = all_hits[i];
+        if (!hits_there.is_in_the_open()) continue;
+        const int closed = hits_there.closed_sides();
+        if (closed == kAxes || (closed == kAxes - 1 && !hits_there.is_closed(kUp) && is_long(size))) {
             if (rooms++ == 0) result.inside = points[i];
-            ways_out += 5 * kAxes - sight.all;
+            ways_out += 5 * kAxes - hits_there.all;
         }
         for (int axis = 0; axis < kAxes; ++axis) {
-            if (axis / 2 != 1 && closed == kAxes - 1 && sight.is_open(axis)) {
+            if (axis / 2 != 1 && closed == kAxes - 1 && hits_there.is_open(axis)) {
                 result.kind = SurroundingsKind::Stage;
                 result.open_side = axis_direction(axis);
             }
         }
     }
-    if (rooms >= 2 && share_seen_from_outside(scene, triangles) < kMostOfRoom) {
+    if (rooms >= 2 && share_seen_from_outside(scene, triangles) < kMaxOutsideShare) {
         result.kind = SurroundingsKind::Room;
         result.is_dark = ways_out == 0;
     }

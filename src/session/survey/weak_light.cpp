@@ -15,7 +15,7 @@ constexpr float kBurnt = 16;                               // agx maps it to whi
 constexpr double kShareToSeeBy = 0.75, kMaxBurnt = 0.0625; // shares of the surfaces in the picture
 constexpr double kNextToNothing = 0.03125;
 
-SeenShares look_from(const Camera& camera, const Scene& scene) {
+SeenShares visible_shares(const Camera& camera, const Scene& scene) {
     Queue queue = Queue::make_cpu();
     RenderSettings settings;
     settings.width = kWidth, settings.height = kHeight, settings.samples = kSamples;
@@ -66,11 +66,13 @@ SeenShares shares_seen(const Scene& scene) {
     Messages unsaid;
     const Camera made_up =
         has_camera ? Camera() : make_default_camera(scene, static_cast<float>(kWidth) / kHeight, unsaid);
-    const auto look = [&](const Scene& now) { return look_from(has_camera ? now.cameras.front() : made_up, now); };
-    if (scene.animations.empty()) return look(scene);
+    const auto shares_of = [&](const Scene& now) {
+        return visible_shares(has_camera ? now.cameras.front() : made_up, now);
+    };
+    if (scene.animations.empty()) return shares_of(scene);
     PosedScene posed(scene);
     posed.set_time(0);
-    return look(posed.scene());
+    return shares_of(posed.scene());
 }
 
 bool is_light_too_weak(const Scene& scene) {

@@ -23,7 +23,7 @@ std::string comma_separated(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v
 std::string comma_separated(DoubleVec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
 /// A position in the coordinates of the file, with enough digits to convert back to the same bits.
-std::string place_in_file(Vec3 p, DoubleVec3 origin) {
+std::string position_in_file(Vec3 p, DoubleVec3 origin) {
     return origin == DoubleVec3{0, 0, 0} ? comma_separated(p) : comma_separated(origin + to_double(p));
 }
 
@@ -139,12 +139,12 @@ ExrMetadata camera_metadata(const CameraSource& source) {
     }
     const std::string matrix =
         fmt::format("{} {} {} {}", comma_separated(column(from, 0)), comma_separated(column(from, 1)),
-                    comma_separated(column(from, 2)), place_in_file(eye, source.origin));
+                    comma_separated(column(from, 2)), position_in_file(eye, source.origin));
     const std::string looked_at =
-        source.target ? comma_separated(*source.target) : place_in_file(target, source.origin);
+        source.target ? comma_separated(*source.target) : position_in_file(target, source.origin);
     ExrMetadata metadata = {{"pertev.camera", source.name},
                             {"pertev.world_from_camera", matrix},
-                            {"pertev.eye", place_in_file(eye, source.origin)},
+                            {"pertev.eye", position_in_file(eye, source.origin)},
                             {"pertev.target", looked_at},
                             {"pertev.up", comma_separated(up)},
                             {"pertev.aperture", camera.aperture_radius}};

@@ -38,9 +38,9 @@ bool SequenceRecord::load() {
     for (const auto& [name, value] : settings_) {
         const std::string then = before.string_or(name, "");
         if (then == value) continue;
-        Remark why(before.place(), fmt::format("the frames there were made with {} \"{}\", not \"{}\"; make them anew "
-                                               "without `continue`, or elsewhere",
-                                               name, then, value));
+        Remark why(before.location(), fmt::format("the existing frames were made with {} \"{}\", not \"{}\"; render "
+                                                  "them again without `continue`, or elsewhere",
+                                                  name, then, value));
         why.setting = "continue";
         throw Error(ErrorCode::BadInput, why);
     }
@@ -67,11 +67,10 @@ bool SequenceRecord::has(uint32_t frame) const {
 void SequenceRecord::check_picture(uint32_t frame, const std::string& picture) const {
     const auto known = pictures_.find(frame);
     if (known == pictures_.end() || known->second == picture) return;
-    throw Error(
-        ErrorCode::BadInput, Place{path_.string()},
-        fmt::format("frame {} is another picture now ({}) than when it was written ({}), so that those after it would "
-                    "not follow; make them anew without `continue`, or elsewhere",
-                    frame, picture, known->second));
+    throw Error(ErrorCode::BadInput, FileLocation{path_.string()},
+                fmt::format("frame {} is now a different picture ({}) from the one written ({}), so that later frames "
+                            "would not fit; render them again without `continue`, or elsewhere",
+                            frame, picture, known->second));
 }
 
 void SequenceRecord::add(uint32_t frame, const std::string& picture) {

@@ -35,9 +35,9 @@ struct ParentLinksTraversal {
         for (;;) {
             if (state == State::FromChild) { // the subtree of `at` is done
                 if (at == bvh.root) return false;
-                const uint32_t place = bvh.nodes[at].parent;
-                at = place & ~kSecondChildBit;
-                const int came_from = (place & kSecondChildBit) ? 1 : 0;
+                const uint32_t parent = bvh.nodes[at].parent;
+                at = parent & ~kSecondChildBit;
+                const int came_from = (parent & kSecondChildBit) ? 1 : 0;
                 if (came_from == first_child<kOptions.near_first>(bvh.nodes[at].split, ray.direction))
                     state = State::FromSibling;
                 continue;

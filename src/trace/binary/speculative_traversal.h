@@ -17,11 +17,11 @@ template <TraversalOptions kOptions>
 struct SpeculativeTraversal {
     using Tree = BinaryTreeOf<kOptions>;
     using Tests = TestsOf<kOptions>;
-    using Place = TraversalState<kOptions>;
+    using State = TraversalState<kOptions>;
 
     template <class Visitor>
-    HD static void start(const Tree& bvh, const Ray& ray, const Visitor&, Place& place) {
-        place.start(bvh, ray);
+    HD static void start(const Tree& bvh, const Ray& ray, const Visitor&, State& state) {
+        state.start(bvh, ray);
     }
 
     template <class Visitor, class Counter>
@@ -33,30 +33,30 @@ struct SpeculativeTraversal {
     /// Descends until all lanes that run together have found a leaf, then tests the leaves. Returns true if the
     /// visitor ended it.
     template <class Visitor, class Counter>
-    HD static bool turn(const Tree& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
+    HD static bool turn(const Tree& bvh, const Ray& ray, uint32_t instance, State& state, Visitor& visitor,
                         const Counter& counter, LaneMask, int) {
-        uint32_t link = place.link, postponed = kNoLink;
+        uint32_t link = state.link, postponed = kNoLink;
         while (!(link & kLeafBit)) {
             counter.add_node(bvh.nodes + link);
             const BvhNode node = load_aligned(bvh.nodes + link);
             const float limit = skip_beyond<kOptions>(visitor, ray);
-            link = step_down<kOptions.near_first>(node, place.boxes, ray.t_min, limit, place.stack);
+            link = step_down<kOptions.near_first>(node, state.boxes, ray.t_min, limit, state.stack);
             const bool ends = (link & kLeafBit) != 0; // at a leaf, or at the end
             if (all_lanes_here(ends || postponed != kNoLink)) break;
             if (ends && link != kNoLink && postponed == kNoLink) {
                 postponed = link;
-                link = place.stack.pop(limit);
+                link = state.stack.pop(limit);
             }
         }
         for (;;) { // the postponed leaf, then the one at which the loop above ended
             const bool was_postponed = postponed != kNoLink;
             const uint32_t leaf = was_postponed ? postponed : link;
             if (!(leaf & kLeafBit) || leaf == kNoLink) break;
-            if (test_leaf<Tests>(bvh, leaf, ray, place.prepared, instance, visitor, counter)) return true;
+            if (test_leaf<Tests>(bvh, leaf, ray, state.prepared, instance, visitor, counter)) return true;
             postponed = kNoLink;
-            if (!was_postponed) link = place.stack.pop(skip_beyond<kOptions>(visitor, ray));
+            if (!was_postponed) link = state.stack.pop(skip_beyond<kOptions>(visitor, ray));
         }
-        place.link = link;
+        state.link = link;
         return false;
     }
 };

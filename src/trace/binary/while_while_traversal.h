@@ -43,11 +43,11 @@ template <TraversalOptions kOptions>
 struct WhileWhileTraversal {
     using Tree = BinaryTreeOf<kOptions>;
     using Tests = TestsOf<kOptions>;
-    using Place = TraversalState<kOptions>;
+    using State = TraversalState<kOptions>;
 
     template <class Visitor>
-    HD static void start(const Tree& bvh, const Ray& ray, const Visitor&, Place& place) {
-        place.start(bvh, ray);
+    HD static void start(const Tree& bvh, const Ray& ray, const Visitor&, State& state) {
+        state.start(bvh, ray);
     }
 
     template <class Visitor, class Counter>
@@ -58,20 +58,20 @@ struct WhileWhileTraversal {
 
     /// Descends to the next leaf and tests its triangles. Returns true if the visitor ended the traversal.
     template <class Visitor, class Counter>
-    HD static bool turn(const Tree& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
+    HD static bool turn(const Tree& bvh, const Ray& ray, uint32_t instance, State& state, Visitor& visitor,
                         const Counter& counter, LaneMask, int) {
-        uint32_t link = place.link;
+        uint32_t link = state.link;
         while (!(link & kLeafBit)) {
             counter.add_node(bvh.nodes + link);
             const BvhNode node = load_aligned(bvh.nodes + link);
-            link = step_down<kOptions.near_first>(node, place.boxes, ray.t_min, skip_beyond<kOptions>(visitor, ray),
-                                                  place.stack);
+            link = step_down<kOptions.near_first>(node, state.boxes, ray.t_min, skip_beyond<kOptions>(visitor, ray),
+                                                  state.stack);
         }
         if (link != kNoLink) {
-            if (test_leaf<Tests>(bvh, link, ray, place.prepared, instance, visitor, counter)) return true;
-            link = place.stack.pop(skip_beyond<kOptions>(visitor, ray));
+            if (test_leaf<Tests>(bvh, link, ray, state.prepared, instance, visitor, counter)) return true;
+            link = state.stack.pop(skip_beyond<kOptions>(visitor, ray));
         }
-        place.link = link;
+        state.link = link;
         return false;
     }
 };

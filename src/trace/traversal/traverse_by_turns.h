@@ -14,12 +14,12 @@ namespace pertev {
 template <class Traversal, class Visitor, class Counter>
 HD inline bool traverse_by_turns(const typename Traversal::Tree& tree, const Ray& ray, uint32_t instance,
                                  Visitor& visitor, const Counter& counter) {
-    typename Traversal::Place::Slot slots[Traversal::Place::kSlots];
-    typename Traversal::Place place(slots);
-    Traversal::start(tree, ray, visitor, place);
-    while (!place.is_done()) {
+    typename Traversal::State::Slot slots[Traversal::State::kSlots];
+    typename Traversal::State state(slots);
+    Traversal::start(tree, ray, visitor, state);
+    while (!state.is_done()) {
         const LaneMask lanes = lanes_here();
-        if (Traversal::turn(tree, ray, instance, place, visitor, counter, lanes, count_lanes(lanes))) return true;
+        if (Traversal::turn(tree, ray, instance, state, visitor, counter, lanes, count_lanes(lanes))) return true;
     }
     return false;
 }

@@ -129,7 +129,7 @@ template <TraversalOptions kOptions>
 struct CompressedTraversal {
     using Tree = CompressedBvhView;
     using Tests = TestsOf<kOptions>;
-    using Place = CompressedTraversalState<kOptions>;
+    using State = CompressedTraversalState<kOptions>;
 
     template <class Visitor, class Counter>
     HD static bool traverse(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
@@ -139,80 +139,80 @@ struct CompressedTraversal {
 
     /// Puts the ray at the root.
     template <class Visitor>
-    HD static void start(const CompressedBvhView& bvh, const Ray& ray, const Visitor& visitor, Place& place) {
-        place.segment = make_ray_segment<Tests>(ray, bvh.bounds_max_abs, skip_beyond<kOptions>(visitor, ray));
-        if (Place::kEitherWay) place.order = slot_order(place.segment.inv, visitor.goes_far_first());
-        place.prepared = Tests::make_triangles(ray);
-        place.size = 0;
-        place.nodes = {0, 1u << 24 | (bvh.nodes == nullptr ? 0u : 1u)}; // slot 0 of a node above the root
-        place.triangles.left = 0;
+    HD static void start(const CompressedBvhView& bvh, const Ray& ray, const Visitor& visitor, State& state) {
+        state.segment = make_ray_segment<Tests>(ray, bvh.bounds_max_abs, skip_beyond<kOptions>(visitor, ray));
+        if (State::kEitherWay) state.order = slot_order(state.segment.inv, visitor.goes_far_first());
+        state.prepared = Tests::make_triangles(ray);
+        state.size = 0;
+        state.nodes = {0, 1u << 24 | (bvh.nodes == nullptr ? 0u : 1u)}; // slot 0 of a node above the root
+        state.triangles.left = 0;
     }
 
     /// Tests one node, and the postponed triangles if enough of the lanes that run together have some. Returns true
     /// if the visitor ended the traversal.
     template <class Visitor, class Counter>
-    HD static bool turn(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, Place& place, Visitor& visitor,
+    HD static bool turn(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, State& state, Visitor& visitor,
                         const Counter& counter, LaneMask lanes, int working) {
-        if (!place.nodes.is_empty()) step_down(bvh, ray, place, counter);
+        if (!state.nodes.is_empty()) step_down(bvh, ray, state, counter);
         const int enough = lanes_for_triangles(working);
         bool ended = false;
-        const auto are_enough = [&] { return count_lanes(ballot(lanes, !place.triangles.is_empty())) >= enough; };
+        const auto are_enough = [&] { return count_lanes(ballot(lanes, !state.triangles.is_empty())) >= enough; };
         if (are_enough()) { // all of `lanes` take part in each vote
             do {            // this form is 1 % faster than one loop that votes first
-                if (!place.triangles.is_empty() && test_triangle(bvh, ray, instance, place, visitor, counter)) {
+                if (!state.triangles.is_empty() && test_triangle(bvh, ray, instance, state, visitor, counter)) {
                     ended = true;
-                    place.stop();
+                    state.stop();
                 }
             } while (are_enough());
-            if (kOptions.rta && visitor.limit() < place.segment.end) place.segment.shorten(visitor.limit());
+            if (kOptions.rta && visitor.limit() < state.segment.end) state.segment.shorten(visitor.limit());
         }
-        place.refill(bvh, skip_beyond<kOptions>(visitor, ray));
+        state.refill(bvh, skip_beyond<kOptions>(visitor, ray));
         return ended;
     }
 
 private:
     /// Bit of the slot to enter first; 0 for no slots.
-    HD static uint32_t first_slot(uint32_t slots, const Place& place) {
+    HD static uint32_t first_slot(uint32_t slots, const State& state) {
         if (!kOptions.near_first) return slots & (0u - slots);
-        return Place::kEitherWay ? first_of_slots(slots, place.order) : nearest_slot(slots, place.segment.inv);
+        return State::kEitherWay ? first_of_slots(slots, state.order) : nearest_slot(slots, state.segment.inv);
     }
 
     /// Tests the boxes of the next node. Its children come before the rest of its group.
     template <class Counter>
-    HD static void step_down(const CompressedBvhView& bvh, const Ray& ray, Place& place, const Counter& counter) {
-        NodeGroup group = place.nodes;
-        const uint32_t slot = first_slot(group.left & 0xffu, place); // one bit
+    HD static void step_down(const CompressedBvhView& bvh, const Ray& ray, State& state, const Counter& counter) {
+        NodeGroup group = state.nodes;
+        const uint32_t slot = first_slot(group.left & 0xffu, state); // one bit
         const uint32_t index = group.base + count_ones(group.left & (slot * (1u << 24) - (1u << 24)));
         group.left ^= slot;
-        if (!group.is_empty()) place.push(group.base, group.left);
+        if (!group.is_empty()) state.push(group.base, group.left);
         counter.add_node(bvh.nodes + index);
         const CompressedBvhNode node = load_aligned(bvh.nodes + index);
         float entries[8];
-        const uint32_t entered = enters_slots(ray.origin, place.segment, node, entries);
+        const uint32_t entered = enters_slots(ray.origin, state.segment, node, entries);
         const uint32_t found = triangles_of_slots(node, entered);
-        const bool waits = !place.triangles.is_empty(); // selects instead of branches, which would diverge the lanes
-        if (waits & (found != 0)) place.push(index, found);
-        place.triangles.base = waits ? place.triangles.base : node.triangle_base;
-        place.triangles.all = waits ? place.triangles.all : node.triangles;
-        place.triangles.left = waits ? place.triangles.left : found;
+        const bool waits = !state.triangles.is_empty(); // selects instead of branches, which would diverge the lanes
+        if (waits & (found != 0)) state.push(index, found);
+        state.triangles.base = waits ? state.triangles.base : node.triangle_base;
+        state.triangles.all = waits ? state.triangles.all : node.triangles;
+        state.triangles.left = waits ? state.triangles.left : found;
         const uint32_t inner = entered & inner_slots(node);
-        place.nodes = {node.child_base, (node.exponents_and_inner & 0xff000000u) | inner};
-        if (Place::kRtaAtPops) {
-            const uint32_t others = inner ^ first_slot(inner, place);
-            place.nodes.left |= min_entry(entries, others, place.segment.end) << 8;
+        state.nodes = {node.child_base, (node.exponents_and_inner & 0xff000000u) | inner};
+        if (State::kRtaAtPops) {
+            const uint32_t others = inner ^ first_slot(inner, state);
+            state.nodes.left |= min_entry(entries, others, state.segment.end) << 8;
         }
     }
 
     template <class Visitor, class Counter>
-    HD static bool test_triangle(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, Place& place,
+    HD static bool test_triangle(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, State& state,
                                  Visitor& visitor, const Counter& counter) {
-        const uint32_t lowest = place.triangles.left & (0u - place.triangles.left);
-        place.triangles.left ^= lowest;
-        const BvhTriangle* at = bvh.triangles + (place.triangles.base + count_ones(place.triangles.all & (lowest - 1)));
+        const uint32_t lowest = state.triangles.left & (0u - state.triangles.left);
+        state.triangles.left ^= lowest;
+        const BvhTriangle* at = bvh.triangles + (state.triangles.base + count_ones(state.triangles.all & (lowest - 1)));
         counter.add_triangle(at);
         const BvhTriangle triangle = load_aligned(at);
         TriangleHit hit;
-        if (!Tests::intersect(ray, place.prepared, triangle.a, triangle.b, triangle.c, hit)) return false;
+        if (!Tests::intersect(ray, state.prepared, triangle.a, triangle.b, triangle.c, hit)) return false;
         return visitor.visit(instance == kNoHit ? triangle.instance : instance, triangle.primitive, hit);
     }
 };

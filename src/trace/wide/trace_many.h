@@ -27,7 +27,7 @@ void traverse_scene_together(const HostTrees& scene, uint32_t count, const RayOf
     using Accept = decltype(accept_of(0));
     using Visitor = decltype(make_visitor(std::declval<const Accept&>(), std::declval<const Ray&>()));
     using Packet = WidePacket<kOptions, Visitor>;
-    constexpr uint32_t kSize = kWidePacket, kMostAlone = 256, kLooks = 3;
+    constexpr uint32_t kSize = kWidePacket, kMostAlone = 256, kViewRays = 3;
     std::array<uint32_t, kMostAlone> alone;
     uint32_t waiting = 0;
     const auto send_alone = [&] {
@@ -48,7 +48,7 @@ void traverse_scene_together(const HostTrees& scene, uint32_t count, const RayOf
     uint32_t packets = 0;
     for (uint32_t first = 0; first < count; first += kSize) {
         const uint32_t some = min(count - first, kSize);
-        if (packets == 0 && first >= kLooks * kSize) { // further ones will not be coherent either
+        if (packets == 0 && first >= kViewRays * kSize) { // further ones will not be coherent either
             put_alone(first, some);
             continue;
         }

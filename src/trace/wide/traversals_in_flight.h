@@ -40,8 +40,8 @@ public:
 
     void run() {
         List at_nodes, at_leaves;
-        for (Room& room : rooms_) {
-            if (next_ < count_) at_nodes.add(start(room));
+        for (Slot& slot : slots_) {
+            if (next_ < count_) at_nodes.add(start(slot));
         }
         while (at_nodes.size > 0) {
             step_at_nodes(at_nodes, at_leaves);
@@ -65,10 +65,10 @@ private:
             : wide(make_wide_ray<kOptions>(r, bvh.bounds_max_abs)), ray(r), leaf(ray), at(bvh.nodes), number(i),
               accept(rays.accept(i)), visitor(rays.visitor(accept, ray)) {}
     };
-    union Room { // empty before there is a ray for it
+    union Slot { // empty before there is a ray for it
         Flight flight;
-        Room() {}
-        ~Room() {}
+        Slot() {}
+        ~Slot() {}
     };
     static_assert(std::is_trivially_destructible_v<Flight>);
 
@@ -83,9 +83,9 @@ private:
         }
     };
 
-    Flight* start(Room& room) {
+    Flight* start(Slot& slot) {
         const uint32_t i = next_++;
-        return new (&room.flight) Flight(bvh_, rays_, i, rays_.ray(i));
+        return new (&slot.flight) Flight(bvh_, rays_, i, rays_.ray(i));
     }
 
     /// Pops the next entry and prefetches its memory. Returns true for a leaf.
@@ -126,7 +126,7 @@ private:
             if (flight.count == 0 || flight.leaf.test_all(static_cast<const BvhTriangle*>(flight.at), flight.count,
                                                           kNoHit, flight.visitor, NoTraversalCounter{})) {
                 rays_.end(flight.number, flight.ray, flight.visitor);
-                if (next_ < count_) at_nodes.add(start(reinterpret_cast<Room&>(flight)));
+                if (next_ < count_) at_nodes.add(start(reinterpret_cast<Slot&>(flight)));
                 continue;
             }
             const float limit = skip_beyond<kOptions>(flight.visitor, flight.ray);
@@ -143,7 +143,7 @@ private:
     const uint32_t count_;
     const Rays& rays_;
     uint32_t next_ = 0;
-    std::array<Room, kFlights> rooms_;
+    std::array<Slot, kFlights> slots_;
 };
 
 /// Rays that continue in the instances after the baked tree.

@@ -177,9 +177,9 @@ template <TraversalOptions kOptions>
     for (; entered != 0; entered &= entered - 1) {
         WideEntry next = child(__builtin_ctz(entered));
         if (next.entry < at.entry) std::swap(next, at);
-        int place = size++;
-        for (; place > base && stack[place - 1].entry < next.entry; --place) stack[place] = stack[place - 1];
-        stack[place] = next;
+        int slot = size++;
+        for (; slot > base && stack[slot - 1].entry < next.entry; --slot) stack[slot] = stack[slot - 1];
+        stack[slot] = next;
     }
     return true;
 }

@@ -217,11 +217,11 @@ private:
         int n = 0;
         for (unsigned rest = mask_of(_mm256_cmp_ps(entry, exit, _CMP_LE_OQ)); rest != 0; rest &= rest - 1) {
             const int k = __builtin_ctz(rest);
-            int place = n++;
-            for (; kOptions.near_first && place > 0 && entries[order[place - 1]] > entries[k]; --place) {
-                order[place] = order[place - 1];
+            int slot = n++;
+            for (; kOptions.near_first && slot > 0 && entries[order[slot - 1]] > entries[k]; --slot) {
+                order[slot] = order[slot - 1];
             }
-            order[place] = k;
+            order[slot] = k;
         }
         return n;
     }

@@ -93,11 +93,11 @@ private:
             const Uint4 links = load_aligned(reinterpret_cast<const Uint4*>(node->child + first));
             const auto push = [&](uint32_t entered, float entry, uint32_t link) {
                 if (entered == 0) return;
-                int place = size++;
+                int slot = size++;
                 if constexpr (kOptions.near_first) {
-                    for (; place > base && stack[place - 1].entry < entry; --place) stack[place] = stack[place - 1];
+                    for (; slot > base && stack[slot - 1].entry < entry; --slot) stack[slot] = stack[slot - 1];
                 }
-                stack[place] = {link, entry};
+                stack[slot] = {link, entry};
             };
             push(mask & 8, entries[3], links.w);
             push(mask & 4, entries[2], links.z);

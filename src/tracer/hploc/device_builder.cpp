@@ -66,7 +66,7 @@ hploc::Climb DeviceBuilder::prepare_climb() const {
 
 void DeviceBuilder::climb() {
     const hploc::Climb climb = prepare_climb();
-    launch(queue_, "place leaves", count_, hploc::PlaceLeaves{triangles_, sorted_order_.data(), climb});
+    launch(queue_, "place leaves", count_, hploc::StoreLeaves{triangles_, sorted_order_.data(), climb});
     launch_climb(queue_, climb);
 }
 
@@ -84,7 +84,7 @@ hploc::EmitWide DeviceBuilder::prepare_emit() {
     emit.placed = placed_.data();
     emit.sources = sources_.data();
     emit.counts = counts_.data();
-    emit.room = static_cast<uint32_t>(max_nodes(count_));
+    emit.capacity = static_cast<uint32_t>(max_nodes(count_));
     return emit;
 }
 

@@ -106,7 +106,7 @@ struct EmitWide {
     BvhTriangle* placed;      // [tree.count]
     uint32_t* sources;        // [tree.count] input index of each placed triangle
     WideCounts* counts;       // set to 0xff bytes at first
-    uint32_t room;
+    uint32_t capacity;
 
     /// Item of the root, which has no parent to place it.
     HD WideItem first_item() const { return {*root, 1, 1, 0}; }
@@ -153,7 +153,7 @@ struct EmitWide {
                 if (inner >> s & 1u) total += tree.sizes[child_in[s] - tree.count].nodes[0];
             }
             start_counts(total, all);
-            if (total > room) return {0, 0};
+            if (total > capacity) return {0, 0};
         }
         for (uint32_t s = 0; s < kMaxWidth; ++s) {
             if (!(inner >> s & 1u)) continue;

@@ -12,7 +12,7 @@ namespace pertev {
 
 template void launch(Queue&, const char*, WorkCount, const hploc::FindBounds&);
 template void launch(Queue&, const char*, WorkCount, const hploc::MakeCodes&);
-template void launch(Queue&, const char*, WorkCount, const hploc::PlaceLeaves&);
+template void launch(Queue&, const char*, WorkCount, const hploc::StoreLeaves&);
 template void launch(Queue&, const char*, WorkCount, const hploc::EmitLevel&);
 template void launch(Queue&, const char*, WorkCount, const hploc::LinkParents&);
 template void launch(Queue&, const char*, WorkCount, const hploc::MoveTriangles&);
@@ -41,7 +41,7 @@ bool launch_emit(Queue& queue, const hploc::EmitWide& emit) {
         cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device);
         cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, hploc::emit_in_turn, threads, 0);
         const uint32_t there = static_cast<uint32_t>(blocks * processors);
-        const uint32_t used = min(emit.room / (threads / kMaxWidth) + 1, there);
+        const uint32_t used = min(emit.capacity / (threads / kMaxWidth) + 1, there);
         hploc::emit_in_turn<<<used, threads, 0, static_cast<cudaStream_t>(queue.stream())>>>(emit);
         queue.check_launch();
         return true;

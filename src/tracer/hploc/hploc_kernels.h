@@ -9,7 +9,7 @@
 
 namespace pertev {
 
-/// Merges clusters up to the root; PlaceLeaves has written the leaves.
+/// Merges clusters up to the root; StoreLeaves has written the leaves.
 void launch_climb(Queue& queue, const hploc::Climb& climb);
 
 /// Makes all wide nodes in one launch and returns true. Returns false if the device makes them level by level

@@ -42,8 +42,8 @@ struct WarpClusters {
 __device__ inline uint32_t take_clusters(const Climb& climb, const LeafRange& range, WarpClusters& all, uint32_t lane) {
     const bool of_right = lane >= kKept;
     const uint32_t first = of_right ? range.middle : range.first, end = of_right ? range.last + 1 : range.middle;
-    const uint32_t most = end - first < climb.kept() ? end - first : climb.kept(), place = lane % kKept;
-    const Cluster cluster = place < most ? cluster_left(climb, first, end, place) : Cluster{kNone, 0};
+    const uint32_t most = end - first < climb.kept() ? end - first : climb.kept(), slot = lane % kKept;
+    const Cluster cluster = slot < most ? cluster_left(climb, first, end, slot) : Cluster{kNone, 0};
     const bool is_there = cluster.node != kNone;
     const uint32_t there = __ballot_sync(kAllLanes, is_there);
     if (is_there) {
@@ -65,15 +65,15 @@ __device__ inline void join_range_together(const Climb& climb, const LeafRange& 
         uint64_t best = ~uint64_t(0);
 #pragma unroll
         for (uint32_t step = 1; step <= kSearchRadius; ++step) {
-            uint64_t wish = ~uint64_t(0);
+            uint64_t preferred = ~uint64_t(0);
             if (lane + step < count) {
                 Bounds3 both = own;
                 both.extend(all.box(lane + step));
-                wish = preference(both.half_area(), lane, lane + step);
+                preferred = preference(both.half_area(), lane, lane + step);
             }
             const auto before =
-                static_cast<uint64_t>(__shfl_up_sync(kAllLanes, static_cast<unsigned long long>(wish), step));
-            best = wish < best ? wish : best;
+                static_cast<uint64_t>(__shfl_up_sync(kAllLanes, static_cast<unsigned long long>(preferred), step));
+            best = preferred < best ? preferred : best;
             if (lane >= step && before < best) best = before;
         }
         const uint32_t wanted = is_there ? lane ^ static_cast<uint32_t>(best) : lane;
@@ -92,8 +92,8 @@ __device__ inline void join_range_together(const Climb& climb, const LeafRange& 
         count = static_cast<uint32_t>(__popc(staying));
         __syncwarp(); // lanes also read nodes and plans that other lanes wrote
     }
-    const uint32_t room = range.size() < climb.kept() ? range.size() : climb.kept();
-    if (lane < room) climb.clusters[range.first + lane] = lane < count ? all.cluster(lane) : Cluster{kNone, 0};
+    const uint32_t capacity = range.size() < climb.kept() ? range.size() : climb.kept();
+    if (lane < capacity) climb.clusters[range.first + lane] = lane < count ? all.cluster(lane) : Cluster{kNone, 0};
     if (lane == 0 && range.size() == climb.tree.count) *climb.root = all.cluster(0).node;
     __syncwarp();
 }
@@ -272,17 +272,17 @@ __device__ inline void make_together(const EmitWide& emit, uint32_t index, const
         1 + inner_count + __shfl_sync(kAllLanes, nodes_before + nodes_beneath, static_cast<int>(group + 7));
     if (index == 0 && is_ready) {
         if (k == 0) emit.start_counts(total, all);
-        is_ready = total <= emit.room;
+        is_ready = total <= emit.capacity;
     }
 
-    uint32_t first_place = 0; // position in the queue; the counter starts at -1, and the root's own position comes
+    uint32_t first_index = 0; // position in the queue; the counter starts at -1, and the root's own position comes
                               // first
-    if (is_ready && k == 0 && inner_count != 0) first_place = atomicAdd(&emit.counts->queued, inner_count) + 2;
-    first_place = __shfl_sync(kAllLanes, first_place, static_cast<int>(group));
+    if (is_ready && k == 0 && inner_count != 0) first_index = atomicAdd(&emit.counts->queued, inner_count) + 2;
+    first_index = __shfl_sync(kAllLanes, first_index, static_cast<int>(group));
     if (is_inner && is_ready) {
         const auto rank = static_cast<uint32_t>(__popc(inner & ((1u << k) - 1)));
-        *static_cast<volatile uint32_t*>(emit.item_nodes + first_place + rank) = item.child_base + rank;
-        store_item(emit.items + first_place + rank,
+        *static_cast<volatile uint32_t*>(emit.item_nodes + first_index + rank) = item.child_base + rank;
+        store_item(emit.items + first_index + rank,
                    {child, item.depth + 1, item.child_base + inner_count + nodes_before,
                     item.triangle_base + leaf_triangles + triangles_before});
     }
@@ -337,21 +337,21 @@ __device__ inline void emit_together(const EmitWide& emit, GroupMemory& memory) 
         if ((threadIdx.x & 31u) == 0)
             first = (atomicAdd(&emit.counts->drawn, 1u) + 1) * kNodesAtOnce; // the counter starts at -1
         first = __shfl_sync(kAllLanes, first, 0);
-        const uint32_t place = first + (threadIdx.x & 31u) / kMaxWidth;
-        bool waits = place < emit.room;
+        const uint32_t slot = first + (threadIdx.x & 31u) / kMaxWidth;
+        bool waits = slot < emit.capacity;
         while (__any_sync(kAllLanes, waits)) {
             WideItem item = {kNone, 0, 0, 0};
             uint32_t index = kNone;
             if (waits) {
                 total = *static_cast<volatile uint32_t*>(&emit.counts->nodes);
-                if (place == 0) {
+                if (slot == 0) {
                     item = emit.first_item();
                     index = 0;
                 } else if (total != kNone) {
-                    waits = place < total && total <= emit.room;
+                    waits = slot < total && total <= emit.capacity;
                     if (waits) {
-                        item = load_item(emit.items + place);
-                        index = *static_cast<volatile uint32_t*>(emit.item_nodes + place);
+                        item = load_item(emit.items + slot);
+                        index = *static_cast<volatile uint32_t*>(emit.item_nodes + slot);
                     }
                 }
             }
@@ -372,7 +372,7 @@ __device__ inline void emit_together(const EmitWide& emit, GroupMemory& memory) 
         }
         // The total is known by now, but these nodes found no room.
         total = __shfl_sync(kAllLanes, *static_cast<volatile uint32_t*>(&emit.counts->nodes), 0);
-    } while (first + kNodesAtOnce < total && total <= emit.room && first + kNodesAtOnce < emit.room);
+    } while (first + kNodesAtOnce < total && total <= emit.capacity && first + kNodesAtOnce < emit.capacity);
 }
 
 __global__ void __launch_bounds__(kEmitThreads) emit_in_turn(EmitWide emit) {

@@ -13,6 +13,6 @@ namespace pertev::gltf {
 /// finite. Two keys at one time are a jump from the first to the last of them. At the ends, where no jump is
 /// possible, the key next to the others counts, and for step interpolation the last. Returns what was repaired, for a
 /// warning; empty if nothing was.
-std::string mend_keys(AnimationChannel& channel, std::size_t numbers_a_key);
+std::string repair_keys(AnimationChannel& channel, std::size_t numbers_a_key);
 
 } // namespace pertev::gltf

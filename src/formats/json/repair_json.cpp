@@ -1,4 +1,4 @@
-#include "formats/json/mend_json.h"
+#include "formats/json/repair_json.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,9 +78,9 @@ int code_unit(std::string_view text, std::size_t at) {
     return unit;
 }
 
-class Mender {
+class Repairer {
 public:
-    Mender(std::string_view text, MendJson mend) : text_(text), all_(mend == MendJson::All) {}
+    Repairer(std::string_view text, RepairJson repair) : text_(text), all_(repair == RepairJson::All) {}
 
     std::string run() {
         constexpr std::string_view ends = " \t\r\n,:[]{}\"";
@@ -149,15 +149,15 @@ private:
 
 } // namespace
 
-std::string mend_json(std::string_view text, MendJson mend, std::vector<std::string>* said) {
-    const std::string valid = mend == MendJson::All ? utf8_text(text) : std::string(text);
-    Mender mender(valid, mend);
-    std::string mended = mender.run();
-    if (said != nullptr) {
-        if (mender.had_infinity())
-            said->emplace_back("NaN is no JSON and read as null, Infinity as the largest number");
-        if (mender.had_odd_string() || valid != text) {
-            said->emplace_back("a text is not Unicode as JSON has it; U+FFFD is read where it is not");
+std::string repair_json(std::string_view text, RepairJson repair, std::vector<std::string>* repairs) {
+    const std::string valid = repair == RepairJson::All ? utf8_text(text) : std::string(text);
+    Repairer repairer(valid, repair);
+    std::string mended = repairer.run();
+    if (repairs != nullptr) {
+        if (repairer.had_infinity())
+            repairs->emplace_back("NaN is not valid JSON and read as null, and Infinity as the largest number");
+        if (repairer.had_odd_string() || valid != text) {
+            repairs->emplace_back("a text is not valid Unicode; invalid bytes are read as U+FFFD");
         }
     }
     return mended;

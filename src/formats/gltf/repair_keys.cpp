@@ -1,4 +1,4 @@
-#include "formats/gltf/mend_keys.h"
+#include "formats/gltf/repair_keys.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ std::vector<std::size_t> without_repeats(const std::vector<std::size_t>& order, 
 
 } // namespace
 
-std::string mend_keys(AnimationChannel& channel, std::size_t numbers_a_key) {
+std::string repair_keys(AnimationChannel& channel, std::size_t numbers_a_key) {
     const std::vector<float>& times = channel.times;
     std::vector<std::size_t> order(times.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
@@ -35,7 +35,7 @@ std::string mend_keys(AnimationChannel& channel, std::size_t numbers_a_key) {
     if (!std::ranges::is_sorted(order, is_before)) {
         std::ranges::stable_sort(order, is_before);
         mended += mended.empty() ? "" : ", ";
-        mended += "keys are taken in the order of their times";
+        mended += "keys are sorted by time";
     }
     const std::vector<std::size_t> kept = without_repeats(order, channel);
     if (kept.size() == times.size() && mended.empty()) return mended;

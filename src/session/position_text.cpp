@@ -1,4 +1,4 @@
-#include "session/place_text.h"
+#include "session/position_text.h"
 
 #include <algorithm>
 #include <array>
@@ -37,9 +37,9 @@ std::array<std::string, 3> numbers_of(const Scene& scene, Vec3 p, int digits) {
     const Bounds3 bounds = bounds_of(scene);
     const float size = bounds.is_empty() ? 1.0f : max_component(bounds.size());
     const int decimals = std::clamp(digits - digits_above_point(static_cast<double>(size)), 0, 15);
-    const DoubleVec3 place = in_file(scene, p);
+    const DoubleVec3 position = in_file(scene, p);
     const auto text = [&](double x) { return without_idle_zeros(fmt::format("{:.{}f}", x, decimals)); };
-    return {text(place.x), text(place.y), text(place.z)};
+    return {text(position.x), text(position.y), text(position.z)};
 }
 
 double number(const std::string& text) {
@@ -50,12 +50,12 @@ double number(const std::string& text) {
 
 } // namespace
 
-std::string place_text(const Scene& scene, Vec3 p, int digits) {
+std::string position_text(const Scene& scene, Vec3 p, int digits) {
     const std::array<std::string, 3> numbers = numbers_of(scene, p, digits);
     return fmt::format("{},{},{}", numbers[0], numbers[1], numbers[2]);
 }
 
-DoubleVec3 told_place(const Scene& scene, Vec3 p, int digits) {
+DoubleVec3 stated_position(const Scene& scene, Vec3 p, int digits) {
     const std::array<std::string, 3> numbers = numbers_of(scene, p, digits);
     return {number(numbers[0]), number(numbers[1]), number(numbers[2])};
 }

@@ -9,6 +9,6 @@
 namespace pertev {
 
 /// Returns the end of a sentence that begins with "viewer 2 would like to"; empty if the message steers nothing.
-std::string wish_text(const ClientMessage& message);
+std::string request_text(const ClientMessage& message);
 
 } // namespace pertev

@@ -15,9 +15,9 @@
 namespace pertev::test {
 
 /// Prints `name` on stderr, once, when it still exists after `seconds`.
-class TellIfStuck {
+class HangGuard {
 public:
-    TellIfStuck(std::string name, double seconds)
+    HangGuard(std::string name, double seconds)
         : thread_([this, name = std::move(name), seconds](const std::stop_token& stop) {
               std::unique_lock lock(mutex_);
               const auto most = std::chrono::duration<double>(seconds);

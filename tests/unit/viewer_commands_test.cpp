@@ -6,11 +6,11 @@
 #include <doctest/doctest.h>
 
 #include "apps/viewer/audience.h"
-#include "apps/viewer/wish_text.h"
+#include "apps/viewer/request_text.h"
 
 using namespace pertev;
 
-namespace viewer_wishes_test { // tests are compiled several files at once
+namespace viewer_commands_test { // tests are compiled several files at once
 
 Steer setting(const char* name, const std::variant<double, std::string>& value) {
     Steer steer;
@@ -46,7 +46,7 @@ std::string texts_for(Audience& audience, uint32_t client) {
 
 constexpr const char* kOrbit = R"({"type":"orbit","n":1,"dx":0.1,"dy":0})";
 
-TEST_CASE("commands that move the camera raise the flags until they are taken, and a closed inbox takes none") {
+TEST_CASE("commands that move the camera set the flags until they are taken, and a closed inbox accepts none") {
     std::atomic<bool> abandon{false}, hurry{false};
     Inbox inbox;
     inbox.raise(abandon, hurry);
@@ -68,7 +68,7 @@ TEST_CASE("commands that move the camera raise the flags until they are taken, a
     CHECK_FALSE(replied);
 }
 
-TEST_CASE("a setting that is refused, or that is so already, costs no sample") {
+TEST_CASE("a refused or unchanged setting restarts nothing") {
     Flagged flagged;
     ViewState view;
     view.dark = {{IntegratorKind::Whitted, "whitted: black"}};
@@ -100,59 +100,61 @@ TEST_CASE("a setting that is refused, or that is so already, costs no sample") {
     CHECK(flagged.put(shape) == "hurry abandon");
 }
 
-TEST_CASE("viewers who do not steer are told so, and the one who steers sees their request") {
+TEST_CASE("clients that do not steer are informed, and the steering one sees their requests") {
     Inbox inbox;
     Audience audience(inbox, "welcome");
     for (const uint32_t id : {1u, 2u}) {
         audience.open(id, 0);
-        audience.said(id, R"({"type":"hello","key":")" + std::to_string(id) + "\"}", 0);
+        audience.received(id, R"({"type":"hello","key":")" + std::to_string(id) + "\"}", 0);
     }
     texts_for(audience, 1);
     inbox.take(std::chrono::milliseconds(0));
-    for (int i = 0; i < 50; ++i) CHECK(audience.said(2, kOrbit, 1 + 0.01 * i) == "");
+    for (int i = 0; i < 50; ++i) CHECK(audience.received(2, kOrbit, 1 + 0.01 * i) == "");
     CHECK(inbox.take(std::chrono::milliseconds(0)).empty());
-    std::string told;
+    std::string notices;
     std::string seen;
     while (const auto job = audience.next_job(std::chrono::milliseconds(0), [] { return 0.0; })) {
-        (job->client == 2 ? told : seen) += job->text + "\n";
+        (job->client == 2 ? notices : seen) += job->text + "\n";
         audience.text_was_sent(job->client);
     }
-    CHECK(told.find("viewer 1 steers") != std::string::npos);
-    CHECK(told.find("viewer 1 steers", told.find("viewer 1 steers") + 1) == std::string::npos); // once for the drag
+    CHECK(notices.find("viewer 1 steers") != std::string::npos);
+    CHECK(notices.find("viewer 1 steers", notices.find("viewer 1 steers") + 1) ==
+          std::string::npos); // once for the drag
     CHECK(seen.find(R"("id":2,"asks":false,"wish":"turn the view")") != std::string::npos);
-    CHECK(audience.said(2, R"({"type":"set","n":1,"name":"exposure","value":2})", 2) == ""); // another wish, at once
+    CHECK(audience.received(2, R"({"type":"set","n":1,"name":"exposure","value":2})", 2) ==
+          ""); // another wish, at once
     CHECK(texts_for(audience, 1).find(R"("wish":"set \"Stops\" to 2")") != std::string::npos);
-    audience.look(40); // it is an old wish now
+    audience.tick(40); // it is an old wish now
     CHECK(texts_for(audience, 1).find(R"("wish":"")") != std::string::npos);
     // To look at a place is free, and the page's screen is no wish.
-    CHECK(audience.said(2, R"({"type":"pick","n":1,"x":0,"y":0,"use":"show"})", 41) == "");
-    CHECK(audience.said(2, R"({"type":"rate","hz":60})", 41) == "");
-    CHECK(audience.said(2, R"({"type":"shape","width":64,"height":48})", 41) == "");
+    CHECK(audience.received(2, R"({"type":"pick","n":1,"x":0,"y":0,"use":"show"})", 41) == "");
+    CHECK(audience.received(2, R"({"type":"rate","hz":60})", 41) == "");
+    CHECK(audience.received(2, R"({"type":"shape","width":64,"height":48})", 41) == "");
     CHECK(texts_for(audience, 2) == "");
     CHECK(inbox.take(std::chrono::milliseconds(0)).size() == 1);
     // Messages in transit when the wheel was handed over are no wishes.
-    CHECK(audience.said(1, R"({"type":"hand","to":2})", 50) == "");
+    CHECK(audience.received(1, R"({"type":"hand","to":2})", 50) == "");
     texts_for(audience, 1);
-    CHECK(audience.said(1, kOrbit, 50.3) == "");
+    CHECK(audience.received(1, kOrbit, 50.3) == "");
     CHECK(texts_for(audience, 1) == "");
-    CHECK(audience.said(1, kOrbit, 52) == "");
+    CHECK(audience.received(1, kOrbit, 52) == "");
     CHECK(texts_for(audience, 1).find("viewer 2 steers") != std::string::npos);
     // Where the wheel waits for somebody who left, that is what is said.
     audience.close(2, 60);
-    CHECK(audience.said(1, kOrbit, 61) == "");
+    CHECK(audience.received(1, kOrbit, 61) == "");
     CHECK(texts_for(audience, 1).find("has left") != std::string::npos);
 }
 
-TEST_CASE("every message that steers has words for a wish") {
+TEST_CASE("every message that steers has a text for its request") {
     for (int kind = 0; kind <= static_cast<int>(MessageKind::Hand); ++kind) {
         CAPTURE(kind);
         ClientMessage message;
         message.kind = static_cast<MessageKind>(kind);
         const MessageKind k = message.kind;
         const bool steers = k != MessageKind::Hello && k != MessageKind::Rate && k != MessageKind::Shape &&
-                            k != MessageKind::Ack && k != MessageKind::Ask && k != MessageKind::Hand;
-        CHECK(wish_text(message).empty() != steers);
+                            k != MessageKind::Ack && k != MessageKind::RequestWheel && k != MessageKind::Hand;
+        CHECK(request_text(message).empty() != steers);
     }
 }
 
-} // namespace viewer_wishes_test
+} // namespace viewer_commands_test

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "formats/gltf/mend_keys.h"
+#include "formats/gltf/repair_keys.h"
 #include "math/scalar.h"
 #include "scene/pose/sample_channel.h"
 #include "scene/scene.h"
@@ -31,15 +31,15 @@ float at(const AnimationChannel& channel, double time_s) {
     return value[0];
 }
 
-AnimationChannel mended(AnimationChannel channel, bool is_told) {
-    CHECK(!gltf::mend_keys(channel, 3).empty() == is_told);
+AnimationChannel mended(AnimationChannel channel, bool is_reported) {
+    CHECK(!gltf::repair_keys(channel, 3).empty() == is_reported);
     Scene scene;
     scene.nodes.resize(1);
     CHECK(fault_of(channel, scene).empty());
     return channel;
 }
 
-TEST_CASE("keys in order stay as they are") {
+TEST_CASE("keys in order are unchanged") {
     const AnimationChannel good = mended(channel_of({0, 1, 2}, {1, 2, 3}), false);
     CHECK(good.times == std::vector<float>{0, 1, 2});
     CHECK(good.values.size() == 9);
@@ -56,7 +56,7 @@ TEST_CASE("two keys at one time are a jump") {
     CHECK(of_many.values == jump.values);
 }
 
-TEST_CASE("at the ends of a channel keys at one time are one") {
+TEST_CASE("keys at one time are merged at the ends of a channel") {
     const AnimationChannel channel = mended(channel_of({1, 1, 2, 2}, {-9, 0, 1, 9}), false);
     CHECK(channel.times == std::vector<float>{1, 2});
     CHECK(at(channel, 0) == 0);
@@ -68,7 +68,7 @@ TEST_CASE("at the ends of a channel keys at one time are one") {
     CHECK(at(steps, 5) == 4);
 }
 
-TEST_CASE("unsorted keys are sorted, negative times count, and times that are none are left out") {
+TEST_CASE("unsorted keys are sorted, negative times are valid, and times that are not finite are left out") {
     const AnimationChannel sorted = mended(channel_of({2, 0, 1}, {20, 0, 10}), true);
     CHECK(sorted.times == std::vector<float>{0, 1, 2});
     CHECK(at(sorted, 1.5) == 15);
@@ -87,13 +87,13 @@ TEST_CASE("a spline jumps between the values of its keys, with their own tangent
     for (const float value : {0.0f, 0.0f, 4.0f, 4.0f}) {
         for (const float number : {0.0f, value, 0.0f}) spline.values.insert(spline.values.end(), {number, 0, 0});
     }
-    CHECK(gltf::mend_keys(spline, 9).empty());
+    CHECK(gltf::repair_keys(spline, 9).empty());
     CHECK(at(spline, 0.5) == 0);
     CHECK(at(spline, 1) == 4);
     CHECK(at(spline, 1.5) == 4);
 }
 
-TEST_CASE("a glTF file's keys are mended as it is read, with a warning that names the channel") {
+TEST_CASE("a glTF file's keys are repaired as it is read, with a warning that names the channel") {
     test::GltfBuilder builder;
     builder.add("VEC3", std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.add("SCALAR", std::vector<float>{0, 2, 1});
@@ -106,7 +106,7 @@ TEST_CASE("a glTF file's keys are mended as it is read, with a warning that name
         messages);
     REQUIRE(scene.animations.at(0).channels.size() == 1);
     CHECK(at(scene.animations[0].channels[0], 1.5) == 1.5f);
-    CHECK(test::has_warning(messages, {"/animations/0/channels/0", "in the order of their times"}));
+    CHECK(test::has_warning(messages, {"/animations/0/channels/0", "sorted by time"}));
     CHECK(messages.left_out().empty());
 }
 

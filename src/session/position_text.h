@@ -11,9 +11,9 @@ namespace pertev {
 
 /// "X,Y,Z" in the syntax of settings. `digits` applies to a scene at the file's origin; a scene elsewhere has as many
 /// decimals as its own size would have.
-std::string place_text(const Scene& scene, Vec3 p, int digits);
+std::string position_text(const Scene& scene, Vec3 p, int digits);
 
-/// The position that place_text() states, in the coordinates of the file.
-DoubleVec3 told_place(const Scene& scene, Vec3 p, int digits);
+/// The position that position_text() states, in the coordinates of the file.
+DoubleVec3 stated_position(const Scene& scene, Vec3 p, int digits);
 
 } // namespace pertev

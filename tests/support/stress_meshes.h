@@ -12,7 +12,7 @@
 
 namespace pertev::test {
 
-struct NastyMesh {
+struct StressMesh {
     const char* name;
     std::vector<BvhTriangle> triangles; // (instance, primitive) pairs are unique unless the name says otherwise
     Vec3 centre;
@@ -24,11 +24,11 @@ std::vector<BvhTriangle> make_soup(uint32_t count, float away);
 
 /// A lattice of doubled quads, coincident triangles, long slivers, soups at the origin and 150 km away, huge
 /// coordinates, `line` triangles in a line, a torus, one triangle, nothing.
-std::vector<NastyMesh> nasty_meshes(uint32_t line = 3000);
+std::vector<StressMesh> stress_meshes(uint32_t line = 3000);
 
 /// Rays at random, at vertices, along edges, axes and planes of boxes, through lattice points, with components near 0,
 /// and with short t ranges.
-std::vector<Ray> nasty_rays(uint32_t count, const NastyMesh& mesh, uint32_t seed);
+std::vector<Ray> stress_rays(uint32_t count, const StressMesh& mesh, uint32_t seed);
 
 /// A ray as hex floats.
 std::string text_of(const Ray& ray);

@@ -8,14 +8,14 @@
 
 namespace pertev::gltf {
 
-enum class MendJson {
+enum class RepairJson {
     Numbers, // valid by RFC 8259: whole numbers beyond 64 bits, and numbers beyond the largest double, which become
              // that
     All,     // also invalid: NaN (null), Infinity, bytes that are not UTF-8, half a surrogate pair (U+FFFD), tabs
 };
 
-/// Returns text that simdjson can read; the same text if it contains none of these. Appends to `said` what was
+/// Returns text that simdjson can read; the same text if it contains none of these. Appends to `repairs` what was
 /// invalid, as ends of warnings.
-std::string mend_json(std::string_view text, MendJson mend, std::vector<std::string>* said = nullptr);
+std::string repair_json(std::string_view text, RepairJson repair, std::vector<std::string>* repairs = nullptr);
 
 } // namespace pertev::gltf

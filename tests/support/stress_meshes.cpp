@@ -1,4 +1,4 @@
-#include "tests/support/nasty_meshes.h"
+#include "tests/support/stress_meshes.h"
 
 #include <cstdio>
 #include <utility>
@@ -96,7 +96,7 @@ std::vector<BvhTriangle> make_soup(uint32_t count, float away) {
     return triangles;
 }
 
-std::vector<NastyMesh> nasty_meshes(uint32_t line) {
+std::vector<StressMesh> stress_meshes(uint32_t line) {
     return {{"lattice of doubled quads", grid_with_doubles(), {}},
             {"coincident triangles", coincident(500), {}},
             {"slivers", slivers(1000), {}},
@@ -109,7 +109,7 @@ std::vector<NastyMesh> nasty_meshes(uint32_t line) {
             {"nothing", {}, {}}};
 }
 
-std::vector<Ray> nasty_rays(uint32_t count, const NastyMesh& mesh, uint32_t seed) {
+std::vector<Ray> stress_rays(uint32_t count, const StressMesh& mesh, uint32_t seed) {
     std::vector<Ray> rays;
     Random random(seed);
     const auto triangle = [&]() -> const BvhTriangle& {

@@ -8,11 +8,11 @@
 
 namespace pertev {
 
-struct RadiosityLook {
+struct RadiosityDisplay {
     std::shared_ptr<const RadiositySolution> solution; // null before the scene has one
     bool is_flat = false;                              // shows patches without interpolation
 
-    bool operator==(const RadiosityLook&) const = default;
+    bool operator==(const RadiosityDisplay&) const = default;
 };
 
 } // namespace pertev

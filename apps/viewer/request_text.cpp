@@ -1,4 +1,4 @@
-#include "apps/viewer/wish_text.h"
+#include "apps/viewer/request_text.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 namespace pertev {
 namespace {
 
-std::string setting_wish(const ClientMessage& message) {
+std::string setting_request(const ClientMessage& message) {
     for (const ViewSetting& setting : view_settings()) {
         if (setting.name != message.name) continue;
         const double* number = std::get_if<double>(&message.value);
@@ -19,11 +19,11 @@ std::string setting_wish(const ClientMessage& message) {
 
 } // namespace
 
-std::string wish_text(const ClientMessage& message) {
-    if (message.kind == MessageKind::Set) return setting_wish(message);
+std::string request_text(const ClientMessage& message) {
+    if (message.kind == MessageKind::Set) return setting_request(message);
     if (message.kind == MessageKind::Pick && message.use != PickUse::Focus) return "turn about another place";
     if (message.kind == MessageKind::Play && !message.on) return "stop time";
-    return wish_of(message.kind);
+    return request_of(message.kind);
 }
 
 } // namespace pertev

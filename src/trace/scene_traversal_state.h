@@ -14,56 +14,56 @@ namespace pertev {
 
 /// `Scene` is SceneTrees or SingleTree of the structure that is traversed.
 template <class Traversal, class Scene>
-struct ScenePlace;
+struct SceneTraversalState;
 
 template <class Traversal>
-struct ScenePlace<Traversal, SingleTree<typename Traversal::Tree>> {
+struct SceneTraversalState<Traversal, SingleTree<typename Traversal::Tree>> {
     using Scene = SingleTree<typename Traversal::Tree>;
-    typename Traversal::Place place;
+    typename Traversal::State state;
 
-    HD explicit ScenePlace(typename Traversal::Place::Slot* slots) : place(slots) {}
+    HD explicit SceneTraversalState(typename Traversal::State::Slot* slots) : state(slots) {}
 
-    HD bool is_done() const { return place.is_done(); }
+    HD bool is_done() const { return state.is_done(); }
     template <class Visitor>
     HD void start(const Scene& scene, const Ray& ray, const Visitor& visitor) {
-        Traversal::start(scene.baked, ray, visitor, place);
+        Traversal::start(scene.baked, ray, visitor, state);
     }
     /// All of `lanes` must call it together; it does nothing for those that are done.
     template <class Visitor, class Counter>
     HD void turn(const Scene& scene, const Ray& ray, Visitor& visitor, const Counter& counter, LaneMask lanes,
                  int working) {
-        if (Traversal::turn(scene.baked, ray, kNoHit, place, visitor, counter, lanes, working)) place.stop();
+        if (Traversal::turn(scene.baked, ray, kNoHit, state, visitor, counter, lanes, working)) state.stop();
     }
 };
 
 template <class Traversal>
-struct ScenePlace<Traversal, SceneTrees<typename Traversal::Tree>> {
+struct SceneTraversalState<Traversal, SceneTrees<typename Traversal::Tree>> {
     using Scene = SceneTrees<typename Traversal::Tree>;
-    typename Traversal::Place place; // in `tree`
+    typename Traversal::State state; // in `tree`
     typename Traversal::Tree tree = {};
     Ray local; // the ray in the tree's space
     uint32_t instance = kNoHit;
     TreeTraversal top = {kNoLink}; // state in the tree over instances; kNoLink at its end
     TreeStack::Slot tlas_stack[kMaxTlasDepth];
 
-    HD explicit ScenePlace(typename Traversal::Place::Slot* slots) : place(slots) {}
+    HD explicit SceneTraversalState(typename Traversal::State::Slot* slots) : state(slots) {}
 
-    HD bool is_done() const { return place.is_done() && top.link == kNoLink; }
+    HD bool is_done() const { return state.is_done() && top.link == kNoLink; }
     template <class Visitor>
     HD void start(const Scene& scene, const Ray& ray, const Visitor& visitor) {
         tree = scene.baked;
         local = ray;
         instance = kNoHit;
         top = {scene.tlas_root};
-        Traversal::start(tree, local, visitor, place);
+        Traversal::start(tree, local, visitor, state);
     }
     /// All of `lanes` must call it together; it does nothing for those that are done.
     template <class Visitor, class Counter>
     HD void turn(const Scene& scene, const Ray& ray, Visitor& visitor, const Counter& counter, LaneMask lanes,
                  int working) {
-        if (place.is_done() && top.link != kNoLink) next_tree(scene, ray, visitor, counter);
-        if (Traversal::turn(tree, local, instance, place, visitor, counter, lanes, working)) {
-            place.stop();
+        if (state.is_done() && top.link != kNoLink) next_tree(scene, ray, visitor, counter);
+        if (Traversal::turn(tree, local, instance, state, visitor, counter, lanes, working)) {
+            state.stop();
             top.link = kNoLink;
         }
     }
@@ -83,7 +83,7 @@ private:
         instance = record.instance;
         tree = scene.meshes[record.blas];
         local = ray_in_instance(record, ray, visitor.accept);
-        Traversal::start(tree, local, visitor, place);
+        Traversal::start(tree, local, visitor, state);
     }
 };
 

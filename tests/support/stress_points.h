@@ -13,24 +13,24 @@
 
 namespace pertev::test {
 
-struct NastyPoints {
+struct StressPoints {
     const char* name;
     std::vector<Vec3> points;
     float extent = 1; // places to ask about are within 2 of these of 0
 };
 
-inline std::vector<NastyPoints> nasty_points(uint32_t count) {
-    std::vector<NastyPoints> sets = {{"none", {}},
-                                     {"one", {{0.25f, 0.5f, -1}}},
-                                     {"two alike", {{0, 1, 0}, {0, 1, 0}}},
-                                     {"all equal", {}},
-                                     {"anywhere", {}},
-                                     {"lattice", {}},
-                                     {"in a plane", {}},
-                                     {"in a line", {}},
-                                     {"huge", {}, 0x1p40f},
-                                     {"tiny", {}, 0x1p-130f},
-                                     {"clusters", {}}};
+inline std::vector<StressPoints> stress_points(uint32_t count) {
+    std::vector<StressPoints> sets = {{"none", {}},
+                                      {"one", {{0.25f, 0.5f, -1}}},
+                                      {"two alike", {{0, 1, 0}, {0, 1, 0}}},
+                                      {"all equal", {}},
+                                      {"anywhere", {}},
+                                      {"lattice", {}},
+                                      {"in a plane", {}},
+                                      {"in a line", {}},
+                                      {"huge", {}, 0x1p40f},
+                                      {"tiny", {}, 0x1p-130f},
+                                      {"clusters", {}}};
     Random random(3);
     std::vector<Vec3> centres;
     for (int i = 0; i < 12; ++i) centres.push_back(random.point(-1, 1));
@@ -50,7 +50,7 @@ inline std::vector<NastyPoints> nasty_points(uint32_t count) {
 }
 
 /// Places near and far, and at points, on lattice planes.
-inline std::vector<Vec3> places_to_ask(const NastyPoints& set, uint32_t count) {
+inline std::vector<Vec3> query_points(const StressPoints& set, uint32_t count) {
     std::vector<Vec3> places;
     Random random(8);
     for (uint32_t i = 0; i < count; ++i) {
@@ -83,9 +83,9 @@ inline const float kRadii[] = {0, 1e-6f, 0.1f, 0.25f, 0.5f, 1, 4, -1, kInfinity}
 
 /// Holds both searches of a tree over `set` to brute force.
 template <class View>
-std::string find_wrong_search(const View& view, const NastyPoints& set, uint32_t places) {
+std::string find_wrong_search(const View& view, const StressPoints& set, uint32_t places) {
     const auto n = static_cast<uint32_t>(set.points.size());
-    for (const Vec3 at : places_to_ask(set, places)) {
+    for (const Vec3 at : query_points(set, places)) {
         for (const float radius : kRadii) {
             const std::vector<NearPoint> want = within_by_brute_force(set.points, at, radius * set.extent);
             std::vector<NearPoint> seen;
