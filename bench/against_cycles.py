@@ -14,9 +14,7 @@ import json
 import math
 import os
 import pathlib
-import re
 import statistics
-import subprocess
 import sys
 import tempfile
 import time
@@ -27,6 +25,8 @@ from mitsuba_to_gltf import convert  # noqa: E402
 import bpy  # noqa: E402
 import numpy  # noqa: E402
 from mathutils import Matrix, Vector  # noqa: E402
+
+from peer_jobs import run_pertev, seconds_of, write_grey_obj  # noqa: E402
 
 
 def exr_pixels(path):
@@ -144,11 +144,8 @@ class SponzaByDefault(Sponza):
 
     def __init__(self, scenes, folder, threads):
         super().__init__(scenes, folder, threads)
-        pathlib.Path(folder, "grey.mtl").write_text("newmtl grey\nKd 0.7 0.7 0.7\n")
-        kept = [line for line in self.file.read_text().splitlines() if line[:2] in ("v ", "f ")]
-        faces = [re.sub(r"/\S*", "", line) for line in kept]  # positions alone
+        write_grey_obj(self.file, pathlib.Path(folder, "grey.obj"), 0.7)
         self.file = pathlib.Path(folder, "grey.obj")
-        self.file.write_text("\n".join(["mtllib grey.mtl", "usemtl grey", *faces, ""]))
 
     def arguments(self, path):
         return ["render", self.file, "-o", path, "--filter", "box", "--max-depth", 8, "--environment", "1,1,1",
@@ -183,14 +180,8 @@ class CornellBox:
 
 def pertev(program, job, threads, samples, seed, path):
     """Seconds of rendering alone."""
-    command = [program, *job.arguments(path), "--spp", samples, "--seed", seed, "--size", f"{job.width}x{job.height}",
-               "--device", "cpu", "--threads", threads, "--json"]
-    done = subprocess.run(list(map(str, command)), stdout=subprocess.PIPE, check=True)
-    for line in done.stdout.splitlines():
-        values = json.loads(line)
-        if values["event"] in ("job", "done"):
-            return values.get("render_seconds", values.get("seconds"))
-    sys.exit("no line of the event job or done")
+    return seconds_of(run_pertev(program, [*job.arguments(path), "--spp", samples, "--seed", seed, "--size",
+                                           f"{job.width}x{job.height}", "--device", "cpu", "--threads", threads]))
 
 
 def main():
