@@ -202,7 +202,7 @@ MUTATIONS = TRANSPORT_MUTATIONS + [
              ["seams/light_tree"]),
     Mutation("a path forgets the normal by which its last vertex chose lights",
              [edit("src/integrators/path/path_vertex.h",
-                   "path.normal = vertex.light_context(path.time).normal;", "")],
+                   "path.normal = context.normal;", "{}")],
              ["seams/light_tree"]),
     Mutation("the context of light has a normal that points away from the viewer",
              [edit("src/device_scene/surface.h", "dot(wo, frame.normal) < 0 ? -frame.normal : frame.normal", "frame.normal")],

@@ -94,7 +94,7 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, Reporter& r
     benched->queue = take_machine(flags.machine, messages);
     reporter.report_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
-    benched->scene = load_scene(flags.scene, SceneUse::Benchmark, messages);
+    benched->scene = open_scene(flags.scene, messages, SceneUse::Benchmark);
     if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
     const RenderSettings& settings = benched->settings = render_settings(flags, benched->scene);
     check_radiosity_flags(flags.radiosity, settings, flags.limits_memory);

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "apps/cli/setting_flags.h"
+#include "base/error.h"
 
 namespace pertev {
 namespace {
@@ -146,13 +147,17 @@ std::string Help::make_help(const CLI::App* verb, std::string, CLI::AppFormatMod
 std::string take_help_group(std::vector<std::string>& words) {
     const auto help =
         std::ranges::find_if(words, [](const std::string& word) { return word == "--help" || word == "-h"; });
-    if (help == words.end() || help + 1 == words.end()) return "";
+    if (help == words.end() || help + 1 == words.end() || help[1].starts_with('-')) return "";
+    std::set<std::string> groups = {"all"};
+    for (const Setting& setting : all_settings()) groups.insert(small_letters(setting.group));
     const std::string group = small_letters(help[1]);
-    const bool is_one = group == "all" || std::ranges::any_of(all_settings(), [&](const Setting& setting) {
-                            return small_letters(setting.group) == group;
-                        });
-    if (is_one) words.erase(help + 1);
-    return is_one ? group : "";
+    if (!groups.contains(group)) {
+        if (help == words.begin()) return ""; // a verb, for example
+        throw Error(ErrorCode::BadInput,
+                    fmt::format("{} {}: no such group; there are {}", *help, help[1], fmt::join(groups, ", ")));
+    }
+    words.erase(help + 1);
+    return group;
 }
 
 } // namespace pertev

@@ -20,8 +20,8 @@ private:
     std::string group_; // in lower case; empty: none
 };
 
-/// Removes and returns the word after --help or -h if it names a group of flags, or is "all". `words` is the command
-/// line.
+/// Removes and returns the group of flags after --help or -h, or "all"; empty if none follows. `words` is the command
+/// line. Throws Error(BadInput) for another word after a verb's --help.
 std::string take_help_group(std::vector<std::string>& words);
 
 /// The names of a flag, as in "-o,--output". Names of earlier versions, which follow the first long one, are hidden.

@@ -83,25 +83,25 @@ bool write_document(const CLI::App& app, const std::vector<std::string>& words) 
 /// Parses the command line, which runs its verb.
 int run(std::vector<std::string> words, bool json) {
     CLI::App app("Pertev: a path tracer for GPUs without ray-tracing hardware, and for CPUs.", "pertev");
-    app.set_version_flag("--version", fmt::format("pertev {} ({})", version(), git_commit()));
-    app.formatter(std::make_shared<Help>(take_help_group(words)));
-    app.require_subcommand(1);
     int status = 0;
-    add_render_command(app, status);
-    add_view_command(app, status);
-    add_compare_command(app, status);
-    add_measure_command(app, status);
-    add_solve_command(app, status);
-    add_info_command(app, status);
-    add_bench_command(app, status);
-    add_lab_command(app, status);
-    app.add_flag("--man")->description("Prints a man page.");
-    app.add_flag("--settings-document")->description("Prints docs/settings.md.");
-    app.add_option("--completion")
-        ->description("Prints a completion script for this shell.")
-        ->type_name("bash|zsh|fish")
-        ->check(one_of({"bash", "zsh", "fish"}));
     try {
+        app.set_version_flag("--version", fmt::format("pertev {} ({})", version(), git_commit()));
+        app.formatter(std::make_shared<Help>(take_help_group(words)));
+        app.require_subcommand(1);
+        add_render_command(app, status);
+        add_view_command(app, status);
+        add_compare_command(app, status);
+        add_measure_command(app, status);
+        add_solve_command(app, status);
+        add_info_command(app, status);
+        add_bench_command(app, status);
+        add_lab_command(app, status);
+        app.add_flag("--man")->description("Prints a man page.");
+        app.add_flag("--settings-document")->description("Prints docs/settings.md.");
+        app.add_option("--completion")
+            ->description("Prints a completion script for this shell.")
+            ->type_name("bash|zsh|fish")
+            ->check(one_of({"bash", "zsh", "fish"}));
         if (write_document(app, words)) return 0;
         std::ranges::reverse(words); // the order that CLI11 expects
         app.parse(std::move(words));

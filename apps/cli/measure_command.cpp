@@ -82,7 +82,7 @@ int measure(MeasureFlags& flags) {
     reporter.report_messages();
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
     const RenderSettings& settings = flags.render;
-    Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
+    Scene scene = open_scene(flags.scene, messages, SceneUse::Measurement);
     if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
     for (Material& material : scene.materials) material.double_sided = true; // backs are hidden from cameras alone
     PrepareOptions prepare = prepare_options(settings, machine.may_be_cuda());

@@ -13,7 +13,8 @@ namespace pertev {
 
 void check_scene_options(const SceneOptions& options) {
     check_camera_choice(options.camera);
-    read_options(open_options(options));
+    read_options(options);
+    for (const std::string& emitter : options.emitters) parse_emitter(emitter);
 }
 
 std::string builtin_scene_list() { return fmt::format("{}", fmt::join(builtin_scene_names(), ", ")); }
@@ -28,13 +29,7 @@ CLI::Option* add_scene_name(CLI::App& verb, SceneOptions& options) {
 }
 
 Scene read_any_scene(const SceneOptions& options, Messages& messages) {
-    return read_scene_and_emitters(options.scene, read_options(open_options(options)), messages);
-}
-
-Scene load_scene(const SceneOptions& options, SceneUse use, Messages& messages) {
-    OpenOptions open = open_options(options);
-    open.use = use;
-    return open_scene(open, messages);
+    return read_scene_and_emitters(options.scene, read_options(options), messages);
 }
 
 } // namespace pertev

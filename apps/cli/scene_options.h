@@ -25,12 +25,7 @@ std::string builtin_scene_list();
 void check_scene_options(const SceneOptions& options);
 
 /// Reads a file, or a built-in scene by its name, and adds nothing (session/opening/open_scene.h's
-/// read_scene_and_lamps). Throws Error.
+/// read_scene_and_emitters). Throws Error.
 Scene read_any_scene(const SceneOptions& options, Messages& messages);
-
-// Wrappers of session/opening/open_scene.h and session/opening/choose_camera.h for flags as text. Each throws
-// Error(BadInput) for invalid text too.
-
-Scene load_scene(const SceneOptions& options, SceneUse use, Messages& messages);
 
 } // namespace pertev

@@ -51,7 +51,7 @@ int solve(SolveFlags& flags) {
     set_thread_count(static_cast<int>(flags.machine.threads));
     const Stopwatch total_time;
     reporter.set_work(fmt::format("loading {}", flags.scene.scene));
-    Scene scene = load_scene(flags.scene, SceneUse::Measurement, messages);
+    Scene scene = open_scene(flags.scene, messages, SceneUse::Measurement);
     if (flags.strict) refuse_what_is_left_out(messages, "nothing is solved");
     check_light(flags.render, scene, messages);
     PrepareOptions prepare = prepare_options(flags.render, false);

@@ -9,18 +9,19 @@
 namespace pertev {
 namespace {
 
-constexpr int kPasses = 5;
+constexpr int kPicturePasses = 5;
 // Parameters of WaveletPass. Bumps are trusted like everything else, because with more samples their noise is less
 // than their effect.
-constexpr float kTolerance = 4, kMinTrust = 1;
+constexpr float kPictureTolerance = 4, kPictureMinTrust = 1;
 constexpr std::size_t kOfGuide = 4, kOfSums = 10 + 2 * kNeighbourSurfaces,
-                      kOfSignals = 4; // numbers of arrays of Float4
-constexpr std::size_t kWideArrays = kOfGuide + kOfSums + kOfSignals;
+                      kOfPictureSignals = 4; // numbers of arrays of Float4
+constexpr std::size_t kWidePictureArrays = kOfGuide + kOfSums + kOfPictureSignals;
 
 } // namespace
 
 PictureDenoiser::PictureDenoiser(Queue& queue, uint32_t width, uint32_t height)
-    : queue_(&queue), width_(width), height_(height), wide_(queue, kWideArrays * width * height, "denoised picture"),
+    : queue_(&queue), width_(width), height_(height),
+      wide_(queue, kWidePictureArrays * width * height, "denoised picture"),
       squares_(queue, std::size_t(width) * height, "denoised picture"),
       objects_(queue, std::size_t(width) * height, "denoised picture") {
     Float4* next = wide_.data();
@@ -74,9 +75,10 @@ Image PictureDenoiser::picture() {
     const PictureGuide smooth = {smooth_, guide_.albedo, guide_.object};
     launch(*queue_, "smooth_guide", pixels, SmoothGuide{guide_, sums_, smooth_, packed_});
     launch(*queue_, "estimate_variance", pixels, EstimateVariance{smooth, sums_, from, width_, height_, has_gloss_});
-    for (int pass = 0; pass < kPasses; ++pass) {
+    for (int pass = 0; pass < kPicturePasses; ++pass) {
         launch(*queue_, "wavelet_pass", pixels,
-               WaveletPass{packed_, from, to, camera_, width_, height_, 1 << pass, kTolerance, kMinTrust, has_gloss_});
+               WaveletPass{packed_, from, to, camera_, width_, height_, 1 << pass, kPictureTolerance, kPictureMinTrust,
+                           has_gloss_});
         std::swap(from, to);
     }
     launch(*queue_, "compose_samples", pixels,

@@ -16,7 +16,7 @@ namespace {
 
 // Maximum expansion to float RGB: new coding packs 127 values of each channel in 2 bytes; old coding has no bound,
 // but this is plausible.
-constexpr uint64_t kMaxPerByte = 2000;
+constexpr uint64_t kMaxPerHdrByte = 2000;
 
 using Rgbe = std::array<uint8_t, 4>;
 
@@ -28,7 +28,7 @@ public:
         read_variables();
         read_resolution();
         check_image_size(name_, width_, height_, multiply_saturated(multiply_saturated(width_, height_), 12),
-                         bytes_.size(), kMaxPerByte);
+                         bytes_.size(), kMaxPerHdrByte);
         return {static_cast<uint32_t>(width_), static_cast<uint32_t>(height_), true};
     }
 

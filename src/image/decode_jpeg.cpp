@@ -17,7 +17,7 @@ namespace pertev {
 namespace {
 
 // Maximum expansion to RGBA bytes: a block of 64 pixels takes at least one bit per component.
-constexpr uint64_t kMaxPerByte = 4096;
+constexpr uint64_t kMaxPerJpegByte = 4096;
 // Each scan processes the whole picture, however few bytes it has; encoders write about ten.
 constexpr int kMaxScans = 100;
 
@@ -139,7 +139,8 @@ void open(JpegReader& reader, std::span<const std::byte> bytes, const std::strin
         fail(reader, name, std::nullopt);
     const jpeg_decompress_struct& info = reader.info;
     check_image_size(name, info.image_width, info.image_height,
-                     multiply_saturated(uint64_t(info.image_width) * 4, info.image_height), bytes.size(), kMaxPerByte);
+                     multiply_saturated(uint64_t(info.image_width) * 4, info.image_height), bytes.size(),
+                     kMaxPerJpegByte);
 }
 
 } // namespace

@@ -14,7 +14,7 @@ namespace pertev {
 namespace {
 
 // Deflate reaches 1032:1. Of rows as the file stores them, before palettes and bits are expanded.
-constexpr uint64_t kMaxPerByte = 1100;
+constexpr uint64_t kMaxPerPngByte = 1100;
 
 // libpng reports errors by a jump. The steps below hold nothing that has a destructor, so the jump skips none: all
 // memory belongs to decode_png, and every step returns false after a jump.
@@ -110,7 +110,7 @@ void start(PngReader& reader, std::span<const std::byte> bytes, const std::strin
     const uint64_t row_bytes = uint64_t(reader.width) * reader.channels * (reader.bit_depth == 16 ? sizeof(float) : 1);
     const uint64_t expansion = (row_bytes + reader.stored_row_bytes - 1) / reader.stored_row_bytes;
     check_image_size(name, reader.width, reader.height, multiply_saturated(row_bytes, reader.height), bytes.size(),
-                     kMaxPerByte * expansion);
+                     kMaxPerPngByte * expansion);
 }
 
 template <class T>

@@ -35,16 +35,18 @@ struct JpegWriter {
     }
 };
 
-[[noreturn]] void on_error(j_common_ptr info) { std::longjmp(static_cast<JpegWriter*>(info->client_data)->jump, 1); }
-void on_message(j_common_ptr, int) {}
-void on_output(j_common_ptr) {}
+[[noreturn]] void on_write_error(j_common_ptr info) {
+    std::longjmp(static_cast<JpegWriter*>(info->client_data)->jump, 1);
+}
+void ignore_message(j_common_ptr, int) {}
+void ignore_output(j_common_ptr) {}
 
 bool write_all(JpegWriter& writer, uint32_t width, uint32_t height, int quality, bool half_chroma, JSAMPARRAY rows) {
     jpeg_compress_struct& info = writer.info;
     info.err = jpeg_std_error(&writer.errors);
-    writer.errors.error_exit = on_error;
-    writer.errors.emit_message = on_message;
-    writer.errors.output_message = on_output;
+    writer.errors.error_exit = on_write_error;
+    writer.errors.emit_message = ignore_message;
+    writer.errors.output_message = ignore_output;
     info.client_data = &writer;
     if (setjmp(writer.jump) != 0) return false;
     jpeg_create_compress(&info);

@@ -7,11 +7,11 @@
 namespace pertev {
 namespace {
 
-struct Light {
+struct RowLight {
     double r = 0, g = 0, b = 0;
 };
 
-Light operator+(Light x, Light y) { return {x.r + y.r, x.g + y.g, x.b + y.b}; }
+RowLight operator+(RowLight x, RowLight y) { return {x.r + y.r, x.g + y.g, x.b + y.b}; }
 
 } // namespace
 
@@ -28,11 +28,11 @@ void FormFactorRow::sort() {
 }
 
 Rgb gather(std::span<const FormFactor> row, const std::vector<Rgb>& radiosity) {
-    const Light light = tree_sum(row.size(), [&](uint64_t i) {
+    const RowLight light = tree_sum(row.size(), [&](uint64_t i) {
         const auto factor = static_cast<double>(row[i].factor);
         const Rgb sent = radiosity[row[i].patch];
-        return Light{factor * static_cast<double>(sent.r), factor * static_cast<double>(sent.g),
-                     factor * static_cast<double>(sent.b)};
+        return RowLight{factor * static_cast<double>(sent.r), factor * static_cast<double>(sent.g),
+                        factor * static_cast<double>(sent.b)};
     });
     return {static_cast<float>(light.r), static_cast<float>(light.g), static_cast<float>(light.b)};
 }

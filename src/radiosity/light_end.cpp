@@ -13,8 +13,6 @@ namespace {
 
 constexpr double kMinLoss = 1e-6; // share of the light that a patch gathers, beyond rounding
 
-double channel(Rgb c, int k) { return static_cast<double>(k == 0 ? c.r : k == 1 ? c.g : c.b); }
-
 /// Number of patches that light of channel `k` reaches and never leaves.
 uint64_t count_endless(const RadiositySystem& system, int k) {
     const std::size_t count = system.patches.size();

@@ -12,8 +12,6 @@
 namespace pertev {
 namespace {
 
-double channel(Rgb c, int k) { return static_cast<double>(k == 0 ? c.r : k == 1 ? c.g : c.b); }
-
 /// Radiosities of channel `k`; empty where it was to end.
 std::vector<double> eliminate(const RadiositySystem& system, int k, const KeepSolving& keep_going) {
     const std::size_t n = system.patches.size();

@@ -61,6 +61,9 @@ struct SolvedSystem {
 /// It is insufficient only if next to nothing absorbs light.
 inline constexpr uint64_t kMaxSweeps = 10000;
 
+/// Channel k of c as a double; the solvers treat each alone.
+inline double channel(Rgb c, int k) { return static_cast<double>(k == 0 ? c.r : k == 1 ? c.g : c.b); }
+
 /// Throws Error(BadInput) if light never ends because it reaches patches that reflect all of it only to each other.
 /// Then the system has no solution.
 void check_light_ends(const RadiositySystem& system);

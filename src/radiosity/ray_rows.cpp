@@ -14,7 +14,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kRaysAtOnce = 128;
+constexpr uint32_t kRowRaysAtOnce = 128;
 
 class RayRows final : public RowMaker {
 public:
@@ -31,9 +31,9 @@ public:
         const SampleKey key = {number, 0, seed_};
         const float each = 1.0f / static_cast<float>(rays_.hemisphere);
         double emitters = 0, others = 0; // others: patches without light of their own, the sky, and where light ends
-        for (uint32_t first = 0; first < rays_.hemisphere; first += kRaysAtOnce) {
+        for (uint32_t first = 0; first < rays_.hemisphere; first += kRowRaysAtOnce) {
             if (scene_.is_over()) return;
-            const uint32_t count = min(rays_.hemisphere - first, kRaysAtOnce);
+            const uint32_t count = min(rays_.hemisphere - first, kRowRaysAtOnce);
             send(patch, key, first, count);
             for (uint32_t i = 0; i < count; ++i) others += add(i, each, row);
         }
@@ -115,10 +115,10 @@ private:
     RowScene scene_;
     uint32_t seed_;
     LightRays rays_;
-    Ray sent_[kRaysAtOnce];
-    float cosines_[kRaysAtOnce];
-    uint32_t keys_[kRaysAtOnce];
-    Hit hits_[kRaysAtOnce];
+    Ray sent_[kRowRaysAtOnce];
+    float cosines_[kRowRaysAtOnce];
+    uint32_t keys_[kRowRaysAtOnce];
+    Hit hits_[kRowRaysAtOnce];
 };
 
 } // namespace

@@ -23,7 +23,7 @@ struct FindBefore {
     SceneView scene;
     PreviousScene scene_before;
     FrameCameras cameras;
-    GBufferView now, last; // of this frame; hits and normals of the previous one
+    GBufferView now, last; // last: only hits and normals
     Neighbours* to;
 
     HD void operator()(uint32_t pixel) const {

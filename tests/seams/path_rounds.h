@@ -122,7 +122,7 @@ class PathRounds {
 public:
     PathRounds(Queue& queue, uint32_t pixels)
         : queue_(queue), pixels_(pixels), paths_(queue, pixels, "rounds"), rays_(queue, 2 * pixels, "rounds"),
-          triangles_(queue, 4 * pixels, "rounds"), places_(queue, pixels, "rounds"),
+          triangles_(queue, 4 * pixels, "rounds"), records_(queue, pixels, "rounds"),
           instances_(queue, 2 * pixels, "rounds") {}
 
     /// Adds samples [first, end) of the job's picture to its film, of at most `pixels` pixels.
@@ -133,7 +133,7 @@ public:
         const RoundsView<Listener> view = {.paths = paths_.data(),
                                            .onwards = {rays_.data(), ids, ids + p},
                                            .shadows = {rays_.data() + p, ids + 2 * p, ids + 3 * p},
-                                           .hits = {places_.data(), instances_.data()},
+                                           .hits = {records_.data(), instances_.data()},
                                            .occlusions = {nullptr, instances_.data() + p}};
         for (uint32_t sample = first; sample < end; ++sample) {
             launch(queue_, "begin_round", count, BeginRound<Listener, Job>{job, view, sample});
@@ -155,7 +155,7 @@ private:
     Buffer<RoundPath<Listener>> paths_;
     Buffer<Ray> rays_;
     Buffer<Uint2> triangles_;
-    Buffer<Float4> places_;
+    Buffer<Float4> records_;
     Buffer<uint32_t> instances_;
 };
 

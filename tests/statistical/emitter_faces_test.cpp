@@ -147,7 +147,8 @@ TEST_CASE("clamping limits indirect light equally under every sampling strategy,
         job.picture.scene = device.view();
         job.settings = {.strategy = strategy, .clamp = clamp, .sampler = SamplerKind::Independent};
         FilmListeners listener(job);
-        REQUIRE(sample_direct<kAllMaterials>(job, here, SurfaceVertex{surface, {0, 1, 0}}, DrawOnDemand(), shadow,
+        const SurfaceVertex vertex = {surface, {0, 1, 0}};
+        REQUIRE(sample_direct<kAllMaterials>(job, here, vertex, vertex.light_context(here.time), DrawOnDemand(), shadow,
                                              listener));
         return static_cast<double>(max_component(shadow.contribution));
     };

@@ -99,7 +99,7 @@ ChartIntegral gauss(const Piece& piece, const ChartRectangle& r, const Integrand
         const auto [x0, x1] = piece.sides_at(y);
         for (int i = 0; i < kPoints; i++) {
             const double s = r.x0 + half_s * (1 + kNode[i]);
-            const auto place = piece.chart.point_of({x0 + s * (x1 - x0), y});
+            const auto place = piece.chart.chart_point({x0 + s * (x1 - x0), y});
             const ChartIntegral value = f(place.direction);
             const double weight = kWeight[i] * kWeight[j] * half_s * half_y * (x1 - x0) * place.area;
             for (int c = 0; c < 4; c++) sum.value[c] += weight * value.value[c];
@@ -140,7 +140,7 @@ DirectionChart::Point DirectionChart::point_of(Vec3 direction) const {
     return {t / (t + width), turn < 0 ? turn + 1 : turn};
 }
 
-DirectionChart::ChartPoint DirectionChart::point_of(Point p) const {
+DirectionChart::ChartPoint DirectionChart::chart_point(Point p) const {
     const double t = width * p.x / (1 - p.x), s = 1 + t * t;
     const double sine = 2 * t / s, cosine = (1 - t * t) / s;
     const double dt = width / ((1 - p.x) * (1 - p.x));

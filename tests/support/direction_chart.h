@@ -24,7 +24,7 @@ struct DirectionChart {
         Vec3 direction;
         double area; // solid angle over dx dy
     };
-    ChartPoint point_of(Point p) const;
+    ChartPoint chart_point(Point p) const;
 };
 
 struct ChartRectangle {

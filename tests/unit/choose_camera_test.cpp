@@ -82,24 +82,23 @@ TEST_CASE("open_scene gives a scene without light a sky or the requested environ
     const std::filesystem::path file =
         test::write_text(test::scratch_folder() / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     Messages messages;
-    OpenOptions options = {.scene = file.string()};
+    SceneOptions options = {.scene = file.string()};
     options.environment_scale = 2;
     const Scene sky = open_scene(options, messages);
     REQUIRE(sky.environment.has_value());
     CHECK(!sky.environment->image.pixels.empty());
     CHECK(sky.environment->scale == Rgb{2, 2, 2});
 
-    options.environment_radiance = Rgb{0.5f, 0.25f, 0.125f};
+    options.environment = "0.5,0.25,0.125";
     options.environment_rotation_deg = 180;
     const Scene even = open_scene(options, messages);
     CHECK(even.environment->image.pixels.empty());
     CHECK(even.environment->scale == Rgb{1, 0.5f, 0.25f});
     CHECK(even.environment->rotation == doctest::Approx(kPi));
 
-    options.environment_radiance = Rgb{-1, 0, 0};
+    options.environment = "-1,0,0";
     const auto negative = test::thrown_error([&] { open_scene(options, messages); });
     CHECK(test::is_about(negative, ErrorCode::BadInput, "environment", "-1,0,0"));
-    options.environment_radiance.reset();
     options.environment = "nowhere.exr";
     CHECK_THROWS_AS(open_scene(options, messages), Error);
 }

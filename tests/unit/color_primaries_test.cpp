@@ -145,9 +145,9 @@ TEST_CASE("the line PRIMARIES of a Radiance HDR works like an EXR's chromaticiti
     CHECK(messages.all().empty());
     for (const char* line : {"PRIMARIES=0.64 0.33 x\n", "PRIMARIES=\n", "PRIMARIES=0.6 0.3 0.6 0.3 0.1 0 0.3 0.3\n"}) {
         CAPTURE(line);
-        Messages messages;
-        CHECK(read(line, messages).pixels == std::vector<float>{0.5f, 1, 0.25f});
-        CHECK(messages.all().size() == (std::string(line) == "PRIMARIES=\n" ? 0 : 1));
+        Messages warnings;
+        CHECK(read(line, warnings).pixels == std::vector<float>{0.5f, 1, 0.25f});
+        CHECK(warnings.all().size() == (std::string(line) == "PRIMARIES=\n" ? 0 : 1));
     }
 }
 

@@ -58,7 +58,7 @@ TEST_CASE("a small object keeps its own light in a scene a hundred thousand time
     const auto x_of = [&](Vec3 p) { return (p.x - 300) / 0.01f; }; // [-0.5, 0.5]
     std::vector<Rgb> irradiance;
     for (const Patch& patch : patched.tree.patches) {
-        const WorldTriangle triangle = place_on(patched.solved.view(), patch, patch.corners.middle());
+        const WorldTriangle triangle = world_triangle(patched.solved.view(), patch, patch.corners.middle());
         const Vec2 middle = patch.corners.middle();
         irradiance.push_back(patch.instance == 1 ? grey(1 + x_of(triangle.at(middle.x, middle.y))) : grey(100));
     }
@@ -67,7 +67,7 @@ TEST_CASE("a small object keeps its own light in a scene a hundred thousand time
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const Patch& patch = patched.tree.patches[i];
         if (patch.instance != 1) continue;
-        const WorldTriangle triangle = place_on(patched.solved.view(), patch, patch.corners.middle());
+        const WorldTriangle triangle = world_triangle(patched.solved.view(), patch, patch.corners.middle());
         for (int k = 0; k < 3; ++k) {
             const Vec2 at = patch.corners.at[k];
             const float x = x_of(triangle.at(at.x, at.y));
@@ -96,7 +96,7 @@ TEST_CASE("neighbours separated only by rounding share the light at their corner
         int shared = 0;
         for (std::size_t i = 0; i < lights.size(); ++i) {
             const Patch& patch = patched.tree.patches[i];
-            const WorldTriangle triangle = place_on(patched.solved.view(), patch, patch.corners.middle());
+            const WorldTriangle triangle = world_triangle(patched.solved.view(), patch, patch.corners.middle());
             for (int k = 0; k < 3; ++k) {
                 const Vec3 at = triangle.at(patch.corners.at[k].x, patch.corners.at[k].y) - placed.translation;
                 const float along = dot(at, transform_vector(placed, {1, 0, 0}));

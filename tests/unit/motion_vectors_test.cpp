@@ -141,10 +141,10 @@ TEST_CASE("memory of motion vectors equals its prediction, and their bytes are t
     const Scene scene = test::make_mixed_scene();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     const auto motion_on = [&](Queue& queue, PathBody body) {
-        Messages messages;
+        Messages notes;
         RenderSettings settings = motion_settings();
         settings.body = body;
-        const PreparedScene own = prepare_scene(scene, {}, messages);
+        const PreparedScene own = prepare_scene(scene, {}, notes);
         Session session(queue, own, test::mixed_scene_camera(), settings);
         session.keep_as_before();
         Camera moved = test::mixed_scene_camera();

@@ -60,7 +60,7 @@ TEST_CASE("patches cover their triangles with edges within the requested length,
     double area = 0;
     for (const Patch& patch : patched.tree.patches) {
         if (patch.side() == 0 && patch.instance < 6) area += static_cast<double>(patch.area);
-        const WorldTriangle triangle = place_on(patched.solved.view(), patch, patch.corners.middle());
+        const WorldTriangle triangle = world_triangle(patched.solved.view(), patch, patch.corners.middle());
         for (int k = 0; k < 3; ++k) {
             const Vec2 a = patch.corners.at[k], b = patch.corners.at[(k + 1) % 3];
             CHECK(length(triangle.at(a.x, a.y) - triangle.at(b.x, b.y)) <= 0.8f);
@@ -268,13 +268,13 @@ TEST_CASE("an interrupted solution records its state and is rendered with a warn
             prepared, settings, [&](const char* what, double) { return what != during || ++count < heard; });
         CHECK(solved.stats.was_interrupted);
         write_solution(path, solved.solution);
-        Messages messages;
-        const RadiositySolution back = read_solution(path, scene, messages);
+        Messages warnings;
+        const RadiositySolution back = read_solution(path, scene, warnings);
         CHECK(back.hash() == solved.solution.hash());
         CHECK(back.extent == solved.solution.extent);
-        REQUIRE(messages.all().size() == 1);
-        CHECK(messages.all()[0].is_warning);
-        CHECK(messages.all()[0].text.find("it is unfinished and holds " + describe(back.extent)) != std::string::npos);
+        REQUIRE(warnings.all().size() == 1);
+        CHECK(warnings.all()[0].is_warning);
+        CHECK(warnings.all()[0].text.find("it is unfinished and holds " + describe(back.extent)) != std::string::npos);
         return back;
     };
     const RadiositySolution begun = ended(RadiositySolver::Hierarchical, "direct light", 1);

@@ -332,7 +332,7 @@ TEST_CASE("the position layer is in the file's coordinates, and relative to the 
         Queue queue = test::requested_queue();
         const RenderResult result = test::render(queue, scene, choose_camera(choice, scene, 1, messages), settings);
         const float* at = result.layers.at(0).image.pixels.data();
-        const SceneSource source = source_of(OpenOptions{}, scene);
+        const SceneSource source = source_of(SceneOptions{}, scene);
         CHECK(source.position_origin.has_value() == c.is_far);
         const DoubleVec3 origin = source.position_origin.value_or(DoubleVec3{0, 0, 0});
         CHECK(std::abs(origin.x + static_cast<double>(at[0]) - (c.x + 0.5)) < 1e-4);

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/cli/help.h"
+#include "base/error.h"
 
 using namespace pertev;
 
@@ -48,7 +49,9 @@ TEST_CASE("the word after --help names a group of flags") {
     std::vector<std::string> words = {"render", "--help", "Camera"};
     CHECK(take_help_group(words) == "camera");
     CHECK(words == std::vector<std::string>{"render", "--help"});
-    words = {"render", "-h", "cornell-box"};
+    words = {"--help", "render"};
     CHECK(take_help_group(words) == "");
-    CHECK(words.size() == 3);
+    CHECK(words.size() == 2);
+    words = {"render", "-h", "cornell-box"};
+    CHECK_THROWS_WITH_AS(take_help_group(words), doctest::Contains("no such group; there are all, "), Error);
 }

@@ -131,9 +131,9 @@ TEST_CASE("a camera's metadata reproduces the camera") {
 }
 
 TEST_CASE("metadata records how scene and camera were chosen") {
-    OpenOptions options;
+    SceneOptions options;
     options.scene = "mixed";
-    options.environment_radiance = Rgb{0.5f, 1, 0.25f};
+    options.environment = "0.5,1,0.25";
     options.environment_scale = 2;
     options.environment_rotation_deg = 30;
     options.show_back_faces = true;
@@ -146,7 +146,6 @@ TEST_CASE("metadata records how scene and camera were chosen") {
     CHECK(!source.has_environment);
     CHECK(!source.two_sided_lights);
     CHECK(source.show_back_faces);
-    options.environment_radiance.reset();
     options.environment = "sky.hdr";
     scene.environment.emplace();
     source = source_of(options, scene);

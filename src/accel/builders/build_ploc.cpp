@@ -16,10 +16,10 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kRadius = 16;      // neighbours searched on either side
-constexpr uint32_t kFewMerges = 16;   // a round with fewer merges than clusters / this is a chain, which would take
-                                      // one round per merge
-constexpr uint32_t kChunk = 1u << 13; // fixed, so that nothing depends on the number of threads
+constexpr uint32_t kRadius = 16;          // neighbours searched on either side
+constexpr uint32_t kFewMerges = 16;       // a round with fewer merges than clusters / this is a chain, which would take
+                                          // one round per merge
+constexpr uint32_t kPlocChunk = 1u << 13; // fixed, so that nothing depends on the number of threads
 
 struct CurveKey {
     uint64_t code;
@@ -36,7 +36,7 @@ std::vector<CurveKey> sort_along_curve(const std::vector<BuildReference>& refere
         return spread_bits(static_cast<uint64_t>(to_int(part * 0x1p21f, 0, (1 << 21) - 1)));
     };
     std::vector<CurveKey> keys(references.size());
-    parallel_for(references.size(), kChunk, [&](uint64_t i) {
+    parallel_for(references.size(), kPlocChunk, [&](uint64_t i) {
         const Vec3 centre = references[i].lo + references[i].hi;
         keys[i] = {cell(centre.x, centres.lo.x, size.x) << 2 | cell(centre.y, centres.lo.y, size.y) << 1 |
                        cell(centre.z, centres.lo.z, size.z),
@@ -55,7 +55,7 @@ public:
         tree_.nodes.resize(2 * static_cast<std::size_t>(count) - 1);
         tree_.references.resize(count);
         clusters_.resize(count);
-        parallel_for(count, kChunk, [&](uint64_t i) {
+        parallel_for(count, kPlocChunk, [&](uint64_t i) {
             const BuildReference& r = references[keys[i].id];
             tree_.references[i] = r.id;
             tree_.nodes[i] = make_leaf({r.lo, r.hi}, static_cast<uint32_t>(i));
@@ -99,7 +99,7 @@ private:
     void choose(uint32_t blur) {
         const auto count = static_cast<uint32_t>(clusters_.size());
         choice_.resize(count);
-        parallel_for_ranges(count, kChunk, [&](uint64_t begin, uint64_t end) {
+        parallel_for_ranges(count, kPlocChunk, [&](uint64_t begin, uint64_t end) {
             for (auto i = static_cast<uint32_t>(begin); i < end; ++i) {
                 const uint32_t first = i < kRadius ? 0 : i - kRadius, last = std::min(i + kRadius, count - 1);
                 Choice best = {~0u, ~0u};
@@ -118,13 +118,13 @@ private:
     /// Merges each pair that agrees at the position of the first; the order stays.
     void merge() {
         const std::size_t count = clusters_.size();
-        struct Part {
+        struct PlocPart {
             uint32_t kept = 0, merged = 0;
         };
-        std::vector<Part> parts((count - 1) / kChunk + 1);
+        std::vector<PlocPart> parts((count - 1) / kPlocChunk + 1);
         const auto range_of = [&](uint64_t chunk) {
-            return std::pair(static_cast<uint32_t>(chunk * kChunk),
-                             static_cast<uint32_t>(std::min<uint64_t>(count, (chunk + 1) * kChunk)));
+            return std::pair(static_cast<uint32_t>(chunk * kPlocChunk),
+                             static_cast<uint32_t>(std::min<uint64_t>(count, (chunk + 1) * kPlocChunk)));
         };
         parallel_for(parts.size(), 1, [&](uint64_t chunk) {
             const auto [begin, end] = range_of(chunk);
@@ -134,15 +134,15 @@ private:
                 parts[chunk].merged += agrees && choice_[i] > i ? 1 : 0;
             }
         });
-        Part sum = {0, used_};
-        for (Part& part : parts) {
-            const Part own = part;
+        PlocPart sum = {0, used_};
+        for (PlocPart& part : parts) {
+            const PlocPart own = part;
             part = sum;
             sum = {sum.kept + own.kept, sum.merged + own.merged};
         }
         next_.resize(sum.kept);
         parallel_for(parts.size(), 1, [&](uint64_t chunk) {
-            Part at = parts[chunk];
+            PlocPart at = parts[chunk];
             const auto [begin, end] = range_of(chunk);
             for (uint32_t i = begin; i < end; ++i) {
                 const uint32_t other = choice_[i];

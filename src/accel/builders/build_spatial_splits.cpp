@@ -25,8 +25,8 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kParallelSubtree = 1u << 12; // from this many references on, both halves are built in parallel
-constexpr std::size_t kChunk = 1u << 12;        // references of a large set that one thread processes at a time
+constexpr uint32_t kParallelSplit = 1u << 12; // from this many references on, both halves are built in parallel
+constexpr std::size_t kSplitChunk = 1u << 12; // references of a large set that one thread processes at a time
 constexpr int kBins = 16;
 
 using References = std::vector<BuildReference>;
@@ -250,9 +250,9 @@ private:
 };
 
 /// A subtree as it was built: in one piece or as two parts.
-struct Part {
+struct SplitPart {
     BinaryTree whole;
-    std::unique_ptr<Part> left, right;
+    std::unique_ptr<SplitPart> left, right;
     std::size_t nodes = 0, references = 0;
 };
 
@@ -261,12 +261,13 @@ public:
     explicit SpatialSplitBuilder(const Cutter& cutter) : cutter_(cutter) {}
 
     BinaryTree build(const References& all, uint64_t allowance) {
-        std::vector<References> chunks((all.size() - 1) / kChunk + 1);
+        std::vector<References> chunks((all.size() - 1) / kSplitChunk + 1);
         parallel_for(chunks.size(), 1, [&](uint64_t i) {
-            const auto first = all.begin() + static_cast<std::ptrdiff_t>(i * kChunk);
-            chunks[i].assign(first, first + static_cast<std::ptrdiff_t>(std::min(kChunk, all.size() - i * kChunk)));
+            const auto first = all.begin() + static_cast<std::ptrdiff_t>(i * kSplitChunk);
+            chunks[i].assign(first,
+                             first + static_cast<std::ptrdiff_t>(std::min(kSplitChunk, all.size() - i * kSplitChunk)));
         });
-        const std::unique_ptr<Part> part = build_part(std::move(chunks), allowance, 0);
+        const std::unique_ptr<SplitPart> part = build_part(std::move(chunks), allowance, 0);
         tree_.nodes.resize(part->nodes);
         tree_.references.resize(part->references);
         tree_.root = 0;
@@ -275,11 +276,11 @@ public:
     }
 
 private:
-    std::unique_ptr<Part> build_part(std::vector<References> chunks, uint64_t allowance, int depth) const {
-        auto part = std::make_unique<Part>();
+    std::unique_ptr<SplitPart> build_part(std::vector<References> chunks, uint64_t allowance, int depth) const {
+        auto part = std::make_unique<SplitPart>();
         std::vector<std::span<const BuildReference>> views(chunks.begin(), chunks.end());
         const std::size_t size = size_of(views);
-        if (size < kParallelSubtree) {
+        if (size < kParallelSplit) {
             References all = std::move(chunks[0]);
             for (const auto& chunk : std::span(chunks).subspan(1)) all.insert(all.end(), chunk.begin(), chunk.end());
             part->whole = SubtreeBuilder(cutter_, std::move(all)).build(allowance, depth);
@@ -307,8 +308,8 @@ private:
     /// Gathers one side of all halves; small neighbours are joined into chunks.
     static std::vector<References> gather(std::span<const Halves> halves, References Halves::*side) {
         std::vector<std::pair<std::size_t, std::size_t>> runs; // ranges of halves: first, and one past the last
-        for (std::size_t i = 0, size = kChunk; i < halves.size(); ++i) {
-            if (size >= kChunk) runs.emplace_back(i, i), size = 0;
+        for (std::size_t i = 0, size = kSplitChunk; i < halves.size(); ++i) {
+            if (size >= kSplitChunk) runs.emplace_back(i, i), size = 0;
             runs.back().second = i + 1;
             size += (halves[i].*side).size();
         }
@@ -326,7 +327,7 @@ private:
     }
 
     /// Copies a part's nodes and references to their final positions, depth first.
-    void place(const Part& part, uint32_t node, uint32_t reference) {
+    void place(const SplitPart& part, uint32_t node, uint32_t reference) {
         if (part.left == nullptr) {
             for (std::size_t i = 0; i < part.nodes; ++i) {
                 BinaryNode copy = part.whole.nodes[i];

@@ -9,7 +9,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kGrain = 1 << 12;
+constexpr uint64_t kRefitGrain = 1 << 12;
 
 /// Position of each instance's first triangle.
 std::unordered_map<uint32_t, std::size_t> firsts_of(const std::vector<BvhTriangle>& triangles) {
@@ -32,7 +32,7 @@ Bvh refit_bvh(const Bvh& bvh, const std::vector<BvhTriangle>& triangles, const B
     Bvh refitted = bvh;
     if (bvh.root == kNoLink) return refitted;
     const std::unordered_map<uint32_t, std::size_t> firsts = firsts_of(triangles);
-    parallel_for(refitted.triangles.size(), kGrain, [&](uint64_t i) {
+    parallel_for(refitted.triangles.size(), kRefitGrain, [&](uint64_t i) {
         BvhTriangle& t = refitted.triangles[i];
         const auto first = firsts.find(t.instance);
         const std::size_t at = first == firsts.end() ? triangles.size() : first->second + t.primitive;
@@ -60,7 +60,7 @@ Bvh refit_bvh(const Bvh& bvh, const std::vector<BvhTriangle>& triangles, const B
     }
     std::vector<BvhNode>& nodes = refitted.nodes;
     std::vector<float> leaf_cost(nodes.size()); // [node] cost of its leaves
-    parallel_for(nodes.size(), kGrain, [&](uint64_t i) {
+    parallel_for(nodes.size(), kRefitGrain, [&](uint64_t i) {
         for (int k = 0; k < 2; ++k) {
             if ((nodes[i].child[k] & kLeafBit) == 0) continue;
             int held = 0;

@@ -9,10 +9,10 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kWorthAnother = 64; // no further round if fewer than one in this many moves was made
-constexpr std::size_t kFewChanges = 64;   // if fewer than one in this many nodes changed, their boxes are refitted
-                                          // one by one
-constexpr uint64_t kChunk = 1 << 12;      // nodes; fixed, so that no sum depends on the number of threads
+constexpr std::size_t kWorthAnother = 64;    // no further round if fewer than one in this many moves was made
+constexpr std::size_t kFewChanges = 64;      // if fewer than one in this many nodes changed, their boxes are refitted
+                                             // one by one
+constexpr uint64_t kReinsertChunk = 1 << 12; // nodes; fixed, so that no sum depends on the number of threads
 
 float area_of_both(const Bounds3& a, const Bounds3& b) {
     const Vec3 d = max(a.hi, b.hi) - min(a.lo, b.lo);
@@ -60,11 +60,11 @@ public:
     }
 
 private:
-    std::size_t chunk_count() const { return (nodes_.size() + kChunk - 1) / kChunk; }
+    std::size_t chunk_count() const { return (nodes_.size() + kReinsertChunk - 1) / kReinsertChunk; }
     template <class Body>
     void for_chunk(uint64_t chunk, const Body& body) const {
-        const auto end = static_cast<uint32_t>(std::min<uint64_t>(nodes_.size(), (chunk + 1) * kChunk));
-        for (auto at = static_cast<uint32_t>(chunk * kChunk); at < end; ++at) body(at);
+        const auto end = static_cast<uint32_t>(std::min<uint64_t>(nodes_.size(), (chunk + 1) * kReinsertChunk));
+        for (auto at = static_cast<uint32_t>(chunk * kReinsertChunk); at < end; ++at) body(at);
     }
 
     float area(uint32_t at) const { return nodes_[at].box.half_area(); }
@@ -83,13 +83,13 @@ private:
             if (can_move(nodes[i])) moves[i] = find_move(nodes[i]);
         });
         std::erase_if(moves, [](const Move& move) { return move.target == kNoLink; });
-        parallel_for(moves.size(), kChunk, [&](uint64_t i) {
+        parallel_for(moves.size(), kReinsertChunk, [&](uint64_t i) {
             own_[moves[i].node] = key_of(moves[i]);
             for_each_link(moves[i], [&](uint32_t at) { raise(lock_[at], key_of(moves[i])); });
         });
         std::vector<uint8_t> is_first(moves.size());
-        parallel_for(moves.size(), kChunk, [&](uint64_t i) { is_first[i] = is_made(moves[i]) ? 1 : 0; });
-        parallel_for(moves.size(), kChunk, [&](uint64_t i) {
+        parallel_for(moves.size(), kReinsertChunk, [&](uint64_t i) { is_first[i] = is_made(moves[i]) ? 1 : 0; });
+        parallel_for(moves.size(), kReinsertChunk, [&](uint64_t i) {
             own_[moves[i].node] = 0;
             for_each_link(moves[i], [&](uint32_t at) { lock_[at].store(0, std::memory_order_relaxed); });
         });

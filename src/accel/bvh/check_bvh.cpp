@@ -31,9 +31,9 @@ struct Piece {
     Bounds3 leaf_box;
 };
 
-class Checker {
+class BvhChecker {
 public:
-    Checker(const Bvh& bvh, Boxes boxes) : bvh_(bvh), boxes_(boxes) {}
+    BvhChecker(const Bvh& bvh, Boxes boxes) : bvh_(bvh), boxes_(boxes) {}
 
     std::optional<std::string> run() {
         if (bvh_.root == kNoLink) {
@@ -150,12 +150,12 @@ bool covers(std::span<const Piece> pieces, const BvhTriangle& t) {
 
 } // namespace
 
-std::optional<std::string> find_broken_link(const Bvh& bvh) { return Checker(bvh, Boxes::Any).run(); }
+std::optional<std::string> find_broken_link(const Bvh& bvh) { return BvhChecker(bvh, Boxes::Any).run(); }
 
-std::optional<std::string> find_fault(const Bvh& bvh) { return Checker(bvh, Boxes::Holding).run(); }
+std::optional<std::string> find_fault(const Bvh& bvh) { return BvhChecker(bvh, Boxes::Holding).run(); }
 
 std::optional<std::string> find_split_fault(const Bvh& bvh, const std::vector<BvhTriangle>& mesh) {
-    Checker checker(bvh, Boxes::Nested);
+    BvhChecker checker(bvh, Boxes::Nested);
     if (auto fault = checker.run()) return fault;
     std::vector<Piece> pieces = checker.take_pieces();
     std::sort(pieces.begin(), pieces.end(),

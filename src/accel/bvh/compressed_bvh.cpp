@@ -152,9 +152,9 @@ CompressedBvh make_compressed_bvh(const Bvh& bvh, const CollapseSettings& settin
 
 namespace {
 
-class Checker {
+class CompressedBvhChecker {
 public:
-    Checker(const CompressedBvh& bvh, bool clipped) : bvh_(bvh), clipped_(clipped) {}
+    CompressedBvhChecker(const CompressedBvh& bvh, bool clipped) : bvh_(bvh), clipped_(clipped) {}
 
     std::string run() {
         node_seen_.resize(bvh_.nodes.size());
@@ -253,7 +253,7 @@ private:
 } // namespace
 
 std::optional<std::string> find_fault(const CompressedBvh& bvh, bool clipped) {
-    std::string fault = Checker(bvh, clipped).run();
+    std::string fault = CompressedBvhChecker(bvh, clipped).run();
     return fault.empty() ? std::nullopt : std::optional(std::move(fault));
 }
 

@@ -7,7 +7,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kGrain = 1 << 14;
+constexpr uint64_t kParentGrain = 1 << 14;
 
 uint32_t split_of(const BvhNode& node) {
     const Vec3 apart = child_bounds(node, 1).centre() - child_bounds(node, 0).centre();
@@ -21,7 +21,7 @@ uint32_t split_of(const BvhNode& node) {
 void add_parent_links(Bvh& bvh) {
     if (bvh.root & kLeafBit) return;
     bvh.nodes[bvh.root].parent = kNoLink;
-    parallel_for(bvh.nodes.size(), kGrain, [&](uint64_t i) {
+    parallel_for(bvh.nodes.size(), kParentGrain, [&](uint64_t i) {
         BvhNode& node = bvh.nodes[i];
         node.split = split_of(node);
         for (uint32_t k = 0; k < 2; ++k) { // only the one parent of a node writes to it

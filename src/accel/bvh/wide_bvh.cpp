@@ -82,13 +82,15 @@ WideBvh<kWidth> assemble(const Bvh& bvh, const CollapseSettings& settings) {
     return wide;
 }
 
-bool holds(const Bounds3& box, Vec3 p) {
+bool wide_holds(const Bounds3& box, Vec3 p) {
     return box.lo.x <= p.x && p.x <= box.hi.x && box.lo.y <= p.y && p.y <= box.hi.y && box.lo.z <= p.z &&
            p.z <= box.hi.z;
 }
-bool holds(const Bounds3& box, const Bounds3& inner) { return holds(box, inner.lo) && holds(box, inner.hi); }
+bool wide_holds(const Bounds3& box, const Bounds3& inner) {
+    return wide_holds(box, inner.lo) && wide_holds(box, inner.hi);
+}
 
-Bounds3 bounds_of(const BvhTriangle& t) {
+Bounds3 box_of(const BvhTriangle& t) {
     Bounds3 box;
     box.extend(t.a);
     box.extend(t.b);
@@ -99,9 +101,9 @@ Bounds3 bounds_of(const BvhTriangle& t) {
 bool meet(const Bounds3& a, const Bounds3& b) { return !Bounds3{max(a.lo, b.lo), min(a.hi, b.hi)}.is_empty(); }
 
 template <int kWidth>
-class Checker {
+class WideBvhChecker {
 public:
-    Checker(const WideBvh<kWidth>& bvh, bool clipped) : bvh_(bvh), clipped_(clipped) {}
+    WideBvhChecker(const WideBvh<kWidth>& bvh, bool clipped) : bvh_(bvh), clipped_(clipped) {}
 
     std::string run() {
         node_seen_.resize(bvh_.nodes.size());
@@ -146,7 +148,7 @@ private:
                 continue;
             }
             if (ended) return fmt::format("child {} stands after an empty place", k);
-            if (!holds(at.box, box)) return fmt::format("child {} is outside it", k);
+            if (!wide_holds(at.box, box)) return fmt::format("child {} is outside it", k);
             if (!(node.child[k] & kLeafBit)) {
                 pending.push_back({node.child[k], at.depth + 1, box});
                 continue;
@@ -164,8 +166,8 @@ private:
             if (triangle_seen_[i]) return fmt::format("triangle {} is reached twice", i);
             triangle_seen_[i] = true;
             const BvhTriangle& t = bvh_.triangles[i];
-            const Bounds3 of_triangle = bounds_of(t);
-            if (clipped_ ? !meet(box, of_triangle) : !holds(box, of_triangle)) {
+            const Bounds3 of_triangle = box_of(t);
+            if (clipped_ ? !meet(box, of_triangle) : !wide_holds(box, of_triangle)) {
                 return fmt::format("triangle {} is outside its leaf", i);
             }
             if (((t.flags & kLastInLeaf) != 0) != (i + 1 == first + count)) {
@@ -200,7 +202,7 @@ WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings) 
 
 template <int kWidth>
 std::optional<std::string> find_fault(const WideBvh<kWidth>& bvh, bool clipped) {
-    std::string fault = Checker<kWidth>(bvh, clipped).run();
+    std::string fault = WideBvhChecker<kWidth>(bvh, clipped).run();
     return fault.empty() ? std::nullopt : std::optional(std::move(fault));
 }
 

@@ -9,20 +9,20 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kGrain = 4096; // triangles
+constexpr uint64_t kWoopGrain = 4096; // triangles
 
-struct Row {
+struct WoopRow {
     Vec3 row;
     float shift;
 };
 
 /// Returns the row direction / size that is 0 at `origin`.
-Row make_row(DoubleVec3 direction, double size, DoubleVec3 origin) {
+WoopRow make_row(DoubleVec3 direction, double size, DoubleVec3 origin) {
     const DoubleVec3 d = direction / size;
     return {to_float(d), static_cast<float>(-dot(d, origin))};
 }
 
-bool is_finite(const Row& r) {
+bool is_finite(const WoopRow& r) {
     return pertev::is_finite(r.row.x) && pertev::is_finite(r.row.y) && pertev::is_finite(r.row.z) &&
            pertev::is_finite(r.shift);
 }
@@ -32,8 +32,8 @@ bool is_finite(const Row& r) {
 WoopTriangle make_woop_triangle(Vec3 a, Vec3 b, Vec3 c, bool last) {
     const DoubleVec3 origin = to_double(a), ab = to_double(b) - origin, ac = to_double(c) - origin, n = cross(ab, ac);
     const double n2 = dot(n, n);
-    Row height = make_row(n, std::sqrt(n2), origin), u = make_row(cross(ac, n), n2, origin),
-        v = make_row(cross(n, ab), n2, origin);
+    WoopRow height = make_row(n, std::sqrt(n2), origin), u = make_row(cross(ac, n), n2, origin),
+            v = make_row(cross(n, ab), n2, origin);
     if (!is_finite(height) || !is_finite(u) || !is_finite(v)) {
         height = v = {{0, 0, 0}, 0};
         u = {{0, 0, 0}, -1}; // outside, whatever t the height gives; the height still holds a flag
@@ -44,7 +44,7 @@ WoopTriangle make_woop_triangle(Vec3 a, Vec3 b, Vec3 c, bool last) {
 
 WoopBvh make_woop_bvh(const Bvh& bvh) {
     WoopBvh woop = {bvh, std::vector<WoopTriangle>(bvh.triangles.size())};
-    parallel_for(bvh.triangles.size(), kGrain, [&](uint64_t i) {
+    parallel_for(bvh.triangles.size(), kWoopGrain, [&](uint64_t i) {
         const BvhTriangle& t = bvh.triangles[i];
         woop.transforms[i] = make_woop_triangle(t.a, t.b, t.c, (t.flags & kLastInLeaf) != 0);
     });

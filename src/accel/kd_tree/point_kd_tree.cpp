@@ -10,7 +10,7 @@
 namespace pertev {
 namespace {
 
-constexpr std::size_t kParallelSubtree = 1 << 12; // from this many points on, both halves are built in parallel
+constexpr std::size_t kParallelPoints = 1 << 12; // from this many points on, both halves are built in parallel
 
 /// Number of points in the left subtree of a left-balanced tree of n points.
 std::size_t count_of_left(std::size_t n) {
@@ -41,7 +41,7 @@ public:
         nodes_[at] = kd_node(points_[ids[left]], ids[left], axis);
         const auto build_left = [&] { build(ids.first(left), 2 * at + 1); };
         const auto build_right = [&] { build(ids.subspan(left + 1), 2 * at + 2); };
-        if (ids.size() >= kParallelSubtree) return parallel_invoke(build_left, build_right);
+        if (ids.size() >= kParallelPoints) return parallel_invoke(build_left, build_right);
         build_left();
         build_right();
     }

@@ -8,7 +8,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kParallelNode = 1u << 14; // from this many triangles on, the three axes are swept in parallel
+constexpr uint32_t kParallelKdNode = 1u << 14; // from this many triangles on, the three axes are swept in parallel
 
 // An event is one number, which makes sorting cheap: position, then kind, then the triangle's index in the node. At
 // equal positions ends come before triangles in the plane, and these before beginnings.
@@ -88,7 +88,7 @@ SahKdSplitter::Node SahKdSplitter::make_root() const {
         root.triangles[i] = i;
         add_events(bounds_of(triangles_[i]), i, root.events);
     }
-    for_each_axis(root.count >= kParallelNode,
+    for_each_axis(root.count >= kParallelKdNode,
                   [&](int axis) { std::sort(root.events[axis].begin(), root.events[axis].end()); });
     return root;
 }
@@ -132,7 +132,7 @@ SahKdSplitter::Choice SahKdSplitter::find_cheapest(const Node& node, int axis) c
 
 std::optional<KdPlane> SahKdSplitter::split(const Node& node, Node& below, Node& above) const {
     if (node.count == 0) return std::nullopt;
-    const bool parallel = node.count >= kParallelNode;
+    const bool parallel = node.count >= kParallelKdNode;
     std::array<Choice, 3> choices;
     for_each_axis(parallel, [&](int axis) { choices[static_cast<std::size_t>(axis)] = find_cheapest(node, axis); });
     Choice best = choices[0];

@@ -11,10 +11,10 @@
 namespace pertev {
 namespace {
 
-constexpr uint32_t kParallelNode = 1u << 13; // from this many triangles on, the children of a node are built in
-                                             // parallel
+constexpr uint32_t kParallelOctreeNode = 1u << 13; // from this many triangles on, the children of a node are built in
+                                                   // parallel
 
-struct Part {
+struct OctreePart {
     uint32_t triangle;
     Bounds3 box; // bounds of its part in the cell
 };
@@ -23,7 +23,7 @@ struct BuildNode {
     OctreeCell cell;
     int levels = 0;      // number of splits that are still allowed below
     uint64_t budget = 0; // maximum number of references of all leaves below
-    std::vector<Part> parts;
+    std::vector<OctreePart> parts;
 };
 
 /// A part of the tree with its root at nodes[0]; links are relative to it.
@@ -45,10 +45,10 @@ public:
             out.depth = max(out.depth, depth);
             out.nodes[slot] = {static_cast<uint32_t>(out.references.size()),
                                kLeafBit | static_cast<uint32_t>(node.parts.size())};
-            for (const Part& part : node.parts) out.references.push_back(part.triangle);
+            for (const OctreePart& part : node.parts) out.references.push_back(part.triangle);
             return check_size(out);
         }
-        const bool parallel = node.parts.size() >= kParallelNode;
+        const bool parallel = node.parts.size() >= kParallelOctreeNode;
         node = {}; // frees memory for the levels below
         const auto first = static_cast<uint32_t>(out.nodes.size());
         uint32_t mask = 0, count = 0;
@@ -99,7 +99,7 @@ private:
         const Vec3 centre = node.cell.centre(corner_);
         const Bounds3 cell = bounds_of(node.cell, corner_);
         uint64_t held = 0;
-        for (const Part& part : node.parts) held += add_part(part, cell, centre, children);
+        for (const OctreePart& part : node.parts) held += add_part(part, cell, centre, children);
         if (held > node.budget) return false;
         const uint64_t spare = node.budget - held;
         for (uint32_t k = 0; k < 8; ++k) {
@@ -113,7 +113,8 @@ private:
 
     /// Cuts a part at the three planes and returns the number of octants that it reaches. A part that lies in a plane
     /// goes below it.
-    uint64_t add_part(const Part& part, const Bounds3& cell, Vec3 centre, std::array<BuildNode, 8>& children) const {
+    uint64_t add_part(const OctreePart& part, const Bounds3& cell, Vec3 centre,
+                      std::array<BuildNode, 8>& children) const {
         struct Piece {
             uint32_t octant;
             Bounds3 cell;

@@ -2,22 +2,16 @@
 
 // Bodies of host_shading.h for the files that compile them, one per kind of listeners.
 
+#include <type_traits>
+
 #include "base/error.h"
 #include "integrators/path/host_shading.h"
 
 namespace pertev {
-#if defined(PERTEV_KEEPS_CALLS)
-#define PERTEV_INLINE_ALL
-#else
-#define PERTEV_INLINE_ALL [[gnu::flatten]]
-#endif
 
-/// Everything it calls is inlined. By default g++ would leave a dozen calls, which takes a third more time in
-/// Bitterli's box. Inlining takes g++ twenty times as long, so builds that only test (src/CMakeLists.txt) do without.
 template <Features kFeatures, class Listener>
-PERTEV_INLINE_ALL bool shade_on_host(const PathJob& job, PathState& path, typename Listener::Kept& kept, const Hit& hit,
-                                     const DrawnNumbers& numbers, VertexShadowRay<Listener>& shadow_data,
-                                     bool& goes_on) {
+inline bool shade_on_host(const PathJob& job, PathState& path, typename Listener::Kept& kept, const Hit& hit,
+                          const DrawnNumbers& numbers, VertexShadowRay<Listener>& shadow_data, bool& goes_on) {
     Listener listener(job);
     if (path.depth == 0) {
         listener.begins(path);
@@ -31,11 +25,35 @@ PERTEV_INLINE_ALL bool shade_on_host(const PathJob& job, PathState& path, typena
     return wants_shadow;
 }
 
+/// Whether code for a mask of features is inlined as a whole. By default g++ would leave a dozen calls, which takes a
+/// third more time in Bitterli's box. Inlining takes g++ up to twenty times as long, so rare code (layers, motion,
+/// frames of other than diffuse materials) and builds that only test (src/CMakeLists.txt) do without.
+template <class Listener>
+constexpr bool is_flattened([[maybe_unused]] Features features) {
+#if defined(PERTEV_KEEPS_CALLS)
+    return false;
+#else
+    return (features & kMoving) == 0 && (std::is_same_v<Listener, FilmListeners> || (features & kLayered) == 0);
+#endif
+}
+
+template <Features kFeatures, class Listener>
+[[gnu::flatten]] bool shade_flattened(const PathJob& job, PathState& path, typename Listener::Kept& kept,
+                                      const Hit& hit, const DrawnNumbers& numbers,
+                                      VertexShadowRay<Listener>& shadow_data, bool& goes_on) {
+    return shade_on_host<kFeatures, Listener>(job, path, kept, hit, numbers, shadow_data, goes_on);
+}
+
 template <class Listener, class Compiled>
 ShadeOnHost<Listener> choose_shading_on_host(const PathJob& job) {
     ShadeOnHost<Listener> shading = nullptr;
-    PERTEV_CHECK(Compiled::choose(features_for(job),
-                                  [&]<Features kFeatures>() { shading = shade_on_host<kFeatures, Listener>; }));
+    PERTEV_CHECK(Compiled::choose(features_for(job), [&]<Features kFeatures>() {
+        if constexpr (is_flattened<Listener>(kFeatures)) {
+            shading = shade_flattened<kFeatures, Listener>;
+        } else {
+            shading = shade_on_host<kFeatures, Listener>;
+        }
+    }));
     return shading;
 }
 

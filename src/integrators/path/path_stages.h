@@ -24,11 +24,10 @@ struct PlanRound {
 
     HD void operator()(uint32_t) const {
         const uint32_t going_on = before->next;
-        const uint32_t capacity_left =
-            (capacity - going_on) / 32 * 32; // whole warps, so that their camera rays stay together
-        const uint64_t first = atomic_add(&render->begun, uint64_t(capacity_left));
+        const uint32_t free = (capacity - going_on) / 32 * 32; // whole warps, so that their camera rays stay together
+        const uint64_t first = atomic_add(&render->begun, uint64_t(free));
         const uint64_t left = first < samples ? samples - first : 0;
-        const uint32_t fresh = left < capacity_left ? static_cast<uint32_t>(left) : capacity_left;
+        const uint32_t fresh = left < free ? static_cast<uint32_t>(left) : free;
         atomic_add(&render->bounces, uint64_t(going_on));
         atomic_add(&render->shadows, uint64_t(before->shadows));
         *round = {};
@@ -36,7 +35,7 @@ struct PlanRound {
         round->fresh = fresh;
         round->active = going_on + fresh;
         round->first = first;
-        round->all_begun = left <= capacity_left ? 1 : 0;
+        round->all_begun = left <= free ? 1 : 0;
         *seen = {round->active, round->all_begun};
     }
 };

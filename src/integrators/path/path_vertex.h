@@ -92,10 +92,11 @@ HD INLINE_ON_DEVICE void add_surface_emission(const PathJob& job, PathState& pat
     add_emitted(path, light, listener);
 }
 
-/// Samples one point of one light for the vertex. Returns whether `shadow` must be traced.
+/// Samples one point of one light for the vertex, by its `context`. Returns whether `shadow` must be traced.
 template <Features kFeatures, class Vertex, class Numbers, class Listener>
 HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path, const Vertex& vertex,
-                                       const Numbers& numbers, ShadowRay& shadow, Listener& listener) {
+                                       const LightContext& context, const Numbers& numbers, ShadowRay& shadow,
+                                       Listener& listener) {
     const SceneView& scene = job.picture.scene;
     const PathSettings& settings = job.settings;
     if (settings.strategy == LightStrategy::BsdfOnly || vertex.scatters_by_delta_alone()) return false;
@@ -103,7 +104,6 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     LightSample light;
     constexpr bool kMoves = (kFeatures & kMoving) != 0;
     constexpr bool kTextures = (kFeatures & kTextured) != 0;
-    const LightContext context = vertex.light_context(path.time);
     const SampleBits u = numbers.light(settings, path);
     if (!draw_direct<kTextures, LightChoice<kFeatures>>(scene, kMoves, context, u, light)) {
         return false;
@@ -191,7 +191,8 @@ HD INLINE_ON_DEVICE bool shade_in_medium(const PathJob& job, PathState& path, co
                                          Listener& listener) {
     listener.missed(path);
     if (path.depth >= job.settings.max_depth) return false;
-    wants_shadow = sample_direct<kFeatures>(job, path, vertex, numbers, shadow, listener);
+    wants_shadow =
+        sample_direct<kFeatures>(job, path, vertex, vertex.light_context(path.time), numbers, shadow, listener);
     path.normal = {0, 0, 0};
     return sample_scattering(job.settings, path, vertex, numbers, listener);
 }
@@ -220,11 +221,10 @@ HD INLINE_ON_DEVICE bool shade_vertex(const PathJob& job, PathState& path, const
     add_surface_emission<kFeatures>(job, path, hit, surface, listener);
     if (surface.is_unlit || path.depth >= job.settings.max_depth) return false;
     const SurfaceVertex vertex = {surface, -path.direction};
+    const LightContext context = vertex.light_context(path.time);
     wants_shadow = listener.wants_direct(path, hit, surface) &&
-                   sample_direct<kFeatures>(job, path, vertex, numbers, shadow, listener);
-    if constexpr (LightChoice<kFeatures>::kReadsNormal) {
-        path.normal = vertex.light_context(path.time).normal;
-    }
+                   sample_direct<kFeatures>(job, path, vertex, context, numbers, shadow, listener);
+    if constexpr (LightChoice<kFeatures>::kReadsNormal) path.normal = context.normal;
     return sample_scattering(job.settings, path, vertex, numbers, listener);
 }
 

@@ -7,7 +7,7 @@ constexpr float kGrown = 1.0f + 0x1p-10f; // margin for rounding
 
 bool is_nothing(const hploc::OrderedBounds& bounds) { return bounds.least[0] == 0x7f7f7f7f; }
 
-Float4 sphere_round(const Bounds3& box) {
+Float4 sphere_around(const Bounds3& box) {
     const Vec3 centre = box.centre();
     return {centre.x, centre.y, centre.z, kGrown * (0.5f * length(box.size()) + 0x1p-20f * box.max_abs())};
 }
@@ -25,7 +25,7 @@ std::vector<Float4> spheres_of_cells(const SpecularBounds& found, uint32_t toget
     }
     std::vector<Float4> spheres;
     for (const Bounds3& box : boxes) {
-        if (!box.is_empty()) spheres.push_back(sphere_round(box));
+        if (!box.is_empty()) spheres.push_back(sphere_around(box));
     }
     return spheres;
 }
@@ -41,7 +41,7 @@ float area_of(const std::vector<Float4>& spheres) {
 std::vector<Float4> choose_targets(const SpecularBounds& found) {
     if (is_nothing(found.all)) return {};
     const Bounds3 box = {found.all.lo(), found.all.hi()};
-    Float4 round_all = sphere_round(box);
+    Float4 round_all = sphere_around(box);
     round_all.w = min(round_all.w, kGrown * (sqrt(-hploc::unordered(found.reach)) + 0x1p-20f * box.max_abs()));
     std::vector<Float4> best = {round_all};
     for (const uint32_t together : {2u, 1u}) {

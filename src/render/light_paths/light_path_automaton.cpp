@@ -13,7 +13,6 @@
 namespace pertev {
 namespace {
 
-using Kind = LightPathLetter::Kind;
 using StateSet = std::vector<uint32_t>; // sorted states of all automata
 
 [[noreturn]] void refuse(const std::string& why) {
@@ -63,7 +62,7 @@ public:
             const auto is_one = [&](const ScatteringTerm& term) {
                 return term.classes.has(lobe_class) && (term.ways & way) != 0 && lets_through(i, term.names, tag);
             };
-            readers[i] = letters_[i]->kind == Kind::Scattering &&
+            readers[i] = letters_[i]->kind == LightPathLetter::Kind::Scattering &&
                          std::ranges::any_of(letters_[i]->terms, is_one) != letters_[i]->is_negated;
         }
         return readers;
@@ -72,13 +71,13 @@ public:
         std::vector<bool> readers(letters_.size());
         spend(letters_.size());
         for (uint32_t i = 0; i < letters_.size(); ++i) {
-            readers[i] = letters_[i]->kind == Kind::Light && lets_through(i, letters_[i]->names, tag);
+            readers[i] = letters_[i]->kind == LightPathLetter::Kind::Light && lets_through(i, letters_[i]->names, tag);
         }
         return readers;
     }
     std::vector<bool> readers_of_eye() const {
         std::vector<bool> readers(letters_.size());
-        for (uint32_t i = 0; i < letters_.size(); ++i) readers[i] = letters_[i]->kind == Kind::Eye;
+        for (uint32_t i = 0; i < letters_.size(); ++i) readers[i] = letters_[i]->kind == LightPathLetter::Kind::Eye;
         return readers;
     }
     /// Adds everything reachable from `states` by empty transitions, without states that neither read nor end an

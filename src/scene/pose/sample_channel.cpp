@@ -19,9 +19,7 @@ Vec4 unit(Vec4 q) {
     return {part(q.x), part(q.y), part(q.z), part(q.w)};
 }
 
-bool is_finite(Vec4 q) {
-    return pertev::is_finite(q.x) && pertev::is_finite(q.y) && pertev::is_finite(q.z) && pertev::is_finite(q.w);
-}
+bool is_finite_rotation(Vec4 q) { return is_finite(q.x) && is_finite(q.y) && is_finite(q.z) && is_finite(q.w); }
 
 Vec4 quaternion(std::span<const float> v) { return {v[0], v[1], v[2], v[3]}; }
 
@@ -110,7 +108,7 @@ void sample_channel(const AnimationChannel& channel, double time_s, std::span<fl
         }
         if (!is_rotation) return;
         const Vec4 rotation = unit(quaternion(value));
-        put(is_finite(rotation) ? rotation : unit(quaternion(a)), value);
+        put(is_finite_rotation(rotation) ? rotation : unit(quaternion(a)), value);
         return;
     }
     const float t = static_cast<float>(share);

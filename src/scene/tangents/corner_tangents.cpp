@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kGrain = 1 << 10;
+constexpr uint64_t kTangentGrain = 1 << 10;
 constexpr Vec4 kNoDirection = {1, 0, 0, 1};
 
 /// Projects `v` into the plane across the unit normal `n` and scales it to length 1; zero stays zero.
@@ -138,9 +138,9 @@ private:
 
 std::vector<Vec4> corner_tangents(const TangentMesh& mesh, const TangentGroups& groups) {
     std::vector<UvDirections> directions(mesh.corner_count() / 3);
-    parallel_for(directions.size(), kGrain, [&](uint64_t i) { directions[i] = uv_directions(mesh, i); });
+    parallel_for(directions.size(), kTangentGrain, [&](uint64_t i) { directions[i] = uv_directions(mesh, i); });
     std::vector<Vec4> tangents(mesh.corner_count(), kNoDirection);
-    parallel_for_ranges(groups.count(), kGrain, [&](uint64_t begin, uint64_t end) {
+    parallel_for_ranges(groups.count(), kTangentGrain, [&](uint64_t begin, uint64_t end) {
         GroupTangents group(tangents);
         std::vector<Share> shares;
         for (uint64_t i = begin; i < end; ++i) {

@@ -1,7 +1,6 @@
 #include "session/opening/open_scene.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,10 +22,9 @@ namespace pertev {
 namespace {
 
 /// Returns nothing if the options set no environment.
-std::optional<Environment> environment_of(const OpenOptions& options, Messages& messages) {
+std::optional<Environment> environment_of(const SceneOptions& options, Messages& messages) {
     Environment environment;
-    if (options.environment_radiance) {
-        const Rgb color = *options.environment_radiance;
+    if (Rgb color; parse_rgb(options.environment, color)) {
         if (!(is_finite(color) && color.r >= 0 && color.g >= 0 && color.b >= 0)) {
             throw Error(ErrorCode::BadInput, "environment", environment_text(options), "radiance cannot be negative");
         }
@@ -35,14 +33,14 @@ std::optional<Environment> environment_of(const OpenOptions& options, Messages& 
     }
     if (options.environment.empty()) return std::nullopt;
     if (std::error_code fault; !std::filesystem::exists(options.environment, fault)) {
-        throw Error(ErrorCode::BadInput, "environment", options.environment.string(),
+        throw Error(ErrorCode::BadInput, "environment", options.environment,
                     "neither a file nor a radiance R,G,B such as 0.5,0.5,0.5");
     }
     environment.image = read_environment_image(options.environment, messages);
     return environment;
 }
 
-void turn_and_scale(const OpenOptions& options, Scene& scene, Messages& messages) {
+void turn_and_scale(const SceneOptions& options, Scene& scene, Messages& messages) {
     if (scene.environment) {
         scene.environment->rotation += options.environment_rotation_deg * kRadiansPerDegree;
         scene.environment->scale = options.environment_scale * scene.environment->scale;
@@ -73,8 +71,8 @@ void show_back_faces(Scene& scene, Messages& messages) {
 }
 
 /// `light` is the light that was added. `around` describes the scene if that is a sky.
-bool wants_ground(const OpenOptions& options, const Scene& scene, DefaultLight light, const Surroundings& around) {
-    switch (options.ground) {
+bool wants_ground(Ground ground, const Scene& scene, DefaultLight light, const Surroundings& around) {
+    switch (ground) {
     case Ground::Off:
         return false;
     case Ground::On:
@@ -112,28 +110,6 @@ void report_file_scene(const Scene& scene, const std::string& file, Messages& me
 
 } // namespace
 
-OpenOptions open_options(const SceneOptions& options) {
-    OpenOptions open;
-    open.scene = options.scene;
-    open.allowed_paths = options.allowed_paths;
-    open.up_axis = options.up_axis;
-    open.unit = options.unit;
-    if (Rgb radiance; parse_rgb(options.environment, radiance)) {
-        open.environment_radiance = radiance;
-    } else {
-        open.environment = options.environment;
-    }
-    open.environment_rotation_deg = options.environment_rotation_deg;
-    open.environment_scale = options.environment_scale;
-    for (const std::string& emitter : options.emitters) open.emitters.push_back(parse_emitter(emitter));
-    open.efficacy = static_cast<double>(options.efficacy);
-    open.two_sided_lights = options.two_sided_lights;
-    open.show_back_faces = options.show_back_faces;
-    open.animation = options.animation;
-    open.file_scene = options.file_scene;
-    return open;
-}
-
 FileSpace file_space(const std::string& up_axis, const std::string& unit) {
     FileSpace space;
     if (!up_axis.empty()) {
@@ -152,7 +128,7 @@ FileSpace file_space(const std::string& up_axis, const std::string& unit) {
     return space;
 }
 
-ReadOptions read_options(const OpenOptions& options) {
+ReadOptions read_options(const SceneOptions& options) {
     ReadOptions read;
     read.allowed_paths = options.allowed_paths;
     read.two_sided_lights = options.two_sided_lights;
@@ -162,9 +138,9 @@ ReadOptions read_options(const OpenOptions& options) {
     return read;
 }
 
-std::string environment_text(const OpenOptions& options) {
-    if (!options.environment_radiance) return options.environment.string();
-    const Rgb radiance = *options.environment_radiance;
+std::string environment_text(const SceneOptions& options) {
+    Rgb radiance;
+    if (!parse_rgb(options.environment, radiance)) return options.environment;
     return fmt::format("{},{},{}", radiance.r, radiance.g, radiance.b);
 }
 
@@ -180,7 +156,9 @@ Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptio
     return scene;
 }
 
-Scene open_scene(const OpenOptions& options, Messages& messages) {
+Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use, Ground ground) {
+    std::vector<EmitterStrength> emitters;
+    for (const std::string& text : options.emitters) emitters.push_back(parse_emitter(text));
     Scene scene = read_scene_and_emitters(options.scene, read_options(options), messages);
     if (options.animation.empty()) report_animation(scene, options.scene, messages);
     if (options.two_sided_lights && std::ranges::none_of(scene.materials, &Material::is_emissive)) {
@@ -188,18 +166,16 @@ Scene open_scene(const OpenOptions& options, Messages& messages) {
     }
     if (options.show_back_faces) show_back_faces(scene, messages);
     if (auto environment = environment_of(options, messages)) scene.environment = *std::move(environment);
-    const double efficacy = lumens_per_watt(options.scene, options.efficacy);
+    const double efficacy = lumens_per_watt(options.scene, static_cast<double>(options.efficacy));
     const bool has_light = !lacks_light(scene);
-    std::vector<EmitterStrength> of_file, others;
-    std::ranges::partition_copy(options.emitters, std::back_inserter(of_file), std::back_inserter(others),
-                                [&](const EmitterStrength& emitter) { return names_emitter_of_file(scene, emitter); });
-    set_emitters(scene, of_file, efficacy);
+    const auto others = std::ranges::stable_partition(
+        emitters, [&](const EmitterStrength& emitter) { return names_emitter_of_file(scene, emitter); });
+    set_emitters(scene, {emitters.begin(), others.begin()}, efficacy);
     Surroundings around;
     // Someone who switches off the last lamp of a file wants it dark.
     const bool is_turned_off = has_light && lacks_light(scene);
-    const DefaultLight light =
-        is_turned_off ? DefaultLight::None : add_default_light(scene, options.use, messages, &around);
-    if (wants_ground(options, scene, light, around)) {
+    const DefaultLight light = is_turned_off ? DefaultLight::None : add_default_light(scene, use, messages, &around);
+    if (wants_ground(ground, scene, light, around)) {
         add_ground(scene);
         messages.make_up("a default ground receives the shadow; `ground=off` leaves it out");
     }

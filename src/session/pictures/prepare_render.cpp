@@ -68,12 +68,10 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     sink.set_work(fmt::format("loading {}", options.scene.scene));
     const Stopwatch watch;
     auto ready = std::make_unique<RenderSetup>();
-    OpenOptions open = open_options(options.scene);
-    open.ground = ground_of(options);
     const bool shows_solution =
         options.render.integrator == IntegratorKind::Radiosity && !options.radiosity.solution.empty();
-    if (shows_solution) open.use = SceneUse::Measurement; // opened as for the solution
-    Scene scene = open_scene(open, messages);
+    const SceneUse use = shows_solution ? SceneUse::Measurement : SceneUse::Picture; // opened as for the solution
+    Scene scene = open_scene(options.scene, messages, use, ground_of(options));
     take_suggestions(scene, verbs, options, messages);
     if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
     RenderSettings& settings = ready->settings;
@@ -105,7 +103,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
 }
 
 PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, const Messages& messages) {
-    PictureRecord record = {.scene = source_of(open_options(options.scene), ready.scene()),
+    PictureRecord record = {.scene = source_of(options.scene, ready.scene()),
                             .camera = {},
                             .settings = ready.settings,
                             .device = ready.queue->device_name(),

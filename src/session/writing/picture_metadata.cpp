@@ -99,9 +99,9 @@ ExrMetadata id_metadata(const SceneSource& source, std::span<const PixelIds> ids
             {"pertev.materials", names_as_json(materials, source.materials)}};
 }
 
-SceneSource source_of(const OpenOptions& options, const Scene& scene) {
+SceneSource source_of(const SceneOptions& options, const Scene& scene) {
     std::string emitters;
-    for (const EmitterStrength& emitter : options.emitters) emitters += (emitters.empty() ? "" : "\n") + emitter.text;
+    for (const std::string& emitter : options.emitters) emitters += (emitters.empty() ? "" : "\n") + emitter;
     return {.scene = options.scene,
             .environment = environment_text(options),
             .environment_scale = options.environment_scale,

@@ -88,7 +88,7 @@ struct PictureRecord {
 ExrMetadata recorded_settings(const PictureOptions& options, std::span<const Setting> settings);
 
 /// Describes a scene that open_scene() made of these options, without seconds.
-SceneSource source_of(const OpenOptions& options, const Scene& scene);
+SceneSource source_of(const SceneOptions& options, const Scene& scene);
 /// Describes a camera that choose_camera() made of this choice, after aim_eye(). `origin` is the scene's.
 CameraSource source_of(const CameraChoice& choice, const Camera& camera, DoubleVec3 origin = {0, 0, 0});
 
