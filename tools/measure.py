@@ -42,6 +42,18 @@ def words_of(line, places):
     return [word.format(**places) for word in shlex.split(line)]
 
 
+def with_flags(words, flags):
+    """The job's words; further flags take the place of its own of the same name."""
+    named = {flag.partition("=")[0] for flag in flags if flag.startswith("--")}
+    kept, is_dropped = [], False
+    for word in words:
+        is_flag = word.startswith("-") and not word.lstrip("-")[:1].isdigit()
+        is_dropped = word.partition("=")[0] in named if is_flag else is_dropped
+        if not is_dropped:
+            kept.append(word)
+    return [*kept, *flags]
+
+
 def time_processes(command, count):
     """Seconds of whole processes, after one that is not timed."""
     seconds = []
@@ -60,17 +72,17 @@ def rows_of(path):
 
 def run_job(job, part, given, places, flags):
     """Rows to show; none where its scene is missing."""
-    places = {**places, "file": job.get("file", "").format(**places)}
+    places = {**places, **job, "file": job.get("file", "").format(**places)}
     if os.path.isabs(places["file"]) and not os.path.exists(places["file"]):
         print(f"{job['name']} is left out: {places['file']} is not there", file=sys.stderr)
         return []
-    command = [given.pertev, *words_of(job["line"], places), *flags]
+    command = [given.pertev, *with_flags(words_of(job["line"], places), flags)]
     report = pathlib.Path(given.out, job["name"].replace(" ", "-") + ".json")
     if "processes" in job:
         return time_processes(command, job["processes"])
-    if "prefix" in job:
+    if "prefix" in part:
         with open(report.with_suffix(".csv"), "w", encoding="utf-8") as output:
-            subprocess.run([*words_of(job["prefix"], places), *command], stdout=output, check=True)
+            subprocess.run([*words_of(part["prefix"], places), *command], stdout=output, check=True)
         return []
     if part.get("peer"):
         samples = pathlib.Path(places["work"], "samples")

@@ -116,12 +116,6 @@ Fields fields_of(const SetFigures& f, bool is_checked) {
                    {"most_nodes", "most", f.work.max_nodes},
                    {"most_triangles", "", f.work.max_triangles},
                    {"checked", "", is_checked},
-                   {"record", "",
-                    has ? ResultCell::raw(json_of("", {{"hit_share", "", r.hit_share},
-                                                       {"nodes", "", r.nodes},
-                                                       {"triangles", "", r.triangles},
-                                                       {"best_rays_per_second", "", r.best_rays_per_second}}))
-                        : ResultCell()},
                    {"best_mrays", "best", recorded(has ? r.best_rays_per_second * 1e-6 : 0), "", "{:.0f}"},
                    ratio_field("ratio_to_best", "ratio", f.is_known(), f.ratio()),
                    {"recorded_hit_share", "its hits", recorded(r.hit_share), "", "{:.3f}"},

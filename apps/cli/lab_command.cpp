@@ -132,14 +132,6 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
     return settings;
 }
 
-/// A line for each refusal that the user asked for by name; the rest are in the report.
-void report_refusals(const LabFlags& flags, const LabReport& report, Reporter& reporter) {
-    if (flags.structures.empty() || flags.traversals.empty()) return;
-    for (const CombinationFigures& c : report.combinations) {
-        if (!c.refused.empty()) reporter.print(fmt::format("{}: {}", c.name, c.refused));
-    }
-}
-
 int run(LabFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
@@ -174,7 +166,6 @@ int run(LabFlags& flags) {
         reporter.print("interrupted before anything was measured; nothing is written");
         return exit_status(ErrorCode::Interrupted);
     }
-    report_refusals(flags, report, reporter);
     reporter.answer(text_of(report));
     if (!flags.output.empty()) {
         write_measurement(flags.output, "report", measurement_of(report, head), "runs");

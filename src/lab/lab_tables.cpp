@@ -11,35 +11,6 @@
 namespace pertev {
 namespace {
 
-const char* family_of(TraversalKind traversal) {
-    using enum TraversalKind;
-    switch (traversal) {
-    case IfIf:
-    case WhileWhile:
-    case Speculative:
-    case Octants:
-        return "binary, with a stack";
-    case RestartTrail:
-    case ShortStack:
-    case ParentLinks:
-    case SkipLinks:
-        return "binary, stackless";
-    case Packet:
-        return "packets";
-    case Wide4:
-    case Wide8:
-    case Wide8Simd:
-    case Compressed:
-        return "wide and compressed";
-    case Kd:
-    case Octree:
-        return "kd-tree and octree";
-    case BruteForce:
-        break;
-    }
-    return "brute force";
-}
-
 /// Returns null if the combination was never reached or its structure could not be built.
 const StructureFigures* structure_of(const LabReport& report, const CombinationFigures& c) {
     if (!c.structure || *c.structure >= report.structures.size()) return nullptr;
@@ -78,7 +49,6 @@ Fields run_fields(const LabReport& report, const CombinationFigures& c, const Ru
     Fields fields = {{"combination", "combination", c.name},
                      {"structure", "structure", name_of(c.combination.structure)},
                      {"walk", "traversal", name_of(c.combination.traversal)},
-                     {"family", "", family_of(c.combination.traversal)},
                      {"rta", "RTA", name_of_rta(o)},
                      {"near_first", "near first", o.near_first},
                      {"tests", "tests", name_of(o.tests)},

@@ -114,7 +114,6 @@ private:
         const Tracer proven = tracer_over(kProven, binary);
         const BruteForce oracle(queue_, triangles_.parts, triangles_.tlas);
         with_memory_for_rays([&] { trace_sets(proven, oracle); });
-        note_heat_maps();
     }
 
     Tracer tracer_over(const Combination& combination, const BinaryTrees& trees) {
@@ -196,17 +195,6 @@ private:
         }
     }
 
-    /// Notes which requested heat maps will be missing.
-    void note_heat_maps() {
-        if (!settings_.heat_maps) return;
-        const auto camera = std::ranges::find(report_.sets, kCameraSet, &SetFigures::name);
-        if (camera == report_.sets.end()) {
-            report_.notes.emplace_back("no heat maps: they are of camera rays, and none are traced");
-        } else if (camera->rays < pixels()) {
-            report_.notes.push_back(fmt::format("no heat maps: {} camera rays are less than a frame of {}x{}",
-                                                camera->rays, settings_.width, settings_.height));
-        }
-    }
     uint64_t pixels() const { return uint64_t(settings_.width) * settings_.height; }
 
     /// Traces by the proven traversal, in pieces.

@@ -217,8 +217,8 @@ class WhatIsMeasured(LabTest):
     def test_pairs_that_make_no_sense_are_listed_with_the_reason_beside_what_was_measured(self):
         pair = ["box.obj", *INSIDE, "--structures", "octree,binned", "--traversals", "while-while,kd"]
         outcome = self.succeed(*self.lab(*pair))
-        self.assertRegex(outcome.stderr, r"(?m)^octree while-while .*: .*octree needs the traversal octree")
-        self.assertRegex(outcome.stderr, r"(?m)^binned kd .*: the kd traversal needs .*kd-sah")
+        self.assertRegex(outcome.stdout, r"(?m)^Not run: .*octree needs the traversal octree.*: octree while-while ")
+        self.assertRegex(outcome.stdout, r"(?m)^Not run: the kd traversal needs .*kd-sah: .*binned kd ")
         report = self.report(*pair)
         for of in report["combinations"]:
             self.assertEqual(of["runs"] == [], of["refused"] is not None)

@@ -35,7 +35,7 @@ class RaysOnTheRecord(CliTest):
         self.assertEqual([of["set"] for of in sets], ["primary", "shadow", "diffuse1", "diffuse2", "diffuse3"])
         for of in sets:
             self.assertEqual(of["rays"], 3000)
-            self.assertEqual((of["scene"], of["runs"], of["record"], of["ratio_to_best"]), ("cornell-box", 2, None, None))
+            self.assertEqual((of["scene"], of["runs"], of["best_mrays"], of["ratio_to_best"]), ("cornell-box", 2, None, None))
             self.assertTrue(of["checked"])
             self.assertGreater(of["rays_per_second"], 0)
             self.assertLessEqual(of["least_seconds"], of["median_seconds"])

@@ -96,8 +96,8 @@ function showTable(table, isOpen = true) {
   return make("details", isOpen ? { open: "" } : {}, make("summary", {}, make("b", {}, table.title || table.name)), bar, scroll);
 }
 
-/** An axis from `least` to `most`: where a value lies in [0, 1], and the values with a tick. */
-function axis(least, most, isLog) {
+/** An axis from `least` to `most`: where a value lies in [0, 1], and the values with a tick, `isWhole` numbers if said so. */
+function axis(least, most, isLog, isWhole) {
   if (isLog) {
     let [low, high] = [Math.floor(Math.log10(least) * 2) / 2, Math.ceil(Math.log10(most) * 2) / 2];
     if (high === low) high += 1;
@@ -111,7 +111,7 @@ function axis(least, most, isLog) {
     return { place: (value) => (Math.log10(value) - low) / (high - low), ticks };
   }
   const rough = (most - least || 1) / 6, power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].find((digit) => digit * power >= rough) * power;
+  const step = Math.max([1, 2, 5, 10].find((digit) => digit * power >= rough) * power, isWhole ? 1 : 0);
   const [low, high] = [Math.floor(least / step) * step, Math.ceil(most / step) * step || step];
   const ticks = Array.from({ length: Math.round((high - low) / step) + 1 }, (_, i) => low + i * step);
   return { place: (value) => (value - low) / (high - low), ticks };
@@ -144,11 +144,12 @@ function lines(table, view, rows, title) {
   const all = series.flatMap((one) => one.points), xs = all.map((p) => p.x), ys = all.map((p) => p.y);
   const level = view.level ? rows.map((row) => row[view.level]).find(can) : undefined;
   if (level !== undefined) ys.push(level);
-  const across = axis(Math.min(...xs), Math.max(...xs), view.log), up = axis(view.log ? Math.min(...ys) : 0, Math.max(...ys), view.log);
-  const [width, height, left, top] = [440, 330, 84, 12];
+  const across = axis(Math.min(...xs), Math.max(...xs), view.log, xs.every(Number.isInteger)), up = axis(view.log ? Math.min(...ys) : 0, Math.max(...ys), view.log);
+  const [width, height, left, top] = [380, 300, 84, 12];
   const px = (x) => left + across.place(x) * width, py = (y) => top + (1 - up.place(y)) * height;
   const inside = (y) => Math.min(Math.max(y, top), top + height);
-  const svg = make("svg", { xmlns: SVG, width: left + width + 200, height: top + height + 48 });
+  const keys = 40 + 6.6 * Math.max(...series.map((one) => one.name.length + (view.log ? 14 : 0)));
+  const svg = make("svg", { xmlns: SVG, width: left + width + keys, height: top + height + 48 });
   for (const x of across.ticks) {
     svg.append(make("line", { class: "grid", x1: px(x), x2: px(x), y1: top, y2: top + height, stroke: "#ddd" }),
       make("text", { x: px(x), y: top + height + 16, "text-anchor": "middle" }, tickOf(x)));
@@ -195,14 +196,15 @@ function lines(table, view, rows, title) {
 function bars(table, view, rows, title) {
   const shown = rows.filter((row) => isNumber(row[view.y]) && row[view.y] > 0).sort((a, b) => b[view.y] - a[view.y]);
   if (shown.length === 0) return null;
-  const holder = make("div"), kinds = distinct(shown.map((row) => row[view.color]));
+  const kindOf = (row) => view.kinds?.[row[view.color]] ?? row[view.color];
+  const holder = make("div"), kinds = view.kinds ? distinct(Object.values(view.kinds)) : distinct(shown.map(kindOf));
   const draw = (count) => {
     const some = shown.slice(0, count), most = Math.max(...some.map((row) => row[view.high] ?? row[view.y]));
-    const left = 16 + 6.6 * Math.max(...some.map((row) => row[view.label].length)), width = 420, right = 70, down = 20;
+    const left = 16 + 6.6 * Math.max(...some.map((row) => row[view.label].length)), width = 340, right = 70, down = 20;
     const px = (value) => left + (value / most) * width;
     const svg = make("svg", { xmlns: SVG, width: left + width + right, height: down * (some.length + kinds.length) + 16 });
     some.forEach((row, i) => {
-      const color = COLORS[kinds.indexOf(row[view.color]) % COLORS.length], y = down * i, isHollow = view.hollow && row[view.hollow[0]] !== view.hollow[1];
+      const color = COLORS[kinds.indexOf(kindOf(row)) % COLORS.length], y = down * i, isHollow = view.hollow && row[view.hollow[0]] !== view.hollow[1];
       svg.append(make("text", { x: left - 6, y: y + 14, "text-anchor": "end" }, row[view.label]),
         make("rect", { x: left, y: y + 3, width: px(row[view.y]) - left, height: 14, rx: 2, fill: isHollow ? "none" : color, stroke: color, "stroke-dasharray": isHollow ? "3 2" : null }),
         make("text", { x: px(row[view.high] ?? row[view.y]) + 6, y: y + 14 }, textOf(row[view.y])));
@@ -261,7 +263,7 @@ function show(measurement, view) {
 }
 
 /** Pictures of one group: errors beside them, and a magnified inset of the same place in all of them. */
-function showGroup(name, pictures) {
+function showGroup(name, pictures, isFirst) {
   const size = 180, insets = [], spots = [];
   let zoom = 8, pinned = false, place = null;
   const update = () => {
@@ -298,14 +300,15 @@ function showGroup(name, pictures) {
     else if (picture.file) drawn.append(...view(encodeURI(picture.file)));
     return make("figure", {}, drawn, make("figcaption", {}, make("b", {}, picture.title), picture.caption ? ` \u2014 ${picture.caption}` : "", links));
   });
-  return make("section", {}, make("h3", {}, name), make("p", { class: "notes" }, "Point at a picture to magnify the same place in all of them; click holds it, the wheel zooms."), make("div", { class: "pictures" }, figures));
+  return make("section", {}, make("h3", {}, name),
+    isFirst ? make("p", { class: "notes" }, "Point at a picture to magnify the same place in all beside it; click holds it, the wheel zooms.") : null, make("div", { class: "pictures" }, figures));
 }
 
 function showMeasurement(m, id, isAlone) {
   const facts = [["Device", m.device ?? "CPU"], ["Driver", m.driver], ["Processor", m.processor], ["Threads", m.threads], ["Date", m.date], ["Program", m.program]];
   const kind = VIEWS[m.kind] ?? { views: [] }, groups = distinct((m.pictures ?? []).map((picture) => picture.group));
   const isAlarm = (note) => /^(WRONG|Not made|interrupted)|interrupted;/i.test(note);
-  const isLarge = (table) => table.rows.length > 40 || kind.views.some((view) => view.table === table.name);
+  const isLarge = (table) => table.rows.length > 20 || kind.views.some((view) => view.table === table.name);
   const tables = m.tables.filter((table) => table.rows.length > 0);
   const showAny = (table) => (table.rows.length === 1 ? showFacts(table) : showTable(table, table.rows.length < 400));
   return make("main", { id }, isAlone ? null : make("h2", {}, m.title ?? "Measurement"),
@@ -315,7 +318,7 @@ function showMeasurement(m, id, isAlone) {
     (m.notes ?? []).filter(isAlarm).map((note) => make("p", { class: "wrong" }, note)),
     tables.filter((table) => !isLarge(table)).map(showAny),
     make("div", { class: "plots" }, kind.views.map((view) => show(m, view))),
-    groups.map((group) => showGroup(group, m.pictures.filter((picture) => picture.group === group))),
+    groups.map((group, i) => showGroup(group, m.pictures.filter((picture) => picture.group === group), i === 0)),
     tables.filter(isLarge).map(showAny),
     make("ul", { class: "notes" }, [...(m.notes ?? []).filter((note) => !isAlarm(note)), ...(kind.about ?? [])].map((note) => make("li", {}, note))));
 }
