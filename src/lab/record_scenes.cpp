@@ -94,9 +94,7 @@ RenderSettings job_settings(const RecordJob& job) {
 
 Scene make_job_scene(const RecordJob& job, const std::string& file, Messages& messages) {
     if (job.is_grey) return make_grey_scene(file, messages);
-    SceneOptions options; // a temporary makes g++ 12 warn of unset members
-    options.scene = file;
-    return open_scene(options, messages, SceneUse::Benchmark);
+    return open_scene(file, messages, SceneUse::Benchmark);
 }
 
 Camera job_camera(const RecordJob& job, const Scene& scene, float aspect, Messages& messages) {
