@@ -2,8 +2,7 @@
 """Fails where object code that feeds the picture calls a function of libm that rounds: those differ between versions
 and processors, and src/math/portable_math.h has ours.
 
-`check_libm.py [--except OBJECT]... FILE...` reads objects, archives or binaries with nm, all but the objects named (say,
-metrics.cpp.o, which measures pictures and makes none); `--self-test COMPILER` builds a program that breaks
+`check_libm.py FILE...` reads objects, archives or binaries with nm; `--self-test COMPILER` builds a program that breaks
 the rule and must be caught. Functions that IEEE 754 fixes to the last bit (sqrt, fma, floor, rint, fmod, ldexp, ...)
 are fine. What a linked shared library calls inside does not show here, nor does device code.
 """
@@ -66,15 +65,10 @@ def main(arguments):
     if len(arguments) == 2 and arguments[0] == "--self-test":
         self_test(arguments[1])
         return 0
-    exempt = set()
-    while arguments[:1] == ["--except"] and len(arguments) > 2:
-        exempt.add(arguments[1])
-        arguments = arguments[2:]
     if not arguments or arguments[0].startswith("-"):
         print(__doc__, file=sys.stderr)
         return 2
     faults = [fault for path in arguments for fault in faults_of(path)]
-    faults = [fault for fault in faults if pathlib.PurePath(fault.split(": ")[0]).name.split(":")[-1] not in exempt]
     for fault in faults:
         print(fault)
     if faults:

@@ -54,7 +54,7 @@ SceneFigures measure(const std::string& file, Queue& queue, RenderSettings setti
     SceneFigures figures{.scene = std::filesystem::path(file).stem().string(), .device = queue.device_name()};
     Messages messages;
     const Stopwatch watch;
-    const Scene scene = open_scene({.scene = file}, messages, SceneUse::Benchmark);
+    const Scene scene = open_scene(file, messages, SceneUse::Benchmark);
     figures.load_s = watch.seconds();
 
     const ScratchCache cache;

@@ -94,7 +94,7 @@ RenderSettings job_settings(const RecordJob& job) {
 
 Scene make_job_scene(const RecordJob& job, const std::string& file, Messages& messages) {
     if (job.is_grey) return make_grey_scene(file, messages);
-    return open_scene({.scene = file}, messages, SceneUse::Benchmark);
+    return open_scene(file, messages, SceneUse::Benchmark);
 }
 
 Camera job_camera(const RecordJob& job, const Scene& scene, float aspect, Messages& messages) {

@@ -241,7 +241,7 @@ TEST_CASE("hybrid has the path tracer's picture of public scenes") {
         if (!path) continue;
         CAPTURE(name);
         Messages messages;
-        const Scene scene = open_scene({.scene = path->string()}, messages);
+        const Scene scene = open_scene(path->string(), messages);
         RenderSettings settings = hybrid_settings();
         settings.width = 160, settings.height = 90, settings.samples = 1;
         settings.path.max_depth = 1;

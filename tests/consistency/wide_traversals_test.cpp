@@ -92,8 +92,8 @@ struct PostponingTraversal {
     static bool traverse(const CompressedBvhView& bvh, const Ray& ray, uint32_t instance, Visitor& visitor,
                          const Counter& counter) {
         constexpr LaneMask kAlone = 1;
-        typename Traversal::FileLocation::Slot slots[Traversal::FileLocation::kSlots];
-        typename Traversal::FileLocation place(slots);
+        typename Traversal::State::Slot slots[Traversal::State::kSlots];
+        typename Traversal::State place(slots);
         Traversal::start(bvh, ray, visitor, place);
         for (uint32_t turns = 0; !place.is_done(); ++turns) {
             const bool waits = place.nodes.is_empty();

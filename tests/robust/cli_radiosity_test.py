@@ -261,7 +261,7 @@ class Radiosity(CliTest):
                  "--patch-rays: cannot be combined with --solution"),
                 ("render nowhere.obj -o x.png --integrator radiosity --denoise svgf", 2, "--denoise svgf: supports"),
                 ("render nowhere.obj -o x.png --integrator radiosity --lpe seen=LE -o x.exr", 2, "distinguish light paths"),
-                ("render nowhere.obj -o x.png --integrator radiosity --max-depth 256", 3, "--max-depth 256: with --integrator radiosity"),
+                ("render nowhere.obj -o x.png --integrator radiosity --max-depth 256", 3, "--max-depth 256: the limit with --integrator radiosity is 255"),
                 ("render cornell-box -o x.png --integrator radiosity --shutter 0.1", 2, "--shutter"),
                 ("render cornell-box -o x.png --integrator radiosity --solution text.rad", 2, "text.rad: no radiosity solution"),
                 ("render cornell-box -o x.png --integrator radiosity --solution cut.rad", 2, "cut.rad: a radiosity solution that is truncated"),

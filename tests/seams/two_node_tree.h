@@ -101,8 +101,8 @@ private:
         }
         const uint32_t light = light_of(lights, point.instance, point.index);
         const EmissiveTriangle& triangle = lights.triangles[light];
-        const Vec3 point = triangle.a + (point.u * triangle.ab + point.v * triangle.ac);
-        return pdf_light_hit<TwoNodeTree>(lights, light, context, point);
+        const Vec3 position = triangle.a + (point.u * triangle.ab + point.v * triangle.ac);
+        return pdf_light_hit<TwoNodeTree>(lights, light, context, position);
     }
 
     const DensityJob& job_;

@@ -93,7 +93,7 @@ TEST_CASE("photon mapping converges to path tracing at least at Knaus and Zwicke
 
 TEST_CASE("photon mapping has at most a 60th of path tracing's error on a caustic at equal time") {
     Messages messages;
-    const Scene scene = open_scene({.scene = "caustic"}, messages);
+    const Scene scene = open_scene("caustic", messages);
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Camera camera; // it sees the floor under the ball, not the lamp's reflection in it
     camera.world_from_camera = look_at({0, 0.6f, 2}, {-0.25f, 0, -0.1f}, {0, 1, 0});

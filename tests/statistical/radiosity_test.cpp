@@ -149,7 +149,7 @@ TEST_CASE("a sphere in a furnace has the irradiance pi times the furnace's radia
 
 TEST_CASE("radiosity converges to path tracing in the Cornell box as patches shrink") {
     Messages messages;
-    const Scene scene = open_scene({.scene = "cornell-box"}, messages);
+    const Scene scene = open_scene("cornell-box", messages);
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = test::requested_queue();
     RenderSettings picture;

@@ -61,11 +61,11 @@ class Thief : public PathListener<Thief> {
 public:
     explicit Thief(const PathJob&) {}
     bool takes(const PathState&, const EmitterPoint& point, float) {
-        place_ = place;
+        point_ = point;
         return true;
     }
     bool wants_direct(const PathState&, const Hit&, const Surface&) { return false; }
-    EmitterPoint place_;
+    EmitterPoint point_;
 };
 
 /// A white floor that glows, in a bright sky.
@@ -162,13 +162,13 @@ TEST_CASE("path vertex: light taken by a listener is not added to the path, and 
     CHECK(shade_vertex<kAllMaterials>(place.job, path, kFloor, DrawOnDemand(), shadow, asks, both));
     CHECK(path.radiance == Rgb{0, 0, 0});
     CHECK_FALSE(asks);
-    CHECK(both.place_.instance == 0);
-    CHECK(both.place_.u == 0.3f);
+    CHECK(both.point_.instance == 0);
+    CHECK(both.point_.u == 0.3f);
     CHECK(both.found == Rgb{0, 0, 0});
     CHECK(both.events == std::vector<std::string>{"vertex 0", "emitted 0", "scattered 1"});
     CHECK_FALSE(shade_vertex<kAllMaterials>(place.job, path, kNothing, DrawOnDemand(), shadow, asks, both));
     CHECK(path.radiance == Rgb{0, 0, 0});
-    CHECK(both.place_.kind() == SourceKind::Environment);
+    CHECK(both.point_.kind() == SourceKind::Environment);
 }
 
 TEST_CASE("path vertex: the variant of a mask of features is the smallest that covers all of them") {

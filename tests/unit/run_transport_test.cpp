@@ -29,7 +29,7 @@ struct SmallRun {
 
     SmallRun() {
         Messages messages;
-        scene = open_scene({.scene = "cornell-box"}, messages);
+        scene = open_scene("cornell-box", messages);
         camera = choose_camera({}, scene, 1, messages);
         settings.integrators = {"path"};
         settings.picture.width = settings.picture.height = 16;

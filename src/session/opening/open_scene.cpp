@@ -184,4 +184,10 @@ Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use, 
     return scene;
 }
 
+Scene open_scene(const std::string& scene, Messages& messages, SceneUse use) {
+    SceneOptions options; // a temporary makes g++ 12 warn of unset members
+    options.scene = scene;
+    return open_scene(options, messages, use);
+}
+
 } // namespace pertev

@@ -35,6 +35,8 @@ std::string environment_text(const SceneOptions& options);
 /// validate(). Throws Error.
 Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use = SceneUse::Picture,
                  Ground ground = Ground::Off);
+/// Opens a scene with all other settings at their defaults.
+Scene open_scene(const std::string& scene, Messages& messages, SceneUse use = SceneUse::Picture);
 
 /// Reads a scene with `formats/read_scene.h` and adds nothing. Says which scene of a file with several is shown and,
 /// for files that cannot say which faces of a lamp emit, comments on its lamps (session/survey/emitter_fronts.h).
