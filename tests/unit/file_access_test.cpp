@@ -157,7 +157,7 @@ TEST_CASE("a file outside is replaced by one of that name below with a warning, 
     CHECK(access.find(at(f.scene / "textures" / "b.mtl"), (f.other / "t.png").string(), messages) ==
           f.scene / "textures/t.png");
     REQUIRE(messages.all().size() == 2);
-    CHECK(messages.all()[0].text.find("\"/no such home/artist\", outside") != std::string::npos);
+    CHECK(messages.all()[0].text.find("\"/no such home/artist\" are outside") != std::string::npos);
     const auto error = test::thrown_error([&] {
         (void)access.find(FileLocation{f.file.string(), 7}, "../scene2/u.png", messages);
     });

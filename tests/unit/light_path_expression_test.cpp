@@ -227,7 +227,7 @@ TEST_CASE("expressions whose total size is too large are refused") {
         return texts;
     };
     CHECK(is_over(repeated(600, [](std::size_t) { return std::string("L(D{255}){16}E"); }),
-                  "too many letters in 600 expressions together"));
+                  "too many letters in 600 expressions in total"));
     const auto counting = [](std::size_t i) {
         return fmt::format("L(.{{{0}}})*E", 2 * i + 3);
     }; // states: their product

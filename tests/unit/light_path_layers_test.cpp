@@ -99,7 +99,7 @@ TEST_CASE("an unknown name is refused at its character, with a list of names") {
     const auto message = [](const char* text) {
         return test::bad_input_message([&] { put_layers({"a=LE", text}, make_named_scene()); });
     };
-    CHECK(message("b=LD<'wal'>E").find("`lpe=b`: character 5: no object, mesh, material or node") == 0);
+    CHECK(message("b=LD<'wal'>E").find("`lpe=b`: character 5: there is no object, mesh, material or node") == 0);
     CHECK(message("b=LD<'wal'>E").find("\n      ^") != std::string::npos);
     CHECK(message("b=LD<'wall' 'x*'>E").find("character 12") != std::string::npos);
     CHECK(message("b=L<'wall'>E").find("there is no light of the scene with this name; there are 'bulb', 'disc'") !=

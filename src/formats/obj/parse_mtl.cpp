@@ -98,7 +98,7 @@ public:
             messages_.leave_out(
                 {FileLocation{file_, unknown_.first_line},
                  fmt::format("{} with an unknown key ({} is the first) {} left out", counted(unknown_.times, "line"),
-                             is_or_are(unknown_.times), first_unknown_, is_or_are(unknown_.times))});
+                             first_unknown_, is_or_are(unknown_.times))});
         }
         return std::move(materials_);
     }
