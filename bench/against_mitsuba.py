@@ -64,7 +64,8 @@ def split_obj(source, folder):
 class Job:
     """One picture in both renderers. `depth` counts scatterings, `eye`, `target` and `fov` (vertical, degrees) are the camera's."""
 
-    sky, roulette_depth, flags = None, 5, []
+    sky, roulette_depth = None, 5
+    cpu_size, gpu_size = (640, 360), (1920, 1080)
 
     def __init__(self, scenes, folder, on_gpu):
         self.width, self.height = self.gpu_size if on_gpu else self.cpu_size
@@ -72,7 +73,7 @@ class Job:
         self.write(scenes)
 
     def render_flags(self):
-        flags = ["render", self.file, "--filter", "box", "--max-depth", self.depth, *self.flags]
+        flags = ["render", self.file, "--filter", "box", "--max-depth", self.depth]
         flags += ["--eye=" + ",".join(map(str, self.eye)), "--target=" + ",".join(map(str, self.target)), "--fov", self.fov]
         return flags + (["--environment", ",".join(map(str, [self.sky] * 3))] if self.sky else [])
 
@@ -94,7 +95,6 @@ class Job:
 
 class Sponza(Job):
     name, stem, grey, depth, sky, roulette_depth = "grey Sponza, 8 bounces", "sponza", 0.7, 8, 1.0, 2
-    cpu_size, gpu_size = (640, 360), (1920, 1080)
     eye, target, fov = (-110, 18, -2), (60, 32, -4), 60
 
     def write(self, scenes):
@@ -107,7 +107,6 @@ class Sponza(Job):
 
 class Bunny(Job):
     name, stem, grey, depth, sky = "bunny, depth 8", "bunny", 0.5, 7, 1.0
-    cpu_size, gpu_size = (640, 360), (1920, 1080)
     eye, target, fov = (-0.017, 0.14, 0.33), (-0.017, 0.108, 0), 35
 
     def write(self, scenes):
@@ -116,13 +115,10 @@ class Bunny(Job):
 
 class Corridor(Job):
     name, stem, depth = "corridor of 5,000 lamps, direct light", "corridor", 1
-    cpu_size, gpu_size = (640, 360), (1920, 1080)
     eye, target, fov = (0, 1.6, 29.5), (0, 1.5, 0), 60
 
     def write(self, scenes):
-        sys.argv, kept = ["make_corridor.py", str(self.file)], sys.argv
-        make_corridor.main()
-        sys.argv = kept
+        make_corridor.write(self.file)
 
     def bsdfs(self):
         emitter = {"type": "area", "radiance": {"type": "rgb", "value": float(make_corridor.EMISSION)}}

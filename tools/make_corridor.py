@@ -35,7 +35,7 @@ def lamp(random_):
     return [[centre[k] + radius * (math.cos(a) * side[k] + math.sin(a) * up[k]) for k in range(3)] for a in angles]
 
 
-def make(material_file):
+def text(material_file):
     random_ = random.Random(5000)
     x, z = WIDTH / 2, LENGTH / 2
     lines = [f"mtllib {material_file}"]
@@ -50,15 +50,15 @@ def make(material_file):
     return "\n".join(lines) + "\n"
 
 
-def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    target = pathlib.Path(sys.argv[1])
+def write(target):
+    """Writes the OBJ `target` and its MTL."""
     material_file = target.with_suffix(".mtl")
     material_file.write_text(f"newmtl wall\nKd {REFLECTANCE} {REFLECTANCE} {REFLECTANCE}\n"
                              f"newmtl lamp\nKd 0 0 0\nKe {EMISSION} {EMISSION} {EMISSION}\n")
-    target.write_text(make(material_file.name))
+    target.write_text(text(material_file.name))
 
 
 if __name__ == "__main__":
-    main()
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    write(pathlib.Path(sys.argv[1]))
