@@ -43,7 +43,10 @@ target_link_options(pertev_make_lobe_tables PRIVATE -fno-sanitize=all)
 set_target_properties(pertev_make_lobe_tables PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PERTEV_GENERATED_DIR})
 set(lobes ${PERTEV_GENERATED_DIR}/shading/lobes)
 file(MAKE_DIRECTORY ${lobes})
-add_custom_command(OUTPUT ${lobes}/energy_table_data.h ${lobes}/sheen_table_data.h
+set(lobe_files energy_table_data.h sheen_table_data.h lobe_table_data.cpp metal_lost.inl metal_schlick.inl metal_average_lost.inl
+    metal_average_schlick.inl glass_lost.inl glass_average_lost.inl albedo.inl)
+list(TRANSFORM lobe_files PREPEND ${lobes}/)
+add_custom_command(OUTPUT ${lobe_files}
   COMMAND pertev_make_lobe_tables ${lobes} COMMENT "Integrating the tables of lobes" VERBATIM)
-target_sources(pertev_shading PRIVATE ${lobes}/energy_table_data.h ${lobes}/sheen_table_data.h)
+target_sources(pertev_shading PRIVATE ${lobe_files})
 target_include_directories(pertev_shading PUBLIC ${PERTEV_GENERATED_DIR})

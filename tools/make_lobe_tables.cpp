@@ -1,5 +1,6 @@
 // Writes the tables of lobes into the folder that it is given: energy_table_data.h, which says how much energy GGX
-// microfacets lose to single scattering, and sheen_table_data.h, the directional albedo of the sheen lobe.
+// microfacets lose to single scattering, and sheen_table_data.h, the directional albedo of the sheen lobe. The numbers
+// stand in *.inl, which only lobe_table_data.cpp and device code read.
 //
 // The build runs it. Axes and meaning are stated in src/shading/lobes/energy_tables.h and sheen_lobe.h, which must
 // agree with this file. Doubles leave eight digits to spare, so the values do not depend on the compiler or on libm;
@@ -19,6 +20,7 @@
 #include <cstdio>
 #include <fstream>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -34,7 +36,7 @@ constexpr int kMuNodes = 36, kRoughnessNodes = 20, kIorNodes = 14, kAverageNodes
 constexpr double kAlphaMin = 1e-3, kIorMin = 1.1, kIorMax = 3, kOvershoot = 2e-4;
 constexpr int kSheenMuNodes = 24, kSheenRoughnessNodes = 16;
 constexpr double kSheenRoughnessMin = 0.2;
-constexpr uint64_t kHash = 0x53a88e4540018592; // hash of the text of all tables
+constexpr uint64_t kHash = 0x2d378497c66a387d; // hash of the numbers of all tables
 
 struct Node {
     double x, weight;
@@ -289,23 +291,43 @@ double sheen_albedo(double mu, double alpha) {
     return sum * 2 * pi / 96;
 }
 
-std::string array(const char* type, const char* name, const Values& values) {
-    const bool whole = type[0] == 'u';
-    std::string text = fmt::format("HD inline {0} {1}(int i) {{\n    static constexpr {0} k[] = {{", type, name);
-    for (const double v : values)
-        text += whole ? fmt::format("{},\n", int(v)) : fmt::format("{:.9g}f,\n", double(float(v)));
-    return text + "};\n    return k[i];\n}\n";
-}
+struct Table {
+    std::string type, name; // uint16_t or float
+    Values values;
 
-/// Returns whether the file was written.
-bool write(const std::string& path, const std::string& space, const std::string& body) {
+    std::string numbers() const {
+        std::string text;
+        for (const double v : values)
+            text += type == "float" ? fmt::format("{:.9g}f,\n", double(float(v))) : fmt::format("{},\n", int(v));
+        return text;
+    }
+    /// Host code reads one array of the program; a GPU has one in each kernel, since device code is not linked.
+    std::string accessor() const {
+        return fmt::format(
+            "extern const {0} {1}_values[];\nHD inline {0} {1}_at(int i) {{\n"
+            "#ifdef __CUDA_ARCH__\n    static constexpr {0} k[] = {{\n#include \"shading/lobes/{1}.inl\"\n    }};\n"
+            "    return k[i];\n#else\n    return {1}_values[i];\n#endif\n}}\n",
+            type, name);
+    }
+    std::string definition() const {
+        return fmt::format("const {0} {1}_values[] = {{\n#include \"shading/lobes/{1}.inl\"\n}};\n", type, name);
+    }
+};
+
+/// The tables of one namespace.
+struct TableGroup {
+    std::string space, constants;
+    std::vector<Table> tables;
+};
+
+const char* const kOrigin = "// Written by tools/make_lobe_tables.cpp; src/shading/lobes/ says what it means.\n";
+
+/// Throws std::runtime_error if it cannot.
+void write(const std::string& path, const std::string& text) {
     std::ofstream file(path);
-    file << "#pragma once\n// Written by tools/make_lobe_tables.cpp; src/shading/lobes/ says what it means.\n"
-         << "#include <cstdint>\n#include \"base/host_device.h\"\nnamespace pertev::" << space << " {\n"
-         << body << "}\n";
+    file << text;
     file.close();
-    if (!file) fmt::print(stderr, "{} could not be written\n", path);
-    return static_cast<bool>(file);
+    if (!file) throw std::runtime_error(path + " could not be written");
 }
 
 /// FNV-1a.
@@ -315,7 +337,7 @@ uint64_t hash_of(const std::string& text) {
     return hash;
 }
 
-std::string energy_tables() {
+TableGroup energy_tables() {
     const Grid metal{{1, kRoughnessNodes, kMuNodes}}, glass{{kIorNodes, kRoughnessNodes, kMuNodes}};
     const Values lost = quantised(metal.lowered(metal.tabulate([](Values& column, double r, double x) {
         column[0] = 1 - View(mu_at(x, alpha_at(r)), alpha_at(r)).reflected();
@@ -351,16 +373,20 @@ std::string energy_tables() {
         for (int q = 0; q < kIorNodes; ++q) add_average_lost(&table[glass.index(q, 0, 0)], average_glass);
         glass_lost.insert(glass_lost.end(), table.begin(), table.end());
     }
-    return fmt::format("inline constexpr int kMuNodes = {}, kRoughnessNodes = {}, kIorNodes = {}, kAverageNodes = {};\n"
-                       "inline constexpr float kAlphaMin = {}f, kIorMin = {}f, kIorMax = {}.0f;\n",
-                       kMuNodes, kRoughnessNodes, kIorNodes, kAverageNodes, kAlphaMin, kIorMin, kIorMax) +
-           array("uint16_t", "metal_lost_at", lost) + array("uint16_t", "metal_schlick_at", schlick) +
-           array("float", "metal_average_lost_at", average_lost) +
-           array("float", "metal_average_schlick_at", average_schlick) +
-           array("uint16_t", "glass_lost_at", glass_lost) + array("float", "glass_average_lost_at", average_glass);
+    return {
+        "energy_table",
+        fmt::format("inline constexpr int kMuNodes = {}, kRoughnessNodes = {}, kIorNodes = {}, kAverageNodes = {};\n"
+                    "inline constexpr float kAlphaMin = {}f, kIorMin = {}f, kIorMax = {}.0f;\n",
+                    kMuNodes, kRoughnessNodes, kIorNodes, kAverageNodes, kAlphaMin, kIorMin, kIorMax),
+        {{"uint16_t", "metal_lost", lost},
+         {"uint16_t", "metal_schlick", schlick},
+         {"float", "metal_average_lost", average_lost},
+         {"float", "metal_average_schlick", average_schlick},
+         {"uint16_t", "glass_lost", glass_lost},
+         {"float", "glass_average_lost", average_glass}}};
 }
 
-std::string sheen_table() {
+TableGroup sheen_table() {
     const Grid grid{{1, kSheenRoughnessNodes, kSheenMuNodes}};
     // Rather too much than too little, since what the sheen takes the lobes beneath do not get: turned over, so that
     // lowered() raises it.
@@ -369,10 +395,11 @@ std::string sheen_table() {
         column[0] = 4 - sheen_albedo(std::max(x * x, 1e-7), root * root);
     }));
     for (double& v : table) v = 4 - v;
-    return fmt::format("inline constexpr int kMuNodes = {}, kRoughnessNodes = {};\n"
-                       "inline constexpr float kRoughnessMin = {}f;\n",
-                       kSheenMuNodes, kSheenRoughnessNodes, kSheenRoughnessMin) +
-           array("float", "albedo_at", table);
+    return {"sheen_table",
+            fmt::format("inline constexpr int kMuNodes = {}, kRoughnessNodes = {};\n"
+                        "inline constexpr float kRoughnessMin = {}f;\n",
+                        kSheenMuNodes, kSheenRoughnessNodes, kSheenRoughnessMin),
+            {{"float", "albedo", table}}};
 }
 
 } // namespace
@@ -382,12 +409,35 @@ int main(int count, char** arguments) {
         fmt::print(stderr, "make_lobe_tables FOLDER\n");
         return 2;
     }
-    const std::string folder = arguments[1], energy = energy_tables(), sheen = sheen_table();
+    const std::string folder = std::string(arguments[1]) + "/";
+    const TableGroup groups[] = {energy_tables(), sheen_table()};
+    std::string all_numbers, definitions = kOrigin;
+    for (const TableGroup& group : groups) {
+        for (const Table& table : group.tables) all_numbers += table.numbers();
+    }
     // Pictures are to have the same bytes wherever they are made, so other tables would be a fault of this machine.
-    if (const uint64_t hash = hash_of(energy + sheen); hash != kHash) {
+    if (const uint64_t hash = hash_of(all_numbers); hash != kHash) {
         fmt::print(stderr, "the tables of lobes have the hash {:#x} here; it should be {:#x}\n", hash, kHash);
         return 1;
     }
-    const bool has_energy = write(folder + "/energy_table_data.h", "energy_table", energy);
-    return has_energy && write(folder + "/sheen_table_data.h", "sheen_table", sheen) ? 0 : 1;
+    try {
+        for (const TableGroup& group : groups) {
+            const std::string begin = "namespace pertev::" + group.space + " {\n";
+            std::string header = "#pragma once\n" + std::string(kOrigin) +
+                                 "#include <cstdint>\n#include \"base/host_device.h\"\n" + begin + group.constants;
+            definitions += "#include \"shading/lobes/" + group.space + "_data.h\"\n" + begin;
+            for (const Table& table : group.tables) {
+                header += table.accessor();
+                definitions += table.definition();
+                write(folder + table.name + ".inl", table.numbers());
+            }
+            write(folder + group.space + "_data.h", header + "}\n");
+            definitions += "}\n";
+        }
+        write(folder + "lobe_table_data.cpp", definitions);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 1;
+    }
+    return 0;
 }
