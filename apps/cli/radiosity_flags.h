@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "apps/cli/reporter.h"
+#include "integrators/radiosity/radiosity_display_settings.h"
 #include "radiosity/solve_radiosity.h"
 #include "settings/picture_options.h"
 

@@ -16,6 +16,7 @@
 #include "image/image_format.h"
 #include "image/read_image.h"
 #include "image/write_exr.h"
+#include "integrators/photon_map/photon_map_settings.h"
 #include "lab/describe_camera.h"
 #include "lab/record_scenes.h"
 #include "lab/run_transport.h"
@@ -99,7 +100,8 @@ TransportSettings settings_of(const TransportFlags& flags, const std::string& si
     std::tie(settings.picture.width, settings.picture.height) = parse_size("--size", size.empty() ? "256x256" : size);
     settings.picture.path.max_depth = flags.max_depth;
     settings.picture.path.seed = flags.seed;
-    settings.picture.photon_map.search = value_named<PhotonSearch>(flags.photon_search).value_or(PhotonSearch::Grid);
+    settings.picture.photon_map.edit().search =
+        value_named<PhotonSearch>(flags.photon_search).value_or(PhotonSearch::Grid);
     settings.reference_samples = flags.reference_samples > 0 ? flags.reference_samples
                                  : is_cuda                   ? kReferenceSamplesCuda
                                                              : kReferenceSamples;

@@ -28,6 +28,7 @@
 #include "formats/files/file_choices.h"
 #include "formats/read_camera_path.h"
 #include "image/write_jpeg.h"
+#include "integrators/radiosity/radiosity_display_settings.h"
 #include "scene/scene_origin.h"
 #include "session/check_integrator.h"
 #include "session/opening/strictness.h"
@@ -126,7 +127,7 @@ void report_choices(const Scene& scene, ViewerStart& start) {
 void let_time_move(const ViewFlags& flags, const RenderSetup& ready, ViewerStart& start) {
     const MovingScene& moving = *ready.moving;
     const uint32_t turntable = flags.render.turntable;
-    const bool is_still = moving.is_animated() && ready.settings.radiosity.solution != nullptr;
+    const bool is_still = moving.is_animated() && ready.settings.radiosity->solution != nullptr;
     start.is_animated = moving.is_animated() && !is_still;
     start.clock = {.end_s = is_still ? 0 : moving.end_s(), .time_s = moving.time_s(), .plays = !moving.time_s()};
     if (is_still) {
@@ -186,7 +187,7 @@ std::vector<std::pair<IntegratorKind, std::string>> dark_integrators(RenderSetti
         set_integrator(settings, name);
         const std::optional<Remark> is_dark = why_dark(settings, scene);
         std::string why = is_dark ? panel_phrase(*is_dark) : "";
-        if (why.empty() && settings.integrator == IntegratorKind::Radiosity && !settings.radiosity.solution) {
+        if (why.empty() && settings.integrator == IntegratorKind::Radiosity && !settings.radiosity->solution) {
             why = "radiosity is solved before anything is shown: start pertev view --integrator radiosity";
         }
         if (!why.empty()) dark.emplace_back(settings.integrator, std::move(why));

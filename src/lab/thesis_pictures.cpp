@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "image/tone_map_image.h"
+#include "integrators/photon_map/photon_map_settings.h"
 #include "lab/found_points.h"
 #include "lab/heat_map.h"
 #include "lab/thesis_recipes.h"
@@ -95,7 +96,7 @@ std::string command_text(const ThesisRecipe& recipe, const RenderSettings& setti
     std::string others;
     for (const std::string& setting : recipe.settings) others += fmt::format(" `{}`", setting);
     if (recipe.way == ThesisWay::Radiosity) others += settings_of(recipe.panel, solution_of(recipe.panel, settings));
-    if (recipe.has_photons_by_size) others += fmt::format(" `photons={}`", settings.photon_map.photons);
+    if (recipe.has_photons_by_size) others += fmt::format(" `photons={}`", settings.photon_map->photons);
     return fmt::format(
         "pertev render {} `integrator={}`{} `size={}x{}` `spp={}` `max_depth={}` `exposure={:g}` `output={}.png`",
         scene, recipe.integrator, others, settings.width, settings.height, settings.samples, settings.path.max_depth,
@@ -152,7 +153,7 @@ ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progre
     if (!recipe.integrator.empty()) PERTEV_CHECK(set_integrator(settings, recipe.integrator));
     settings.path.max_depth = std::min(settings.path.max_depth, most_depth(settings.integrator));
     settings = with_settings(settings, recipe.settings);
-    if (recipe.has_photons_by_size) settings.photon_map.photons = thesis_detail(settings.height).photons;
+    if (recipe.has_photons_by_size) settings.photon_map.edit().photons = thesis_detail(settings.height).photons;
     if (recipe.way == ThesisWay::Work) {
         settings.tracers =
             same_for_all({.structure = recipe.structure,
@@ -204,8 +205,8 @@ void ThesisPictures::show_photons(const Job& job, ThesisPicture& picture) {
     const Vec3 size = job.prepared.structures->bounds().size();
     const float radius = kDotRadius * max_component(size) / static_cast<float>(settings.height);
     settings.samples = 1;
-    settings.photon_map.radius = settings.photon_map.caustic_radius = radius;
-    settings.photon_map.gather = PhotonGather::Direct;
+    settings.photon_map.edit().radius = settings.photon_map.edit().caustic_radius = radius;
+    settings.photon_map.edit().gather = PhotonGather::Direct;
     const RenderResult all = render_once(job, settings, 0, 0.5);
     settings.path.max_depth = 1;
     const RenderResult direct = render_once(job, settings, 0.5, 1);
@@ -213,7 +214,7 @@ void ThesisPictures::show_photons(const Job& job, ThesisPicture& picture) {
     Image dots = difference(all.picture, direct.picture);
     normalise(dots);
     picture.image = tone_map_image(dots, ToneMap::Srgb);
-    picture.shows += fmt::format(" {} photons have left the lights for each map.", settings.photon_map.photons);
+    picture.shows += fmt::format(" {} photons have left the lights for each map.", settings.photon_map->photons);
 }
 
 void ThesisPictures::count_work(const Job& job, ThesisPicture& picture) {

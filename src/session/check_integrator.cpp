@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "integrators/photon_map/photon_map_settings.h"
 #include "render/raster/pinhole.h"
 #include "settings/value_names.h"
 
@@ -89,7 +90,7 @@ void check_integrator(const RenderSettings& settings) {
         throw Error(ErrorCode::OverLimit, "max_depth", fmt::format("{}", settings.path.max_depth),
                     fmt::format("the limit with `integrator={}` is {}", name, most_depth(settings.integrator)));
     }
-    const PhotonMapSettings& photons = settings.photon_map;
+    const PhotonMapSettings& photons = *settings.photon_map;
     if (settings.integrator == IntegratorKind::PhotonMap && !photons_fit(photons.photons, settings.path.max_depth)) {
         throw Error(ErrorCode::OverLimit, "photons", fmt::format("{}", photons.photons),
                     fmt::format("with `max_depth={}` a pass may store more than {} photons; the limit is {}",

@@ -9,6 +9,7 @@
 
 #include "base/messages.h"
 #include "integrators/kinds/make_integrator.h"
+#include "integrators/reyes/reyes_settings.h"
 #include "scene/scene.h"
 
 namespace pertev {

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/machine_memory.h"
 #include "base/message_text.h"
+#include "integrators/photon_map/photon_map_settings.h"
 
 namespace pertev {
 namespace {
@@ -47,7 +48,7 @@ std::string advice(const RenderSettings& settings, bool is_cuda) {
                                             is_cuda);
     if (settings.integrator == IntegratorKind::PhotonMap && own > film) {
         return fmt::format("Photons take {} (`photons={}`, `max_depth={}`); a smaller value of either takes less",
-                           amount(own), settings.photon_map.photons, settings.path.max_depth);
+                           amount(own), settings.photon_map->photons, settings.path.max_depth);
     }
     if (settings.integrator == IntegratorKind::IrradianceCache && own > film) {
         const bool has_traversals = is_cuda || settings.body == PathBody::Wavefront;

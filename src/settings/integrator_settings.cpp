@@ -4,6 +4,10 @@
 #include <limits>
 
 #include "base/limits.h"
+#include "integrators/irradiance_cache/irradiance_cache_settings.h"
+#include "integrators/photon_map/photon_map_settings.h"
+#include "integrators/raster/raster_settings.h"
+#include "integrators/reyes/reyes_settings.h"
 #include "settings/setting_table.h"
 #include "settings/value_names.h"
 
@@ -33,10 +37,10 @@ std::vector<Setting> integrator_settings() {
             Otherwise{"cast 0, the others the environment's mean"},
             Of{bits_of({IntegratorKind::Cast, IntegratorKind::Whitted, IntegratorKind::Raster, IntegratorKind::Reyes})},
             Recorded::WhereUsed),
-        row("shading", "Raster", "NAME", FIELD(render.display.shading),
+        row("shading", "Raster", "NAME", FIELD(render.display.edit().shading),
             "Where light is evaluated: once per triangle, at its vertices, or in every pixel.", Of{kRaster},
             Recorded::WhereUsed),
-        row("wireframe", "Raster", "", FIELD(render.display.is_wireframe),
+        row("wireframe", "Raster", "", FIELD(render.display.edit().is_wireframe),
             "The picture shows only the triangles' edges.", Of{kRaster}, Excludes{"shading"}, Recorded::WhereUsed),
         row("shading_rate", "Reyes", "PIXELS", FIELD(render.shading_rate),
             "The longest edge of a micropolygon in the picture.", Range{kMinShadingRate, kMaxShadingRate},
@@ -46,30 +50,30 @@ std::vector<Setting> integrator_settings() {
             "mesh's own unit; MIDDLE defaults to 0. It may be given again.",
             Of{kReyes}),
 
-        row("photons", "Photons", "N", FIELD(render.photon_map.photons),
+        row("photons", "Photons", "N", FIELD(render.photon_map.edit().photons),
             "Photons from the lights per sample; as many again are aimed at mirrors and glass.", Range{1, kMaxPhotons},
             Of{kPhotons}, Recorded::WhereUsed),
-        row("gather", "Photons", "NAME", FIELD(render.photon_map.gather),
+        row("gather", "Photons", "NAME", FIELD(render.photon_map.edit().gather),
             "Final gathering, or a direct estimate from the global photon map.", Of{kPhotons}, Recorded::WhereUsed),
-        row("radius", "Photons", "METRES", FIELD(render.photon_map.radius),
+        row("radius", "Photons", "METRES", FIELD(render.photon_map.edit().radius),
             "The search radius of the first sample; it shrinks from sample to sample.",
             Range{kMinPhotonRadius, kMostFloat}, Unit{"m"}, Otherwise{"a hundredth of the scene"}, Of{kPhotons},
             Recorded::WhereUsed),
-        row("caustic_radius", "Photons", "METRES", FIELD(render.photon_map.caustic_radius),
+        row("caustic_radius", "Photons", "METRES", FIELD(render.photon_map.edit().caustic_radius),
             "The search radius of the caustic map in the first sample.", Range{kMinPhotonRadius, kMostFloat}, Unit{"m"},
             Otherwise{"a quarter of the radius"}, Of{kPhotons}, Recorded::WhereUsed),
-        row("nearest", "Photons", "N", FIELD(render.photon_map.nearest),
+        row("nearest", "Photons", "N", FIELD(render.photon_map.edit().nearest),
             "The number of nearest photons within the radius that an estimate uses.", Range{2, kMaxNearestPhotons},
             Otherwise{"all within the radius"}, Of{kPhotons}, Recorded::WhereUsed),
 
-        row("accuracy", "Records", "A", FIELD(render.irradiance_cache.accuracy),
+        row("accuracy", "Records", "A", FIELD(render.irradiance_cache.edit().accuracy),
             "The distance at which a record is used, relative to the mean distance of the surfaces around it; less is "
             "more exact.",
             Range{kMinAccuracy, kMaxAccuracy}, Of{kRecords}, Recorded::WhereUsed),
-        row("hemisphere_rays", "Records", "N", FIELD(render.irradiance_cache.hemisphere_rays),
+        row("hemisphere_rays", "Records", "N", FIELD(render.irradiance_cache.edit().hemisphere_rays),
             "The maximum number of rays that sample a record's hemisphere.",
             Range{kFewestHemisphereRays, kMaxHemisphereRays}, Of{kRecords}, Recorded::WhereUsed),
-        row("show_records", "Records", "", FIELD(render.irradiance_cache.show_records),
+        row("show_records", "Records", "", FIELD(render.irradiance_cache.edit().show_records),
             "The picture shows the records' positions.", Of{kRecords}, Recorded::WhereUsed),
 
         row("patch_size", "Radiosity", "METRES", FIELD(radiosity.solving.patch_size), "The longest edge of a patch.",

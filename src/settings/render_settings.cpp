@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "render/light_paths/light_path_layers.h"
 
 namespace pertev {
 

@@ -2,8 +2,8 @@
 
 // Names of the values of settings, on the command line, in metadata, and wherever else a setting is text.
 // base/value_names.h has name_of, value_named and names_of for each. Names of auxiliary layers are in
-// render/film_channels.h, those of tone maps in image/tone_map_image.h, those of integrators in
-// integrators/kinds/make_integrator.h; of these Path stands for each of kPathLights.
+// render/film_channels.h, those of tone maps in image/tone_map_image.h, those of an integrator's own values beside its
+// settings, those of integrators in integrators/kinds/make_integrator.h; of these Path stands for each of kPathLights.
 
 #include <optional>
 #include <string>
@@ -21,12 +21,6 @@ namespace pertev {
 
 inline constexpr ValueName<PathLight> kPathLights[] = {
     {PathLight::Path, "path"}, {PathLight::Direct, "direct"}, {PathLight::Indirect, "indirect"}};
-inline constexpr ValueName<RasterShading> kRasterShadings[] = {
-    {RasterShading::Flat, "flat"}, {RasterShading::Gouraud, "gouraud"}, {RasterShading::Phong, "phong"}};
-inline constexpr ValueName<PhotonGather> kPhotonGathers[] = {{PhotonGather::Direct, "direct"},
-                                                             {PhotonGather::Final, "final"}};
-inline constexpr ValueName<PhotonSearch> kPhotonSearches[] = {
-    {PhotonSearch::Grid, "grid"}, {PhotonSearch::KdTree, "kd-tree"}, {PhotonSearch::Octree, "octree"}};
 inline constexpr ValueName<SamplerKind> kSamplers[] = {{SamplerKind::Sobol, "sobol"},
                                                        {SamplerKind::Independent, "independent"}};
 inline constexpr ValueName<PixelFilter> kPixelFilters[] = {{PixelFilter::Box, "box"},
@@ -41,9 +35,6 @@ inline constexpr ValueName<Projection> kProjections[] = {{Projection::Perspectiv
                                                          {Projection::Orthographic, "orthographic"}};
 
 constexpr const auto& names_of_all(PathLight) { return kPathLights; }
-constexpr const auto& names_of_all(RasterShading) { return kRasterShadings; }
-constexpr const auto& names_of_all(PhotonGather) { return kPhotonGathers; }
-constexpr const auto& names_of_all(PhotonSearch) { return kPhotonSearches; }
 constexpr const auto& names_of_all(SamplerKind) { return kSamplers; }
 constexpr const auto& names_of_all(PixelFilter) { return kPixelFilters; }
 constexpr const auto& names_of_all(RestirLight) { return kRestirLights; }

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <vector>
 
+#include "integrators/irradiance_cache/irradiance_cache_settings.h"
 #include "integrators/irradiance_cache/record_store.h"
 #include "session/session.h"
 #include "tests/support/check_one_picture.h"
@@ -42,7 +43,7 @@ Scene scene_with_mirror() {
 TEST_CASE("pictures by irradiance caching do not depend on threads, passes, schedules or subpaths in flight") {
     for (const bool shows_records : {false, true}) {
         RenderSettings settings = cache_settings();
-        settings.irradiance_cache.show_records = shows_records;
+        settings.irradiance_cache.edit().show_records = shows_records;
         const test::CheckedPicture reference = test::check_one_picture(scene_with_mirror(), settings);
         CHECK(reference.rays.bounce > 100 * 48);
         CHECK(reference.rays.shadow > 37 * 21);
@@ -53,7 +54,7 @@ TEST_CASE("irradiance caching has path tracing's first-surface layers and direct
     Queue queue = test::requested_queue();
     const auto layers_of = [&](IntegratorKind integrator, bool shows_records = false) {
         RenderSettings settings = cache_settings();
-        settings.irradiance_cache.show_records = shows_records;
+        settings.irradiance_cache.edit().show_records = shows_records;
         settings.integrator = integrator;
         settings.samples = 2;
         return test::hash_of_layers(queue, scene_with_mirror(), settings);
@@ -89,7 +90,7 @@ TEST_CASE("a session that switches to irradiance caching and back renders comple
              {std::pair(IntegratorKind::IrradianceCache, 48u), std::pair(IntegratorKind::Path, 48u),
               std::pair(IntegratorKind::IrradianceCache, 20u), std::pair(IntegratorKind::IrradianceCache, 100u)}) {
             settings.integrator = integrator;
-            settings.irradiance_cache.hemisphere_rays = rays; // less memory, and more
+            settings.irradiance_cache.edit().hemisphere_rays = rays; // less memory, and more
             test::check_goes_on(session, queue, scene, settings);
         }
     }
@@ -159,7 +160,7 @@ TEST_CASE("records are made once per picture and again for another picture") {
         check_made(false);
         check_picture(settings, aside);
         RenderSettings other = settings;
-        other.irradiance_cache.accuracy = 0.5f;
+        other.irradiance_cache.edit().accuracy = 0.5f;
         session.set_settings(other);
         check_made(true);
         check_made(false);
@@ -303,7 +304,7 @@ TEST_CASE("memory of irradiance caching equals its prediction") {
         for (const PathBody body : {PathBody::Loop, PathBody::Wavefront}) {
             RenderSettings settings = cache_settings();
             settings.body = body;
-            settings.irradiance_cache.hemisphere_rays = rays;
+            settings.irradiance_cache.edit().hemisphere_rays = rays;
             settings.samples = 1;
             settings.path.max_depth = 1; // room for records is taken, and none is made
             settings.batch = 1000;       // less than the rays of one record

@@ -10,6 +10,7 @@
 
 #include "base/machine_memory.h"
 #include "base/parallel_for.h"
+#include "render/light_paths/light_path_layers.h"
 #include "session/render_memory.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"

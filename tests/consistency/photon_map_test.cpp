@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "integrators/photon_map/photon_map_settings.h"
 #include "session/session.h"
 #include "tests/support/check_one_picture.h"
 #include "tests/support/options.h"
@@ -47,7 +48,7 @@ TEST_CASE(
         Queue queue = Queue::make_cpu();
         settings.pass_samples = 3;
         for (const PhotonSearch search : {PhotonSearch::KdTree, PhotonSearch::Octree, PhotonSearch::Grid}) {
-            settings.photon_map.search = search;
+            settings.photon_map.edit().search = search;
             test::check_same(test::checked_picture(queue, scene, settings), reference);
             if (!test::cuda_requested()) continue;
             Queue gpu = test::make_cuda_queue();
@@ -66,11 +67,11 @@ TEST_CASE("pictures by crowded photons do not depend on threads, passes, schedul
             CAPTURE(nearest);
             RenderSettings settings = photon_settings(gather, nearest);
             settings.samples = 2;
-            settings.photon_map.photons = 12000;
-            settings.photon_map.radius = 2; // all photons are in a few buckets
+            settings.photon_map.edit().photons = 12000;
+            settings.photon_map.edit().radius = 2; // all photons are in a few buckets
             const test::CheckedPicture reference = test::check_one_picture(scene, settings);
             for (const PhotonSearch search : {PhotonSearch::KdTree, PhotonSearch::Octree}) {
-                settings.photon_map.search = search;
+                settings.photon_map.edit().search = search;
                 test::check_same(test::checked_picture(queue, scene, settings), reference);
             }
         }
@@ -108,7 +109,7 @@ TEST_CASE("a session that switches to photon mapping and back renders complete p
              {std::pair(IntegratorKind::PhotonMap, 2000u), std::pair(IntegratorKind::Path, 2000u),
               std::pair(IntegratorKind::PhotonMap, 500u), std::pair(IntegratorKind::PhotonMap, 4000u)}) {
             settings.integrator = integrator;
-            settings.photon_map.photons = photons; // less memory, and more
+            settings.photon_map.edit().photons = photons; // less memory, and more
             test::check_goes_on(session, queue, scene, settings);
         }
     }
@@ -124,7 +125,7 @@ TEST_CASE("memory of photon mapping equals its prediction") {
                  {std::pair(PhotonGather::Final, 10u), std::pair(PhotonGather::Direct, 0u)}) {
                 RenderSettings settings = photon_settings(gather, nearest);
                 settings.body = body;
-                settings.photon_map.search = search;
+                settings.photon_map.edit().search = search;
                 test::check_predicted_bytes(prepared, settings, true);
             }
         }

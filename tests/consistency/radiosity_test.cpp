@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "integrators/radiosity/radiosity_display_settings.h"
 #include "radiosity/solve_radiosity.h"
 #include "session/session.h"
 #include "tests/support/check_one_picture.h"
@@ -43,7 +44,7 @@ RenderSettings shown(const RadiosityDisplay& display) {
 TEST_CASE("pictures of a radiosity solution do not depend on threads, passes, schedules or rays in flight") {
     RenderSettings settings = shown(look_at_mixed_scene(1));
     for (const bool is_flat : {false, true}) {
-        settings.radiosity.is_flat = is_flat;
+        settings.radiosity.edit().is_flat = is_flat;
         const test::CheckedPicture reference = test::check_one_picture(test::make_mixed_scene(), settings);
         CHECK(reference.rays.bounce > 37 * 21 / 10); // mirrors and glass
         CHECK(reference.rays.shadow == 0);
@@ -85,13 +86,13 @@ TEST_CASE("a session that switches to radiosity, another solution and back rende
         }
     }
     Session session(queue, prepared, test::camera_with_lens(), settings);
-    settings.radiosity.solution.reset();
+    settings.radiosity.edit().solution.reset();
     session.set_settings(settings);
     CHECK(
         test::is_about(test::thrown_error([&] { session.render(1); }), ErrorCode::BadInput, "integrator", "radiosity"));
     RadiositySolution other = *looks[0].solution;
     other.roots.pop_back();
-    settings.radiosity.solution = std::make_shared<const RadiositySolution>(std::move(other));
+    settings.radiosity.edit().solution = std::make_shared<const RadiositySolution>(std::move(other));
     session.set_settings(settings);
     CHECK(test::bad_input_message([&] { session.render(1); }).find("belongs to another scene") != std::string::npos);
 }

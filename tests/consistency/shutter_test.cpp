@@ -14,6 +14,7 @@
 #include "device_scene/find_hits.h"
 #include "render/camera_rays.h"
 #include "render/light_paths/light_path_expression.h"
+#include "render/light_paths/light_path_layers.h"
 #include "scene/validate/validate.h"
 #include "session/moving_scene.h"
 #include "session/session.h"

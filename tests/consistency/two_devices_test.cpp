@@ -7,7 +7,9 @@
 
 #include "device_scene/scene_on_device.h"
 #include "image/picture_hash.h"
+#include "integrators/irradiance_cache/irradiance_cache_settings.h"
 #include "integrators/kinds/make_integrator.h"
+#include "integrators/photon_map/photon_map_settings.h"
 #include "render/filter_table.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"

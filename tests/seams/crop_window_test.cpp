@@ -9,6 +9,7 @@
 
 #include "integrators/kinds/make_integrator.h"
 #include "render/film.h"
+#include "render/light_paths/light_path_layers.h"
 #include "tests/seams/picture_on_device.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "image/picture_hash.h"
+#include "render/light_paths/light_path_layers.h"
 #include "session/film_render.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/light_paths/light_path_layers.h"
 #include "tests/support/compare_pictures.h"
 #include "tests/support/flat_emitters.h"
 #include "tests/support/flat_scenes.h"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "image/metrics.h"
+#include "integrators/irradiance_cache/irradiance_cache_settings.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/room_with_ball.h"

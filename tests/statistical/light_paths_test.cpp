@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "render/light_paths/light_path_layers.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"

@@ -10,6 +10,7 @@
 
 #include "base/parallel_for.h"
 #include "image/metrics.h"
+#include "integrators/photon_map/photon_map_settings.h"
 #include "session/opening/open_scene.h"
 #include "tests/support/cpu_seconds.h"
 #include "tests/support/flat_scenes.h"
@@ -49,8 +50,8 @@ Image picture_by(Queue& queue, const PreparedScene& prepared, IntegratorKind int
     settings.path.seed = seed;
     settings.samples = samples;
     settings.integrator = integrator;
-    settings.photon_map.photons = 2000;
-    settings.photon_map.gather = gather;
+    settings.photon_map.edit().photons = 2000;
+    settings.photon_map.edit().gather = gather;
     return render_picture(queue, prepared, test::room_camera(), settings).picture;
 }
 
@@ -106,7 +107,7 @@ TEST_CASE("photon mapping has at most a 60th of path tracing's error on a causti
         settings.path.seed = seed;
         settings.samples = samples;
         settings.integrator = integrator;
-        settings.photon_map.photons = 1u << 12;
+        settings.photon_map.edit().photons = 1u << 12;
         return render_picture(queue, prepared, camera, settings).picture;
     };
     const Image one = render(IntegratorKind::Bidirectional, 512, 101);
@@ -151,7 +152,7 @@ TEST_CASE("an emitter standing on the floor is no noisier than with path tracing
         settings.filter = PixelFilter::Box;
         settings.samples = 16;
         settings.path.max_depth = 1; // light of the lamp alone: no photons
-        settings.photon_map.gather = PhotonGather::Direct;
+        settings.photon_map.edit().gather = PhotonGather::Direct;
         const Camera camera = test::camera_down({0, 0.05f, 0.006f}, 0.2f); // floor 1 to 11 mm in front of the wall
         const auto render = [&](IntegratorKind integrator, VarianceOfPictures& variance) {
             settings.integrator = integrator;
@@ -183,12 +184,12 @@ TEST_CASE("tiny radii and coincident photons do not divide by zero") {
     settings.integrator = IntegratorKind::PhotonMap;
     settings.width = settings.height = 16;
     settings.samples = 2;
-    settings.photon_map.photons = 256;
-    settings.photon_map.gather = PhotonGather::Direct;
+    settings.photon_map.edit().photons = 256;
+    settings.photon_map.edit().gather = PhotonGather::Direct;
     for (const float radius : {1e-30f, 3e-20f, kMinPhotonRadius, 1e30f}) {
         for (const uint32_t nearest : {0u, 2u}) {
-            settings.photon_map.radius = settings.photon_map.caustic_radius = radius;
-            settings.photon_map.nearest = nearest;
+            settings.photon_map.edit().radius = settings.photon_map.edit().caustic_radius = radius;
+            settings.photon_map.edit().nearest = nearest;
             CAPTURE(radius);
             CHECK(test::render(queue, scene, test::camera_down({0, 0, 0}, 0.2f), settings).invalid_samples == 0);
         }

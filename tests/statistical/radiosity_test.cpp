@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "integrators/radiosity/radiosity_display_settings.h"
 #include "session/opening/open_scene.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"

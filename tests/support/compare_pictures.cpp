@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/light_paths/light_path_layers.h"
+
 namespace pertev::test {
 namespace {
 

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "render/light_paths/light_path_automaton.h"
+#include "render/light_paths/light_path_layers.h"
 #include "scene/names.h"
 #include "tests/support/thrown_error.h"
 

@@ -232,8 +232,8 @@ TEST_CASE("a floor under an emitter behind glass has the radiance of the closed 
     RenderSettings settings;
     settings.path.max_depth = 6;
     settings.samples = 8;
-    settings.photon_map.photons = 20'000;
-    settings.photon_map.caustic_radius = 0.03f;
+    settings.photon_map.edit().photons = 20'000;
+    settings.photon_map.edit().caustic_radius = 0.03f;
     constexpr double kFloor = 0.5 * 8 / 3.14159265; // albedo I / pi, at 1 m; 1 % less towards the view's corners
     CHECK(mean_seen(test::floor_under_spot(), settings) == doctest::Approx(kFloor).epsilon(0.02)); // shadow rays alone
     // All mirrored ways between the two faces together let 2 n / (n^2 + 1) through; the light seems 0.2 (1 - 1 / n) m
@@ -241,7 +241,7 @@ TEST_CASE("a floor under an emitter behind glass has the radiance of the closed 
     const double nearer = 1 - 0.2 * (1 - 1 / 1.5), behind = kFloor * 2 * 1.5 / (1.5 * 1.5 + 1) / (nearer * nearer);
     const Scene scene = under_two_faces_of_glass();
     CHECK(mean_seen(scene, settings) == doctest::Approx(behind).epsilon(0.03));
-    settings.photon_map.nearest = 60;
+    settings.photon_map.edit().nearest = 60;
     CHECK(mean_seen(scene, settings) == doctest::Approx(behind).epsilon(0.03));
     settings.path.max_depth = 2; // one face alone may scatter beside the floor
     CHECK(mean_seen(scene, settings) == 0);
@@ -253,8 +253,8 @@ TEST_CASE("a caustic seen in a mirror is found, which neither end finds alone") 
     RenderSettings settings;
     settings.path.max_depth = 8;
     settings.samples = 4;
-    settings.photon_map.caustic_radius = 0.03f;
-    settings.photon_map.photons = 20'000;
+    settings.photon_map.edit().caustic_radius = 0.03f;
+    settings.photon_map.edit().photons = 20'000;
     settings.width = settings.height = 4;
     settings.integrator = IntegratorKind::PhotonMap;
     Camera camera;
@@ -349,7 +349,7 @@ TEST_CASE("where subpaths end a ray searches for nearby area lights, but not if 
         settings.samples = 8;
         settings.integrator = IntegratorKind::PhotonMap;
         settings.path.max_depth = 1; // no photons
-        settings.photon_map.gather = gather;
+        settings.photon_map.edit().gather = gather;
         Queue queue = test::requested_queue();
         const auto rays_of = [&](const Scene& scene) {
             return test::render(queue, scene, test::camera_down({0, 0.1f, 0}, 0.2f), settings).rays;
@@ -364,7 +364,7 @@ TEST_CASE("where subpaths end a ray searches for nearby area lights, but not if 
 TEST_CASE("a sphere in a furnace shows its albedo") {
     RenderSettings settings;
     settings.samples = 64;
-    settings.photon_map.photons = 1000;
+    settings.photon_map.edit().photons = 1000;
     CHECK(mean_seen(test::make_furnace_scene(0.6f), settings, {0, 2, 0}) == doctest::Approx(0.6).epsilon(0.01));
 }
 
@@ -430,7 +430,7 @@ TEST_CASE("scenes without lights, and too many photons, are refused") {
     CHECK(message() == "no error");
 
     settings.path.max_depth = 64;
-    settings.photon_map.photons = kMaxPhotons;
+    settings.photon_map.edit().photons = kMaxPhotons;
     const auto error = test::thrown_error([&] { check_integrator(settings); });
     CHECK(test::is_about(error, ErrorCode::OverLimit, "photons", "16777216"));
     CHECK(test::says(error, "the limit is 8521760"));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel_for.h"
+#include "integrators/raster/raster_settings.h"
 #include "render/raster/scan_row.h"
 #include "session/check_integrator.h"
 #include "session/session.h"
@@ -171,7 +172,7 @@ TEST_CASE("light is evaluated per pixel, corner or triangle and matches the form
     camera.projection = Projection::Orthographic;
     camera.ortho_height = 2;
     const auto middle = [&](RasterShading shading) {
-        settings.display.shading = shading;
+        settings.display.edit().shading = shading;
         return pixel_of(test::render(queue, scene, camera, settings).picture, 32, 32);
     };
     // albedo / pi I cos / d^2 + albedo ambient: at the middle, at the corners (d^2 = 3) and at a triangle's middle.
@@ -225,7 +226,7 @@ TEST_CASE("edges are Bresenham's lines, and the nearer one is visible") {
     test::add(scene, triangle, {{.base_color = {0, 1, 0}}, "green"});
     Queue queue = test::requested_queue();
     RenderSettings settings = raster_settings(16, 16);
-    settings.display.is_wireframe = true;
+    settings.display.edit().is_wireframe = true;
     settings.ambient = Rgb{0, 0, 0};
     Camera camera = camera_at({0, 0, 2}, {0, 0, 0});
     camera.projection = Projection::Orthographic;

@@ -7,6 +7,7 @@
 
 #include "apps/viewer/session_frames.h"
 #include "image/picture_hash.h"
+#include "integrators/irradiance_cache/irradiance_cache_settings.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 

@@ -31,7 +31,7 @@ RayTreeSettings tree_settings(const IntegratorSettings& settings) {
 }
 
 RadiosityIntegrator::Settings radiosity_settings(const IntegratorSettings& settings) {
-    return {tree_settings(settings), settings.radiosity};
+    return {tree_settings(settings), *settings.radiosity};
 }
 
 SubpathSettings traversal_settings(const IntegratorSettings& settings) {
@@ -42,15 +42,15 @@ SubpathSettings traversal_settings(const IntegratorSettings& settings) {
 }
 
 PhotonMapRequest photon_map_request(const IntegratorSettings& settings) {
-    return {traversal_settings(settings), settings.photon_map};
+    return {traversal_settings(settings), *settings.photon_map};
 }
 
 IrradianceCacheRequest irradiance_cache_request(const IntegratorSettings& settings) {
-    return {traversal_settings(settings), settings.irradiance_cache};
+    return {traversal_settings(settings), *settings.irradiance_cache};
 }
 
 RasterSettings raster_settings(const IntegratorSettings& settings) {
-    return {.display = settings.display,
+    return {.display = *settings.display,
             .max_depth = settings.path.max_depth,
             .seed = settings.path.seed,
             .has_ambient = settings.ambient.has_value(),

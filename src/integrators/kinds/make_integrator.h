@@ -7,19 +7,23 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "base/limits.h"
+#include "base/shared_value.h"
 #include "integrators/integrator.h"
-#include "integrators/irradiance_cache/irradiance_cache_settings.h"
 #include "integrators/path/path_settings.h"
-#include "integrators/photon_map/photon_map_settings.h"
-#include "integrators/radiosity/radiosity_display.h"
-#include "integrators/raster/raster_settings.h"
-#include "integrators/reyes/reyes_settings.h"
 #include "math/rgb.h"
-#include "render/light_paths/light_path_layers.h"
 
 namespace pertev {
+
+// Settings of one integrator stand in its own folder, and only code that reads them includes them.
+struct HeightMap;               // integrators/reyes/reyes_settings.h
+struct IrradianceCacheSettings; // integrators/irradiance_cache/irradiance_cache_settings.h
+struct LightPathLayers;         // render/light_paths/light_path_layers.h
+struct PhotonMapSettings;       // integrators/photon_map/photon_map_settings.h
+struct RadiosityDisplay;        // integrators/radiosity/radiosity_display_settings.h
+struct RasterDisplay;           // integrators/raster/raster_settings.h
 
 enum class IntegratorKind : uint8_t {
     Path,
@@ -44,12 +48,12 @@ struct IntegratorSettings {
     // For Cast, Whitted, Raster and Reyes: radiance from all directions that diffuse surfaces reflect, W/(sr m2).
     // Without a value, all but Cast use the mean of the environment.
     std::optional<Rgb> ambient;
-    RasterDisplay display;                     // for Raster
-    float shading_rate = 1;                    // for Reyes: maximum length of a micropolygon's edge, pixels
-    std::shared_ptr<const HeightMaps> heights; // for Reyes: displacement; null: none
-    PhotonMapSettings photon_map;              // for PhotonMap
-    IrradianceCacheSettings irradiance_cache;  // for IrradianceCache
-    RadiosityDisplay radiosity;                // for Radiosity
+    SharedValue<RasterDisplay> display;                    // for Raster
+    float shading_rate = 1;                                // for Reyes: maximum length of a micropolygon's edge, pixels
+    std::shared_ptr<const std::vector<HeightMap>> heights; // for Reyes: displacement; null: none
+    SharedValue<PhotonMapSettings> photon_map;             // for PhotonMap
+    SharedValue<IrradianceCacheSettings> irradiance_cache; // for IrradianceCache
+    SharedValue<RadiosityDisplay> radiosity;               // for Radiosity
 
     // For Path and Hybrid: additional film layers, each of selected light paths. Null: none.
     std::shared_ptr<const LightPathLayers> light_paths;

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "base/host_device.h"
+#include "base/value_names.h"
 
 namespace pertev {
 
@@ -20,6 +21,13 @@ enum class PhotonGather : uint8_t {
     Direct, // in the global map at that surface
     Final,  // by one further ray, with the global map where it arrives
 };
+
+inline constexpr ValueName<PhotonGather> kPhotonGathers[] = {{PhotonGather::Direct, "direct"},
+                                                             {PhotonGather::Final, "final"}};
+inline constexpr ValueName<PhotonSearch> kPhotonSearches[] = {
+    {PhotonSearch::Grid, "grid"}, {PhotonSearch::KdTree, "kd-tree"}, {PhotonSearch::Octree, "octree"}};
+constexpr const auto& names_of_all(PhotonGather) { return kPhotonGathers; }
+constexpr const auto& names_of_all(PhotonSearch) { return kPhotonSearches; }
 
 struct PhotonMapSettings {
     uint32_t photons = 1u << 16; // emitted per pass for each of the two maps

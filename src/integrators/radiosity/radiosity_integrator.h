@@ -3,7 +3,7 @@
 // Pictures of a radiosity solution: copies the solution to the device and renders it with ray trees
 // (integrators/radiosity/radiosity.h).
 
-#include "integrators/radiosity/radiosity_display.h"
+#include "integrators/radiosity/radiosity_display_settings.h"
 #include "integrators/ray_tree/ray_tree_integrator.h"
 
 namespace pertev {

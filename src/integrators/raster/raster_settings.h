@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "base/value_names.h"
 #include "math/rgb.h"
 
 namespace pertev {
@@ -11,6 +12,10 @@ namespace pertev {
 /// Where light is evaluated: once per triangle, at its corners with interpolation (Gouraud 1971), or in every pixel
 /// with interpolated normals (Phong 1975).
 enum class RasterShading : uint8_t { Flat, Gouraud, Phong };
+
+inline constexpr ValueName<RasterShading> kRasterShadings[] = {
+    {RasterShading::Flat, "flat"}, {RasterShading::Gouraud, "gouraud"}, {RasterShading::Phong, "phong"}};
+constexpr const auto& names_of_all(RasterShading) { return kRasterShadings; }
 
 struct RasterDisplay {
     RasterShading shading = RasterShading::Phong;

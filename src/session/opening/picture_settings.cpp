@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "image/write_exr.h"
+#include "render/light_paths/light_path_layers.h"
 #include "session/check_integrator.h"
 #include "session/height_maps.h"
 #include "session/opening/choose_camera.h"

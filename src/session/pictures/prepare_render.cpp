@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "formats/read_camera_path.h"
+#include "integrators/radiosity/radiosity_display_settings.h"
 #include "session/check_integrator.h"
 #include "session/machine.h"
 #include "session/opening/open_scene.h"

@@ -9,6 +9,9 @@
 #include "base/version.h"
 #include "formats/files/file_choices.h"
 #include "image/tone_map_image.h"
+#include "integrators/radiosity/radiosity_display_settings.h"
+#include "integrators/reyes/reyes_settings.h"
+#include "render/light_paths/light_path_layers.h"
 #include "session/degrees.h"
 #include "session/survey/ground.h"
 #include "settings/value_names.h"
@@ -183,11 +186,11 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
         }
         if (!heights.empty()) metadata.emplace_back("pertev.displacement", fmt::format("{}", fmt::join(heights, "\n")));
     }
-    if (settings.integrator == IntegratorKind::Radiosity && settings.radiosity.solution) {
-        const RadiositySolution& solution = *settings.radiosity.solution;
+    if (settings.integrator == IntegratorKind::Radiosity && settings.radiosity->solution) {
+        const RadiositySolution& solution = *settings.radiosity->solution;
         append(metadata, {{"pertev.radiosity", solution.made},
                           {"pertev.radiosity_hash", solution.hash().hex()},
-                          {"pertev.flat_patches", static_cast<int32_t>(settings.radiosity.is_flat)}});
+                          {"pertev.flat_patches", static_cast<int32_t>(settings.radiosity->is_flat)}});
     }
     if (record.frame) {
         append(metadata, {{"pertev.reconstruction", json_of(record.frame->reconstruction, record.frame->restir)},
