@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "image/tone_map_image.h"
 #include "integrators/photon_map/photon_map_settings.h"
+#include "integrators/radiosity/radiosity_display_settings.h"
 #include "lab/found_points.h"
 #include "lab/heat_map.h"
 #include "lab/thesis_recipes.h"

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
+#include "integrators/radiosity/radiosity_display_settings.h"
 #include "radiosity/solve_memory.h"
 #include "session/session.h"
 
