@@ -54,7 +54,7 @@ AnimationChannel channel(uint32_t target, AnimatedPart part, std::vector<float> 
 }
 
 /// Node 0 holds node 1 holds an instance; a second instance stands still. Node 0 goes along x by 1 m/s for 4 s.
-Scene make_scene() {
+Scene scene_to_pose() {
     Scene scene;
     scene.materials.resize(1);
     scene.meshes = {triangle(), triangle()};
@@ -80,7 +80,7 @@ using Numbers = std::vector<uint32_t>;
 } // namespace
 
 TEST_CASE("contents of a node move with it, and only these are reported as moved") {
-    PosedScene posed = pose(make_scene());
+    PosedScene posed = pose(scene_to_pose());
     const SceneUpdate update = posed.set_time(1.5);
     CHECK(posed.scene().instances[1].world_from_local.translation == Vec3{1.5f, 0, 0});
     CHECK(posed.scene().instances[0].world_from_local == Transform());
@@ -94,14 +94,14 @@ TEST_CASE("contents of a node move with it, and only these are reported as moved
 }
 
 TEST_CASE("a time that is not finite is refused") {
-    PosedScene posed = pose(make_scene());
+    PosedScene posed = pose(scene_to_pose());
     for (const double time : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         CHECK_THROWS_AS(posed.set_time(time), Error);
     }
 }
 
 TEST_CASE("a position within a node is kept as the node moves") {
-    Scene scene = make_scene();
+    Scene scene = scene_to_pose();
     scene.instances[1].node_from_local = make_translation({0, 5, 0});
     scene.instances[1].world_from_local = make_translation({0, 5, 0});
     PosedScene posed = pose(std::move(scene));
@@ -110,7 +110,7 @@ TEST_CASE("a position within a node is kept as the node moves") {
 }
 
 TEST_CASE("the later of two animations of one property applies") {
-    Scene scene = make_scene();
+    Scene scene = scene_to_pose();
     scene.animations.push_back(
         {.name = "", .origin = "", .channels = {channel(0, AnimatedPart::Translation, {0, 2}, {0, 0, 0, 0, 0, 6})}});
     PosedScene posed = pose(std::move(scene));
@@ -119,7 +119,7 @@ TEST_CASE("the later of two animations of one property applies") {
 }
 
 TEST_CASE("a scale of 0 hides an instance at that time, and nothing becomes NaN") {
-    Scene scene = make_scene();
+    Scene scene = scene_to_pose();
     scene.animations[0].channels = {channel(0, AnimatedPart::Scale, {0, 1, 2}, {1, 1, 1, 0, 0, 0, 1, -1, 1})};
     PosedScene posed = pose(std::move(scene));
     CHECK(posed.set_time(1).moved_instances == Numbers{1});
@@ -134,7 +134,7 @@ TEST_CASE("a scale of 0 hides an instance at that time, and nothing becomes NaN"
 }
 
 TEST_CASE("an instance hidden by a scale of 0 at rest is kept only if it moves") {
-    Scene scene = make_scene();
+    Scene scene = scene_to_pose();
     std::get<NodePose>(scene.nodes[1].pose).scale = {0, 0, 0};
     scene.instances[1].world_from_local = make_scale({0, 0, 0});
     scene.animations[0].channels = {channel(1, AnimatedPart::Scale, {1, 2}, {0, 0, 0, 2, 2, 2})};
@@ -153,7 +153,7 @@ TEST_CASE("an instance hidden by a scale of 0 at rest is kept only if it moves")
 }
 
 TEST_CASE("a scene in which all instances are hidden at rest can be rendered") {
-    Scene scene = make_scene();
+    Scene scene = scene_to_pose();
     scene.instances.erase(scene.instances.begin());
     scene.instances[0].world_from_local = make_scale({0, 0, 0});
     std::get<NodePose>(scene.nodes[1].pose).scale = {0, 0, 0};
@@ -170,7 +170,7 @@ TEST_CASE("a scene in which all instances are hidden at rest can be rendered") {
 }
 
 TEST_CASE("positions beyond the limit are refused, at rest and at later times") {
-    Scene scene = make_scene();
+    Scene scene = scene_to_pose();
     scene.animations[0].channels[0].values[3] = 1e13f;
     PosedScene posed = pose(std::move(scene));
     CHECK_THROWS_WITH_AS(posed.set_time(4), doctest::Contains("beyond 2^40 metres at 4 s"), Error);
@@ -178,7 +178,7 @@ TEST_CASE("positions beyond the limit are refused, at rest and at later times") 
 }
 
 TEST_CASE("cameras and lights move with their nodes; a singular camera keeps its rest pose, a singular light is dark") {
-    Scene scene = make_scene();
+    Scene scene = scene_to_pose();
     scene.animations[0].channels.push_back(channel(0, AnimatedPart::Scale, {0, 8, 9}, {1, 1, 1, 1, 1, 1, 0, 0, 0}));
     scene.cameras.push_back({.name = "eye", .node = 1});
     scene.lights.push_back({.name = "lamp", .kind = LightKind::Spot, .direction = {0, 0, -1}, .node = 1});
@@ -198,7 +198,7 @@ TEST_CASE("cameras and lights move with their nodes; a singular camera keeps its
 }
 
 TEST_CASE("a light's range and cone and an orthographic view change over time within their limits") {
-    Scene scene = make_scene();
+    Scene scene = scene_to_pose();
     scene.cameras.push_back({.name = "plan", .projection = Projection::Orthographic});
     scene.lights.push_back({.name = "lamp", .kind = LightKind::Spot, .direction = {0, 0, -1}});
     std::vector<AnimationChannel>& channels = scene.animations[0].channels;
@@ -222,7 +222,7 @@ TEST_CASE("a light's range and cone and an orthographic view change over time wi
 }
 
 TEST_CASE("a skin's vertices follow its joints, with normals and tangents") {
-    Scene scene = make_scene();
+    Scene scene = scene_to_pose();
     Mesh& mesh = scene.meshes[0];
     mesh.tangents = {{1, 0, 0, -1}, {1, 0, 0, -1}, {1, 0, 0, -1}};
     hang_on_first_node(scene);
@@ -252,7 +252,7 @@ TEST_CASE("a skin's vertices follow its joints, with normals and tangents") {
 }
 
 TEST_CASE("where a joint squeezes or mirrors, normals stay perpendicular and tangents parallel to the surface") {
-    Scene scene = make_scene();
+    Scene scene = scene_to_pose();
     Mesh& mesh = scene.meshes[0];
     mesh.normals.assign(3, normalize(Vec3{1, 1, 0}));
     mesh.tangents.assign(3, {0.70710678f, -0.70710678f, 0, 1});
@@ -274,7 +274,7 @@ TEST_CASE("where a joint squeezes or mirrors, normals stay perpendicular and tan
 }
 
 TEST_CASE("joints that mirror reverse the winding, so that fronts stay fronts") {
-    Scene scene = make_scene();
+    Scene scene = scene_to_pose();
     hang_on_first_node(scene);
     scene.animations[0].channels = {channel(0, AnimatedPart::Scale, {0, 1, 2}, {1, 1, 1, 0, 0, 0, -1, 1, 1})};
     PosedScene posed = pose(std::move(scene));
@@ -290,7 +290,7 @@ TEST_CASE("joints that mirror reverse the winding, so that fronts stay fronts") 
 }
 
 TEST_CASE("morph targets are added by their weights at a time, and normals stay unit") {
-    Scene scene = make_scene();
+    Scene scene = scene_to_pose();
     const Mesh& mesh = scene.meshes[0];
     scene.nodes[1].morph_weights = {0, 0};
     scene.shapes.push_back({.mesh = 0, .node = 1, .positions = mesh.positions, .normals = mesh.normals});

@@ -109,7 +109,7 @@ TEST_CASE("displayed light has no gap where a patch meets smaller ones") {
                 if (min(outside.x, min(outside.y, 1 - outside.x - outside.y)) < 0) continue;
                 const Rgb one = shown.irradiance(patch.face, inside.x, inside.y),
                           other = shown.irradiance(patch.face, outside.x, outside.y);
-                CHECK(abs(one.r - other.r) < 0.02f);
+                CHECK(pertev::abs(one.r - other.r) < 0.02f);
                 ++compared;
             }
         }

@@ -39,7 +39,8 @@ double difference(const SolvedSystem& a, const SolvedSystem& b) {
     double largest = 0;
     for (std::size_t i = 0; i < a.irradiance.size(); ++i) {
         const Rgb d = a.irradiance[i] + a.ambient - (b.irradiance[i] + b.ambient);
-        largest = std::max(largest, static_cast<double>(max_component(Rgb{abs(d.r), abs(d.g), abs(d.b)})));
+        largest = std::max(
+            largest, static_cast<double>(max_component(Rgb{pertev::abs(d.r), pertev::abs(d.g), pertev::abs(d.b)})));
     }
     return largest;
 }

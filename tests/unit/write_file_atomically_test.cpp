@@ -20,7 +20,7 @@ std::string read_text(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-void write_text(const fs::path& path, const std::string& text) {
+void replace_text(const fs::path& path, const std::string& text) {
     write_file_atomically(path, std::as_bytes(std::span(text)));
 }
 
@@ -32,17 +32,17 @@ std::size_t files_in(const fs::path& folder) {
 
 TEST_CASE("writing replaces the whole file and leaves nothing else behind") {
     const fs::path folder = test::scratch_folder();
-    write_text(folder / "a", "old, and longer");
-    write_text(folder / "a", "new");
+    replace_text(folder / "a", "old, and longer");
+    replace_text(folder / "a", "new");
     CHECK(read_text(folder / "a") == "new");
     CHECK(files_in(folder) == 1);
 }
 
 TEST_CASE("writing follows a symbolic link") {
     const fs::path folder = test::scratch_folder();
-    write_text(folder / "target", "old");
+    replace_text(folder / "target", "old");
     fs::create_symlink("target", folder / "link");
-    write_text(folder / "link", "new");
+    replace_text(folder / "link", "new");
     CHECK(fs::is_symlink(folder / "link"));
     CHECK(read_text(folder / "target") == "new");
 }
@@ -54,7 +54,7 @@ TEST_CASE("writing to a missing folder, a folder, a FIFO or a full disk is a Fil
     for (const fs::path& path : {folder / "missing" / "a", folder / "d", folder / "fifo", fs::path("/dev/full")}) {
         CAPTURE(path.string());
         try {
-            write_text(path, "x");
+            replace_text(path, "x");
             FAIL("no error");
         } catch (const Error& error) {
             CHECK(error.code() == ErrorCode::FileWrite);
