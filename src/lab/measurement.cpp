@@ -284,13 +284,17 @@ std::string line_of(const ResultTable& table, std::optional<std::size_t> row) {
 }
 
 std::string text_of(const Fields& fields) {
-    std::vector<std::vector<std::string>> lines;
+    std::vector<std::pair<std::string, std::string>> lines;
+    std::size_t width = 0;
     for (const ResultField& f : fields) {
         if (*f.title == '\0' || !f.value.is_there()) continue;
         const std::string value = f.value.text(f.format);
-        lines.push_back({f.title, *f.unit != '\0' ? value + ' ' + f.unit : value});
+        lines.emplace_back(f.title, *f.unit != '\0' ? value + ' ' + f.unit : value);
+        width = std::max(width, lines.back().first.size());
     }
-    return align_columns(lines);
+    std::string text;
+    for (const auto& [title, value] : lines) text += fmt::format("{:{}}  {}\n", title, width, value);
+    return text;
 }
 
 } // namespace pertev
