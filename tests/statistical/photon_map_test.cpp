@@ -26,7 +26,7 @@ struct PhotonCase {
     std::string name;
     Scene scene;
     double bound = 4e-3;              // bound of the squared error after four times 64 passes
-    uint32_t reference_samples = 512; // of each of two references
+    uint32_t reference_samples = 512; // samples of a pixel in each of two references
 };
 
 std::vector<PhotonCase> photon_cases() {

@@ -34,7 +34,7 @@ double gauss(const Density& f, const Cell& c) {
     return 0.25 * (c.x1 - c.x0) * (c.y1 - c.y0) * sum;
 }
 
-// What is then off along a jump of the density is a small part of a cell's standard deviation, and each one more takes
+// The error along a jump of the density is then a small part of a cell's standard deviation. Each quartering more takes
 // twice the time.
 constexpr int kMaxQuarterings = 6;
 
