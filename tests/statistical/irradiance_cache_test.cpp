@@ -149,8 +149,8 @@ TEST_CASE("the error of irradiance caching falls with the accuracy and the rays 
     Messages messages;
     const Scene scene = room_under_a_point();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
-    const Image one = middles(queue, prepared, IntegratorKind::Path, {.samples = 2048, .size = 32}, 101);
-    const Image other = middles(queue, prepared, IntegratorKind::Path, {.samples = 2048, .size = 32}, 102);
+    const Image one = middles(queue, prepared, IntegratorKind::Path, {.samples = 512, .size = 32}, 101);
+    const Image other = middles(queue, prepared, IntegratorKind::Path, {.samples = 512, .size = 32}, 102);
     const auto cached = [&](float accuracy, uint32_t rays, uint32_t seed) {
         return middles(queue, prepared, IntegratorKind::IrradianceCache, {accuracy, rays, 1, 32}, seed);
     };
@@ -231,7 +231,7 @@ TEST_CASE("records show no blotches of emitters that later bounces see through g
     const auto medians = [&](const CacheBudget& budget, uint32_t seed) {
         return block_medians(cached_picture(queue, prepared, IntegratorKind::IrradianceCache, budget, seed), 8);
     };
-    const std::vector<double> reference = medians({0.25f, 16384, 16, 48}, 100);
+    const std::vector<double> reference = medians({0.25f, 4096, 16, 48}, 100);
     double most = 0, least = kInfinity;
     uint32_t lit = 0; // blocks that show no edge of the room, where half of a block may be empty
     for (uint32_t seed = 0; seed < 3; ++seed) {

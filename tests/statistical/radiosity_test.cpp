@@ -154,7 +154,7 @@ TEST_CASE("radiosity converges to path tracing in the Cornell box as patches shr
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = test::requested_queue();
     RenderSettings picture;
-    picture.width = picture.height = 20;
+    picture.width = picture.height = 10; // each a mean over an area as large as the smallest patches
     picture.filter = PixelFilter::Box;
     picture.path.max_depth = 32;
     picture.samples = 4096;
@@ -169,8 +169,8 @@ TEST_CASE("radiosity converges to path tracing in the Cornell box as patches shr
         return mean_difference(shown_picture(queue, prepared, camera, picture, solved(prepared, settings)), reference);
     };
     // The fewer patches, the more rays of each, so that noise does not hide what they are too large for.
-    const double errors[] = {error_by(1.0f / 2, 4096, 0), error_by(1.0f / 4, 2048, 0), error_by(1.0f / 8, 512, 0),
-                             error_by(1.0f / 16, 256, 0)};
+    const double errors[] = {error_by(1.0f / 2, 1024, 0), error_by(1.0f / 4, 512, 0), error_by(1.0f / 8, 256, 0),
+                             error_by(1.0f / 16, 128, 0)};
     CAPTURE(errors[0]);
     CAPTURE(errors[1]);
     CAPTURE(errors[2]);
@@ -182,7 +182,7 @@ TEST_CASE("radiosity converges to path tracing in the Cornell box as patches shr
     CAPTURE(slope);
     CHECK(slope > 1);
     CHECK(errors[3] < 0.02);
-    const double divided = error_by(1.0f / 8, 512, 1);
+    const double divided = error_by(1.0f / 8, 256, 1);
     CAPTURE(divided);
     CHECK(divided < 0.02);
 }

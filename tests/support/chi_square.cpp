@@ -34,20 +34,20 @@ double gauss(const Density& f, const Cell& c) {
     return 0.25 * (c.x1 - c.x0) * (c.y1 - c.y0) * sum;
 }
 
-// The least so that a narrow peak is not stepped over. The most: what is then off along a jump of the density is a
-// small part of a cell's standard deviation, and each one more takes twice the time.
-constexpr int kMaxQuarterings = 6, kMinQuarterings = 2;
+// The error along a jump of the density is then a small part of a cell's standard deviation. Each quartering more takes
+// twice the time.
+constexpr int kMaxQuarterings = 6;
 
-/// Quarters the cell until the quarters' sum agrees with the whole.
-double integrate(const Density& f, const Cell& c, double whole, double tolerance, int depth) {
+/// Quarters the cell until the quarters' sum agrees with the whole, at least `least` times.
+double integrate(const Density& f, const Cell& c, double whole, double tolerance, int depth, int least) {
     const double xm = 0.5 * (c.x0 + c.x1), ym = 0.5 * (c.y0 + c.y1);
     const Cell quarters[4] = {{c.x0, xm, c.y0, ym}, {xm, c.x1, c.y0, ym}, {c.x0, xm, ym, c.y1}, {xm, c.x1, ym, c.y1}};
     double parts[4], sum = 0;
     for (int k = 0; k < 4; k++) sum += parts[k] = gauss(f, quarters[k]);
-    const bool may_stop = depth <= kMaxQuarterings - kMinQuarterings;
+    const bool may_stop = depth <= kMaxQuarterings - least;
     if (depth == 0 || (may_stop && std::fabs(sum - whole) <= tolerance)) return sum;
     sum = 0;
-    for (int k = 0; k < 4; k++) sum += integrate(f, quarters[k], parts[k], 0.5 * tolerance, depth - 1);
+    for (int k = 0; k < 4; k++) sum += integrate(f, quarters[k], parts[k], 0.5 * tolerance, depth - 1, least);
     return sum;
 }
 
@@ -72,15 +72,17 @@ struct Grid {
 
 /// `next(i)` is the cell of the i-th sample.
 ChiSquareResult test_grid(const Grid& grid, const std::function<int(uint32_t)>& next, const Density& pdf,
-                          uint32_t samples) {
+                          const ChiSquareSettings& settings) {
+    const uint32_t samples = settings.samples;
     const auto count = static_cast<size_t>(grid.count());
     std::vector<double> observed(count + 1), expected(count + 1);
     for (uint32_t i = 0; i < samples; i++) observed[static_cast<size_t>(next(i))] += 1;
     double integral = 0;
-    const double tolerance = std::max(1e-9, 1e-3 / samples); // a thousandth of a sample
+    const double tolerance = std::max(1e-9, 1e-2 / samples); // a hundredth of a sample
     for (int k = 0; k < grid.count(); k++) {
         const Cell cell = grid.cell(k);
-        const double part = integrate(pdf, cell, gauss(pdf, cell), tolerance, kMaxQuarterings);
+        const double part =
+            integrate(pdf, cell, gauss(pdf, cell), tolerance, kMaxQuarterings, settings.min_quarterings);
         integral += part;
         expected[static_cast<size_t>(k)] = samples * part;
     }
@@ -183,7 +185,7 @@ ChiSquareResult chi_square_of_directions(const std::function<std::optional<Vec3>
         return pdf(
             {static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)), static_cast<float>(z)});
     };
-    return test_grid(grid, next, density, settings.samples);
+    return test_grid(grid, next, density, settings);
 }
 
 ChiSquareResult chi_square_of_points(const std::function<Vec2(Vec2 u)>& sample, const std::function<double(Vec2)>& pdf,
@@ -196,7 +198,7 @@ ChiSquareResult chi_square_of_points(const std::function<Vec2(Vec2 u)>& sample, 
         return grid.find(static_cast<double>(p.x), static_cast<double>(p.y));
     };
     const auto density = [&](double x, double y) { return pdf({static_cast<float>(x), static_cast<float>(y)}); };
-    return test_grid(grid, next, density, settings.samples);
+    return test_grid(grid, next, density, settings);
 }
 
 } // namespace pertev::test

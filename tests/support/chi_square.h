@@ -40,6 +40,7 @@ struct ChiSquareSettings {
     uint32_t samples = 1'000'000;
     uint32_t seed = 1;
     int cells_x = 40, cells_y = 20; // along phi and cos(theta) of a sphere, or along x and y of a rectangle
+    int min_quarterings = 2;        // the least of a cell, so that no narrow peak is stepped over
 };
 
 /// Directions. `sample(lobe, u)` gives a unit vector or nothing (the sample failed), for independent uniform lobe in
