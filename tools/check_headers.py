@@ -30,14 +30,14 @@ NO_CODE = re.compile(r'//[^\n]*|"(?:[^"\\\n]|\\.)*"')
 DIRECTIVE = re.compile(r"^#(?! *define).*", re.MULTILINE)
 NAME = re.compile(r"\b[A-Za-z_]\w*")
 MEMBER = re.compile(r"(?:(?<!\.)\.|->)[A-Za-z_]\w*")  # a class declares what follows "." or "->"
-DECLARED = re.compile(r"\b(?:struct|class|enum|enum class|union|concept|define|using)\s+(\w+)|(\w+)\s*\(|"
+DECLARED = re.compile(r"\b(?:struct|enum class|class|enum|union|concept|define|using)\s+(\w+)|(\w+)\s*\(|"
                       r"\b([A-Za-z_]\w*)\s*(?:\[[^\]\n]*\]\s*)*[={;]")
 ALIGNAS = re.compile(r"\balignas\(\w+\)")
 NAMESPACE = re.compile(r"^namespace [\w:]+", re.MULTILINE)
 REFERENCE = re.compile(r"\(&\w*\)")  # an array that is passed by reference
-TEMPLATE = re.compile(r"\btemplate\s*<[^<>]*>")
+TEMPLATE = re.compile(r"\btemplate\s*<(?:[^<>]|<[^<>]*>)*>")
 STD_NAME = re.compile(r"\bstd::(\w+)")
-TYPE = re.compile(r"\b(?:struct|class|enum|enum class|union|concept)\s+(?:alignas\(\w+\)\s+)?(\w+)")
+TYPE = re.compile(r"(?<!<)\b(?:struct|enum class|class|enum|union|concept)\s+(?:alignas\(\w+\)\s+)?(\w+)")
 FORWARD = re.compile(r"^(?:struct|class|enum class|enum)\s+(\w+)[^{};\n]*;", re.MULTILINE)
 NO_NAMES = {"pertev", "class", "alignas", "static_assert", "requires", "defined", "if", "inline", "int", "const", "void", "sizeof", "bool",
             "uint8_t", "uint16_t", "uint32_t", "uint64_t"}
@@ -110,7 +110,7 @@ class Text:
         text = DIRECTIVE.sub("", NO_CODE.sub("", text))
         self.tokens = set(NAME.findall(MEMBER.sub(" ", text)))
         self.std_names = set(STD_NAME.findall(text))
-        self.types = set(TYPE.findall(text))
+        self.types = set(TYPE.findall(TEMPLATE.sub("", text)))  # a template's parameters are none
         self.only_named = set(FORWARD.findall(text))
         # Pairs of a name and the other names of its declaration. Members do not stand at the left margin.
         self.declared = []
