@@ -29,7 +29,7 @@ for part in "${parts[@]}"; do
         run "$bin/pertev_tests" --device cuda --source-file="$files"
         ;;
     long)
-        files='*/device_functions_test.cpp,*/lab_test.cpp,*/watertight_test.cpp'
+        files='*/device_functions_test.cpp,*/lab_test.cpp,*/lab_scenes_test.cpp,*/watertight_test.cpp'
         run "$bin/pertev_tests" --device cuda --long --source-file="$files"
         ;;
     pictures) run "$here/compare_devices.sh" "$bin/pertev" "$scenes" 1 16 64 ;;

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Compiles headers by themselves, so that each can be included first and, where it has device code, by any compiler.
 
-The first --cxx compiles each header but those that their own .cpp includes first. It compiles many of them in one go,
-which spares it the standard library, yet each header follows only headers whose declarations it does not name, or which
-it includes itself. Thus each is as complete as if it stood there alone. Host-device headers (those that say HD) are compiled by every other --cxx and by
---nvcc too, gathered into one generated file. `--self-test` feeds the check headers that must fail.
+The first --cxx compiles each header but host headers that their own .cpp includes first. It compiles many of them in
+one go, which spares it the standard library, yet each header follows only headers whose declarations it does not name,
+or which it includes itself. Thus each is as complete as if it stood there alone. Host-device headers (those that say HD)
+are compiled by every other --cxx and by --nvcc too, gathered into one generated file. CTest gives a compiler that the
+build does not use, where there is one. `--self-test` feeds the check headers that must fail.
 """
 
 import argparse
@@ -28,13 +29,17 @@ STD_INCLUDE = re.compile(r"^#include <(.*?)>", re.MULTILINE)
 NO_CODE = re.compile(r'//[^\n]*|"(?:[^"\\\n]|\\.)*"')
 DIRECTIVE = re.compile(r"^#(?! *define).*", re.MULTILINE)
 NAME = re.compile(r"\b[A-Za-z_]\w*")
-DECLARED = re.compile(r"\b(?:struct|class|enum|enum class|union|concept|namespace|define|using)\s+(\w+)|(\w+)\s*\(|"
+MEMBER = re.compile(r"(?:(?<!\.)\.|->)[A-Za-z_]\w*")  # a class declares what follows "." or "->"
+DECLARED = re.compile(r"\b(?:struct|enum class|class|enum|union|concept|define|using)\s+(\w+)|(\w+)\s*\(|"
                       r"\b([A-Za-z_]\w*)\s*(?:\[[^\]\n]*\]\s*)*[={;]")
-TEMPLATE = re.compile(r"\btemplate\s*<[^<>]*>")
+ALIGNAS = re.compile(r"\balignas\(\w+\)")
+NAMESPACE = re.compile(r"^namespace [\w:]+", re.MULTILINE)
+REFERENCE = re.compile(r"\(&\w*\)")  # an array that is passed by reference
+TEMPLATE = re.compile(r"\btemplate\s*<(?:[^<>]|<[^<>]*>)*>")
 STD_NAME = re.compile(r"\bstd::(\w+)")
-TYPE = re.compile(r"\b(?:struct|class|enum|enum class|union|concept)\s+(?:alignas\(\w+\)\s+)?(\w+)")
+TYPE = re.compile(r"(?<!<)\b(?:struct|enum class|class|enum|union|concept)\s+(?:alignas\(\w+\)\s+)?(\w+)")
 FORWARD = re.compile(r"^(?:struct|class|enum class|enum)\s+(\w+)[^{};\n]*;", re.MULTILINE)
-NO_NAMES = {"pertev", "class", "alignas", "static_assert", "requires", "defined", "if", "const", "void", "sizeof", "bool",
+NO_NAMES = {"pertev", "class", "alignas", "static_assert", "requires", "defined", "if", "inline", "int", "const", "void", "sizeof", "bool",
             "uint8_t", "uint16_t", "uint32_t", "uint64_t"}
 # The headers that declare names of the standard library, where these are not called as the names are.
 STD_HEADER_OF = {"function": "functional", "unique_ptr": "memory", "shared_ptr": "memory", "make_shared": "memory",
@@ -43,7 +48,12 @@ STD_HEADER_OF = {"function": "functional", "unique_ptr": "memory", "shared_ptr":
                  "numeric_limits": "limits", "max": "algorithm", "min": "algorithm", "sort": "algorithm",
                  "memcpy": "cstring", "memchr": "cstring", "isnan": "cmath", "isfinite": "cmath", "as_bytes": "span",
                  "from_chars": "charconv", "errc": "charconv", "is_same_v": "type_traits",
-                 "type_identity_t": "type_traits", "conditional_t": "type_traits", "integral_constant": "type_traits"}
+                 "type_identity_t": "type_traits", "conditional_t": "type_traits", "integral_constant": "type_traits",
+                 "is_trivially_copyable_v": "type_traits", "is_trivially_destructible_v": "type_traits",
+                 "decay_t": "type_traits", "bit_cast": "bit", "popcount": "bit", "countl_zero": "bit", "bit_floor": "bit",
+                 "endian": "bit", "ptrdiff_t": "cstddef", "declval": "utility", "index_sequence": "utility",
+                 "make_index_sequence": "utility", "reverse": "algorithm", "nth_element": "algorithm",
+                 "fill_n": "algorithm", "once_flag": "mutex", "call_once": "mutex", "less": "functional"}
 # Headers of the standard library declare these names outside of std too.
 C_NAMES = {"cstdint": {f"{sign}int{bits}_t" for sign in ("", "u") for bits in (8, 16, 32, 64, "ptr")},
            "cstddef": {"size_t", "ptrdiff_t", "offsetof"}, "cstring": {"memcpy", "memset", "memcmp", "memchr"},
@@ -82,23 +92,35 @@ def closures(headers, source):
     return {h: of(h) for h in headers}
 
 
+def without_parameters(head):
+    """The declaration with nothing between its parentheses: no other header can use a parameter's name."""
+    depth, kept = 0, ""
+    for sign in REFERENCE.sub("", head):
+        depth -= sign == ")" and depth > 0
+        kept += sign if depth == 0 else ""
+        depth += sign == "("
+    return kept
+
+
 class Text:
     """The names of a header, without comments and strings, and those that it declares."""
 
     def __init__(self, text):
         self.std_headers = set(STD_INCLUDE.findall(text))
         text = DIRECTIVE.sub("", NO_CODE.sub("", text))
-        self.tokens = set(NAME.findall(text))
+        self.tokens = set(NAME.findall(MEMBER.sub(" ", text)))
         self.std_names = set(STD_NAME.findall(text))
-        self.types = set(TYPE.findall(text))
+        self.types = set(TYPE.findall(TEMPLATE.sub("", text)))  # a template's parameters are none
         self.only_named = set(FORWARD.findall(text))
         # Pairs of a name and the other names of its declaration. Members do not stand at the left margin.
         self.declared = []
-        for line in text.splitlines():
-            head = TEMPLATE.sub("", line.split("{")[0]) if line[:1].strip() else ""
+        for line in NAMESPACE.sub("", text).splitlines():  # who uses a namespace names what is in it
+            head = ALIGNAS.sub("", TEMPLATE.sub("", line.split("{")[0])) if line[:1].strip() else ""
             names = set(NAME.findall(head))
-            of = {next(filter(None, found)) for found in DECLARED.findall(head if "(" in head else head + ";")}
-            self.declared += [(n, names - {n}) for n in of - NO_NAMES | names & {"operator"}]
+            found = DECLARED.findall(without_parameters(head) if "(" in head else head + ";")
+            of = {next(filter(None, groups)) for groups in found}
+            of = {n for n in of - NO_NAMES if not n.startswith("__")}
+            self.declared += [(n, names - {n}) for n in of | names & {"operator"}]
 
 
 def provides(std_headers, name):
@@ -119,7 +141,8 @@ class Unit:
         foreign_std = self.std - std
         if foreign_std and not all(provides(std, name) for name in text.std_names):
             return False
-        if any(C_NAMES[h].intersection(text.tokens) for h in foreign_std & C_NAMES.keys()):
+        # Headers of the standard library include each other, so any of them may declare these.
+        if foreign_std and any(C_NAMES[h].intersection(text.tokens) for h in C_NAMES.keys() - std):
             return False
         foreign = [texts[h] for h in self.own - closure]
         types = set().union(*(t.types for t in foreign)) - set().union(*(texts[h].types for h in closure))
@@ -158,7 +181,7 @@ def jobs_for(source, compilers, nvcc, folders):
     others = [[c, *HOST_FLAGS, *includes] for c in compilers[1:]] + ([[nvcc, *NVCC_FLAGS, *includes]] if nvcc else [])
     for command in others:
         yield f"host-device headers by {command[0]}", command, host_device
-    for unit in units([h for h in headers if not built_alone(h, source)], source):
+    for unit in units([h for h in headers if h in host_device or not built_alone(h, source)], source):
         yield f"{', '.join(map(str, unit))} by {compilers[0]}", [compilers[0], *HOST_FLAGS, *includes], unit
 
 

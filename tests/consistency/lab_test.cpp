@@ -1,18 +1,16 @@
 // Every combination of structure, traversal and switches gives the hits of the proven traversal, bit for bit, and that
-// traversal those of brute force: in public scenes and in meshes made to break them, with instances and without.
+// traversal those of brute force: in meshes made to break them, with instances and without. Public scenes are in
+// lab_scenes_test.cpp.
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <map>
 
 #include "base/parallel_for.h"
-#include "formats/read_scene.h"
 #include "lab/record_scenes.h"
 #include "lab/run_lab.h"
-#include "session/survey/default_camera.h"
+#include "tests/support/lab_combinations.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/stress_meshes.h"
@@ -21,103 +19,6 @@ using namespace pertev;
 using namespace pertev::test;
 
 namespace {
-
-// Number of each kind in all public scenes together; sanitizers take fifty times as long per ray and tree.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr uint64_t kRaysAKind = 3'000;
-constexpr const char* kFiles[] = {"sibenik/sibenik.obj"};
-#else
-constexpr uint64_t kRaysAKind = 50'000;
-constexpr const char* kFiles[] = {"crytek-sponza/sponza.obj", "sibenik/sibenik.obj"};
-#endif
-
-std::vector<TraversalOptions> exact_options() {
-    std::vector<TraversalOptions> options;
-    for (const bool rta : {true, false}) {
-        for (const bool near_first : {true, false}) options.push_back({rta, near_first});
-    }
-    options.push_back({.rta_at_pops = false});
-    return options;
-}
-
-/// Everything that is there on a device; brute force only where a scene is small.
-LabSettings all_combinations(bool is_cuda, bool brute_force) {
-    LabSettings settings;
-    settings.structures.assign(kValuesOf<StructureKind>.begin(), kValuesOf<StructureKind>.end());
-    settings.traversals.assign(kValuesOf<TraversalKind>.begin(), kValuesOf<TraversalKind>.end());
-    if (!brute_force) std::erase(settings.traversals, TraversalKind::BruteForce);
-    settings.options = exact_options();
-    if (is_cuda) {
-        settings.distributions = {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch};
-    }
-    settings.runs = settings.warm_ups = 0;
-    settings.heat_maps = false;
-    return settings;
-}
-
-/// Lists every traversal with every switch over trees with spatial splits, kd-trees and octrees, and every structure
-/// with all switches on, in the long setting with RTA at nodes alone too. A GPU and the long setting trace each
-/// combination in all scenes. The short setting traces those of the first trees with all switches on in both scenes,
-/// and each other combination in one of the two: a fourth of the pairs of structure and traversal in the larger one,
-/// and half of the switches. Thus each structure, each traversal and each switch still meets the rays of both scenes.
-LabSettings some_combinations(bool is_cuda, std::size_t scene) {
-    const bool all_scenes = is_cuda || test::effort(0, 1) != 0 || std::size(kFiles) == 1,
-               at_nodes = test::effort(0, 1) != 0;
-    const LabSettings all = all_combinations(is_cuda, false);
-    LabSettings settings = all;
-    for (const Distribution distribution : all.distributions) {
-        for (const TraversalKind traversal : all.traversals) {
-            for (const StructureKind structure : all.structures) {
-                if (why_not(structure, traversal)) continue;
-                const bool every_switch = structure == StructureKind::SpatialSplits || traversal == TraversalKind::Kd ||
-                                          traversal == TraversalKind::Octree;
-                const std::size_t pair = static_cast<std::size_t>(traversal) + static_cast<std::size_t>(structure);
-                const std::size_t dealt_to = pair % 4 == 0 ? 0 : 1;
-                for (std::size_t i = 0; i < all.options.size(); ++i) {
-                    const TraversalOptions& options = all.options[i];
-                    const bool switched_on = options.rta && options.near_first && (options.rta_at_pops || at_nodes);
-                    const bool here = every_switch ? switched_on || (pair + i) % 2 == scene : dealt_to == scene;
-                    if ((every_switch || switched_on) && (here || all_scenes)) {
-                        settings.only.push_back({structure, traversal, options, distribution});
-                    }
-                }
-            }
-        }
-    }
-    return settings;
-}
-
-void check(const LabReport& report) {
-    uint64_t checked = 0;
-    for (const CombinationFigures& c : report.combinations) {
-        CAPTURE(c.name);
-        CAPTURE(c.refused);
-        CHECK_FALSE(c.refused.starts_with("WRONG"));
-        CHECK_FALSE(c.refused == "not compiled");
-        for (const RunFigures& run : c.runs) CHECK(run.different == 0);
-        checked += c.runs.empty() ? 0 : 1;
-    }
-    CHECK(checked >= 40);
-}
-
-void check_file(std::size_t number, Queue& queue, uint64_t rays) {
-    const auto file = test_scene(kFiles[number]);
-    if (!file) return;
-    Messages messages;
-    ReadOptions options;
-    options.geometry_only = true;
-    const Scene scene = read_scene(*file, options, messages);
-    LabSettings settings = some_combinations(queue.is_cuda(), number);
-    settings.width = static_cast<uint32_t>(std::sqrt(static_cast<double>(rays) * 4 / 3)) + 1;
-    settings.height = settings.width * 3 / 4 + 1;
-    settings.depth = 2;
-    const Camera camera = make_default_camera(scene, 4.0f / 3.0f, messages);
-    const LabReport report = run_lab(queue, scene, camera, settings, {});
-    REQUIRE(report.sets.size() == 3);
-    CHECK(report.sets[0].rays >= rays);
-    for (const SetFigures& set : report.sets) CHECK(set.brute_force_rays >= 2200);
-    check(report);
-}
 
 /// The mesh's triangles as one instance a given number.
 Scene scene_of(const StressMesh& stress) {
@@ -145,7 +46,7 @@ void check_stress_meshes(Queue& queue, uint32_t side) {
         Camera camera;
         camera.world_from_camera =
             look_at(stress.centre + stress.extent * Vec3{1.5f, 0.7f, 3}, stress.centre, {0, 1, 0});
-        check(run_lab(queue, scene, camera, settings, {}));
+        check_report(run_lab(queue, scene, camera, settings, {}));
     }
 }
 
@@ -156,8 +57,7 @@ TEST_CASE("every combination gives the same hits in the mixed scene with instanc
     const Scene scene = make_mixed_scene();
     LabSettings settings = all_combinations(false, true);
     settings.width = 64, settings.height = 48, settings.depth = 3;
-    const LabReport report = run_lab(queue, scene, mixed_scene_camera(), settings, {});
-    check(report);
+    check_report(run_lab(queue, scene, mixed_scene_camera(), settings, {}));
 }
 
 TEST_CASE("every combination gives the same hits in stress meshes") {
@@ -165,14 +65,7 @@ TEST_CASE("every combination gives the same hits in stress meshes") {
     check_stress_meshes(queue, static_cast<uint32_t>(effort(12, 48)));
 }
 
-TEST_CASE("every combination gives the same hits on 50,000 rays of each kind in Sponza, Sibenik or both") {
-    Queue queue = Queue::make_cpu();
-    for (std::size_t file = 0; file < std::size(kFiles); ++file) {
-        check_file(file, queue, effort(kRaysAKind, 1'000'000));
-    }
-}
-
-TEST_CASE("CUDA: every combination gives the same hits") {
+TEST_CASE("CUDA: every combination gives the same hits in stress meshes and in the mixed scene") {
     if (!cuda_requested()) return;
     Queue queue = make_cuda_queue();
     check_stress_meshes(queue, static_cast<uint32_t>(effort(64, 256)));
@@ -180,8 +73,7 @@ TEST_CASE("CUDA: every combination gives the same hits") {
     LabSettings settings = all_combinations(true, true);
     settings.width = 64, settings.height = 48, settings.depth = 3;
     settings.runs = 1; // timed and counted too
-    check(run_lab(queue, mixed, mixed_scene_camera(), settings, {}));
-    for (std::size_t file = 0; file < std::size(kFiles); ++file) check_file(file, queue, 1'000'000);
+    check_report(run_lab(queue, mixed, mixed_scene_camera(), settings, {}));
 }
 
 TEST_CASE("inexact tests miss a few rays, which are counted") {

@@ -182,7 +182,7 @@ class Radiosity(CliTest):
                               ("matrix", ["form factors", "solving", "dividing patches"]),
                               ("hierarchical", ["direct light", "links, pass 1", "dividing patches"])]:
             outcome = self.succeed("solve", "radiosity", "cornell-box", "-o", "box.rad", "--solver", solver, "--json",
-                                   "--patch-size", "0.2", "--contrast", "0.02")
+                                   "--patch-size", "0.2", "--patch-rays", "64", "--contrast", "0.02")
             self.assertEqual(outcome.stderr, "")
             told = outcome.events("progress")
             self.assertEqual({tuple(event) for event in told}, {tuple(keys)})
@@ -207,9 +207,9 @@ class Radiosity(CliTest):
             self.refuse(2, "solve", "radiosity", "cornell-box", "-o", name, *COARSE, says=["a solution is no picture", "box.rad"])
 
     def test_memory_stays_below_what_was_said_and_a_lower_limit_is_refused(self):
-        for flags in [["--patch-size", "0.04"], ["--patch-size", "0.04", "--solver", "southwell"],
-                      ["--patch-size", "0.08", "--form-factors", "hemicube", "--hemicube", "32"],
-                      ["--patch-size", "0.04", "--solver", "hierarchical"]]:
+        for flags in [["--patch-size", "0.05"], ["--patch-size", "0.05", "--solver", "southwell"],
+                      ["--patch-size", "0.08", "--form-factors", "hemicube", "--hemicube", "16"],
+                      ["--patch-size", "0.05", "--solver", "hierarchical"]]:
             flags = [*flags, "--patch-rays", "64", "--subdivisions", "1"]
             program = self.start("solve", "radiosity", "cornell-box", "-o", "box.rad", *flags)
             predicted = next(json.loads(line) for line in program.stdout if b'"radiosity"' in line)["predicted_bytes"]

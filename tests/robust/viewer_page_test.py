@@ -17,7 +17,7 @@ from cli_run import PROGRAM, SANITIZED, gltf_with_cameras, main, read_exr, write
 from viewer_client import Client, Tunnel, Viewer
 
 LONG = os.environ.get("PERTEV_LONG_TESTS", "0") not in ("", "0")
-STEERING_S, GROWTH_BYTES, HEAP_GROWTH_BYTES = (600, 32 << 20, 4 << 20) if LONG else (10, 4 << 20, 1 << 20)
+STEERING_S, GROWTH_BYTES, HEAP_GROWTH_BYTES = (600, 32 << 20, 4 << 20) if LONG else (5, 2 << 20, 1 << 19)
 SIZE = "96x72"
 
 if find_chromium() is None:

@@ -376,8 +376,8 @@ class Pictures(CliTest):
                 self.assertEqual(rates, {"8 a second"})
             # Input comes faster than pictures: these come all the same, five a second where the machine has a moment for
             # it, and none is far behind.
-            for _ in range(5):
-                shown, end = [], time.monotonic() + 2
+            for _ in range(10):
+                shown, end = [], time.monotonic() + 1
                 while time.monotonic() < end:
                     number = client.steer(type="orbit", dx=0.002, dy=0)
                     try:
@@ -387,9 +387,9 @@ class Pictures(CliTest):
                                 shown.append(number - message[0]["input"])
                     except TimeoutError:
                         pass
-                if len(shown) >= 10:
+                if len(shown) >= 6:
                     break
-            self.assertGreater(len(shown), 4 if SANITIZED else 9)
+            self.assertGreater(len(shown), 2 if SANITIZED else 5)
             self.assertLess(sorted(shown)[len(shown) // 2], 40)
 
 

@@ -1,0 +1,52 @@
+#pragma once
+
+// The combinations of the traversal laboratory that tests trace, and the check of its report.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "lab/run_lab.h"
+
+namespace pertev::test {
+
+inline std::vector<TraversalOptions> exact_options() {
+    std::vector<TraversalOptions> options;
+    for (const bool rta : {true, false}) {
+        for (const bool near_first : {true, false}) options.push_back({rta, near_first});
+    }
+    options.push_back({.rta_at_pops = false});
+    return options;
+}
+
+/// Everything that there is on a device; brute force only where a scene is small.
+inline LabSettings all_combinations(bool is_cuda, bool brute_force) {
+    LabSettings settings;
+    settings.structures.assign(kValuesOf<StructureKind>.begin(), kValuesOf<StructureKind>.end());
+    settings.traversals.assign(kValuesOf<TraversalKind>.begin(), kValuesOf<TraversalKind>.end());
+    if (!brute_force) std::erase(settings.traversals, TraversalKind::BruteForce);
+    settings.options = exact_options();
+    if (is_cuda) {
+        settings.distributions = {Distribution::OneAThread, Distribution::Persistent, Distribution::DynamicFetch};
+    }
+    settings.runs = settings.warm_ups = 0;
+    settings.heat_maps = false;
+    return settings;
+}
+
+/// Checks that at least `least` combinations were traced and that none of them differs from the proven traversal.
+inline void check_report(const LabReport& report, uint64_t least = 40) {
+    uint64_t checked = 0;
+    for (const CombinationFigures& c : report.combinations) {
+        CAPTURE(c.name);
+        CAPTURE(c.refused);
+        CHECK_FALSE(c.refused.starts_with("WRONG"));
+        CHECK_FALSE(c.refused == "not compiled");
+        for (const RunFigures& run : c.runs) CHECK(run.different == 0);
+        checked += c.runs.empty() ? 0 : 1;
+    }
+    CHECK(checked >= least);
+}
+
+} // namespace pertev::test
