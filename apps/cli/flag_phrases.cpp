@@ -77,7 +77,9 @@ std::string flag_of(std::string_view setting) {
 std::string phrase(const Remark& remark) {
     std::string text;
     if (remark.location) text += text_of(*remark.location) + ": ";
-    if (!remark.setting.empty()) text += flag_and_value(remark.setting, remark.value) + ": ";
+    if (!remark.setting.empty()) {
+        text += fmt::format("{}{}", flag_and_value(remark.setting, remark.value), before_reason(remark.reason));
+    }
     return text + phrase_settings(remark.reason, flag_and_value);
 }
 

@@ -19,6 +19,7 @@
 #include "base/message_text.h"
 #include "base/stopwatch.h"
 #include "session/render_memory.h"
+#include "session/session_bytes.h"
 #include "session/survey/ground.h"
 #include "settings/value_names.h"
 

@@ -92,7 +92,7 @@ void check_render_flags(const RenderFlags& flags, Messages& messages) {
     // A file of settings may be for other outputs: what they cannot keep is refused where a flag asks for it.
     const auto by_flag = [&](std::string_view name) {
         const auto given = flags.given.find(name);
-        return given != flags.given.end() && given->second == SettingOrigin::Flag;
+        return given != flags.given.end() && given->second == SettingOrigin::Caller;
     };
     refuse(by_flag("aov") && !writes_any(flags, {ImageFormat::Exr}),
            "--aov applies only to EXR output; add -o NAME.exr");

@@ -117,12 +117,7 @@ void SettingFlags::read_flags(PictureOptions& options) const {
                                                    ? std::vector<std::string>{flag.is_on ? "true" : "false"}
                                                : is_list(setting) ? flag.texts
                                                                   : std::vector{flag.text};
-        try {
-            set_value(options, setting, texts);
-        } catch (const Error& error) {
-            throw Error(error.code(), fmt::format("{} {}", flag_of(setting.name), error.what()));
-        }
-        options.given[setting.name] = SettingOrigin::Flag;
+        set_value(options, setting, texts);
     }
 }
 

@@ -43,7 +43,6 @@ struct Team {
     int count = 0;               // 0: one per hardware thread
     std::atomic<int> helpers{0}; // helpers of parallel_invoke, because nested calls of a recursive builder would
                                  // start a thread each
-                                 // thread each
 };
 
 thread_local Team t_own_team;

@@ -17,10 +17,12 @@ std::string text_of(const FileLocation& location) {
     return fmt::format("{}: {}", location.file, location.pointer->empty() ? "/" : *location.pointer);
 }
 
+std::string_view before_reason(std::string_view reason) { return reason.starts_with("not ") ? " is " : ": "; }
+
 std::string Remark::text() const {
     std::string text;
     if (location) text += text_of(*location) + ": ";
-    if (!setting.empty()) text += marked(setting, value) + ": ";
+    if (!setting.empty()) text += fmt::format("{}{}", marked(setting, value), before_reason(reason));
     return text + reason;
 }
 

@@ -25,6 +25,9 @@ struct FileLocation {
 /// Text such as "a.obj:12", "a.gltf: /nodes/3" or "a.exr".
 std::string text_of(const FileLocation& location);
 
+/// The text between a setting and the reason: " is " before a reason such as "not a number", otherwise ": ".
+std::string_view before_reason(std::string_view reason);
+
 struct Remark {
     Remark(std::string why) : reason(std::move(why)) {}
     Remark(const char* why) : reason(why) {}

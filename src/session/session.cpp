@@ -73,8 +73,7 @@ RenderResult Session::result() {
 }
 
 std::vector<RayWork> Session::count_camera_work() {
-    const PictureView picture = pictures_.view_of(camera(), settings()); // first, because it checks that there is a
-                                                                         // scene
+    const PictureView picture = pictures_.view_of(camera(), settings()); // first: it checks that there is a scene
     return pertev::count_camera_work(pictures_.queue(), scene_.tracer(), picture);
 }
 

@@ -8,8 +8,7 @@
 //   set_scene     always. Uploads the scene; allocates for its trees and for parts that are larger than before, nothing
 //                 for film and queues.
 //   update_scene  always. Uploads only the given parts, changed trees, and joints and weights of deforming meshes,
-//   whose
-//                 vertices and trees are computed on the device. Allocates for parts that are larger than before.
+//                 whose vertices and trees are computed on the device. Allocates for parts that are larger than before.
 //   set_camera    if the camera differs. Uploads and allocates nothing.
 //   set_settings  if the picture differs (same_picture). Another size or other layers allocate a new film at the next
 //                 render, and larger queues if needed; another tracer uploads its structure. Anything else allocates
@@ -78,11 +77,9 @@ public:
     /// Computes the picture for a display, times 2^exposure_stops, as tone_map_image of picture(), and starts its
     /// copy to the host.
     void display(ToneMap tone_map, float exposure_stops);
-    /// Returns the picture of the last display().
     Rgba8Image displayed() { return film_.film().displayed(); }
     /// Returns picture, denoised picture, layers, ids, motion vectors and stats together.
     RenderResult result();
-    /// Returns the exposure for the current picture (Meter::stops).
     float meter(ToneMap tone_map) { return meter_.stops(camera(), settings(), tone_map); }
 
     /// Renders the next frame of a sequence by FrameSequence::render. The film stays as it is.
@@ -119,12 +116,5 @@ private:
     std::optional<Camera> previous_camera_;
     uint64_t cuts_ = 0;
 };
-
-/// Predicted device memory, in bytes, of a session that renders `settings.samples` in one call.
-std::size_t predicted_bytes(const PreparedScene& scene, const RenderSettings& settings, bool on_cuda);
-/// Predicted bytes for real-time frames, without the temporal-gradient buffers.
-std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettings& settings,
-                                  const ReconstructionSettings& reconstruction, const RestirSettings& restir,
-                                  bool on_cuda);
 
 } // namespace pertev

@@ -1,4 +1,6 @@
-// Predicts the device memory of a session by a dry run (Queue::make_dry_run) that allocates what the session does.
+// A dry run (Queue::make_dry_run) allocates what a session does.
+
+#include "session/session_bytes.h"
 
 #include <algorithm>
 #include <optional>
@@ -7,8 +9,12 @@
 
 #include "denoise/motion_vectors.h"
 #include "denoise/picture_denoiser.h"
+#include "denoise/reconstruction.h"
 #include "denoise/upsampled_frame.h"
-#include "session/session.h"
+#include "device_scene/scene_on_device.h"
+#include "integrators/kinds/make_integrator.h"
+#include "render/film.h"
+#include "restir/restir.h"
 #include "tracer/deforming_tree.h"
 
 namespace pertev {

@@ -77,7 +77,7 @@ std::string overruled_setting(const SettingConflict& conflict, const PictureOpti
     const auto yields_to = [&](const std::string& name, const std::string& other) {
         const Setting& setting = *find_setting(name);
         return is_of(name, SettingOrigin::File) &&
-               (is_of(other, SettingOrigin::Flag) || texts_of(options, setting) == texts_of(defaults, setting));
+               (is_of(other, SettingOrigin::Caller) || texts_of(options, setting) == texts_of(defaults, setting));
     };
     const std::string own = conflict.setting->name;
     if (conflict.kind == SettingConflict::Kind::Integrator) return yields_to(own, "integrator") ? own : "";
@@ -100,12 +100,11 @@ void take_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& option
             }
             if ((setting->verbs & verbs) == 0) continue;
             PictureOptions with = options;
-            set_value(with, *setting, std::span(&suggested.text, 1));
-            with.given[suggested.name] = SettingOrigin::Scene;
+            set_value(with, *setting, std::span(&suggested.text, 1), SettingOrigin::Scene);
             if (!find_conflict(with, verbs)) options = with;
         } catch (const Error& error) {
             messages.leave_out(
-                fmt::format("{}: {} {}: {}", options.scene.scene, suggested.name, suggested.text, error.what()));
+                fmt::format("{}: {} {}: {}", options.scene.scene, suggested.name, suggested.text, error.reason()));
         }
     }
 }

@@ -74,9 +74,9 @@ struct PictureSize {
 
 /// The source of a setting's value. Later ones override earlier ones.
 enum class SettingOrigin : uint8_t {
-    Scene, // the scene's file
-    File,  // a settings file
-    Flag,
+    Scene,  // the scene's file
+    File,   // a settings file
+    Caller, // a flag, or the caller of a library
 };
 
 struct PictureOptions {

@@ -54,6 +54,45 @@ std::string text_of(Number number) {
     return fmt::format("{}", number);
 }
 
+/// The parsers of values know no setting: their reasons begin with the text.
+Error about(const Setting& setting, const std::string& text, ErrorCode code, std::string_view why) {
+    for (const std::string& start : {text + " is ", text + ": "}) {
+        if (why.starts_with(start)) why.remove_prefix(start.size());
+    }
+    return {code, setting.name, text, std::string(why)};
+}
+
+void put_value(PictureOptions& options, const Setting& setting, std::span<const std::string> texts) {
+    PERTEV_CHECK(is_list(setting) || texts.size() == 1);
+    const SettingField field = setting.field(options);
+    const std::string& text = texts.empty() ? setting.name : texts.front();
+    std::visit(Overloaded{[&](bool* f) { *f = text == "true"; }, [&](InverseSwitch f) { *f.field = text != "true"; },
+                          [&](std::string* f) { *f = text; },
+                          [&](std::vector<std::string>* f) { f->assign(texts.begin(), texts.end()); },
+                          [&](std::vector<std::filesystem::path>* f) { f->assign(texts.begin(), texts.end()); },
+                          [&](std::optional<Vec3>* f) { *f = parse_vec3("", text); },
+                          [&](std::optional<DoubleVec3>* f) { *f = parse_position("", text); },
+                          [&](std::optional<Rgb>* f) { *f = parse_radiance("", text); },
+                          [&](std::optional<PictureSize>* f) {
+                              const auto [width, height] = parse_size("", text);
+                              *f = PictureSize{width, height};
+                          },
+                          [&](NamedField f) { f.set(f.field, text); },
+                          [&]<class Number>(std::optional<Number>* f) {
+                              if constexpr (std::is_same_v<Number, uint32_t>)
+                                  *f = parse_whole_number<Number>(text);
+                              else
+                                  *f = parse_whole_float<Number>(text);
+                          },
+                          [&]<class Number>(Number* f) {
+                              if constexpr (std::is_same_v<Number, uint32_t>)
+                                  *f = *parse_whole_number<Number>(text);
+                              else
+                                  *f = *parse_whole_float<Number>(text);
+                          }},
+               field);
+}
+
 } // namespace
 
 bool is_switch(const Setting& setting) {
@@ -98,38 +137,19 @@ std::string why_no_value(const Setting& setting, const std::string& text) {
         some_field(setting));
 }
 
-void set_value(PictureOptions& options, const Setting& setting, std::span<const std::string> texts) {
+void set_value(PictureOptions& options, const Setting& setting, std::span<const std::string> texts,
+               SettingOrigin origin) {
     for (const std::string& text : texts) {
-        if (const std::string why = why_no_value(setting, text); !why.empty()) throw Error(ErrorCode::BadInput, why);
+        if (const std::string why = why_no_value(setting, text); !why.empty()) {
+            throw about(setting, text, ErrorCode::BadInput, why);
+        }
     }
-    PERTEV_CHECK(is_list(setting) || texts.size() == 1);
-    const SettingField field = setting.field(options);
-    const std::string& text = texts.empty() ? setting.name : texts.front();
-    std::visit(Overloaded{[&](bool* f) { *f = text == "true"; }, [&](InverseSwitch f) { *f.field = text != "true"; },
-                          [&](std::string* f) { *f = text; },
-                          [&](std::vector<std::string>* f) { f->assign(texts.begin(), texts.end()); },
-                          [&](std::vector<std::filesystem::path>* f) { f->assign(texts.begin(), texts.end()); },
-                          [&](std::optional<Vec3>* f) { *f = parse_vec3("", text); },
-                          [&](std::optional<DoubleVec3>* f) { *f = parse_position("", text); },
-                          [&](std::optional<Rgb>* f) { *f = parse_radiance("", text); },
-                          [&](std::optional<PictureSize>* f) {
-                              const auto [width, height] = parse_size("", text);
-                              *f = PictureSize{width, height};
-                          },
-                          [&](NamedField f) { f.set(f.field, text); },
-                          [&]<class Number>(std::optional<Number>* f) {
-                              if constexpr (std::is_same_v<Number, uint32_t>)
-                                  *f = parse_whole_number<Number>(text);
-                              else
-                                  *f = parse_whole_float<Number>(text);
-                          },
-                          [&]<class Number>(Number* f) {
-                              if constexpr (std::is_same_v<Number, uint32_t>)
-                                  *f = *parse_whole_number<Number>(text);
-                              else
-                                  *f = *parse_whole_float<Number>(text);
-                          }},
-               field);
+    try {
+        put_value(options, setting, texts);
+    } catch (const Error& error) {
+        throw about(setting, texts.front(), error.code(), error.reason());
+    }
+    options.given[setting.name] = origin;
 }
 
 std::vector<std::string> texts_of(const PictureOptions& options, const Setting& setting) {

@@ -124,9 +124,10 @@ bool has_setting(IntegratorKind integrator, const Setting& setting);
 /// Returns why the text is no value, according to its range, its choices and its kind; empty if it is one.
 std::string why_no_value(const Setting& setting, const std::string& text);
 
-/// Sets the field; a list gets all texts. Throws Error(BadInput), or Error(OverLimit) for a value that is too large
-/// for every scene; the message begins with the text.
-void set_value(PictureOptions& options, const Setting& setting, std::span<const std::string> texts);
+/// Sets the field, a list to all texts, and notes in `options.given` who did. Throws Error(BadInput), or
+/// Error(OverLimit) for a value that is too large for every scene, with the setting and the wrong text.
+void set_value(PictureOptions& options, const Setting& setting, std::span<const std::string> texts,
+               SettingOrigin origin = SettingOrigin::Caller);
 
 /// Returns the value in the syntax of set_value: no text for an empty optional or list, "" for an empty text, "true"
 /// or "false" for a switch.

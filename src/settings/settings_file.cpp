@@ -48,6 +48,11 @@ void compare_scene(const JsonValue& root, const std::filesystem::path& file, con
                    Messages& messages) {
     const std::optional<JsonValue> source = root.find("scene");
     if (!source) return;
+    for (const auto& [key, value] : source->members()) {
+        if (key != "name" && key != "hash") {
+            messages.leave_out(fmt::format("{}: unknown name in a file of settings", text_of(value.location())));
+        }
+    }
     const std::string name = source->string_or("name", ""), hash = source->string_or("hash", "");
     const std::string here = hash.empty() ? "" : scene_hash(scene);
     if (here.empty() || here == hash) return;
@@ -95,11 +100,11 @@ void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<
             continue;
         }
         try {
-            set_value(options, *setting, texts_of(*setting, value));
+            set_value(options, *setting, texts_of(*setting, value), SettingOrigin::File);
         } catch (const Error& error) {
-            throw value.error(error);
+            const std::string why = fmt::format("{}{}{}", error.value(), before_reason(error.reason()), error.reason());
+            throw value.error(Error(error.code(), why)); // its place names the setting
         }
-        options.given[setting->name] = SettingOrigin::File;
     }
     for (const auto& [name, value] : root.members()) {
         if (name != "version" && name != "scene" && name != "settings") {

@@ -7,6 +7,7 @@
 
 #include "image/picture_hash.h"
 #include "session/session.h"
+#include "session/session_bytes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 

@@ -10,6 +10,7 @@
 #include "session/frame_range.h"
 #include "session/moving_scene.h"
 #include "session/session.h"
+#include "session/session_bytes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 

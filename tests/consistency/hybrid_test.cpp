@@ -8,6 +8,7 @@
 #include "session/opening/choose_camera.h"
 #include "session/opening/open_scene.h"
 #include "session/session.h"
+#include "session/session_bytes.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"

@@ -12,6 +12,7 @@
 #include "base/parallel_for.h"
 #include "render/light_paths/light_path_layers.h"
 #include "session/render_memory.h"
+#include "session/session_bytes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/thrown_error.h"

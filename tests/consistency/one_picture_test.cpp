@@ -6,6 +6,7 @@
 #include "base/parallel_for.h"
 #include "image/picture_hash.h"
 #include "integrators/path/path_integrator.h"
+#include "session/session_bytes.h"
 #include "shading/shading_variant.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"

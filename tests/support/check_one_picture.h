@@ -9,6 +9,7 @@
 
 #include "base/parallel_for.h"
 #include "session/session.h"
+#include "session/session_bytes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 

@@ -10,6 +10,7 @@
 #include "render/raster/scan_row.h"
 #include "session/check_integrator.h"
 #include "session/session.h"
+#include "session/session_bytes.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/options.h"
 #include "tests/support/random.h"

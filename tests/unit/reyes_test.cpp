@@ -16,6 +16,7 @@
 #include "integrators/reyes/split_stages.h"
 #include "session/check_integrator.h"
 #include "session/session.h"
+#include "session/session_bytes.h"
 #include "tests/support/flat_scenes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"

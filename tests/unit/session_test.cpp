@@ -15,6 +15,7 @@
 #include "image/tone_map_image.h"
 #include "render/update_scene.h"
 #include "session/session.h"
+#include "session/session_bytes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"

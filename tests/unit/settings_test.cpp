@@ -8,6 +8,7 @@
 #include "session/writing/picture_metadata.h"
 #include "settings/check_settings.h"
 #include "settings/settings_file.h"
+#include "tests/support/thrown_error.h"
 #include "tests/support/write_text.h"
 
 using namespace pertev;
@@ -16,7 +17,6 @@ namespace {
 
 void set(PictureOptions& options, const char* name, std::vector<std::string> texts) {
     set_value(options, *find_setting(name), texts);
-    options.given[name] = SettingOrigin::Flag;
 }
 
 std::optional<ErrorCode> code_of(const char* name, const std::string& text) {
@@ -42,10 +42,35 @@ TEST_CASE("each setting has a unique name, a sentence, and rules that name setti
         CHECK((sentence.ends_with('.') || sentence.ends_with(").")));
         CHECK(setting.verbs != 0);
         PictureOptions options;
-        options.given[setting.name] = SettingOrigin::Flag;
+        options.given[setting.name] = SettingOrigin::Caller;
         CHECK_NOTHROW(find_conflict(options, ~0u)); // its rules name settings that there are
     }
     CHECK(find_setting("max-depth") == nullptr);
+}
+
+TEST_CASE("an error about a value names the setting, the value and what would be right") {
+    const auto thrown = [](const char* name, const std::string& text) {
+        PictureOptions options;
+        const Error error = test::thrown_error([&] { set(options, name, {text}); }).value();
+        CHECK(!options.is_given(name));
+        CHECK(error.setting() == name);
+        CHECK(error.value() == text);
+        CHECK(error.reason().find(text) == std::string::npos); // front ends say it once
+        return error;
+    };
+    CHECK(thrown("spp", "0").reason().starts_with("not a whole number"));
+    CHECK(thrown("integrator", "pathh").reason().starts_with("not one of"));
+    CHECK(thrown("fov", "wide").reason().starts_with("not a number"));
+    CHECK(thrown("size", "12by9").reason().starts_with("expected WIDTHxHEIGHT"));
+    CHECK(thrown("eye", "1,2").reason().starts_with("expected three numbers"));
+    CHECK(thrown("eye", "1e30,0,0").code() == ErrorCode::OverLimit);
+}
+
+TEST_CASE("a setting that a program sets is in the picture's settings, as one of a flag is") {
+    PictureOptions options;
+    set(options, "eye", {"1,2,3"});
+    CHECK(options.given.at("eye") == SettingOrigin::Caller);
+    CHECK(settings_json(options, "", all_settings()).find(R"("eye":[1,2,3])") != std::string::npos);
 }
 
 TEST_CASE("a setting's text parses back to its value") {
@@ -178,7 +203,7 @@ TEST_CASE("a scene file's suggestions hold unless a given setting excludes them"
                        {"photons", "1000"}, {"seed", "7"},           {"sampler", "none such"},
                        {"samples", "1"},    {"transparent", "true"}, {"ambient", "1"}};
     PictureOptions options;
-    options.given["seed"] = SettingOrigin::Flag;
+    options.given["seed"] = SettingOrigin::Caller;
     options.render.path.seed = 3;
     Messages messages;
     take_suggestions(scene, kRender, options, messages);
@@ -187,7 +212,7 @@ TEST_CASE("a scene file's suggestions hold unless a given setting excludes them"
     CHECK(options.render.integrator == IntegratorKind::PhotonMap);
     CHECK(options.given.at("photons") == SettingOrigin::Scene);
     CHECK(options.render.path.seed == 3);
-    CHECK(options.given.at("seed") == SettingOrigin::Flag);
+    CHECK(options.given.at("seed") == SettingOrigin::Caller);
     CHECK_FALSE(options.is_given("ambient")); // photon mapping has none
     CHECK(messages.left_out().size() == 3);   // no such sampler, no such setting, and one that comes too late
     CHECK_FALSE(options.render.transparent);

@@ -81,7 +81,6 @@ struct IntegratorDescriptor {
     bool finds_all_light = false;
     /// Whether it rasterizes primary visibility; why_no_raster (render/raster/pinhole.h) says which cameras it
     /// excludes.
-    /// cameras it cannot have.
     bool rasterises_camera = false;
     /// Whether its rays have a time, so that motion while a shutter is open is blurred.
     bool has_shutter = false;

@@ -43,7 +43,7 @@ void report_settings(PictureOptions options, const RenderSettings& settings, con
     if (is_own) origins.try_emplace("camera", SettingOrigin::Scene);
     if (own != nullptr && own->aspect > 0) origins.try_emplace("size", SettingOrigin::Scene);
     for (const auto& [name, origin] : origins) {
-        std::string& names = origin == SettingOrigin::Flag   ? source.by_flags
+        std::string& names = origin == SettingOrigin::Caller ? source.by_flags
                              : origin == SettingOrigin::File ? source.by_settings
                                                              : source.by_scene;
         names += (names.empty() ? "" : " ") + name;
