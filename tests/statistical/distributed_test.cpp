@@ -104,7 +104,7 @@ std::pair<double, double> compare_with_path(const Scene& scene, float aperture, 
 
 TEST_CASE("distributed ray tracing equals path tracing where no diffuse surface lights another") {
     for (const auto& [scene, aperture, samples] :
-         {std::tuple(make_metal_scene(), 0.0f, 64u), std::tuple(make_convex_scene(false), 0.3f, 16u),
+         {std::tuple(make_metal_scene(), 0.0f, 32u), std::tuple(make_convex_scene(false), 0.3f, 8u),
           std::tuple(make_convex_scene(true), 0.0f, 16u)}) {
         const auto [same, brighter] = compare_with_path(scene, aperture, samples);
         CHECK(same > 0.001);

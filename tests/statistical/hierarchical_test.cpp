@@ -79,11 +79,11 @@ double difference_of(const RadiositySolution& a, const RadiositySolution& b) {
 
 TEST_CASE("links converge to the solution of form factor rows as their error bound shrinks") {
     const Scene scene = room_with_boxes();
-    const SolvedRadiosity rows = solved_by(scene, RadiositySolver::GaussSeidel, 0.2f);
+    const SolvedRadiosity rows = solved_by(scene, RadiositySolver::GaussSeidel, 0.4f);
     double before = 1e9;
     uint64_t links_before = 0;
     for (const float link_error : {0.8f, 0.2f, 0.05f}) {
-        const SolvedRadiosity links = solved_by(scene, RadiositySolver::Hierarchical, 0.2f, link_error);
+        const SolvedRadiosity links = solved_by(scene, RadiositySolver::Hierarchical, 0.4f, link_error);
         const double difference = difference_of(links.solution, rows.solution);
         CAPTURE(link_error);
         CAPTURE(difference);
@@ -93,7 +93,7 @@ TEST_CASE("links converge to the solution of form factor rows as their error bou
         before = difference;
         links_before = links.stats.factors;
     }
-    CHECK(before < 0.06);
+    CHECK(before < 0.04);
     // All pairs of patches would be this many.
     CHECK(links_before < rows.stats.patches * rows.stats.patches / 10);
 }
@@ -101,10 +101,10 @@ TEST_CASE("links converge to the solution of form factor rows as their error bou
 TEST_CASE("links lose no light to surfaces inside solids") {
     Scene scene = test::closed_box(test::white(0.7f));
     test::add(scene, test::sheet({0, 0.98f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}), test::emitter_material(0, 20));
-    for (int x = 0; x < 6; ++x) {
-        for (int z = 0; z < 6; ++z) { // pillars, whose sides face inwards as well as outwards
-            const float r = 0.08f, h = 0.6f;
-            const Vec3 c = {-0.75f + 0.3f * static_cast<float>(x), -1 + h, -0.75f + 0.3f * static_cast<float>(z)};
+    for (int x = 0; x < 4; ++x) {
+        for (int z = 0; z < 4; ++z) { // pillars, whose sides face inwards as well as outwards
+            const float r = 0.12f, h = 0.6f;
+            const Vec3 c = {-0.675f + 0.45f * static_cast<float>(x), -1 + h, -0.675f + 0.45f * static_cast<float>(z)};
             test::add(scene, test::sheet(c + Vec3{r, 0, 0}, {0, h, 0}, {0, 0, r}), test::white(0.7f));
             test::add(scene, test::sheet(c - Vec3{r, 0, 0}, {0, h, 0}, {0, 0, r}), test::white(0.7f));
             test::add(scene, test::sheet(c + Vec3{0, 0, r}, {r, 0, 0}, {0, h, 0}), test::white(0.7f));
@@ -122,7 +122,7 @@ TEST_CASE("links lose no light to surfaces inside solids") {
         by_links += static_cast<double>(links.view().irradiance(face, 0.3f, 0.3f).g);
         by_rows += light;
     }
-    CHECK(by_links == doctest::Approx(by_rows).epsilon(0.03)); // 0.07 where clusters hold insides and outsides
+    CHECK(by_links == doctest::Approx(by_rows).epsilon(0.03)); // 0.08 where clusters hold insides and outsides
 }
 
 TEST_CASE("a closed box that emits E and reflects r has radiosity E / (1 - r) with links") {
@@ -145,18 +145,20 @@ TEST_CASE("links over the limit are refined again with a larger error and give t
         RadiositySettings settings;
         settings.link_error = link_error;
         WorkWatch watch({});
-        return solve_hierarchically(patched.solved, patched.tree, 0.2f, settings, watch, max_links);
+        return solve_hierarchically(patched.solved, patched.tree, 0.4f, settings, watch, max_links);
     };
     const HierarchicalSolution fine = solve(0.05f, kMaxLinks), coarse = solve(0.4f, kMaxLinks);
     REQUIRE(fine.link_error == 0.05f);
     REQUIRE(fine.links > 4 * coarse.links);
+    HierarchicalSolution at_once;
     for (const int threads : {1, 3}) {
         set_thread_count(threads);
         const HierarchicalSolution limited = solve(0.05f, fine.links / 2);
         CHECK(limited.links <= fine.links / 2);
         const float factor = limited.link_error / 0.05f;
         CHECK((factor == 2 || factor == 4 || factor == 8));
-        const HierarchicalSolution at_once = solve(limited.link_error, kMaxLinks);
+        if (threads == 1) at_once = solve(limited.link_error, kMaxLinks);
+        CHECK(at_once.link_error == limited.link_error);
         CHECK(at_once.links == limited.links);
         CHECK(at_once.irradiance == limited.irradiance);
         CHECK(at_once.irradiance != fine.irradiance);
@@ -170,7 +172,7 @@ TEST_CASE("a solution with an enlarged error warns and records that error") {
     const test::PatchedScene patched(room_with_boxes(), kInfinity);
     RadiositySettings settings;
     settings.solver = RadiositySolver::Hierarchical;
-    settings.patch_size = 0.2f, settings.subdivisions = 0;
+    settings.patch_size = 0.4f, settings.subdivisions = 0;
     settings.link_error = 0.05f;
     std::set<std::string> reported;
     const auto report = [&](const char* what, double) { return reported.insert(what), true; };
@@ -202,13 +204,13 @@ TEST_CASE("solutions with a larger error or fewer steps than requested warn") {
 
 TEST_CASE("links do not depend on the number of threads") {
     const Scene scene = room_with_boxes();
-    const Hash128 reference = solved_by(scene, RadiositySolver::Hierarchical, 0.5f).solution.hash();
+    const Hash128 reference = solved_by(scene, RadiositySolver::Hierarchical, 0.5f, 0.1f).solution.hash();
     for (const int threads : {1, 5}) {
         set_thread_count(threads);
-        CHECK(solved_by(scene, RadiositySolver::Hierarchical, 0.5f).solution.hash() == reference);
+        CHECK(solved_by(scene, RadiositySolver::Hierarchical, 0.5f, 0.1f).solution.hash() == reference);
     }
     set_thread_count(0);
-    CHECK(solved_by(scene, RadiositySolver::Hierarchical, 0.5f, 0.1f).solution.hash() != reference);
+    CHECK(solved_by(scene, RadiositySolver::Hierarchical, 0.5f, 0.2f).solution.hash() != reference);
 }
 
 TEST_CASE("light leaving a cluster depends on its direction") {
@@ -264,9 +266,9 @@ TEST_CASE("clusters of triangles are linked to each other, so that links grow li
     for (int fine = 0; fine < 2; ++fine) {
         Scene scene = test::closed_box(test::white(0.6f));
         test::add(scene, test::sheet({0, 0.98f, 0}, {0.4f, 0, 0}, {0, 0, 0.4f}), test::emitter_material(0, 5));
-        for (std::size_t i = 0; i < 6; ++i) divide_triangles(scene.meshes[i], fine == 0 ? 3 : 4);
+        for (std::size_t i = 0; i < 6; ++i) divide_triangles(scene.meshes[i], fine == 0 ? 2 : 3);
         const SolvedRadiosity solved = solved_by(scene, RadiositySolver::Hierarchical, 1, 0.1f);
-        const double triangles = fine == 0 ? 12 * 64 : 12 * 256;
+        const double triangles = fine == 0 ? 12 * 16 : 12 * 64;
         links_a_triangle[fine] = static_cast<double>(solved.stats.factors) / triangles;
         CAPTURE(links_a_triangle[fine]);
         CHECK(links_a_triangle[fine] < 100);

@@ -171,12 +171,14 @@ TEST_CASE("lights: a triangle with one bright texel is sampled, and a black one 
         ref.filter = i % 5 == 0 ? TextureFilter::Nearest : TextureFilter::Linear;
         const Lights lights(scene);
 
-        std::array<bool, 2> is_lit{}; // each triangle, looked at in every part
-        constexpr int steps = 500;
+        std::array<bool, 2> is_lit{};             // each triangle, looked at in every part
+        const int steps = i % 2 == 0 ? 100 : 300; // shorter than a texel
         for (int a = 0; a <= steps; ++a) {
             for (int b = 0; a + b <= steps; ++b) {
-                const float b1 = static_cast<float>(a) / steps, b2 = static_cast<float>(b) / steps;
+                const float b1 = static_cast<float>(a) / static_cast<float>(steps),
+                            b2 = static_cast<float>(b) / static_cast<float>(steps);
                 for (std::size_t k = 0; k < 2; ++k) {
+                    if (is_lit[k]) continue;
                     const EmissiveTriangle& t = lights.view.triangles[k];
                     const Vec2 uv = (1 - b1 - b2) * t.uv0 + b1 * t.uv1 + b2 * t.uv2;
                     if (!is_black(surface_emission(lights.view, 0, uv))) is_lit[k] = true;

@@ -29,7 +29,8 @@ PictureEstimate estimate(LightStrategy strategy, uint32_t first_seed) {
     RenderSettings settings;
     settings.width = 24;
     settings.height = 16;
-    settings.samples = static_cast<uint32_t>(test::effort(64, 1024));
+    settings.samples = static_cast<uint32_t>(test::effort(32, 512));
+    settings.path.sampler = SamplerKind::Independent; // BSDF sampling rarely meets the sun
     settings.path.strategy = strategy;
     settings.path.max_depth = 5;
     const Scene scene = make_area_lit_scene();
