@@ -21,7 +21,7 @@ constexpr uint32_t kFrames = 30;
 
 RenderSettings frame_settings() {
     RenderSettings settings;
-    settings.width = 96, settings.height = 64;
+    settings.width = 72, settings.height = 48;
     settings.path.max_depth = 4;
     return settings;
 }
@@ -71,7 +71,7 @@ TEST_CASE("frame 30 has the same bytes on every device, in every schedule and ba
 
         RenderSettings wavefront = settings;
         wavefront.body = PathBody::Wavefront;
-        wavefront.batch = 1000; // several rounds begin paths
+        wavefront.batch = 600; // several rounds begin paths
         Session other(cpu, prepared, s.camera, wavefront);
         other.render(1); // the film is apart
         CHECK(hash_of_frames(other, s.camera, kFrames, {}) == expected);
@@ -79,7 +79,9 @@ TEST_CASE("frame 30 has the same bytes on every device, in every schedule and ba
         ReconstructionSettings fewer;
         fewer.passes = 1;
         session.cut();
-        CHECK(hash_of_frames(session, s.camera, kFrames, fewer) != expected);
+        const Hash128 of_two = hash_of_frames(session, s.camera, 2, {});
+        session.cut();
+        CHECK(hash_of_frames(session, s.camera, 2, fewer) != of_two);
 
         if (cuda_requested()) {
             Queue cuda = make_cuda_queue();
@@ -180,7 +182,7 @@ TEST_CASE("frames with ReSTIR have the same bytes on every device, in every sche
             CHECK(hash_of_frames(session, s.camera, kRestirFrames, {}, restir) == expected);
             RenderSettings wavefront = frame_settings();
             wavefront.body = PathBody::Wavefront;
-            wavefront.batch = 1000;
+            wavefront.batch = 600;
             Session other(cpu, prepared, s.camera, wavefront);
             CHECK(hash_of_frames(other, s.camera, kRestirFrames, {}, restir) == expected);
             RenderSettings hybrid = frame_settings();
@@ -240,6 +242,7 @@ TEST_CASE("the mean of frames from a still camera is the picture, except for the
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     Queue queue = requested_queue();
     RenderSettings settings = frame_settings();
+    settings.width = 96, settings.height = 64; // in smaller ones what is clamped counts for more
     Session session(queue, prepared, mixed_scene_camera(), settings);
     session.render(256);
     const double expected = mean_of(session.picture());

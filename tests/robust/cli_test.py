@@ -76,7 +76,8 @@ class WhatIsWritten(CliTest):
 
     def test_an_output_that_fails_late_does_not_cost_the_others(self):
         outcome = self.run_pertev("render", "cornell-box", "-o", "large.hdr", "-o", "small.jpg", "-o", "large.exr",
-                                  "--size", "36x36", "--spp", "1", "--device", "cpu", "--json", preexec_fn=limit_files)
+                                  "--size", "36x36", "--spp", "1", "--device", "cpu", "--json", *UNMETERED,
+                                  preexec_fn=limit_files)
         self.assertEqual(outcome.status, 6, outcome)
         self.assertEqual(self.files(), ["small.jpg"])
         self.assertEqual(self.info("small.jpg")["width"], 36)
@@ -149,7 +150,8 @@ class WhatIsWritten(CliTest):
         whole = self.render("--no-bvh-cache", scene="hills.obj")["hash"]
 
         def check_warning(**options):
-            arguments = ["render", "hills.obj", "-o", "x.png", "--size", "16x16", "--spp", "1", "--device", "cpu", "--json"]
+            arguments = ["render", "hills.obj", "-o", "x.png", "--size", "16x16", "--spp", "1", "--device", "cpu", "--json",
+                         *UNMETERED]
             outcome = self.succeed(*arguments, **options)
             self.assertIn("cache cannot be written", outcome.stdout)
             self.assertEqual(outcome.events("done")[0]["hash"], whole)
@@ -216,7 +218,7 @@ class WhatIsSaid(CliTest):
             self.assertEqual(listed - {"-h", "--help"}, set(flags.split()), verb)
 
     def test_the_progress_bar_shows_share_samples_rate_and_time_left_on_a_terminal_alone(self):
-        arguments = ["render", "cornell-box", "-o", "x.png", "--size", "64x64", "--spp", "8", "--device", "cpu"]
+        arguments = ["render", "cornell-box", "-o", "x.png", "--size", "16x16", "--spp", "8", "--device", "cpu", *UNMETERED]
         self.assertNotIn("\r", self.succeed(*arguments).stderr)
         self.assertNotIn("spp  ", self.succeed(*arguments).stderr)
         self.assertRegex(self.stderr_on_a_terminal(arguments),
