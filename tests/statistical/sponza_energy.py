@@ -3,10 +3,11 @@
 
 Two more renderers agree with these to 0.12 %. The mean does not depend on the size of the picture, whose shape is kept.
 A sample deviates by 2.75 means (from pictures of nine sizes), so the standard error is 0.07 % in the long setting and
-0.01 % on a GPU. Many samples of few pixels are stratified better: of eight seeds each, 64 samples of 80x45 pixels have a
-standard error of 0.30 %, 16 of 160x90 have 0.43 %. So CI takes half as many, with 0.11 %. A picture is the same on every
-run: 0.2 % is asked of the last two, 0.3 % in CI, where less would need minutes. A change that draws other random numbers
-may miss that by chance; then the long setting tells.
+0.01 % on a GPU. Many samples of few pixels are stratified better: of eight seeds, 64 samples of 80x45 pixels have a
+standard error of 0.30 %, 16 of 160x90 have 0.43 %. So CI takes half as many samples. By the former its error is 0.11 %,
+by seven seeds with 256 samples of 80x45 pixels 0.14 %. A picture is the same on every run: 0.2 % is asked of the last
+two, 0.3 % in CI, where less would need minutes. A change that draws other random numbers may miss that by chance; then
+the long setting tells.
 """
 
 import pathlib
