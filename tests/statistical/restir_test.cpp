@@ -87,9 +87,6 @@ RenderSettings restir_settings() {
     RenderSettings settings;
     settings.width = kRestirWidth, settings.height = kRestirHeight;
     settings.path.max_depth = 3;
-    // This seed was chosen. The mean of many lights has a standard error of about its bound without history, 0.5 %, so
-    // that of the seeds 0 to 4 only this one passes there. In that scene the test surely notices no less than 1.6 %.
-    settings.path.seed = 4;
     return settings;
 }
 
@@ -164,12 +161,12 @@ TEST_CASE("without history the mean over frames with ReSTIR equals the path trac
         Queue queue = requested_queue();
         Session session(queue, prepared, c.camera, restir_settings());
         // By the same samples: the noise of what ReSTIR leaves to the paths is then the same.
-        const auto frames = static_cast<uint32_t>(effort(256, 8192)); // a power of two, which stratifies best
+        const auto frames = static_cast<uint32_t>(effort(384, 8192));
         const Image emitted = emitted_light(session, frames);
         const BlockMeans expected = scattered_light(session, emitted, frames);
         for (const RestirLight light : {RestirLight::Direct, RestirLight::Indirect}) {
-            // Indirect shares direct light by the same stages, so that Direct needs but a few scenes.
-            if (light == RestirLight::Direct && c.name != "cornell-box" && c.name != "sky") continue;
+            // Indirect shares direct light by the same stages, so Direct needs only a few scenes.
+            if (frames < 8192 && light == RestirLight::Direct && c.name != "cornell-box" && c.name != "sky") continue;
             CAPTURE(static_cast<int>(light));
             const RestirSettings restir = {.light = light, .radius = 6, .history = 0};
             check_equal_light(scattered_light_in_frames(session, emitted, restir, frames, 0), expected, 0.005, 0.03);
@@ -184,14 +181,12 @@ TEST_CASE("with history the mean over frames with ReSTIR stays close to the path
         const PreparedScene prepared = prepare_scene(c.scene, {}, messages);
         Queue queue = requested_queue();
         Session session(queue, prepared, c.camera, restir_settings());
-        const auto frames = static_cast<uint32_t>(effort(96, 8192));
+        const auto frames = static_cast<uint32_t>(effort(192, 8192));
         const Image emitted = emitted_light(session, frames);
         const BlockMeans expected = scattered_light(session, emitted, frames);
-        // Frames share samples with those before, so that their mean is noisier; with 20 frames of history twice as
-        // much.
-        constexpr uint32_t kHistory = 8;
-        const RestirSettings restir = {.light = RestirLight::Indirect, .radius = 6, .history = kHistory};
-        check_equal_light(scattered_light_in_frames(session, emitted, restir, frames, kHistory), expected, 0.015, 0.06);
+        const RestirSettings restir = {.light = RestirLight::Indirect, .radius = 6};
+        // Frames share samples with the twenty before, so their mean is noisier.
+        check_equal_light(scattered_light_in_frames(session, emitted, restir, frames, 20), expected, 0.015, 0.06);
     }
 }
 
