@@ -1,6 +1,6 @@
 #pragma once
 
-// The common start of render and view: the session's make_ready, and its messages.
+// The common start of render and view: the session's prepare_render, and its messages.
 
 #include "apps/cli/render_flags.h"
 #include "session/pictures/prepare_render.h"

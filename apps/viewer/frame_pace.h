@@ -13,7 +13,7 @@ public:
     /// Target time of a frame in seconds.
     explicit FramePace(double frame_s) : frame_s_(frame_s) {}
 
-    /// Records a frame at `scale` that took `seconds` for all its stages, and before it `beside_s`, independently of
+    /// Records a frame at `scale` that took `seconds` for all its stages, and before it `other_s`, independently of
     /// its size (for moving the scene).
     void took(float scale, double seconds, double other_s = 0);
     /// Scale of each side of the picture: 1, 3/4, 1/2, 3/8, 1/4, 3/16, 1/8, 3/32, 1/16, 3/64 or 1/32.

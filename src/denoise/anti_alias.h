@@ -114,7 +114,7 @@ private:
 
 /// One call per pixel: computes the bytes that a display shows of a reconstructed picture.
 struct ShowPicture {
-    const Float4* picture; // ShownColor
+    const Float4* picture; // shown_color
     ToneMap kind;
     float scale;     // factor for the light before tone mapping
     uint8_t* pixels; // [pixels * 4]

@@ -9,7 +9,7 @@ namespace pertev {
 struct ComposePicture {
     NoisyFrameView frame;
     SignalsView signals;
-    Float4* picture; // ShownColor; w: depth, metres
+    Float4* picture; // shown_color; w: depth, metres
 
     HD void operator()(uint32_t i) const {
         Rgb light = frame.light[i].w != 0 ? rgb_of(frame.emission[i]) : Rgb{0, 0, 0};

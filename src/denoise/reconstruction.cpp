@@ -103,8 +103,8 @@ SignalsView Reconstruction::filter(const NoisyFrame& frame, const CameraView& ca
 void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, const SceneView& scene,
                          const PreviousScene& scene_before, const TemporalGradientsView& change,
                          const ReconstructionSettings& settings) {
-    if (enlarged_) cut();
-    enlarged_.reset();
+    if (upsampled_) cut();
+    upsampled_.reset();
     const uint32_t pixels = width_ * height_;
     const HistoryView now = history(frames_ + 1);
     timer_.start();
@@ -124,17 +124,17 @@ void Reconstruction::add(const NoisyFrame& frame, const CameraView& camera, cons
 void Reconstruction::add_upsampled(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
                                    const CameraView& camera, const SceneView& scene, const PreviousScene& scene_before,
                                    const TemporalGradientsView& change, const ReconstructionSettings& settings) {
-    if (!enlarged_ || enlarged_->width() != features.width() || enlarged_->height() != features.height()) {
+    if (!upsampled_ || upsampled_->width() != features.width() || upsampled_->height() != features.height()) {
         cut();
-        enlarged_.reset(); // freed before the new one, so that both need not fit
-        enlarged_.emplace(*queue_, features.width(), features.height());
+        upsampled_.reset(); // freed before the new one, so that both need not fit
+        upsampled_.emplace(*queue_, features.width(), features.height());
     }
     const HistoryView now = history(frames_ + 1);
     timer_.start();
     Float4* memory = nullptr;
     const SignalsView light = filter(frame, light_camera, scene, scene_before, change, settings, memory);
-    enlarged_->add(features, camera, {light, now.guide, light_camera, width_, height_, frame.splits_light()}, scene,
-                   scene_before, settings, frames_ > 0);
+    upsampled_->add(features, camera, {light, now.guide, light_camera, width_, height_, frame.splits_light()}, scene,
+                    scene_before, settings, frames_ > 0);
     timer_.stop();
     last_camera_ = light_camera;
     ++frames_;
@@ -142,7 +142,7 @@ void Reconstruction::add_upsampled(const NoisyFrame& frame, const CameraView& li
 
 const Float4* Reconstruction::shown() const {
     PERTEV_CHECK(frames_ > 0);
-    return enlarged_ ? enlarged_->shown() : history(frames_).shown;
+    return upsampled_ ? upsampled_->shown() : history(frames_).shown;
 }
 
 Image Reconstruction::picture() const {
@@ -165,7 +165,7 @@ FrameTones Reconstruction::tones(const NoisyFrame& frame) const {
     const uint32_t columns = block_columns(width, side), rows = (height + side - 1) / side;
     const std::size_t row_sums = std::size_t(columns) * height, blocks = std::size_t(columns) * rows;
     Float4* const signals = wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_; // 4 per pixel
-    Float4* const memory = enlarged_ ? enlarged_->tone_memory() : signals;
+    Float4* const memory = upsampled_ ? upsampled_->tone_memory() : signals;
     const BlockSums sums = {memory, memory + row_sums}, means = {memory + 2 * row_sums, memory + 2 * row_sums + blocks};
     launch(*queue_, "sum_block_rows", static_cast<uint32_t>(row_sums),
            SumBlockRows{shown(), frame.view(), width, side, columns, sums});
@@ -208,7 +208,7 @@ void Reconstruction::display(ToneMap tone_map, float exposure_stops) {
     if (display_ == nullptr || display_bytes_ != size) display_ = queue_->make_host_copy(size);
     display_bytes_ = size;
     auto* const signals = reinterpret_cast<uint8_t*>(wide_.data() + 2 * kOfHistory * std::size_t(width_) * height_);
-    uint8_t* const bytes = enlarged_ ? enlarged_->byte_memory() : signals;
+    uint8_t* const bytes = upsampled_ ? upsampled_->byte_memory() : signals;
     launch(*queue_, "show_picture", pixels, ShowPicture{shown(), tone_map, exposure_scale(exposure_stops), bytes});
     copy_timer_.start();
     display_->take(bytes);

@@ -55,8 +55,8 @@ public:
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
     /// Size of the picture, larger than that of the light if it is upsampled.
-    uint32_t shown_width() const { return enlarged_ ? enlarged_->width() : width_; }
-    uint32_t shown_height() const { return enlarged_ ? enlarged_->height() : height_; }
+    uint32_t shown_width() const { return upsampled_ ? upsampled_->width() : width_; }
+    uint32_t shown_height() const { return upsampled_ ? upsampled_->height() : height_; }
     /// Device time of the last add(), in seconds. Waits for it.
     double seconds() const { return timer_.seconds(); }
     /// RGB, linear, of the last frame.
@@ -95,8 +95,8 @@ private:
     Buffer<Vec2> narrow_;
     std::unique_ptr<HostCopy> display_; // null before the first display()
     std::size_t display_bytes_ = 0;
-    Buffer<Float4> layers_;                  // empty until they are requested
-    std::optional<UpsampledFrame> enlarged_; // if the picture has another size than its light
+    Buffer<Float4> layers_;                   // empty until they are requested
+    std::optional<UpsampledFrame> upsampled_; // if the picture has another size than its light
 };
 
 } // namespace pertev

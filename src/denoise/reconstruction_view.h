@@ -24,7 +24,7 @@ struct HistoryView {
     Float4* gloss;   // for the other signal, like diffuse
     Vec2* squares;   // mean square of the luminances of both
     Float4* recent;  // means over few frames: rgb diffuse, luminance of the other
-    Float4* shown;   // the reconstructed picture as ShownColor; w is unused
+    Float4* shown;   // the reconstructed picture as shown_color; w is unused
 };
 
 /// The surface of a pixel, for filters.

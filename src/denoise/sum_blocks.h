@@ -31,7 +31,7 @@ inline std::size_t float4s_of_tones(uint32_t width, uint32_t height) {
 
 /// One call per row of pixels and column of blocks.
 struct SumBlockRows {
-    const Float4* shown; // ShownColor
+    const Float4* shown; // shown_color
     NoisyFrameView frame;
     uint32_t width, side, columns;
     BlockSums rows; // [height * columns]

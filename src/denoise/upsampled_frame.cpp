@@ -13,10 +13,10 @@ constexpr std::size_t kWideArrays = 3; // two shown pictures, and one before ant
 } // namespace
 
 UpsampledFrame::UpsampledFrame(Queue& queue, uint32_t width, uint32_t height)
-    : queue_(&queue), width_(width), height_(height), wide_(queue, kWideArrays * width * height, "enlarged frame"),
-      was_at_(queue, std::size_t(width) * height, "enlarged frame"),
+    : queue_(&queue), width_(width), height_(height), wide_(queue, kWideArrays * width * height, "upsampled frame"),
+      was_at_(queue, std::size_t(width) * height, "upsampled frame"),
       picture_(wide_.data() + std::size_t(2) * width * height),
-      tones_(queue, float4s_of_tones(width, height), "enlarged frame") {}
+      tones_(queue, float4s_of_tones(width, height), "upsampled frame") {}
 
 Float4* UpsampledFrame::shown(uint32_t frame) const { return wide_.data() + frame % 2 * std::size_t(width_) * height_; }
 

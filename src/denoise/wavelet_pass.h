@@ -74,12 +74,12 @@ struct WaveletPass {
 private:
     static constexpr float kOfGloss = 8; // tolerance
 
-    /// Trust in guides other than the light itself, from least_trust to 1: the noisier the light, the less. If a
+    /// Trust in guides other than the light itself, from min_trust to 1: the noisier the light, the less. If a
     /// sample says little, light of neighbours with other normals is nearer to the truth than its own; otherwise each
     /// bump of a normal map would keep its noise.
     HD float trust(float light, float variance) const {
         const float square_light = fma(light, light, 1e-12f);
-        return max(min_trust, square_light / fma(2.0f, variance, square_light)); // in this order, NaN gives least_trust
+        return max(min_trust, square_light / fma(2.0f, variance, square_light)); // in this order, NaN gives min_trust
     }
 
     /// Approximates exp(-x) at a fifth of its cost: (1 - x / 4)^4, and 0 from 4 on.

@@ -93,7 +93,7 @@ struct Surface {
 HD inline Vec3 light_point_error(Vec3 point) { return 0x1p-20f * abs(point); }
 
 /// The shadow ray from a point of a surface, known to `error`, with unit normal `normal`, to a sample point on a
-/// light, where it ends. `lamp_error` is a bound of the error that an emitter's motion adds to its point, metres.
+/// light, where it ends. `emitter_error` is a bound of the error that an emitter's motion adds to its point, metres.
 HD inline Ray ray_to_light(const LightSample& light, Vec3 position, Vec3 error, Vec3 normal, float emitter_error = 0) {
     Ray ray;
     ray.origin = offset_ray_origin(position, error, normal, light.wi);

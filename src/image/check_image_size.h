@@ -13,7 +13,7 @@ namespace pertev {
 inline constexpr uint64_t kImageBytesAlwaysAllowed = uint64_t(16) << 20;
 
 /// Returns if a file of `file_bytes` bytes may contain width x height pixels that need `decoded_bytes` bytes in
-/// memory. `most_per_byte` is the maximum number of these per byte of the format. Throws Error(BadInput) that starts
+/// memory. `max_per_byte` is the maximum number of these per byte of the format. Throws Error(BadInput) that starts
 /// with `name` for an empty or impossible size, Error(OverLimit) for a possible one over kMaxImageSide or
 /// kMaxImagePixels or as check_decoded_bytes does.
 void check_image_size(const std::string& name, uint64_t width, uint64_t height, uint64_t decoded_bytes,

@@ -6,7 +6,7 @@
 // scene's tracer traces their rays. The order of the stages is written once, as a template over the schedule.
 //
 // The stages get a `Job` of views and numbers. It names its parts:
-//   Room               the sizes of its arrays, for `count` samples
+//   Capacity           the sizes of its arrays, for `count` samples
 //   Counts             the counts of rays, to which counts() points
 //   Loop, Wavefront    the schedules: LoopSchedule and WavefrontSchedule with functions that trace the job's rays
 //   first, count       the range of samples that runs

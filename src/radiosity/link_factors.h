@@ -33,7 +33,7 @@ private:
         float weight; // weight if it is visible
     };
     struct QueuedLink {
-        uint32_t first = 0, count = 0; // range of sights
+        uint32_t first = 0, count = 0; // range of visibility tests
         float known = 0;               // sum of what is visible without a ray
         float scale = 1;               // factor of the sum of weights
         uint32_t rays = 0, seen = 0;   // rays traced, and free without a ray

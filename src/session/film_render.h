@@ -32,7 +32,7 @@ public:
     /// added when the settings' time is over, when `keep_going`, called after each pass, returns false, or at
     /// kMaxSamplesPerPixel; it always ends at a whole sample of all pixels. If a sample takes long
     /// (Integrator::render_while), `keep_going` is also called during passes, with the samples in the film so far,
-    /// and while an integrator precomputes (Integrator::make_ready), with the share that is done. Returns the number
+    /// and while an integrator precomputes (Integrator::prepare), with the share that is done. Returns the number
     /// of samples added: at least one if one was requested and fits, but none if `keep_going` ended the first pass or
     /// the renderer was abandoned. The film is then restarted, unless keep_samples_when_abandoned() was called or the
     /// integrator was not ready. Throws what PictureRenderer::begin and `keep_going` throw; the film then holds all

@@ -10,7 +10,7 @@ namespace pertev {
 inline constexpr double kLumensPerWatt = 683;
 
 /// Lumens per watt of luminance for a scene of this name, lm/W: 1 for glTF, which states lights in candela, lux and
-/// nits, read as watts one for one (docs/formats.md), else kLumensPerWatt. `asked_for` overrides it; 0: no override.
+/// nits, read as watts one for one (docs/formats.md), else kLumensPerWatt. `requested` overrides it; 0: no override.
 double lumens_per_watt(const std::string& scene, double requested = 0);
 
 /// The exposure of a physical camera.

@@ -18,7 +18,7 @@ struct MemoryLimit {
     bool is_cuda;      // the GPU's own memory, otherwise the machine's
 };
 
-/// Memory of the queue's device: `asked`, or by default on the CPU the machine's free memory less the finished
+/// Memory of the queue's device: `requested`, or by default on the CPU the machine's free memory less the finished
 /// picture and its layers, and on a GPU everything that it can allocate.
 MemoryLimit memory_to_render_in(const Queue& queue, const RenderSettings& settings,
                                 std::optional<std::size_t> requested);

@@ -106,10 +106,10 @@ std::size_t predicted_frame_bytes(const PreparedScene& scene, const RenderSettin
     std::optional<Restir> sharing;
     if (restir.light != RestirLight::Off) sharing.emplace(queue, of_light[0], of_light[1], restir.light);
     std::optional<NoisyFrame> features;
-    std::optional<UpsampledFrame> enlarged;
+    std::optional<UpsampledFrame> upsampled;
     if (reconstruction.resolution_scale < 1) {
         features.emplace(queue, width, height, splits);
-        enlarged.emplace(queue, width, height);
+        upsampled.emplace(queue, width, height);
     }
     std::optional<Film> film;
     if (settings.aovs != 0) film.emplace(queue, width, height, settings.aovs);

@@ -120,7 +120,7 @@ struct Lobe {
         }
         return {};
     }
-    /// Value and density that the lobe adds under `way`; a layer then moves `way` beneath itself.
+    /// Value and density that the lobe adds under `transmittance`; a layer then moves `transmittance` beneath itself.
     HD BsdfValue evaluate(Vec3 wo, Vec3 wi, LayerTransmittance& transmittance) const {
         switch (kind) {
         case LobeKind::None:
@@ -296,7 +296,7 @@ private:
         return sample;
     }
 
-    /// Evaluates the layers from `last` inwards; `way` then describes what is beneath them.
+    /// Evaluates the layers from `last` inwards; `transmittance` then describes what is beneath them.
     HD BsdfValue evaluate_layers(int last, Vec3 wo, Vec3 wi, LobeClasses classes,
                                  LayerTransmittance& transmittance) const {
         BsdfValue sum;

@@ -268,7 +268,7 @@ struct SampleOfKind {
 
 /// Samples a light and a direction to it by `u`. Returns false if nothing arrives: no lights, the dark back or a dark
 /// spot of a triangle, outside a cone, edge-on; that sample counts as 0. Occlusion and alpha are up to the caller: if
-/// the triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives. `lamps`
+/// the triangle's material is not opaque, radiance times alpha at (instance, primitive, b1, b2) arrives. `emitters`
 /// returns the rigid motion of an instance's emitter at the context's time (math/rigid_motion.h).
 template <bool kTextures = true, class Choice = ChosenByPower, class Emitters = EmittersAtRest>
 HD inline bool sample_light(const LightSetView& view, const LightContext& context, SampleBits u, LightSample& sample,

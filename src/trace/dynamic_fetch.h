@@ -1,13 +1,13 @@
 #pragma once
 
 // Persistent threads with dynamic fetch: lanes whose rays are done get new ones while others are still in traversal,
-// as soon as fewer than Place::kRefillBelow of a warp's lanes are active. The loop of the traversal is the kernel, so
+// as soon as fewer than State::kRefillBelow of a warp's lanes are active. The loop of the traversal is the kernel, so
 // it works for traversals that can be suspended between two turns (WhileWhileTraversal, SpeculativeTraversal,
 // CompressedTraversal). In a scene with instances each lane proceeds from tree to tree independently
 // (trace/scene_traversal_state.h). Only .cu files include this (device/launch_body.h).
 //
 // Besides the common interface (trace/traverse_scene.h), such a traversal has
-//   Place(Place::Slot[Place::kSlots])                  the state of a ray, initially done; is_done(), stop()
+//   State(State::Slot[State::kSlots])                  the state of a ray, initially done; is_done(), stop()
 //   start(tree, ray, visitor, place)                   puts the ray at the root
 //   turn(tree, ray, instance, place, visitor, counter, lanes, working)    advances it; returns true if the visitor
 //   ended

@@ -27,7 +27,7 @@ RenderSettings distributed_settings(uint32_t side, uint32_t samples) {
     return settings;
 }
 
-/// A flat lamp of `mesh`, facing down, over a white floor; its radiosity where it is looked at from just above.
+/// A flat lamp of `emitter`, facing down, over a white floor; its radiosity where it is looked at from just above.
 double floor_radiance(const Mesh& emitter, Vec3 at) {
     Scene scene;
     test::add(scene, test::floor_at(0, 50), test::white(1));

@@ -3,8 +3,8 @@
 // Listeners receive more of a path's vertices than their light: for auxiliary layers, layers of light-path
 // expressions, frames of samples, ReSTIR, and the irradiance meter. A listener is a class with those of the functions
 // below that it needs; the others leave no code. Its data of a path up to the next vertex (Kept), and of a shadow ray
-// until it has been traced (Asked), are two plain structs. The CPU has arrays of them; a GPU's queues have arrays of
-// their parts (ListenerQueues), and the listener loads and stores them.
+// until it has been traced (ShadowData), are two plain structs. The CPU has arrays of them; a GPU's queues have arrays
+// of their parts (ListenerQueues), and the listener loads and stores them.
 
 #include "device_scene/ray_origin.h"
 #include "device_scene/surface.h"

@@ -24,7 +24,7 @@ namespace pertev {
 inline constexpr uint32_t kSearchesEmitters = 2;  // mark in GatherView::marks of a subpath that only looks for
                                                   // emitters
 inline constexpr uint32_t kSeesEmittersWhole = 4; // mark, combined with others: except for emitters and sky that
-                                                  // the ray hits, the throughput is Sight::past_mirrors
+                                                  // the ray hits, the throughput is GatherState::past_mirrors
 inline constexpr uint32_t kNumberOfSearch = 2;    // index among a vertex's choices: whether a ray looks for
                                                   // emitters
 inline constexpr float kMinSearchChance = 0.125f; // minimum probability of that ray

@@ -239,7 +239,7 @@ struct AddConnections {
     }
 };
 
-/// Counts in one thread: connections since the last count and, if `ends_round`, the rays that continue. `joined` is
+/// Counts in one thread: connections since the last count and, if `ends_round`, the rays that continue. `connected` is
 /// the number of light-subpath vertices that each current vertex connects to next.
 struct CountSubpaths {
     SubpathCounts* counts;

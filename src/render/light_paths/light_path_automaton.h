@@ -60,7 +60,7 @@ inline constexpr uint64_t kMaxLightPathEntries = 1u << 24;
 inline constexpr uint64_t kMaxLightPathParts = 1u << 22, kMaxLightPathSteps = 1u << 29;
 
 /// Makes the automaton in which layer i belongs to expression i; there is at least one. It has as few states as
-/// possible, unless minimization takes more than `most_steps`. Throws Error(OverLimit) beyond one of these limits:
+/// possible, unless minimization takes more than `max_steps`. Throws Error(OverLimit) beyond one of these limits:
 /// expressions that distinguish many pasts of a path may need as many states.
 LightPathAutomaton make_automaton(std::span<const LightPathExpression> expressions, const LightPathTags& tags,
                                   uint64_t max_steps = kMaxLightPathSteps);

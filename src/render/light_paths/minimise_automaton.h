@@ -9,7 +9,7 @@
 namespace pertev {
 
 /// Merges states that no path distinguishes; kNothing stays 0. Returns `all` unchanged if that takes more than
-/// `most_steps`.
+/// `max_steps`.
 LightPathAutomaton minimise(LightPathAutomaton all, uint64_t max_steps);
 
 } // namespace pertev

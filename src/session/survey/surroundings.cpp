@@ -44,7 +44,7 @@ struct RayHits {
     bool is_in_the_open() const { return 2 * front >= all; }
 };
 
-std::vector<RayHits> cast_sights(const Scene& scene, const std::vector<Vec3>& points) {
+std::vector<RayHits> cast_visibility_rays(const Scene& scene, const std::vector<Vec3>& points) {
     std::vector<SurveyRay> rays;
     for (const Vec3 point : points) {
         for (int axis = 0; axis < kAxes; ++axis) {
@@ -119,7 +119,7 @@ Surroundings look_around(const Scene& scene) {
     const Vec3 along = size.x >= size.z ? Vec3{0.2f * size.x, 0, 0} : Vec3{0, 0, 0.2f * size.z};
     const Vec3 down = {0, 0.2f * size.y, 0};
     const std::vector<Vec3> points = {centre, centre - down, centre - down + along, centre - down - along};
-    const std::vector<RayHits> all_hits = cast_sights(scene, points);
+    const std::vector<RayHits> all_hits = cast_visibility_rays(scene, points);
 
     int rooms = 0, ways_out = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {

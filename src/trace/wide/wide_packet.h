@@ -151,7 +151,7 @@ private:
         }
     };
 
-    /// Bounds of all rays along an axis: |1/direction|, and the origins that enters_together subtracts from planes.
+    /// Bounds of all rays along an axis: |1/direction|, and the origins that enter_together subtracts from planes.
     struct Extent {
         float min_inv, max_inv, most_near, min_far;
     };
