@@ -148,7 +148,7 @@ class Bench(CliTest):
         events = [json.loads(line)["event"] for line in b"".join([*said, rest]).splitlines()]
         self.assertLess(events.count("rays"), 45)
 
-    def test_noise_tells_the_variance_of_both_samplers_over_the_same_pixels(self):
+    def test_noise_reports_the_variance_of_both_samplers_over_the_same_pixels(self):
         line = ["bench", "noise", "cornell-box", "--device", "cpu", "--size", "32x32"]
         small = [*line, "--spp", "4", "--seeds", "3"]
         made = self.succeed(*small, "--json").events("noise")

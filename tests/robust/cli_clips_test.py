@@ -77,7 +77,7 @@ class Clips(CliTest):
         self.assertEqual(self.hash_at("--time", "0.5", "--animation", "all", scene="last.gltf"), together)
         self.assertEqual(self.hash_at("--animation", "all"), self.hash_at())  # at rest nothing plays
 
-    def test_what_the_file_does_not_have_is_refused_with_what_it_has(self):
+    def test_an_animation_that_the_file_lacks_is_refused_with_a_list_of_those_it_has(self):
         write(self.path("still.gltf"), gltf([]))
         write(self.path("floor.obj"), "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n")
         for words, says in [("jump", ['no animation "jump"', "go", "rise", "2 (twin)", "3 (twin)", "4"]), ("7", ['"7"']),
@@ -106,7 +106,7 @@ class Clips(CliTest):
         alone = self.info("alone-1.gltf")
         self.assertEqual((alone["animations"], "plays" in alone), (["rise (1 s)"], False))
 
-    def test_a_picture_tells_what_played_so_that_it_can_be_made_again(self):
+    def test_metadata_name_the_animation_so_that_a_picture_can_be_made_again(self):
         def made(*arguments):
             end = self.succeed("render", "m.gltf", "-o", "x.exr", *TINY[:-2], "--time", "0.5", "--json", *arguments).events("done")[0]
             return end["hash"], self.info("x.exr").get("pertev.animation")

@@ -38,7 +38,7 @@ class FacesTest(CliTest):
                          ("--two-sided-lights" in arguments, "--show-back-faces" in arguments))
         return made["mean"][0]
 
-    def test_a_lamp_of_an_obj_shines_from_its_front_unless_asked_for_both(self):
+    def test_an_emitter_of_an_obj_shines_from_its_front_unless_both_sides_are_requested(self):
         front = self.mean(*FROM_ABOVE, scene="lamp.obj")
         both = self.mean(*FROM_ABOVE, "--two-sided-lights", scene="lamp.obj")
         self.assertGreater(front, 0)  # the floor
@@ -51,7 +51,7 @@ class FacesTest(CliTest):
         self.assertNotIn("bulb", self.said("lamp.obj", "--two-sided-lights"))
         self.assertNotIn("on the front only", self.said("cornell-box"))
 
-    def test_the_camera_looks_through_backs_unless_asked_to_show_them(self):
+    def test_the_camera_sees_through_back_faces_unless_they_are_requested(self):
         hidden = self.render(*FROM_BEHIND, scene="sheet.gltf")["hash"]
         shown = self.render(*FROM_BEHIND, "--show-back-faces", scene="sheet.gltf")["hash"]
         empty = self.render("--eye", "0,0,-4", "--target", "0,0,-8", scene="sheet.gltf")["hash"]

@@ -77,7 +77,7 @@ class WhatIsWritten(LabTest):
         page = self.check_html(self.path("new/out/report.html"))
         self.assertEqual(page["tables"], measurement["tables"])
         self.assertTrue(all(picture["image"].startswith("data:image/png;base64,") for picture in page["pictures"]))
-        titles = [f"binned {walk} rta near" for walk in ("if-if", "wide8")]
+        titles = [f"binned {traversal} rta near" for traversal in ("if-if", "wide8")]
         for kind in ["nodes", "triangles"]:
             self.assertCountEqual([picture["title"] for picture in page["pictures"] if picture["group"].endswith(kind)], titles)
         self.assertEqual(sorted(os.listdir(self.path("new/out"))), ["report.csv", "report.html", "report.json"])
@@ -86,7 +86,7 @@ class WhatIsWritten(LabTest):
         self.report("cornell-box", *SMALL, "--no-heat-maps", "-o", "out")
         self.assertEqual(self.check_html(self.path("out/report.html"))["pictures"], [])
 
-    def test_heat_maps_are_of_the_first_combination_of_each_structure_and_walk(self):
+    def test_heat_maps_are_of_the_first_combination_of_each_structure_and_traversal(self):
         for flags, switches in [("--rta off", "no-rta near"), ("--order off", "rta unordered"),
                                 ("--tests fast --rta on", "rta near fast-tests"), ("--order both", "rta near"),
                                 ("--tests fast,exact --rta off,nodes,on", "rta near"),

@@ -57,13 +57,13 @@ class WhatIsRefused(LabTest):
             outcome = self.refuse(2, *self.lab(*scene, "-o", ""), says=["-o", "empty"])
             self.assertNotIn("nowhere", outcome.stderr)
 
-    def test_a_scene_of_an_unknown_name_is_told_those_there_are(self):
+    def test_the_error_for_an_unknown_scene_lists_the_known_ones(self):
         for line in [["spnza"], ["--thesis", "spnza"], ["a" * 300]]:
             self.refuse(2, *self.lab(*line), says=[line[-1], "cornell-box", "sponza", "bunny", "forest"])
         # The record's scenes are scenes of --thesis too, where their files are.
         self.refuse_unmeasured(2, "--thesis", "sponza", says=["PERTEV_SCENES", "crytek-sponza/sponza.obj"])
 
-    def test_where_nothing_asked_for_can_be_measured_it_ends_with_2_and_the_reasons(self):
+    def test_a_run_that_can_measure_nothing_exits_with_2_and_the_reasons(self):
         for line, reason in [("--structures octree --traversals while-while", "octree needs the traversal octree"),
                              ("--structures binned --traversals kd", "kd-sah"), ("--structures kd-sah --traversals if-if", "kd"),
                              ("--structures sbvh --traversals octree", "octree"),
@@ -84,7 +84,7 @@ class WhatIsRefused(LabTest):
             self.refuse(4, *self.lab("cornell-box", *SMALL, *line.split()), preexec_fn=limit_addresses(6),
                         says=["out of memory", "rays and what they meet", size, flag])
 
-    def test_help_tells_what_depths_are(self):
+    def test_help_explains_depths(self):
         text = " ".join(self.succeed("lab", "--help").stdout.split())
         self.assertIn("at most 9; LAST alone is 1-LAST", text)
 
@@ -137,7 +137,7 @@ class WhatIsRefused(LabTest):
 
 
 class WhatIsMeasured(LabTest):
-    def test_a_plain_run_prints_a_table_with_every_structure_and_walk(self):
+    def test_a_plain_run_prints_a_table_with_every_structure_and_traversal(self):
         outcome = self.succeed(*self.lab("cornell-box"))
         self.assertNotIn("WRONG", outcome.stdout + outcome.stderr)
         structures, rates = outcome.stdout.split("million rays a second")
@@ -184,7 +184,7 @@ class WhatIsMeasured(LabTest):
         brute = next(of for of in report["combinations"] if of["walk"] == "brute-force")
         self.assertEqual([run["triangles_per_ray"] for run in brute["runs"]], [12] * len(brute["runs"]))
 
-    def test_depths_and_kinds_of_rays_are_those_asked_for(self):
+    def test_depths_and_kinds_of_rays_are_those_requested(self):
         report = self.report("box.obj", *INSIDE, *SMALL, "--depths", "2-4", "--rays", "primary,diffuse")
         self.assertEqual([rays["name"] for rays in report["sets"]], ["primary", "diffuse1", "diffuse2", "diffuse3"])
         for of in report["combinations"]:
@@ -201,7 +201,7 @@ class WhatIsMeasured(LabTest):
                          [("primary", 500, 1), ("shadow", 500, 0), ("diffuse1", 500, 1), ("diffuse2", 500, 1),
                           ("diffuse3", 500, 1)])
 
-    def test_every_walk_runs_in_a_scene_of_shared_meshes(self):
+    def test_every_traversal_runs_in_a_scene_of_shared_meshes(self):
         write(self.path("boxes.gltf"), gltf_of_nested_boxes())
         walks = self.names_of("--traversals")
         self.assertIn("brute-force", walks)
@@ -234,7 +234,7 @@ class WhatIsMeasured(LabTest):
         self.assertIsNone(reasons["binned skip-links rta"])
         self.assertIn("no order", reasons["binned skip-links rta unordered"])
 
-    def test_sets_without_rays_are_told(self):
+    def test_sets_without_rays_are_reported(self):
         away = ["--eye", "0,0,9", "--target", "0,0,10"]
         report = self.report("box.obj", *away, *SMALL)
         self.assertEqual([rays["name"] for rays in report["sets"]], ["primary"])

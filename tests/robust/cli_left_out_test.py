@@ -45,7 +45,7 @@ class LeftOut(CliTest):
         self.refuse(2, "render", scene, "-o", "y.png", "--strict", "--json", *SMALL,
                     says=["EXT_new, ", "and 2 warnings like it"])
 
-    def test_what_leaves_no_picture_is_an_error_that_tells_what_is_left_out(self):
+    def test_a_file_that_leaves_no_picture_is_an_error_that_lists_what_is_left_out(self):
         accessors = [{"componentType": 5126, "count": 3, "type": "VEC3"}]
         meshes = [{"primitives": [{"attributes": {"POSITION": 0},
                                    "extensions": {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {}}}}]}]

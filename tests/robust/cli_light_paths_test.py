@@ -63,7 +63,7 @@ class Layers(CliTest):
         for verb in ("view cornell-box --max-memory 5", "bench noise cornell-box --max-memory 5"):
             self.refuse(2, *verb.split(), says=["--max-memory", "--integrator radiosity"])
 
-    def test_what_is_wrong_is_told_before_anything_is_rendered(self):
+    def test_wrong_expressions_are_reported_before_anything_is_rendered(self):
         def refuse(status, *flags, says):
             self.refuse(status, "render", "cornell-box", "-o", "x.exr", *flags, says=says)
 

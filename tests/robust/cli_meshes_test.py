@@ -40,7 +40,7 @@ class Meshes(CliTest):
     def said(self, scene, *flags):
         return self.succeed("render", scene, "-o", "x.exr", "--size", "8x8", "--spp", "1", *VIEW, *flags).stderr
 
-    def test_flags_turn_a_file_to_metres_with_y_up_and_a_picture_tells_them(self):
+    def test_flags_convert_a_file_to_metres_with_y_up_and_metadata_have_them(self):
         pictures = set()
         for axis, vertices in STEPS.items():
             write(self.path(f"{axis}.obj"), vertices + STEP)

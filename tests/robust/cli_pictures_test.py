@@ -74,7 +74,7 @@ class HowPicturesAreShown(CliTest):
         _, _, layers = read_exr(self.path("x.exr"))
         self.assertEqual([layers[channel][3][3] for channel in "RGB"], [0.5, 0.25, 0.125])
 
-    def test_an_exr_beside_a_png_is_linear_and_tells_how_the_png_was_shown(self):
+    def test_an_exr_beside_a_png_is_linear_and_its_metadata_say_how_the_png_was_shown(self):
         exposure = self.flags_in(self.show(outputs=["x.exr", "x.png"])[0])[1]
         told = self.info("x.exr")
         self.assertEqual((told["pertev.tone_map"], round(told["pertev.exposure"], 2)), ("agx", float(exposure)))

@@ -25,7 +25,7 @@ class Flags(CliTest):
             "(did you mean --max-depth?); -Q: no such flag (did you mean -q?)\n"])
         self.refuse(2, "info", "--zzz", "--aaa", says=["--zzz: no such flag; --aaa: no such flag\n"])
 
-    def test_an_unknown_flag_is_told_before_what_may_follow_from_it(self):
+    def test_an_unknown_flag_is_reported_before_errors_that_follow_from_it(self):
         for line, meant in [("render cornell-box --ouptut x.png", "--output"), ("render cornell-box --out x.png", "--output"),
                             ("render --sp 4 cornell-box -o x.png", "--spp"), ("lab --thesys", "--thesis"),
                             ("compare x.png --block 2", "--blocks"), ("bench render --sceen x.obj", "--scene"),
@@ -45,7 +45,7 @@ class Flags(CliTest):
                 if swapped != flag:
                     self.refuse(2, *verb, swapped, says=[f"{swapped}: no such flag (did you mean {flag}?)"])
 
-    def test_a_word_too_many_is_told_with_what_it_may_have_been(self):
+    def test_an_extra_word_is_reported_with_a_suggestion(self):
         self.refuse(2, "rendr", "cornell-box", says=["rendr: not understood (did you mean render?)", "a verb is required"])
         self.refuse(2, "rendr", "cornell-box", "-o", "x.png", says=["pertev: rendr: not understood (did you mean render?); a"])
         self.refuse(2, "bench", "ray", says=["ray: not understood (did you mean rays?)"])
@@ -63,7 +63,7 @@ class Flags(CliTest):
                            (["lab", ""], "SCENE")]:
             self.refuse(2, *line, says=[f"pertev: {what}: the name is empty\n"])
 
-    def test_a_flag_before_its_verb_is_told_where_it_belongs(self):
+    def test_the_error_for_a_flag_before_its_verb_says_where_it_belongs(self):
         self.refuse(2, "--spp", "4", "render", "cornell-box", "-o", "x.png", says=["--spp: is a flag of render"])
         self.refuse(2, "--json", "info", "cornell-box", says=[])
 
@@ -78,13 +78,13 @@ class Flags(CliTest):
             self.assertEqual((outcome.stderr, outcome.events("error")[0]["status"]), ("", 2), outcome)
         self.refuse(2, "--quiet", "bench", "rays", says=["--quiet: is a flag of bench"])
 
-    def test_a_list_of_outputs_is_refused_and_told_how_pictures_are_asked_for(self):
+    def test_a_list_of_outputs_is_refused_with_the_way_to_request_several(self):
         for given, meant in [("a.png,b.exr", "-o a.png -o b.exr\n"), ("a.png,b", "-o a.png -o b\n"),
                              ("x/a.png,b.exr,c.jpg", "-o x/a.png -o b.exr -o c.jpg\n")]:
             self.refuse(2, "render", "nowhere.obj", "-o", given, says=[f"-o {given}: ", meant])
         self.assertNotIn("-o", self.succeed("render", "cornell-box", "-o", "one,two.png", *SMALL).stderr)
 
-    def test_every_verb_that_writes_one_file_refuses_a_list_and_tells_of_number_signs(self):
+    def test_every_verb_that_writes_one_file_refuses_a_list_and_explains_number_signs(self):
         self.refuse(2, "solve", "radiosity", "nowhere.obj", "-o", "x.rad,y.rad", says=["-o x.rad -o y.rad"])
         self.refuse(2, "bench", "render", "--scene", "nowhere.obj", "-o", "a.png,b.exr", says=["-o a.png -o b.exr"])
         for line in [["solve", "radiosity", "nowhere.obj", "-o", "x-##.rad"], ["bench", "render", "--scene", "nowhere.obj", "-o", "a-##.png"]]:
@@ -102,7 +102,7 @@ class Flags(CliTest):
         self.succeed("render", "cornell-box", "-o", "f-#.png", "-o", "f-##.png", *SMALL, "--exposure", "0", "--frames", "8-9")
         self.succeed("render", "cornell-box", "-o", "a.png", "-o", "a.exr", "-o", "f/a.png", *SMALL)
 
-    def test_a_number_in_a_name_without_frames_is_told(self):
+    def test_a_frame_number_in_a_name_without_frames_is_reported(self):
         outcome = self.succeed("render", "cornell-box", "-o", "a-###.png", *SMALL)
         self.assertIn("-o a-###.png: # stands for a frame's number only with --frames", outcome.stderr)
         self.assertEqual(self.files(), ["a-###.png"])
@@ -208,7 +208,7 @@ class SignsOfLife(CliTest):
         os.close(follower)
         return program, *listen_to(leader)
 
-    def test_a_line_every_10_s_tells_what_is_done_where_no_bar_can_be_drawn(self):
+    def test_a_line_every_10_s_reports_progress_where_no_bar_can_be_drawn(self):
         enough = ["--time-limit", "10.4", "--exposure", "0"]
         to_a_file = self.start(*enough)
         quiet = self.start(*enough, "-q")

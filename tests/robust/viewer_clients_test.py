@@ -78,7 +78,7 @@ class Together(WithViewer):
                 for half in halves:
                     half.close()
 
-    def test_there_is_room_for_sixteen_and_the_next_is_told_so(self):
+    def test_sixteen_clients_are_accepted_and_the_next_is_refused_with_the_reason(self):
         clients = []
         try:
             for number in range(16):

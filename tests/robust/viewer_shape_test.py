@@ -42,7 +42,7 @@ class Shape(CliTest):
                 client.steer(type="orbit", dx=0.1, dy=0)
                 self.assertTrue(client.done(lambda s: s["input"] == 1)["flags"].endswith("64x100"))
 
-    def test_a_window_gets_no_more_pixels_than_the_default_and_none_where_the_size_was_asked_for(self):
+    def test_a_window_gets_at_most_the_default_number_of_pixels_and_a_requested_size_stays(self):
         with Viewer(size="", spp=1) as viewer, Client(viewer) as client:
             client.say(type="shape", width=3840, height=2160)
             client.picture()
@@ -89,7 +89,7 @@ class Grows(CliTest):
 
 
 class Together(CliTest):
-    def test_a_second_client_is_told_why_it_does_not_steer_and_who_steers_sees_the_wish(self):
+    def test_a_second_client_learns_why_it_does_not_steer_and_the_first_sees_its_request(self):
         with Viewer() as viewer, Client(viewer, key="first") as first:
             before = first.done()["flags"]
             with Client(viewer, key="second") as second:

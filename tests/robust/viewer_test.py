@@ -211,7 +211,7 @@ class Pictures(CliTest):
             words = flags["flags"].replace("'", "").split()
             self.assertEqual(flags["hash"], self.rendered(*words)[0])
             self.assertNotEqual(flags["hash"], self.rendered()[0])
-            # And no structure or walk changes it.
+            # And no structure or traversal changes it.
             for name, value in [("structure", "octree"), ("traversal", "while-while"), ("rta", "off"), ("structure", "sbvh")]:
                 client.set(name, value)
                 state = client.done(lambda s, n=name, v=value: s["values"][n] == v)
@@ -322,7 +322,7 @@ class Pictures(CliTest):
             info = self.info("saved.exr")
             self.assertEqual(info["hash"], state["hash"])
 
-    def test_what_lies_at_a_pixel_is_told_by_name(self):
+    def test_the_object_at_a_pixel_is_reported_by_name(self):
         with Viewer() as viewer, Client(viewer) as client:
             client.steer(type="pick", x=0.5, y=0.95, use="show")
             rows = {label: value for _, label, value in client.text("picked")["rows"]}
@@ -394,7 +394,7 @@ class Pictures(CliTest):
 
 
 class Ends(CliTest):
-    def test_on_a_desktop_it_opens_the_browser_with_the_address_unless_it_is_told_not_to(self):
+    def test_on_a_desktop_it_opens_the_browser_with_the_address_unless_a_flag_forbids_it(self):
         opened = self.path("opened")
         write(self.path("xdg-open"), f'#!/bin/sh\nprintf "%s" "$*" > {opened}.part && mv {opened}.part {opened}\n')
         os.chmod(self.path("xdg-open"), 0o755)
@@ -440,7 +440,7 @@ class Ends(CliTest):
             sentence = re.search(r"every flag of `pertev render` but(.*?);", file.read(), re.S).group(1)
         self.assertEqual(flags_of("render") - flags_of("view") - {"--output"}, set(re.findall(r"`(--[a-z-]+)`", sentence)))
 
-    def test_another_host_is_told_what_that_means(self):
+    def test_a_warning_explains_what_listening_on_another_host_means(self):
         with Viewer("--host", "127.0.0.2", size="16x16", spp=1) as viewer:
             self.assertEqual(viewer.host, "127.0.0.2")
             self.assertEqual(viewer.get("/")[0], 200)

@@ -73,7 +73,7 @@ class Times(CliTest):
                 state = self.still(client, client.steer(type="time", at=float(at)))
                 self.assertEqual(state["clock"]["at"], float(at))
                 self.assertEqual(state["hash"], self.rendered("--time", at))
-            # No structure or walk changes it.
+            # No structure or traversal changes it.
             hashes = {self.still(client, client.set(name, value))["hash"] for name, value in
                       [("structure", "octree"), ("structure", "sbvh"), ("rta", "off")]}
             self.assertEqual(hashes, {state["hash"]})
@@ -148,7 +148,7 @@ class Times(CliTest):
             after = self.still(client, self.play(client, True))
             self.assertEqual((after["hash"], after["flags"]), (state["hash"], state["flags"]))
 
-    def test_a_time_that_cannot_be_shown_is_told_and_the_one_before_comes_back(self):
+    def test_a_time_that_cannot_be_shown_is_reported_and_the_previous_one_stays(self):
         write(self.path("far.gltf"), moving_gltf(way=1e15))
         with self.view("--time", "0", scene="far.gltf") as viewer, Client(viewer) as client:
             first = client.done()
