@@ -10,6 +10,7 @@
 #include "tests/support/hang_guard.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/traversal_switches.h"
 #include "tracer/traversal_kernels.h"
 
 using namespace pertev;
@@ -43,28 +44,12 @@ Scene make_opaque(Scene scene) {
     return scene;
 }
 
-std::vector<TraversalOptions> all_switches() {
-    std::vector<TraversalOptions> all;
-    for (const bool rta : {true, false}) {
-        for (const bool near_first : {true, false}) all.push_back({.rta = rta, .near_first = near_first});
-    }
-    all.push_back({.rta_at_pops = false});
-    return all;
-}
-
 constexpr Distribution kDistributions[] = {Distribution::OneAThread, Distribution::Persistent,
                                            Distribution::DynamicFetch};
 
 struct Tally {
     int pictures = 0, refused = 0, wrong = 0;
 };
-
-/// Binary trees are traversed by the same code, so that some switches matter over one of them alone.
-bool is_first_tree_or_switched_on(const Combination& c) {
-    const TraversalOptions& options = c.options;
-    return c.structure == StructureKind::SpatialSplits || !builder_of(c.structure) ||
-           (options.rta && options.near_first && options.rta_at_pops);
-}
 
 /// One session that goes from tracer to tracer. Without `all_switches_everywhere` trees of most builders
 /// are traversed with all switches on alone.
@@ -80,14 +65,15 @@ Tally check_all(const Scene& scene, bool all_switches_everywhere) {
     Tally tally;
     for (const StructureKind structure : kValuesOf<StructureKind>) {
         for (const TraversalKind traversal : kValuesOf<TraversalKind>) {
-            for (const TraversalOptions& options : all_switches()) {
+            for (const TraversalOptions& options : test::exact_options()) {
                 for (const Distribution distribution : kDistributions) {
                     const Combination c = {structure, traversal, options, distribution};
                     if (const auto reason = why_no_tracer(c, queue.is_cuda())) {
                         tally.refused += reason->empty() ? 0 : 1;
                         continue;
                     }
-                    if (!all_switches_everywhere && !is_first_tree_or_switched_on(c)) continue;
+                    if (!all_switches_everywhere && !test::is_first_tree(structure) && !test::is_switched_on(options))
+                        continue;
                     const test::HangGuard guard(name_of(c), 20);
                     settings.tracers = same_for_all(c);
                     session.set_settings(settings);

@@ -27,15 +27,6 @@ constexpr bool kTwoScenes = true;
 #endif
 constexpr const char *kSponzaFile = "crytek-sponza/sponza.obj", *kSibenikFile = "sibenik/sibenik.obj";
 
-bool is_switched_on(const TraversalOptions& options) {
-    return options.rta && options.near_first && options.rta_at_pops;
-}
-
-/// The trees over which every traversal is traced with every switch.
-bool is_first_tree(StructureKind structure) {
-    return structure == StructureKind::SpatialSplits || !builder_of(structure);
-}
-
 /// Lists every traversal with every switch over the first trees. With `half` it lists all switches on, and every
 /// second one of the other switches: the two halves together have all.
 std::vector<Combination> over_first_trees(bool is_cuda, std::optional<std::size_t> half) {

@@ -114,22 +114,9 @@ TEST_CASE("a particle's direction is sampled by the adjoint's density, and its w
         for (const float tilt : tilts) {
             const Surface surface = tilted_surface(c.bsdf, tilt);
             const Vec3 wi = direction_at(0.45f, 0.45f); // within the reach of the raise
-            double weight_error = 0;
-            const auto sample = [&](float lobe, Vec2 u) -> std::optional<Vec3> {
-                const BsdfSample s = sample_adjoint(surface, wi, lobe, u);
-                if (!(s.pdf > 0) || s.is_delta()) return std::nullopt;
-                const BsdfValue value = evaluate_adjoint(surface, wi, s.wi);
-                const double f = static_cast<double>(value.f.g);
-                weight_error = std::max(weight_error, std::abs(static_cast<double>(s.weight.g * s.pdf) - f) / f);
-                return s.wi;
-            };
-            const auto pdf = [&](Vec3 wo) { return static_cast<double>(evaluate_adjoint(surface, wi, wo).pdf); };
-            const ChiSquareResult result =
-                chi_square_of_directions(sample, pdf,
-                                         {.samples = static_cast<uint32_t>(effort(40'000, 400'000)),
-                                          .cells_x = 12,
-                                          .cells_y = 20,
-                                          .min_quarterings = 1});
+            const auto [result, weight_error] =
+                test_tilted_sampling([&](float lobe, Vec2 u) { return sample_adjoint(surface, wi, lobe, u); },
+                                     [&](Vec3 wo) { return evaluate_adjoint(surface, wi, wo); });
             INFO(c.name << ", tilt " << tilt << ", weight off by " << weight_error);
             CHECK_MESSAGE(result.passes(tests), result.describe());
             CHECK(weight_error < 0.02);

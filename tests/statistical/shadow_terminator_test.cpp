@@ -161,22 +161,9 @@ TEST_CASE("sampling a tilted surface follows its density for every BSDF") {
             CAPTURE(tilt);
             const Surface surface = tilted_surface(c.bsdf, tilt);
             const Vec3 wo = direction_at(0.6f);
-            double weight_error = 0;
-            const auto sample = [&](float lobe, Vec2 u) -> std::optional<Vec3> {
-                const BsdfSample s = surface.sample(wo, lobe, u);
-                if (!(s.pdf > 0) || s.is_delta()) return std::nullopt;
-                const BsdfValue value = surface.evaluate(wo, s.wi);
-                const double f = static_cast<double>(value.f.g);
-                weight_error = std::max(weight_error, std::abs(static_cast<double>(s.weight.g * s.pdf) - f) / f);
-                return s.wi;
-            };
-            const auto pdf = [&](Vec3 wi) { return static_cast<double>(surface.evaluate(wo, wi).pdf); };
-            const ChiSquareResult result =
-                chi_square_of_directions(sample, pdf,
-                                         {.samples = static_cast<uint32_t>(effort(40'000, 400'000)),
-                                          .cells_x = 12,
-                                          .cells_y = 20,
-                                          .min_quarterings = 1});
+            const auto [result, weight_error] =
+                test_tilted_sampling([&](float lobe, Vec2 u) { return surface.sample(wo, lobe, u); },
+                                     [&](Vec3 wi) { return surface.evaluate(wo, wi); });
             CHECK_MESSAGE(result.passes(tests), result.describe());
             CHECK(weight_error < 0.02);
         }

@@ -1,10 +1,16 @@
 #pragma once
 
-// A surface whose interpolated normal leans away from its triangle's.
+// A surface whose interpolated normal leans away from its triangle's, and the test of how it is sampled.
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
 
 #include "device_scene/surface.h"
+#include "tests/support/chi_square.h"
+#include "tests/support/options.h"
 
 namespace pertev::test {
 
@@ -16,6 +22,33 @@ inline Surface tilted_surface(const Bsdf& bsdf, float tilt) {
     surface.bsdf = bsdf;
     surface.tilt = terminator_tilt(tilt, 0);
     return surface;
+}
+
+struct TiltedSampling {
+    ChiSquareResult directions;
+    double weight_error; // greatest relative error of weight times pdf from the value
+};
+
+/// Compares the directions that `sample` draws with the density that `evaluate` returns, and their weights with its
+/// values.
+inline TiltedSampling test_tilted_sampling(const std::function<BsdfSample(float lobe, Vec2 u)>& sample,
+                                           const std::function<BsdfValue(Vec3 direction)>& evaluate) {
+    double weight_error = 0;
+    const auto direction = [&](float lobe, Vec2 u) -> std::optional<Vec3> {
+        const BsdfSample s = sample(lobe, u);
+        if (!(s.pdf > 0) || s.is_delta()) return std::nullopt;
+        const double f = static_cast<double>(evaluate(s.wi).f.g);
+        weight_error = std::max(weight_error, std::abs(static_cast<double>(s.weight.g * s.pdf) - f) / f);
+        return s.wi;
+    };
+    const auto pdf = [&](Vec3 w) { return static_cast<double>(evaluate(w).pdf); };
+    const ChiSquareResult directions =
+        chi_square_of_directions(direction, pdf,
+                                 {.samples = static_cast<uint32_t>(effort(40'000, 400'000)),
+                                  .cells_x = 12,
+                                  .cells_y = 20,
+                                  .min_quarterings = 1});
+    return {directions, weight_error};
 }
 
 } // namespace pertev::test

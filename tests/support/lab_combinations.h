@@ -5,20 +5,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <vector>
 
 #include "lab/run_lab.h"
+#include "tests/support/traversal_switches.h"
 
 namespace pertev::test {
-
-inline std::vector<TraversalOptions> exact_options() {
-    std::vector<TraversalOptions> options;
-    for (const bool rta : {true, false}) {
-        for (const bool near_first : {true, false}) options.push_back({rta, near_first});
-    }
-    options.push_back({.rta_at_pops = false});
-    return options;
-}
 
 /// Everything that there is on a device; brute force only where a scene is small.
 inline LabSettings all_combinations(bool is_cuda, bool brute_force) {
