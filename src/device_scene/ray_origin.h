@@ -12,37 +12,42 @@
 namespace pertev {
 
 /// The next float away from zero or towards it in the direction of `sign`.
-HD inline float next_float(float x, float sign) {
-    if (x == 0) return copysign(float_of(1u), sign);
-    const uint32_t bits = bits_of(x);
-    const bool away = (x > 0) == (sign > 0);
-    return float_of(away ? bits + 1 : bits - 1);
+template <class T>
+HD inline T next_float(T x, T sign) {
+    const WordOf<T> bits = bits_of(x);
+    const MaskOf<T> away = (x > 0) == (sign > 0);
+    return select(x == 0, copysign(T(float_of(1u)), sign), float_of<T>(select(away, bits + 1u, bits - 1u)));
 }
 
 /// Weights of a triangle's second and third vertex.
-struct PointOnTriangle {
-    float u, v;
+template <class T>
+struct PointOnTriangleOf {
+    T u, v;
 };
+using PointOnTriangle = PointOnTriangleOf<float>;
 
 /// Moves the position (u, v) inwards if one of its three weights is below `least` (in [0, 1/4]). Each weight is then
 /// at least 2/3 of that; nothing changes if none is below it.
-HD inline PointOnTriangle keep_off_edges(float u, float v, float least) {
-    const float w = 1.0f - u - v;
-    if (min(w, min(u, v)) >= least) return {u, v};
-    const float at_u = max(u, least), at_v = max(v, least);
-    const float scale = 1.0f / (max(w, least) + at_u + at_v); // 1 to 3/2
-    return {at_u * scale, at_v * scale};
+template <class T>
+HD inline PointOnTriangleOf<T> keep_off_edges(T u, T v, T least) {
+    const T w = 1.0f - u - v;
+    const MaskOf<T> is_near = !(min(w, min(u, v)) >= least);
+    if (!any(is_near)) return {u, v};
+    const T at_u = max(u, least), at_v = max(v, least);
+    const T scale = 1.0f / (max(w, least) + at_u + at_v); // 1 to 3/2
+    return {select(is_near, at_u * scale, u), select(is_near, at_v * scale, v)};
 }
 
 /// Offsets `point`, whose distance to a plane with unit normal `normal` has an error of at most `error` (metres, per
 /// component, >= 0), to the side of the plane that `direction` points to.
-HD inline Vec3 offset_ray_origin(Vec3 point, Vec3 error, Vec3 normal, Vec3 direction) {
-    const float distance = dot(abs(normal), error);
-    const Vec3 offset = dot(direction, normal) < 0 ? -distance * normal : distance * normal;
-    const Vec3 moved = point + offset;
-    return {offset.x != 0 ? next_float(moved.x, offset.x) : moved.x,
-            offset.y != 0 ? next_float(moved.y, offset.y) : moved.y,
-            offset.z != 0 ? next_float(moved.z, offset.z) : moved.z};
+template <class T>
+HD inline Vec3Of<T> offset_ray_origin(Vec3Of<T> point, Vec3Of<T> error, Vec3Of<T> normal, Vec3Of<T> direction) {
+    const T distance = dot(abs(normal), error);
+    const Vec3Of<T> offset = select(dot(direction, normal) < 0, -distance, distance) * normal;
+    const Vec3Of<T> moved = point + offset;
+    return {select(offset.x != 0, next_float(moved.x, offset.x), moved.x),
+            select(offset.y != 0, next_float(moved.y, offset.y), moved.y),
+            select(offset.z != 0, next_float(moved.z, offset.z), moved.z)};
 }
 
 } // namespace pertev

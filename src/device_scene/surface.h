@@ -90,7 +90,10 @@ struct Surface {
 };
 
 /// Bound of the rounding error of a point on a light, per component: 16 units, as for an unrotated instance.
-HD inline Vec3 light_point_error(Vec3 point) { return 0x1p-20f * abs(point); }
+template <class T>
+HD inline Vec3Of<T> light_point_error(Vec3Of<T> point) {
+    return 0x1p-20f * abs(point);
+}
 
 /// The shadow ray from a point of a surface, known to `error`, with unit normal `normal`, to a sample point on a
 /// light, where it ends. `emitter_error` is a bound of the error that an emitter's motion adds to its point, metres.
@@ -112,16 +115,31 @@ HD inline Ray ray_to_light(const LightSample& light, Vec3 position, Vec3 error, 
     return ray;
 }
 
-/// Vertices and other data of a triangle that make_surface needs repeatedly.
-struct WorldTriangle {
-    TriangleIndices i;
-    Vec3 a, ab, ac; // first corner and the edges from it, world space
-    Vec3 normal;    // unit, by the winding in the mesh's own space
-    Vec3 position;  // position of the hit, kept off the edges
-    Vec3 error;     // bound of its rounding error and of everything that the intersection test of a triangle of this
-                    // size adds, per component
+/// How an instance's mesh lies in the world (InstanceView).
+template <class T>
+struct PlacementOf {
+    const TransformOf<T>& world_from_local;
+    const TransformOf<T>& local_from_world;
+    MaskOf<T> is_mirrored, is_baked;
+};
 
-    HD Vec3 at(float u, float v) const { return a + (u * ab + v * ac); }
+HD inline PlacementOf<float> placement_of(const InstanceView& instance) {
+    return {instance.world_from_local, instance.local_from_world, instance.is_mirrored != 0, instance.is_baked != 0};
+}
+
+/// A triangle that a ray hits. `T` is float, or eight floats at once for eight hits (math/lanes.h).
+template <class T>
+struct WorldTriangleOf {
+    Vec3Of<T> a, ab, ac; // first corner and the edges from it, world space
+    Vec3Of<T> normal;    // unit, by the winding in the mesh's own space
+    Vec3Of<T> position;  // position of the hit, kept off the edges
+    Vec3Of<T> error;     // bound of its rounding error and of everything that the intersection test of a triangle of
+                         // this size adds, per component
+
+    HD Vec3Of<T> at(T u, T v) const { return a + (u * ab + v * ac); }
+};
+struct WorldTriangle : WorldTriangleOf<float> {
+    TriangleIndices i;
 };
 
 /// The bound in units of 2^-24. For a baked triangle the traversal uses the same vertices, so the error comes from
@@ -130,12 +148,14 @@ struct WorldTriangle {
 /// local_from_world, t: including the rounding of L itself that is 5 |M| (|L||P| + |t|), M = world_from_local. Its
 /// vertices here have an error of 4 |M||a| + 4 |T|, which is at most 8 |M| (|L||P| + |t|) and 4 |M||L| of the edges.
 /// |M||L| is at least 1, so a factor of 16 covers everything.
-HD inline Vec3 hit_error(const InstanceView& instance, Vec3 position, Vec3 ab, Vec3 ac) {
-    const Vec3 edges = abs(ab) + abs(ac);
-    if (instance.is_baked != 0) return 0x1p-23f * abs(position) + 0x1.4p-21f * edges;
-    const Transform& l = instance.local_from_world;
-    return 0x1p-20f *
-           transform_sizes(instance.world_from_local, transform_sizes(l, abs(position) + edges) + abs(l.translation));
+template <class T>
+HD inline Vec3Of<T> hit_error(const PlacementOf<T>& placement, Vec3Of<T> position, Vec3Of<T> ab, Vec3Of<T> ac) {
+    const Vec3Of<T> edges = abs(ab) + abs(ac);
+    const Vec3Of<T> if_baked = 0x1p-23f * abs(position) + 0x1.4p-21f * edges;
+    if (!any(!placement.is_baked)) return if_baked;
+    const TransformOf<T>& l = placement.local_from_world;
+    const Vec3Of<T> local = transform_sizes(l, abs(position) + edges) + abs(l.translation);
+    return select(placement.is_baked, if_baked, 0x1p-20f * transform_sizes(placement.world_from_local, local));
 }
 
 /// Why no light leaks at an edge: there the computed point may be behind a neighbour's plane by its error e (the
@@ -145,23 +165,30 @@ HD inline Vec3 hit_error(const InstanceView& instance, Vec3 position, Vec3 ab, V
 /// then 4.6 e sin x - 1.7 e cos x inside the other: more than the 1.7 e of rounding from 42 degrees to flat, and for
 /// most triangles (11 e) from 17 degrees. Slivers count as at least a sixteenth as high as long, so that no point
 /// moves by more than 900 e.
+template <class T>
+HD inline void place_hit(WorldTriangleOf<T>& triangle, const PlacementOf<T>& placement, Vec3Of<T> a, Vec3Of<T> b,
+                         Vec3Of<T> c, T u, T v) {
+    const TransformOf<T>& m = placement.world_from_local;
+    triangle.a = transform_point(m, a);
+    triangle.ab = transform_point(m, b) - triangle.a;
+    triangle.ac = transform_point(m, c) - triangle.a;
+    const T size = max(max_component(abs(triangle.ab)), max_component(abs(triangle.ac)));
+    const T inv = 1.0f / size; // scaled, because the product of two tiny edges would underflow
+    const Vec3Of<T> across = cross(inv * triangle.ab, inv * triangle.ac);
+    const T sign = select(placement.is_mirrored, T(-1.0f), T(1.0f));
+    triangle.normal = normalize_or(sign * across, {0, 0, 1});
+
+    triangle.error = hit_error(placement, triangle.at(u, v), triangle.ab, triangle.ac);
+    const T least = (16.0f * inv) * max_component(triangle.error) / max(length(across), T(0x1p-4f));
+    const PointOnTriangleOf<T> uv = keep_off_edges(u, v, min(least, T(0.25f)));
+    triangle.position = triangle.at(uv.u, uv.v);
+}
+
 HD inline WorldTriangle world_triangle(const InstanceView& instance, const MeshView& mesh, const Hit& hit) {
     WorldTriangle triangle;
     triangle.i = triangle_indices(mesh, hit.primitive);
-    const Transform& m = instance.world_from_local;
-    triangle.a = transform_point(m, mesh.positions[triangle.i.a]);
-    triangle.ab = transform_point(m, mesh.positions[triangle.i.b]) - triangle.a;
-    triangle.ac = transform_point(m, mesh.positions[triangle.i.c]) - triangle.a;
-    const float size = max(max_component(abs(triangle.ab)), max_component(abs(triangle.ac)));
-    const float inv = 1.0f / size; // scaled, because the product of two tiny edges would underflow
-    const Vec3 across = cross(inv * triangle.ab, inv * triangle.ac);
-    const float sign = instance.is_mirrored != 0 ? -1.0f : 1.0f;
-    triangle.normal = normalize_or(sign * across, Vec3{0, 0, 1});
-
-    triangle.error = hit_error(instance, triangle.at(hit.u, hit.v), triangle.ab, triangle.ac);
-    const float least = (16.0f * inv) * max_component(triangle.error) / max(length(across), 0x1p-4f);
-    const PointOnTriangle uv = keep_off_edges(hit.u, hit.v, min(least, 0.25f));
-    triangle.position = triangle.at(uv.u, uv.v);
+    place_hit(triangle, placement_of(instance), mesh.positions[triangle.i.a], mesh.positions[triangle.i.b],
+              mesh.positions[triangle.i.c], hit.u, hit.v);
     return triangle;
 }
 
@@ -186,8 +213,9 @@ HD inline Frame tangent_frame(const InstanceView& instance, const MeshView& mesh
 }
 
 /// Sine of the angle between a vertex normal (mesh space, any length) and the geometric one.
-HD inline float corner_tilt(const InstanceView& instance, Vec3 local_normal, Vec3 geometric_normal) {
-    const Vec3 normal = transform_transposed(instance.local_from_world, local_normal);
+template <class T>
+HD inline T corner_tilt(const TransformOf<T>& local_from_world, Vec3Of<T> local_normal, Vec3Of<T> geometric_normal) {
+    const Vec3Of<T> normal = transform_transposed(local_from_world, local_normal);
     return sine_between(normalize_or(normal, geometric_normal), geometric_normal);
 }
 
@@ -202,9 +230,9 @@ HD inline Frame shading_frame(const SceneView& scene, const InstanceView& instan
     const Vec3 local = mesh.normals != nullptr ? interpolate(mesh.normals, triangle.i, hit.u, hit.v) : Vec3{0, 0, 0};
     Vec3 normal = world_normal(instance.local_from_world, local, geometric_normal);
     if (mesh.normals != nullptr) {
-        const Vec3 corners = {corner_tilt(instance, mesh.normals[triangle.i.a], geometric_normal),
-                              corner_tilt(instance, mesh.normals[triangle.i.b], geometric_normal),
-                              corner_tilt(instance, mesh.normals[triangle.i.c], geometric_normal)};
+        const Vec3 corners = {corner_tilt(instance.local_from_world, mesh.normals[triangle.i.a], geometric_normal),
+                              corner_tilt(instance.local_from_world, mesh.normals[triangle.i.b], geometric_normal),
+                              corner_tilt(instance.local_from_world, mesh.normals[triangle.i.c], geometric_normal)};
         tilt = terminator_tilt(sine_between(normal, geometric_normal),
                                dot(Vec3{1.0f - hit.u - hit.v, hit.u, hit.v}, corners));
     }

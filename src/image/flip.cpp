@@ -276,7 +276,7 @@ ExposureRange exposures_for(const std::vector<Vec3>& reference) {
                 c = kCurve[2] - kTarget * kCurve[5];
     const float half = -0.5f * b / a, at_target = half + sqrt(half * half - c / a);
     std::vector<float> luminances;
-    for (const Vec3 v : reference) luminances.push_back(luminance({v.x, v.y, v.z}));
+    for (const Vec3 v : reference) luminances.push_back(luminance(Rgb{v.x, v.y, v.z}));
     const float brightest = *std::max_element(luminances.begin(), luminances.end());
     const auto middle = luminances.begin() + static_cast<std::ptrdiff_t>(luminances.size() / 2);
     std::nth_element(luminances.begin(), middle, luminances.end());

@@ -210,7 +210,7 @@ std::vector<RaySet> make_axis_ray_sets(const RaySet& from) {
             const Vec3 size = abs(d);
             const bool is_x = size.x >= size.y && size.x >= size.z, is_y = !is_x && size.y >= size.z;
             const auto part = [&](bool is_axis, float of) { return copysign(is_axis ? 1.0f : aside, of); };
-            d = normalize({part(is_x, d.x), part(is_y, d.y), part(!is_x && !is_y, d.z)});
+            d = normalize(Vec3{part(is_x, d.x), part(is_y, d.y), part(!is_x && !is_y, d.z)});
         });
         return set;
     };

@@ -9,18 +9,22 @@
 
 namespace pertev {
 
-struct Frame {
-    Vec3 tangent, bitangent, normal;
+template <class T>
+struct FrameOf {
+    Vec3Of<T> tangent, bitangent, normal;
 
-    HD Vec3 to_local(Vec3 v) const { return {dot(v, tangent), dot(v, bitangent), dot(v, normal)}; }
-    HD Vec3 to_world(Vec3 v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
+    HD Vec3Of<T> to_local(Vec3Of<T> v) const { return {dot(v, tangent), dot(v, bitangent), dot(v, normal)}; }
+    HD Vec3Of<T> to_world(Vec3Of<T> v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
 };
 
+using Frame = FrameOf<float>;
+
 /// Frame around the unit vector n; the tangent is some direction across it, continuous in n except at n.z = 0.
-HD inline Frame make_frame(Vec3 n) {
-    const float sign = copysign(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z);
-    const float b = n.x * n.y * a;
+template <class T>
+HD inline FrameOf<T> make_frame(Vec3Of<T> n) {
+    const T sign = copysign(T(1.0f), n.z);
+    const T a = -1.0f / (sign + n.z);
+    const T b = n.x * n.y * a;
     return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
 }
 

@@ -3,6 +3,7 @@
 // exp, exp2, log, log2 of portable_math.h: reduction to one octave, one polynomial.
 
 #include <cstdint>
+#include <type_traits>
 
 #include "base/host_device.h"
 #include "math/scalar.h"
@@ -12,10 +13,10 @@ namespace pertev {
 inline constexpr float kNaN = __builtin_nanf("");
 
 /// Horner's rule by fused multiply-adds, from the coefficient of the highest power of `x` down.
-template <class... Floats>
-HD inline float polynomial(float x, float highest, Floats... others) {
-    float p = highest;
-    ((p = fma(p, x, others)), ...);
+template <class T, class... Floats>
+HD inline T polynomial(T x, std::type_identity_t<T> highest, Floats... others) {
+    T p = highest;
+    ((p = fma(p, x, T(others))), ...);
     return p;
 }
 
@@ -24,7 +25,10 @@ namespace portable {
 // Adding and subtracting 1.5 * 2^23 rounds |x| < 2^22 to the nearest integer, ties to even.
 inline constexpr float kRoundingShift = 0x1.8p23f;
 
-HD inline float round_to_integer(float x) { return (x + kRoundingShift) - kRoundingShift; }
+template <class T>
+HD inline T round_to_integer(T x) {
+    return (x + kRoundingShift) - kRoundingShift;
+}
 
 /// x * 2^n, rounded once when the product is subnormal; n in [-250, 254], x in [0.5, 2].
 HD inline float scale_by_power_of_2(float x, int n) {

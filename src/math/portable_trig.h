@@ -124,20 +124,22 @@ HD inline float tan(float x) {
 }
 
 /// Sine and cosine of 2 pi u, for |u| <= 2^20: the turn is taken off exactly. At most 1 ulp off; exact at quarters.
-HD inline void sin_cos_2pi(float u, float& s, float& c) {
-    const float q = portable::round_to_integer(4.0f * u);
-    const float f = fma(q, -0.25f, u), square = f * f; // |f| <= 1/8
+template <class T>
+HD inline void sin_cos_2pi(T u, T& s, T& c) {
+    const T q = portable::round_to_integer(4.0f * u);
+    const T f = fma(q, T(-0.25f), u), square = f * f; // |f| <= 1/8
     // The last coefficient of sin is the low part of 2 pi.
-    const float p = polynomial(square, 0x1.443a72p5f, -0x1.32adaap6f, 0x1.466b78p6f, -0x1.4abbcep5f, -0x1.777a5cp-23f);
-    const float a = fma(f, 0x1.921fb6p2f, f * p);
-    const float r = polynomial(square, 0x1.846342p6f, 0x1.bb9a7ap5f, -0x1.5591aep6f, 0x1.03c196p6f, -0x1.3bd3ccp4f);
-    const float b = fma(r, square, 1.0f);
-    const int quadrant = static_cast<int>(q);
-    const bool swap = (quadrant & 1) != 0;
-    s = swap ? b : a;
-    c = swap ? a : b;
-    if ((quadrant & 2) != 0) s = -s;
-    if (((quadrant + 1) & 2) != 0) c = -c;
+    const T p = polynomial(square, 0x1.443a72p5f, -0x1.32adaap6f, 0x1.466b78p6f, -0x1.4abbcep5f, -0x1.777a5cp-23f);
+    const T a = fma(f, T(0x1.921fb6p2f), f * p);
+    const T r = polynomial(square, 0x1.846342p6f, 0x1.bb9a7ap5f, -0x1.5591aep6f, 0x1.03c196p6f, -0x1.3bd3ccp4f);
+    const T b = fma(r, square, T(1.0f));
+    const WordOf<T> quadrant = truncate_to_word(q);
+    const MaskOf<T> swap = (quadrant & 1u) != 0u, turns_s = (quadrant & 2u) != 0u,
+                    turns_c = ((quadrant + 1u) & 2u) != 0u;
+    s = select(swap, b, a);
+    c = select(swap, a, b);
+    s = select(turns_s, -s, s);
+    c = select(turns_c, -c, c);
 }
 
 } // namespace pertev

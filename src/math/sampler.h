@@ -38,7 +38,10 @@ struct SampleKeyOf {
 using SampleKey = SampleKeyOf<uint32_t>;
 
 /// The value ((bits >> 9) + 0.5) 2^-23: the middles of 2^23 equal parts of (0, 1), exact.
-HD inline float unit_interval(uint32_t bits) { return float_of((bits >> 9) | 0x3f800000u) - 0x1.fffffep-1f; }
+template <class T = float>
+HD inline T unit_interval(WordOf<T> bits) {
+    return float_of<T>((bits >> 9) | 0x3f800000u) - 0x1.fffffep-1f;
+}
 
 template <class Word>
 HD inline Word reverse_bits(Word x) {

@@ -14,23 +14,24 @@
 
 namespace pertev {
 
-struct PolarPoint {
-    float radius;       // [0, 1]
-    float cosine, sine; // cosine and sine of the angle
+template <class T>
+struct PolarPointOf {
+    T radius;       // [0, 1]
+    T cosine, sine; // cosine and sine of the angle
 };
+using PolarPoint = PolarPointOf<float>;
 
 /// Uniform in the unit disk, in polar form: concentric squares map to concentric circles.
-HD inline PolarPoint sample_disk_polar(Vec2 u) {
-    const float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
-    const bool wide = abs(x) > abs(y);
-    const float radius = wide ? x : y;
-    if (radius == 0) return {0, 1, 0};
-    float sine, cosine;
-    sin_cos_2pi(0.125f * (wide ? y / x : x / y), sine, cosine);
+template <class T>
+HD inline PolarPointOf<T> sample_disk_polar(Vec2Of<T> u) {
+    const T x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
+    const MaskOf<T> wide = abs(x) > abs(y) || y == 0; // the angle in the centre is 0
+    const T radius = select(wide, x, y), other = select(wide, y, x);
+    T sine, cosine;
+    sin_cos_2pi(0.125f * select(radius == 0, T(0.0f), other / radius), sine, cosine);
     // A negative radius rotates the point by pi.
-    const float sign = copysign(1.0f, radius);
-    return wide ? PolarPoint{abs(radius), sign * cosine, sign * sine}
-                : PolarPoint{abs(radius), sign * sine, sign * cosine};
+    const T sign = copysign(T(1.0f), radius);
+    return {abs(radius), sign * select(wide, cosine, sine), sign * select(wide, sine, cosine)};
 }
 
 /// Uniform in the unit disk; density 1/pi by area.
@@ -40,9 +41,10 @@ HD inline Vec2 sample_uniform_disk_concentric(Vec2 u) {
 }
 
 /// Density z/pi by solid angle; z > 0 for u inside (0, 1)^2.
-HD inline Vec3 sample_cosine_hemisphere(Vec2 u) {
-    const PolarPoint p = sample_disk_polar(u);
-    return {p.radius * p.cosine, p.radius * p.sine, safe_sqrt(fma(-p.radius, p.radius, 1.0f))};
+template <class T>
+HD inline Vec3Of<T> sample_cosine_hemisphere(Vec2Of<T> u) {
+    const PolarPointOf<T> p = sample_disk_polar(u);
+    return {p.radius * p.cosine, p.radius * p.sine, safe_sqrt(fma(-p.radius, p.radius, T(1.0f)))};
 }
 HD inline float pdf_cosine_hemisphere(float cos_theta) { return cos_theta > 0 ? cos_theta * kInvPi : 0.0f; }
 
@@ -73,9 +75,10 @@ HD inline Vec3 sample_uniform_cone(Vec2 u, float one_minus_cos) {
 HD inline float pdf_uniform_cone(float one_minus_cos) { return 0.5f * kInvPi / one_minus_cos; }
 
 /// Weights of the second and third vertex, uniform by area: both > 0, sum < 1 up to rounding. Density 1/area.
-HD inline Vec2 sample_uniform_triangle(Vec2 u) {
-    const float half = 0.5f * min(u.x, u.y); // folds the square along its diagonal continuously
-    return u.x < u.y ? Vec2{half, u.y - half} : Vec2{u.x - half, half};
+template <class T>
+HD inline Vec2Of<T> sample_uniform_triangle(Vec2Of<T> u) {
+    const T half = 0.5f * min(u.x, u.y); // folds the square along its diagonal continuously
+    return {select(u.x < u.y, half, u.x - half), select(u.x < u.y, u.y - half, half)};
 }
 
 /// In (-1, 1), with density 1 - |x|.

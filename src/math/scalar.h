@@ -36,10 +36,29 @@ HD inline uint32_t bits_of(float x) {
     memcpy(&bits, &x, sizeof bits);
     return bits;
 }
-HD inline float float_of(uint32_t bits) {
+
+/// Types that go with a number type, which is float, or eight floats at once on the host (math/lanes.h).
+template <class T>
+struct NumberTraits {
+    using Mask = bool;
+    using Word = uint32_t;
+};
+template <class T>
+using MaskOf = typename NumberTraits<T>::Mask;
+template <class T>
+using WordOf = typename NumberTraits<T>::Word;
+
+template <class T = float>
+HD inline T float_of(WordOf<T> bits) {
     float x;
     memcpy(&x, &bits, sizeof x);
     return x;
+}
+/// Conditions of code for any number type, where a mask has a truth value for each lane.
+HD constexpr bool any(bool condition) { return condition; }
+template <class T>
+HD constexpr T select(bool condition, T a, T b) {
+    return condition ? a : b;
 }
 
 HD inline float abs(float x) {
@@ -72,6 +91,8 @@ HD inline float fma(float a, float b, float c) { return ::fmaf(a, b, c); }
 HD inline float square(float x) { return x * x; }
 HD inline float lerp(float a, float b, float t) { return a + t * (b - a); }
 
+/// Truncates to an integer, whose bits are the word; |x| < 2^31.
+HD inline uint32_t truncate_to_word(float x) { return static_cast<uint32_t>(static_cast<int>(x)); }
 /// Truncates a float to an integer, clamped to [lo, hi]; `lo` for NaN. lo and hi are within +-2^30.
 HD inline int to_int(float x, int lo, int hi) {
     if (!(x > static_cast<float>(lo))) return lo;

@@ -41,8 +41,8 @@ float condition_number(const Transform& m) {
 
 std::optional<Transform> without_scale(const Transform& m) {
     const Vec3 back = normalize(column(m, 2));
-    const Vec3 right = normalize(pertev::cross(column(m, 1), back));
-    const Vec3 up = pertev::cross(back, right);
+    const Vec3 right = normalize(cross(column(m, 1), back));
+    const Vec3 up = cross(back, right);
     if (!is_finite(back) || !is_finite(right) || !is_finite(m.translation)) return std::nullopt;
     return Transform{{right.x, up.x, back.x}, {right.y, up.y, back.y}, {right.z, up.z, back.z}, m.translation};
 }
@@ -64,8 +64,8 @@ Transform transform_from_columns(const float (&m)[16]) {
 
 Transform look_at(Vec3 eye, Vec3 target, Vec3 up) {
     const Vec3 back = normalize(eye - target);
-    const Vec3 right = normalize(pertev::cross(up, back));
-    const Vec3 above = pertev::cross(back, right);
+    const Vec3 right = normalize(cross(up, back));
+    const Vec3 above = cross(back, right);
     return {{right.x, above.x, back.x}, {right.y, above.y, back.y}, {right.z, above.z, back.z}, eye};
 }
 

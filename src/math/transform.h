@@ -10,18 +10,30 @@
 
 namespace pertev {
 
-struct Transform {
-    Vec3 row0 = {1, 0, 0}, row1 = {0, 1, 0}, row2 = {0, 0, 1}; // rows of the linear part
-    Vec3 translation = {0, 0, 0};
-    bool operator==(const Transform&) const = default;
+template <class T>
+struct TransformOf {
+    Vec3Of<T> row0 = {1, 0, 0}, row1 = {0, 1, 0}, row2 = {0, 0, 1}; // rows of the linear part
+    Vec3Of<T> translation = {0, 0, 0};
+    bool operator==(const TransformOf&) const = default;
 };
+using Transform = TransformOf<float>;
 
-HD inline Vec3 transform_vector(const Transform& m, Vec3 v) { return {dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)}; }
-HD inline Vec3 transform_point(const Transform& m, Vec3 p) { return transform_vector(m, p) + m.translation; }
+template <class T>
+HD inline Vec3Of<T> transform_vector(const TransformOf<T>& m, Vec3Of<T> v) {
+    return {dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)};
+}
+template <class T>
+HD inline Vec3Of<T> transform_point(const TransformOf<T>& m, Vec3Of<T> p) {
+    return transform_vector(m, p) + m.translation;
+}
 /// Transpose of the linear part times `n`: with m = local_from_world this transforms a normal from local to world.
-HD inline Vec3 transform_transposed(const Transform& m, Vec3 n) { return n.x * m.row0 + n.y * m.row1 + n.z * m.row2; }
+template <class T>
+HD inline Vec3Of<T> transform_transposed(const TransformOf<T>& m, Vec3Of<T> n) {
+    return n.x * m.row0 + n.y * m.row1 + n.z * m.row2;
+}
 /// Absolute values of the linear part times `v`, for error bounds.
-HD inline Vec3 transform_sizes(const Transform& m, Vec3 v) {
+template <class T>
+HD inline Vec3Of<T> transform_sizes(const TransformOf<T>& m, Vec3Of<T> v) {
     return {dot(abs(m.row0), v), dot(abs(m.row1), v), dot(abs(m.row2), v)};
 }
 /// The map into a world whose origin was moved to `centre`.

@@ -6,13 +6,17 @@
 
 namespace pertev {
 
-struct Vec2 {
-    float x = 0, y = 0;
-    bool operator==(const Vec2&) const = default;
+/// `T` is float, or eight floats at once on the host (math/lanes.h).
+template <class T>
+struct Vec2Of {
+    T x = 0, y = 0;
+    bool operator==(const Vec2Of&) const = default;
+
+    HD friend inline Vec2Of operator+(Vec2Of a, Vec2Of b) { return {a.x + b.x, a.y + b.y}; }
+    HD friend inline Vec2Of operator-(Vec2Of a, Vec2Of b) { return {a.x - b.x, a.y - b.y}; }
+    HD friend inline Vec2Of operator*(T s, Vec2Of a) { return {s * a.x, s * a.y}; }
 };
 
-HD inline Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
-HD inline Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
-HD inline Vec2 operator*(float s, Vec2 a) { return {s * a.x, s * a.y}; }
+using Vec2 = Vec2Of<float>;
 
 } // namespace pertev

@@ -60,7 +60,7 @@ SurfacePoint draw_point(const PlacedTriangles& triangles, uint32_t i) {
         if (!(area > 0) || !is_finite(area)) continue;
         sum += area;
         if (!(unit_interval(h.z) * sum <= area)) continue; // keeps the k-th with probability area / sum
-        const Vec2 u = sample_uniform_triangle({unit_interval(h.w), unit_interval(hash_word(h.w))});
+        const Vec2 u = sample_uniform_triangle(Vec2{unit_interval(h.w), unit_interval(hash_word(h.w))});
         point = {a + (u.x * (b - a) + u.y * (c - a)), across / area};
     }
     return point;

@@ -51,7 +51,7 @@ HD inline Ray make_camera_ray(const CameraView& camera, Vec2 pixel, Vec2 lens) {
         direction = {0, 0, -1};
         break;
     case Projection::Cosine: {
-        const Vec3 about_z = sample_cosine_hemisphere({pixel.x * camera.inv_width, pixel.y * camera.inv_height});
+        const Vec3 about_z = sample_cosine_hemisphere(Vec2{pixel.x * camera.inv_width, pixel.y * camera.inv_height});
         direction = {about_z.x, about_z.y, -about_z.z};
     }
     }

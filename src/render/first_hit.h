@@ -18,12 +18,21 @@ HD inline void add_no_first_hit(const FilmView& film, uint32_t pixel, uint32_t s
     if ((film.aovs & kAovIds) != 0 && sample == 0) film.set_ids(pixel, {kNoHit, kNoHit, kNoHit});
 }
 
-/// Adds the channels of `hit` with its `surface`. A generated ground counts as background. `time` is the ray's while
-/// the shutter is open.
+/// Adds the channels of `hit` that need no surface. Returns false for a generated ground, which counts as background.
+HD inline bool add_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample, const Hit& hit,
+                             const PictureView& picture) {
+    if (shows_background(picture.scene, hit.instance)) {
+        add_no_first_hit(film, pixel, sample);
+        return false;
+    }
+    add_channel(film, pixel, kFilmHits, 1.0f);
+    return true;
+}
+
+/// Adds the channels of `hit` with its `surface`. `time` is the ray's while the shutter is open.
 HD inline void add_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample, const RayLine& ray, const Hit& hit,
                              const Surface& surface, const PictureView& picture, float time = kAtRest) {
-    if (shows_background(picture.scene, hit.instance)) return add_no_first_hit(film, pixel, sample);
-    add_channel(film, pixel, kFilmHits, 1.0f);
+    if (!add_first_hit(film, pixel, sample, hit, picture)) return;
     if ((film.aovs & kAovAlbedo) != 0) {
         add_channels(film, pixel, channel_offset(film.aovs, kAovAlbedo),
                      {surface.albedo.r, surface.albedo.g, surface.albedo.b});

@@ -142,7 +142,8 @@ HD inline Rgb surface_emission(const LightSetView& view, uint32_t material, Vec2
 /// Solid-angle density of a uniformly sampled point on a triangle, 1/sr. `wi` is unit and leads from the receiver to
 /// the point, at the squared distance `distance_squared`; `normal` is cross(ab, ac). Not finite if the triangle is
 /// seen edge-on.
-HD inline float triangle_pdf(Vec3 normal, Vec3 wi, float distance_squared) {
+template <class T>
+HD inline T triangle_pdf(Vec3Of<T> normal, Vec3Of<T> wi, T distance_squared) {
     return 2.0f * distance_squared / abs(dot(normal, wi));
 }
 
@@ -199,7 +200,7 @@ HD INLINE_ON_DEVICE bool draw_light(const LightSetView& view, SampleBits u, cons
         const CdfDraw triangle = draw_ordered(view.triangles_of(source.index), u.y, more);
         const uint32_t first = view.emitters[source.index].first_triangle;
         const uint32_t light = first + view.triangle_order[first + triangle.index];
-        return to.triangle(light, sample_uniform_triangle({rest_of(source), rest_of(triangle)}),
+        return to.triangle(light, sample_uniform_triangle(Vec2{rest_of(source), rest_of(triangle)}),
                            view.triangles[light].pmf);
     }
     case SourceKind::Punctual:

@@ -9,8 +9,9 @@
 namespace pertev {
 
 /// Weight of the technique with density `pdf` > 0, where the other technique has `other_pdf`.
-HD inline float power_heuristic(float pdf, float other_pdf) {
-    const float ratio = other_pdf / pdf;
+template <class T>
+HD inline T power_heuristic(T pdf, T other_pdf) {
+    const T ratio = other_pdf / pdf;
     return 1.0f / (1.0f + ratio * ratio);
 }
 

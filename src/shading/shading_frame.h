@@ -7,6 +7,8 @@
 // A bent normal may reflect into the surface, which shows as black spots. valid_normal turns it just far enough
 // (Keller et al., "The Iray Light Transport Simulation and Rendering System", 2017, appendix A.3).
 
+#include <type_traits>
+
 #include "base/host_device.h"
 #include "math/frame.h"
 #include "math/scalar.h"
@@ -18,7 +20,8 @@
 namespace pertev {
 
 /// Weighted sum of three vertices' values; b1 and b2 belong to the second and third.
-HD inline Vec3 interpolate(Vec3 v0, Vec3 v1, Vec3 v2, float b1, float b2) {
+template <class T>
+HD inline Vec3Of<T> interpolate(Vec3Of<T> v0, Vec3Of<T> v1, Vec3Of<T> v2, T b1, T b2) {
     return (1.0f - b1 - b2) * v0 + b1 * v1 + b2 * v2;
 }
 HD inline Vec2 interpolate(Vec2 v0, Vec2 v1, Vec2 v2, float b1, float b2) {
@@ -26,24 +29,27 @@ HD inline Vec2 interpolate(Vec2 v0, Vec2 v1, Vec2 v2, float b1, float b2) {
 }
 
 /// Returns `v` at unit length, or `otherwise` if it has no direction (zero, tiny or not finite).
-HD inline Vec3 normalize_or(Vec3 v, Vec3 otherwise) {
-    const float squared = length_squared(v);
-    return squared > 0x1p-80f && is_finite(squared) ? (1.0f / sqrt(squared)) * v : otherwise;
+template <class T>
+HD inline Vec3Of<T> normalize_or(Vec3Of<T> v, std::type_identity_t<Vec3Of<T>> otherwise) {
+    const T squared = length_squared(v);
+    return select(squared > 0x1p-80f && is_finite(squared), (1.0f / sqrt(squared)) * v, otherwise);
 }
 
 /// Unit world-space shading normal on the side of the front face. `local_normal` is the interpolated vertex normal
 /// (zero: none); `geometric_normal` is unit, world space, of the front. A normal that points behind the face is
 /// considered an error of the file and replaced by the geometric one.
-HD inline Vec3 world_normal(const Transform& local_from_world, Vec3 local_normal, Vec3 geometric_normal) {
-    const Vec3 normal = normalize_or(transform_transposed(local_from_world, local_normal), geometric_normal);
-    return dot(normal, geometric_normal) > 0 ? normal : geometric_normal;
+template <class T>
+HD inline Vec3Of<T> world_normal(const TransformOf<T>& local_from_world, Vec3Of<T> local_normal,
+                                 Vec3Of<T> geometric_normal) {
+    const Vec3Of<T> normal = normalize_or(transform_transposed(local_from_world, local_normal), geometric_normal);
+    return select(dot(normal, geometric_normal) > 0, normal, geometric_normal);
 }
 
 /// Frame with z = `normal` (unit), x as near to `tangent` (xyz, any length) as possible, and y by its handedness, so
 /// that the frame is left-handed for w < 0. If the tangent has no component perpendicular to the normal, it is an
 /// arbitrary right-handed frame.
 HD inline Frame frame_with_tangent(Vec3 normal, Vec4 tangent) {
-    const Vec3 along = normalize_or({tangent.x, tangent.y, tangent.z}, {0, 0, 0});
+    const Vec3 along = normalize_or(Vec3{tangent.x, tangent.y, tangent.z}, {0, 0, 0});
     const Vec3 across = along - dot(along, normal) * normal;
     if (!(length_squared(across) > 1e-10f)) return make_frame(normal);
     const Vec3 x = normalize(across);
@@ -73,17 +79,20 @@ HD inline Vec3 mapped_normal(const Frame& frame, Vec3 texel, float scale) {
 /// Turns `normal` (unit) as little as needed so that the mirror direction of `wo` lies above the surface. wo is unit;
 /// `geometric_normal` is unit and on wo's side; wo may lie below `normal`. The result is unit and on the side of
 /// both.
-HD inline Vec3 valid_normal(Vec3 normal, Vec3 geometric_normal, Vec3 wo) {
-    const float above = dot(wo, geometric_normal);
-    const float least = min(0.9f * above, 0.01f);    // so that an unbent normal never changes
-    const float facing = max(dot(wo, normal), 0.0f); // a normal turned away from wo counts as seen edge-on
-    const Vec3 mirrored = 2.0f * facing * normal - wo;
-    const float height = dot(mirrored, geometric_normal);
-    if (height >= least && facing > 0) return normal;
-    if (above < 1e-3f) return geometric_normal; // so flat that the sum below would cancel
-    const Vec3 along = normalize_or(mirrored - height * geometric_normal, {0, 0, 0});
-    const Vec3 raised = safe_sqrt(1.0f - square(least)) * along + least * geometric_normal;
-    return normalize_or(wo + raised, geometric_normal);
+template <class T>
+HD inline Vec3Of<T> valid_normal(Vec3Of<T> normal, Vec3Of<T> geometric_normal, Vec3Of<T> wo) {
+    const T above = dot(wo, geometric_normal);
+    const T least = min(0.9f * above, T(0.01f));    // so that an unbent normal never changes
+    const T facing = max(dot(wo, normal), T(0.0f)); // a normal turned away from wo counts as seen edge-on
+    const Vec3Of<T> mirrored = 2.0f * facing * normal - wo;
+    const T height = dot(mirrored, geometric_normal);
+    const MaskOf<T> is_valid = height >= least && facing > 0;
+    if (!any(!is_valid)) return normal;
+    const MaskOf<T> is_flat = above < 1e-3f; // the sum below would cancel
+    const Vec3Of<T> along = normalize_or(mirrored - height * geometric_normal, {0, 0, 0});
+    const Vec3Of<T> raised = safe_sqrt(1.0f - square(least)) * along + least * geometric_normal;
+    const Vec3Of<T> turned = select(is_flat, geometric_normal, normalize_or(wo + raised, geometric_normal));
+    return select(is_valid, normal, turned);
 }
 
 /// The right-handed frame around `normal` (unit) whose tangent is closest to that of `frame`.

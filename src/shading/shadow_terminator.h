@@ -33,47 +33,59 @@ inline constexpr float kMinTilt = 1e-3f;
 
 /// Sine of the angle between two unit vectors, from the cross product, because the cosine is imprecise for small
 /// angles.
-HD inline float sine_between(Vec3 a, Vec3 b) { return length(cross(a, b)); }
+template <class T>
+HD inline T sine_between(Vec3Of<T> a, Vec3Of<T> b) {
+    return length(cross(a, b));
+}
 
 /// Tilt for the functions below, from the sine of the angle between interpolated and geometric normal: `here` at the
 /// point, `at_corners` interpolated from the triangle's three vertices. The latter hardly varies over a regular mesh,
 /// so triangles are not visible; the former is smaller except where the mesh curls. The result is 0 or in
 /// [kMinTilt, kLargestTilt].
-HD inline float terminator_tilt(float here, float at_corners) {
-    const float sine = max(here, at_corners);
-    const float tilt = min(min(sine, kLargestTilt), kHopelessTilt - sine);
-    return tilt < kMinTilt ? 0.0f : tilt;
+template <class T>
+HD inline T terminator_tilt(T here, T at_corners) {
+    const T sine = max(here, at_corners);
+    const T tilt = min(min(sine, T(kLargestTilt)), kHopelessTilt - sine);
+    return select(tilt < kMinTilt, T(0.0f), tilt);
 }
 
-struct RaisedDirection {
-    Vec3 direction; // unit, shading frame
-    float slope;    // d height(raised) / d height(before), (0, 1]; 0: no direction is raised to this one
+template <class T>
+struct RaisedDirectionOf {
+    Vec3Of<T> direction; // unit, shading frame
+    T slope;             // d height(raised) / d height(before), (0, 1]; 0: no direction is raised to this one
 };
+using RaisedDirection = RaisedDirectionOf<float>;
 
 /// Changes the height |w.z| of `w` (unit) to `height`, in [0, 1].
-HD inline Vec3 at_height(Vec3 w, float height) {
-    const float across = w.x * w.x + w.y * w.y;
-    const float scale = across > 0 ? safe_sqrt((1.0f - height) * (1.0f + height) / across) : 0.0f;
+template <class T>
+HD inline Vec3Of<T> at_height(Vec3Of<T> w, T height) {
+    const T across = w.x * w.x + w.y * w.y;
+    const T scale = select(across > 0, safe_sqrt((1.0f - height) * (1.0f + height) / across), T(0.0f));
     return {scale * w.x, scale * w.y, copysign(height, w.z)};
 }
 
 /// Raises `w` (unit, shading frame, on either side) by `tilt` > 0. With heights x and y relative to the reach and t =
 /// tilt / reach, y = t + (1 - 2t) x + t x^2: t at the horizon, and 1 with slope 1 at the reach.
-HD inline RaisedDirection raise_direction(Vec3 w, float tilt) {
-    const float reach = min(kTerminatorReach * tilt, 1.0f), height = abs(w.z);
-    if (height >= reach) return {w, 1.0f};
-    const float t = tilt / reach, x = height / reach, rise = 1.0f - 2.0f * t;
-    return {at_height(w, reach * (t + (rise + t * x) * x)), rise + 2.0f * t * x};
+template <class T>
+HD inline RaisedDirectionOf<T> raise_direction(Vec3Of<T> w, T tilt) {
+    const T reach = min(kTerminatorReach * tilt, T(1.0f)), height = abs(w.z);
+    const MaskOf<T> is_low = !(height >= reach);
+    if (!any(is_low)) return {w, T(1.0f)};
+    const T t = tilt / reach, x = height / reach, rise = 1.0f - 2.0f * t;
+    return {select(is_low, at_height(w, reach * (t + (rise + t * x) * x)), w),
+            select(is_low, rise + 2.0f * t * x, T(1.0f))};
 }
 
 /// The direction that raise_direction maps to `wi`, and the slope there.
-HD inline RaisedDirection lower_direction(Vec3 wi, float tilt) {
-    const float reach = min(kTerminatorReach * tilt, 1.0f), height = abs(wi.z);
-    if (height >= reach) return {wi, 1.0f};
-    if (!(height > tilt)) return {wi, 0.0f};
-    const float t = tilt / reach, y = height / reach, rise = 1.0f - 2.0f * t;
-    const float slope = sqrt(rise * rise + 4.0f * t * (y - t));
-    return {at_height(wi, reach * (2.0f * (y - t) / (rise + slope))), slope};
+template <class T>
+HD inline RaisedDirectionOf<T> lower_direction(Vec3Of<T> wi, T tilt) {
+    const T reach = min(kTerminatorReach * tilt, T(1.0f)), height = abs(wi.z);
+    const MaskOf<T> is_high = height >= reach, is_low = !is_high && height > tilt;
+    if (!any(is_low)) return {wi, select(is_high, T(1.0f), T(0.0f))};
+    const T t = tilt / reach, y = height / reach, rise = 1.0f - 2.0f * t;
+    const T slope = sqrt(rise * rise + 4.0f * t * (y - t));
+    return {select(is_low, at_height(wi, reach * (2.0f * (y - t) / (rise + slope))), wi),
+            select(is_low, slope, select(is_high, T(1.0f), T(0.0f)))};
 }
 
 } // namespace pertev

@@ -108,6 +108,27 @@ ShadingVariant variant_of(const Scene& scene) {
 
 } // namespace
 
+TEST_CASE("vertices that are shaded in lanes give the bytes of those that are shaded one by one") {
+    const Scene scene = scene_with(ShadingVariant::PlainDiffuse);
+    Scene alone = scene;
+    alone.materials.push_back({{.kind = MaterialKind::Conductor}, "unused"});
+    Queue queue = Queue::make_cpu();
+    std::vector<RenderSettings> cases(6, odd_settings());
+    cases[0].aovs = 0;
+    cases[1].path.max_depth = 1;
+    cases[2].path.clamp = 0.5f;
+    cases[3].path.roulette = Roulette::Throughput, cases[3].path.roulette_depth = 1;
+    cases[4].path.roulette = Roulette::NearCubeRoot, cases[4].path.sampler = SamplerKind::Independent;
+    cases[5].path.max_depth = 0;
+    for (const RenderSettings& settings : cases) {
+        CAPTURE(&settings - cases.data());
+        const auto hash = [&](const Scene& of) {
+            return test::render_hash(test::render(queue, of, test::mixed_scene_camera(), settings));
+        };
+        CHECK(hash(scene) == hash(alone));
+    }
+}
+
 TEST_CASE("shading variants give the bytes of the general one") {
     Hash128 before = {};
     for (const ShadingVariant variant :

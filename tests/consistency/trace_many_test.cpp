@@ -9,6 +9,7 @@
 #include "accel/builders/build_bvh.h"
 #include "accel/builders/builders.h"
 #include "accel/bvh/tlas.h"
+#include "base/processor.h"
 #include "math/random.h"
 #include "tests/support/check_traversal.h"
 #include "tests/support/options.h"
@@ -86,6 +87,45 @@ TEST_CASE("tracing many rays at once matches brute force bit for bit") {
                 check_many(scene, order, *set, all, AcceptAll{});
                 check_many(scene, order, *set, some, AcceptSome{});
             }
+        }
+    }
+}
+
+TEST_CASE("testing every triangle of a small scene matches brute force bit for bit") {
+    std::vector<const TriangleTests*> widths = {&kTestsOf8Rays};
+#if defined(PERTEV_HAS_16_LANES)
+    if (has_sixteen_lanes()) widths.push_back(&kTestsOf16Rays);
+#endif
+    for (StressMesh c : stress_meshes()) {
+        CAPTURE(c.name);
+        c.triangles.resize(std::min<std::size_t>(c.triangles.size(), kMaxTestedTriangles));
+        const WideBvh<8> tree = make_wide_bvh<8>(build_bvh(c.triangles), kSimdCollapse);
+        const HostTrees scene = scene_of(view_of(tree));
+        CHECK(is_small(scene) == !c.triangles.empty());
+        const std::vector<Ray> rays = stress_rays(static_cast<uint32_t>(effort(1000, 10'000)) + 5, c, 11);
+        const std::vector<Hit> all = hits_by_brute_force(c.triangles, rays, AcceptAll{});
+        const std::vector<Hit> some = hits_by_brute_force(c.triangles, rays, AcceptSome{});
+        check_many(scene, RayOrder::Scattered, rays, all, AcceptAll{});
+        check_many(scene, RayOrder::Together, rays, some, AcceptSome{});
+        for (const TriangleTests* tests : widths) {
+            CAPTURE(tests->lanes);
+            std::vector<Hit> hits(rays.size());
+            const auto ray_of = [&](uint32_t i) { return rays[i]; };
+            const auto accept_of = [](uint32_t) { return AcceptSome{}; };
+            const auto make_visitor = [](const AcceptSome& accept, const Ray& ray) {
+                return ClosestVisitor<AcceptSome>{accept, Hit{.t = ray.t_max}};
+            };
+            const auto end = [&](uint32_t i, const auto& visitor) { hits[i] = visitor.best; };
+            EveryTriangle<false, decltype(ray_of), decltype(accept_of), decltype(make_visitor), decltype(end)>(
+                scene.baked, ray_of, accept_of, make_visitor, end, *tests)
+                .run(static_cast<uint32_t>(rays.size()));
+            uint64_t wrong = 0;
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                Hit want = some[i];
+                if (want.instance == kNoHit) want.t = rays[i].t_max;
+                wrong += hits[i] == want ? 0 : 1;
+            }
+            CHECK(wrong == 0);
         }
     }
 }

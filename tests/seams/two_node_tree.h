@@ -30,7 +30,7 @@ struct TwoNodeTree {
         const Emitter& emitter = view.emitters[node];
         const CdfDraw triangle = draw_ordered(view.triangles_of(node), u.y, bits_behind(u));
         const uint32_t light = emitter.first_triangle + view.triangle_order[emitter.first_triangle + triangle.index];
-        return to.triangle(light, sample_uniform_triangle({min(rest, 0x1.fffffep-1f), rest_of(triangle)}),
+        return to.triangle(light, sample_uniform_triangle(Vec2{min(rest, 0x1.fffffep-1f), rest_of(triangle)}),
                            pmf_of_triangle(view, context, light));
     }
     HD static float pmf_of_triangle(const LightSetView& view, const LightContext& context, uint32_t light) {

@@ -102,15 +102,15 @@ SamplingReport test_sampling(const AnyBsdf& bsdf, Vec3 wo, const DirectionChart&
 
 /// About the mirror direction of wo; as wide as the lobe of GGX width alpha.
 DirectionChart chart_for(Vec3 wo, float alpha) {
-    if (alpha > 0.3f || alpha < kSmoothAlpha) return {make_frame({0, 0, 1}), 1.0};
-    return {make_frame(normalize({-wo.x, -wo.y, wo.z})), static_cast<double>(alpha)};
+    if (alpha > 0.3f || alpha < kSmoothAlpha) return {make_frame(Vec3{0, 0, 1}), 1.0};
+    return {make_frame(normalize(Vec3{-wo.x, -wo.y, wo.z})), static_cast<double>(alpha)};
 }
 
 /// About the refracted direction.
 DirectionChart chart_through(Vec3 wo, const Bsdf& glass) {
     const float eta = glass.base.dielectric.eta_from(wo), across = std::sqrt(1.0f - wo.z * wo.z);
     const float down = std::sqrt(std::max(1.0f - square(across / eta), 0.0f));
-    const Vec3 wi = normalize({-wo.x / eta, -wo.y / eta, wo.z > 0 ? -down : down});
+    const Vec3 wi = normalize(Vec3{-wo.x / eta, -wo.y / eta, wo.z > 0 ? -down : down});
     return {make_frame(wi), std::max(0.5 * static_cast<double>(narrowest_alpha(glass)), 0.02)};
 }
 

@@ -18,7 +18,7 @@ namespace pertev::test {
 inline Surface tilted_surface(const Bsdf& bsdf, float tilt) {
     Surface surface = {};
     surface.geometric_normal = {tilt, 0, std::sqrt(1.0f - tilt * tilt)};
-    surface.frame = make_frame({0, 0, 1});
+    surface.frame = make_frame(Vec3{0, 0, 1});
     surface.bsdf = bsdf;
     surface.tilt = terminator_tilt(tilt, 0);
     return surface;

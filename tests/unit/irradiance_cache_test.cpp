@@ -105,7 +105,7 @@ TEST_CASE("the translational gradient under a finite ceiling matches the closed 
 }
 
 TEST_CASE("a record's radius is the harmonic mean of distances, within its limits and its gradient's") {
-    HemisphereSum sum = sum_over(kFine, make_frame({0, 0, 1}), [](Vec3 w) {
+    HemisphereSum sum = sum_over(kFine, make_frame(Vec3{0, 0, 1}), [](Vec3 w) {
         return HemisphereCell{{1, 1, 1}, w.x > 0 ? 1.0f : 3.0f};
     });
     CHECK(sum.radius == doctest::Approx(1.5).epsilon(1e-3)); // 2 / (1 + 1/3)

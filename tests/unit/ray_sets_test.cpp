@@ -112,9 +112,9 @@ TEST_CASE("samples hit the two zeros found on record and no third one") {
 
 TEST_CASE("rays are turned to their nearest axis or slightly off it") {
     RaySet from{"some", false, {}};
-    from.rays.push_back({{1, 2, 3}, 0.5f, normalize({0.1f, -0.9f, 0.2f}), 7});
-    from.rays.push_back({{0, 0, 0}, 0, normalize({-0.5f, -0.4f, 0.3f}), 1});
-    from.rays.push_back({{0, 0, 0}, 0, normalize({0.1f, 0.2f, 0.3f}), 1});
+    from.rays.push_back({{1, 2, 3}, 0.5f, normalize(Vec3{0.1f, -0.9f, 0.2f}), 7});
+    from.rays.push_back({{0, 0, 0}, 0, normalize(Vec3{-0.5f, -0.4f, 0.3f}), 1});
+    from.rays.push_back({{0, 0, 0}, 0, normalize(Vec3{0.1f, 0.2f, 0.3f}), 1});
     const std::vector<RaySet> sets = make_axis_ray_sets(from);
     REQUIRE(sets.size() == 2);
     CHECK(sets[0].name == "along_axes");

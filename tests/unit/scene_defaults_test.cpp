@@ -217,7 +217,7 @@ TEST_CASE("a scene without light gets a sky with a notice, one with any light ge
     CHECK(least > 0.1f);
     CHECK(most < 100);
     CHECK(most > 7);
-    CHECK(luminance({sky.at(9, 9)[0], sky.at(9, 9)[1], sky.at(9, 9)[2]}) > luminance({sky.at(9, 120)[0], 0, 0}));
+    CHECK(luminance(Rgb{sky.at(9, 9)[0], sky.at(9, 9)[1], sky.at(9, 9)[2]}) > luminance(Rgb{sky.at(9, 120)[0], 0, 0}));
     CHECK(messages.all().size() == 1);
 
     for (int kind = 0; kind < 3; ++kind) {

@@ -184,7 +184,7 @@ TEST_CASE("the flux of a textured emitter equals the path tracer's") {
             0.5 * static_cast<double>(length(cross(world(at[1]) - world(at[0]), world(at[2]) - world(at[0]))));
         double mean = 0;
         for (int i = 0; i < kDraws; ++i) {
-            const Vec2 b = sample_uniform_triangle({random.unit(), random.unit()});
+            const Vec2 b = sample_uniform_triangle(Vec2{random.unit(), random.unit()});
             const Vec2 uv = (1 - b.x - b.y) * mesh.uv[0][at[0]] + b.x * mesh.uv[0][at[1]] + b.y * mesh.uv[0][at[2]];
             const Vec4 c = lookup_texture(&view, lit.emission_texture, uv, srgb_decode_table().data());
             mean += luminance_in({c.x * lit.emission.r, c.y * lit.emission.g, c.z * lit.emission.b}) / kDraws;

@@ -190,7 +190,7 @@ TEST_CASE("benchmarks keep the sky of their stored figures") {
                                   (double(sky.width) * sky.height);
             for (uint32_t x = 0; x < sky.width; ++x) {
                 const float* pixel = sky.at(x, y);
-                irradiance += weight * double(luminance({pixel[0], pixel[1], pixel[2]}));
+                irradiance += weight * double(luminance(Rgb{pixel[0], pixel[1], pixel[2]}));
             }
         }
         CHECK(irradiance / 3.14159265358979 == doctest::Approx(1.23).epsilon(0.06));

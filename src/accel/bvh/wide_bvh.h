@@ -40,7 +40,8 @@ template <int kWidth>
 struct WideBvhView {
     const WideBvhNode<kWidth>* nodes = nullptr; // null if there is no triangle
     const BvhTriangle* triangles = nullptr;
-    float bounds_max_abs = 0; // largest |coordinate| of the bounds
+    float bounds_max_abs = 0;    // largest |coordinate| of the bounds
+    uint32_t triangle_count = 0; // a triangle of several leaves counts for each
 };
 
 /// Size of a traversal stack: at each level all children but the one that is visited.
@@ -50,7 +51,7 @@ inline constexpr int kWideStackSize = kMaxBvhDepth * (kWidth - 1) + 1;
 template <int kWidth>
 WideBvhView<kWidth> view_of(const WideBvh<kWidth>& bvh) {
     if (bvh.nodes.empty()) return {};
-    return {bvh.nodes.data(), bvh.triangles.data(), bvh.bounds.max_abs()};
+    return {bvh.nodes.data(), bvh.triangles.data(), bvh.bounds.max_abs(), static_cast<uint32_t>(bvh.triangles.size())};
 }
 
 /// Makes the wide tree; kWidth is 4 or 8. Throws Error(OverLimit) if splitting leaves longer than max_leaf makes it

@@ -3,6 +3,7 @@
 #include "device_scene/find_hits.h"
 #include "integrators/path/eight_samples.h"
 #include "integrators/path/host_shading.h"
+#include "integrators/path/shade_lanes.h"
 
 namespace pertev {
 namespace {
@@ -22,21 +23,19 @@ public:
     void advance(RayCounts& counts) {
         find_hits_of(0, going_on_);
         find_hits_of(going_on_, count_);
-        uint32_t shadows = 0;
-        VertexWords<Words8> words;
+        shadows_ = 0;
+        uint32_t alone = 0, together = 0;
         for (uint32_t i = 0; i < count_; ++i) {
-            if (i % kWords == 0) words = draw_for(i);
-            prefetch_indices(i + 16);
-            prefetch_vertices(i + 8);
-            ShadowData& shadow_data = shadow_data_[shadows];
-            const uint32_t key = key_of(paths_[i], true);
-            const bool wants_shadow = shade_(job_, paths_[i], kept_[i], hits_[i], DrawnNumbers(words, i % kWords),
-                                             shadow_data.at, goes_on_[i]);
-            shadow_data.key = key, shadow_data.path = i;
-            shadows += wants_shadow ? 1 : 0;
+            if (may_be_together(i)) {
+                together_[together++] = i;
+            } else {
+                alone_[alone++] = i;
+            }
         }
-        add_light(shadows);
-        counts.shadow += shadows;
+        shade_together(together_, together);
+        shade_alone(alone_, alone);
+        add_light(shadows_);
+        counts.shadow += shadows_;
         keep_those_that_go_on();
         counts.bounce += going_on_;
     }
@@ -47,15 +46,64 @@ private:
         uint32_t key, path;
     };
 
-    /// Random numbers of paths [begin, begin + 8) at their present vertices.
-    VertexWords<Words8> draw_for(uint32_t begin) const {
+    /// Whether path i may be shaded in lanes. Layers of the first hit need its whole surface.
+    bool may_be_together(uint32_t i) const {
+        return shades_lanes_ && hits_[i].instance != kNoHit && (paths_[i].depth > 0 || job_.film.aovs == 0);
+    }
+
+    void shade_together(const uint32_t* which, uint32_t count) {
+        const uint32_t lanes = lanes_.lanes;
+        for (uint32_t first = 0; first < count; first += lanes) {
+            LaneVertices vertices = {.count = min(count - first, lanes), .paths = {}, .hits = {}};
+            std::array<ShadowRay*, kMaxShadingLanes> shadows;
+            for (uint32_t lane = 0; lane < lanes; ++lane) {
+                const uint32_t i = which[first + min(lane, vertices.count - 1)];
+                vertices.paths[lane] = paths_ + i, vertices.hits[lane] = hits_ + i;
+                shadows[lane] = &lane_shadows_[lane];
+                prefetch_indices(which, first + lane + 2 * lanes, count);
+                prefetch_vertices(which, first + lane + lanes, count);
+            }
+            VertexWords<Words8> words[kMaxShadingLanes / kWords];
+            for (uint32_t k = 0; kWords * k < vertices.count; ++k) {
+                words[k] = draw_for(which + first + kWords * k, min(vertices.count - kWords * k, kWords));
+            }
+            const LaneResults results = lanes_.shade(job_, vertices, words, shadows);
+            for (uint32_t lane = 0; lane < vertices.count; ++lane) {
+                const uint32_t i = which[first + lane];
+                goes_on_[i] = (results.goes_on >> lane & 1) != 0;
+                if ((results.wants_shadow >> lane & 1) == 0) continue;
+                ShadowData& shadow_data = shadow_data_[shadows_++];
+                shadow_data.at.ray = lane_shadows_[lane];
+                shadow_data.key = 0, shadow_data.path = i;
+            }
+        }
+    }
+
+    void shade_alone(const uint32_t* which, uint32_t count) {
+        VertexWords<Words8> words;
+        for (uint32_t k = 0; k < count; ++k) {
+            const uint32_t i = which[k];
+            if (k % kWords == 0) words = draw_for(which + k, min(count - k, kWords));
+            prefetch_indices(which, k + 16, count);
+            prefetch_vertices(which, k + 8, count);
+            ShadowData& shadow_data = shadow_data_[shadows_];
+            const uint32_t key = key_of(paths_[i], true);
+            const bool wants_shadow = shade_(job_, paths_[i], kept_[i], hits_[i], DrawnNumbers(words, k % kWords),
+                                             shadow_data.at, goes_on_[i]);
+            shadow_data.key = key, shadow_data.path = i;
+            shadows_ += wants_shadow ? 1 : 0;
+        }
+    }
+
+    /// Random numbers of at most eight paths at their present vertices.
+    VertexWords<Words8> draw_for(const uint32_t* which, uint32_t count) const {
         SampleKeyOf<Words8> keys;
         Words8 depths = {};
         bool has_choices = job_.picture.scene.variant == ShadingVariant::General; // lobes have choices
-        for (uint32_t i = begin; i < begin + kWords && i < count_; ++i) {
-            const PathState& path = paths_[i];
-            set_lane(keys, i - begin, sample_key(job_.settings, path.pixel, path.sample));
-            depths[i - begin] = path.depth;
+        for (uint32_t lane = 0; lane < count; ++lane) {
+            const PathState& path = paths_[which[lane]];
+            set_lane(keys, lane, sample_key(job_.settings, path.pixel, path.sample));
+            depths[lane] = path.depth;
             has_choices = has_choices || may_end_by_chance(job_.settings, path.depth + 1);
         }
         return draw_vertex(job_.settings.sampler, keys, depths, has_choices);
@@ -66,15 +114,19 @@ private:
         return job_.picture.scene.any_alpha != 0 ? path_key(path, job_.settings.seed, is_shadow) : 0;
     }
 
-    // Prefetches what make_surface reads of hit i; vertices follow once the indices have arrived.
+    // Prefetches what make_surface reads of the k-th of some hits; vertices follow once the indices have arrived.
     const MeshView* mesh_of(uint32_t i) const {
-        if (i >= count_ || hits_[i].instance == kNoHit) return nullptr;
+        if (hits_[i].instance == kNoHit) return nullptr;
         return job_.picture.scene.meshes + job_.picture.scene.instances[hits_[i].instance].mesh;
     }
-    void prefetch_indices(uint32_t i) const {
+    void prefetch_indices(const uint32_t* which, uint32_t k, uint32_t count) const {
+        if (k >= count) return;
+        const uint32_t i = which[k];
         if (const MeshView* mesh = mesh_of(i)) __builtin_prefetch(mesh->indices + 3 * uint64_t(hits_[i].primitive));
     }
-    void prefetch_vertices(uint32_t i) const {
+    void prefetch_vertices(const uint32_t* which, uint32_t k, uint32_t count) const {
+        if (k >= count) return;
+        const uint32_t i = which[k];
         const MeshView* const mesh = mesh_of(i);
         if (mesh == nullptr) return;
         const TriangleIndices at = triangle_indices(*mesh, hits_[i].primitive);
@@ -142,12 +194,17 @@ private:
     const HostTrees& trees_;
     const TileRasterView* raster_;
     const ShadeOnHost<Listener> shade_ = shading_for<Listener>(job_);
+    const bool shades_lanes_ = std::is_same_v<Listener, FilmListeners> && can_shade_lanes(job_);
+    const VertexShading& lanes_ = vertex_shading();
     uint32_t count_ = 0, going_on_ = 0; // paths; those that are not new
+    uint32_t shadows_ = 0;
+    uint32_t together_[kPaths], alone_[kPaths]; // paths that are shaded in lanes, and one by one
     PathState paths_[kPaths];
     typename Listener::Kept kept_[kPaths];
     Hit hits_[kPaths];
     bool goes_on_[kPaths];
     ShadowData shadow_data_[kPaths + 1]; // one more, because an element is written before it is known to be needed
+    ShadowRay lane_shadows_[kMaxShadingLanes];
     bool occluded_[kPaths];
 };
 

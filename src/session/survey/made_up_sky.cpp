@@ -59,7 +59,7 @@ Rgb clear_sky(Vec3 d) {
     // The ground blends into the horizon within a few degrees, because a hard edge would show in every mirror.
     if (d.y < 0) colour = lerp(horizon, ground, min(-8 * d.y, 1.0f));
     // A lobe cos^64 by repeated squaring: its shadows are soft, and few samples find it.
-    const Vec3 sun = normalize({-0.45f, 0.72f, 0.53f});
+    const Vec3 sun = normalize(Vec3{-0.45f, 0.72f, 0.53f});
     float lobe = max(dot(d, sun), 0.0f);
     for (int i = 0; i < 6; ++i) lobe = lobe * lobe;
     return colour + (32.0f * lobe) * Rgb{1.0f, 0.92f, 0.78f};

@@ -45,7 +45,7 @@ SeenShares visible_shares(const Camera& camera, const Scene& scene) {
             for (uint32_t y = top; y < top + kBlock; ++y) {
                 for (uint32_t x = left; x < left + kBlock; ++x) {
                     const float* pixel = picture.at(x, y);
-                    const float own = luminance({pixel[0], pixel[1], pixel[2]});
+                    const float own = luminance(Rgb{pixel[0], pixel[1], pixel[2]});
                     light += own;
                     covered += pixel[3];
                     if (scale * own >= kBurnt) burnt += static_cast<double>(pixel[3]);

@@ -10,6 +10,7 @@
 
 #include "trace/trace_any.h"
 #include "trace/trace_closest.h"
+#include "trace/wide/every_triangle.h"
 #include "trace/wide/traversals_in_flight.h"
 #include "trace/wide/wide_packet.h"
 
@@ -70,6 +71,21 @@ void traverse_scene_together(const HostTrees& scene, uint32_t count, const RayOf
     send_alone();
 }
 
+/// Traverses the scene with many rays in the way that suits it and their order.
+template <TraversalOptions kOptions, bool kAny, class RayOf, class AcceptOf, class MakeVisitor, class End>
+void traverse_scene_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
+                         const AcceptOf& accept_of, const MakeVisitor& make_visitor, const End& end_of) {
+    static_assert(kOptions.is_exact());
+    if (is_small(scene)) {
+        EveryTriangle<kAny, RayOf, AcceptOf, MakeVisitor, End>(scene.baked, ray_of, accept_of, make_visitor, end_of)
+            .run(count);
+    } else if (order == RayOrder::Together) {
+        traverse_scene_together<kOptions>(scene, count, ray_of, accept_of, make_visitor, end_of);
+    } else {
+        traverse_scene_in_flight<kOptions>(scene, count, ray_of, accept_of, make_visitor, end_of);
+    }
+}
+
 /// Closest hits of `count` rays: hits[i] is that of ray_of(i), among the candidates that accept_of(i) accepts.
 template <TraversalOptions kOptions, class RayOf, class AcceptOf>
 void trace_closest_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
@@ -78,11 +94,7 @@ void trace_closest_many(const HostTrees& scene, uint32_t count, RayOrder order, 
         return ClosestVisitor<Accept>{accept, Hit{.t = ray.t_max}};
     };
     const auto end = [&](uint32_t i, const auto& visitor) { hits[i] = visitor.best; };
-    if (order == RayOrder::Together) {
-        traverse_scene_together<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
-    } else {
-        traverse_scene_in_flight<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
-    }
+    traverse_scene_many<kOptions, false>(scene, count, order, ray_of, accept_of, make_visitor, end);
 }
 
 /// Occlusion of `count` rays: met[i].
@@ -93,11 +105,7 @@ void trace_any_many(const HostTrees& scene, uint32_t count, RayOrder order, cons
         return AnyVisitor<Accept>{accept, ray.t_max};
     };
     const auto end = [&](uint32_t i, const auto& visitor) { met[i] = visitor.found; };
-    if (order == RayOrder::Together) {
-        traverse_scene_together<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
-    } else {
-        traverse_scene_in_flight<kOptions>(scene, count, ray_of, accept_of, make_visitor, end);
-    }
+    traverse_scene_many<kOptions, true>(scene, count, order, ray_of, accept_of, make_visitor, end);
 }
 
 } // namespace pertev

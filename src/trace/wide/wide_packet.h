@@ -11,9 +11,10 @@
 // each ray (ray_boxes.h) by 16 units, of which a bound computed as (plane - moved origin) times 1/direction loses
 // four and the triangle test six.
 
+#include <array>
 #include <cstdint>
 
-#include "trace/intersect/intersect_8_rays.h"
+#include "trace/intersect/intersect_rays.h"
 #include "trace/wide/traverse_wide.h"
 
 namespace pertev {
@@ -63,7 +64,7 @@ public:
 private:
     struct Eight {
         __m256 inv[3], near[3], far[3], t_min, t_max;
-        RayShear8 shear;
+        RayShearOf<Floats8> shear;
         alignas(32) float limits[8]; // limits of the visitors; -inf for rays that are done
     };
 
@@ -130,24 +131,13 @@ private:
         __m256 origin[3], t_min, direction[3], t_max;
 
         explicit Lanes(const Ray* rays) {
-            static_assert(sizeof(Ray) == 32);
-            __m256 r[8], pairs[8], fours[8];
-            for (int k = 0; k < 8; ++k) r[k] = _mm256_loadu_ps(&rays[k].origin.x);
-            for (int k = 0; k < 8; k += 2) {
-                pairs[k] = _mm256_unpacklo_ps(r[k], r[k + 1]), pairs[k + 1] = _mm256_unpackhi_ps(r[k], r[k + 1]);
-            }
-            for (int k = 0; k < 8; k += 4) {
-                fours[k] = _mm256_shuffle_ps(pairs[k], pairs[k + 2], 0x44);
-                fours[k + 1] = _mm256_shuffle_ps(pairs[k], pairs[k + 2], 0xee);
-                fours[k + 2] = _mm256_shuffle_ps(pairs[k + 1], pairs[k + 3], 0x44);
-                fours[k + 3] = _mm256_shuffle_ps(pairs[k + 1], pairs[k + 3], 0xee);
-            }
-            for (int k = 0; k < 3; ++k) {
-                origin[k] = _mm256_permute2f128_ps(fours[k], fours[k + 4], 0x20);
-                direction[k] = _mm256_permute2f128_ps(fours[k], fours[k + 4], 0x31);
-            }
-            t_min = _mm256_permute2f128_ps(fours[3], fours[7], 0x20);
-            t_max = _mm256_permute2f128_ps(fours[3], fours[7], 0x31);
+            static_assert(sizeof(Ray) == 8 * sizeof(float));
+            std::array<const float*, 8> rows;
+            for (int k = 0; k < 8; ++k) rows[k] = &rays[k].origin.x;
+            Floats8 columns[8];
+            load_columns(rows, columns);
+            for (int k = 0; k < 3; ++k) origin[k] = columns[k].v, direction[k] = columns[4 + k].v;
+            t_min = columns[3].v, t_max = columns[7].v;
         }
     };
 
@@ -158,7 +148,7 @@ private:
 
     /// make_ray_shear of eight rays that share the first one's order of axes.
     void set_shear(Eight& eight, const Lanes& lanes, const RayShear& first) {
-        RayShear8& shear = eight.shear;
+        RayShearOf<Floats8>& shear = eight.shear;
         shear.kx = first.kx, shear.ky = first.ky, shear.kz = first.kz;
         const __m256 x = size_of(lanes.direction[0]), y = size_of(lanes.direction[1]), z = size_of(lanes.direction[2]);
         const unsigned xy = mask_of(_mm256_cmp_ps(x, y, _CMP_GE_OQ)), xz = mask_of(_mm256_cmp_ps(x, z, _CMP_GE_OQ)),
@@ -170,8 +160,8 @@ private:
         shear.sy = _mm256_div_ps(lanes.direction[first.ky], dz);
         shear.sz = _mm256_div_ps(_mm256_set1_ps(1.0f), dz);
         shear.ox = lanes.origin[first.kx], shear.oy = lanes.origin[first.ky], shear.oz = lanes.origin[first.kz];
-        const __m256 spread = _mm256_add_ps(size_of(_mm256_sub_ps(shear.sx, _mm256_set1_ps(first.sx))),
-                                            size_of(_mm256_sub_ps(shear.sy, _mm256_set1_ps(first.sy))));
+        const __m256 spread = _mm256_add_ps(size_of(_mm256_sub_ps(shear.sx.v, _mm256_set1_ps(first.sx))),
+                                            size_of(_mm256_sub_ps(shear.sy.v, _mm256_set1_ps(first.sy))));
         const unsigned near_first = mask_of(_mm256_cmp_ps(spread, _mm256_set1_ps(kMaxSpread), _CMP_LT_OQ));
         is_coherent_ = is_coherent_ && (with & near_first) == 0xff;
     }
@@ -250,14 +240,17 @@ private:
             if (requested == 0) continue;
             for (uint32_t i = 0; i < count; ++i) {
                 const BvhTriangle& triangle = triangles[i];
-                TriangleHit8 hits;
-                unsigned hit = intersect_8_rays(rays_ + 8 * g, eight.shear, eight.t_min, eight.t_max,
-                                                _mm256_load_ps(eight.limits), triangle, requested, hits);
-                for (; hit != 0; hit &= hit - 1) {
-                    const int k = __builtin_ctz(hit);
+                const TriangleHitsOf<Floats8> hits = intersect_rays<Floats8>(
+                    eight.shear, {eight.t_min, eight.t_max, _mm256_load_ps(eight.limits)}, triangle, requested);
+                for (unsigned rest = hits.hit | hits.slow; rest != 0; rest &= rest - 1) {
+                    const auto k = static_cast<uint32_t>(__builtin_ctz(rest));
+                    TriangleHit hit = {hits.t[k], hits.u[k], hits.v[k]};
+                    if ((hits.slow >> k & 1) != 0 &&
+                        !intersect_alone(rays_[8 * g + k], eight.limits[k], triangle, hit)) {
+                        continue;
+                    }
                     Visitor& visitor = visitors_[8 * g + k];
-                    const bool ended =
-                        visitor.visit(triangle.instance, triangle.primitive, {hits.t[k], hits.u[k], hits.v[k]});
+                    const bool ended = visitor.visit(triangle.instance, triangle.primitive, hit);
                     eight.limits[k] = ended ? -kInfinity : visitor.limit();
                     if (ended) requested &= ~(1u << k);
                 }

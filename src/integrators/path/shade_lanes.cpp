@@ -1,0 +1,34 @@
+#include "integrators/path/shade_lanes.h"
+
+#include "base/processor.h"
+#include "math/lanes.h"
+
+namespace pertev {
+namespace {
+
+using Floats = Floats8;
+
+} // namespace
+} // namespace pertev
+
+#include "integrators/path/shade_lanes_body.h"
+
+namespace pertev {
+
+const VertexShading kShadingOf8 = {kLanes, shade_lanes};
+
+const VertexShading& vertex_shading() {
+#if defined(PERTEV_HAS_16_LANES)
+    static const VertexShading& widest = has_sixteen_lanes() ? kShadingOf16 : kShadingOf8;
+    return widest;
+#else
+    return kShadingOf8;
+#endif
+}
+
+bool can_shade_lanes(const PathJob& job) {
+    return features_for(job) == kPlainDiffuse && job.settings.light == PathLight::Path &&
+           job.settings.strategy == LightStrategy::Mis;
+}
+
+} // namespace pertev

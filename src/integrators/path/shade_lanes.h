@@ -1,0 +1,52 @@
+#pragma once
+
+// Shades the vertices of eight or, on processors with AVX-512, sixteen paths at once on the host, for scenes of plain
+// diffuse materials at rest, with the bits that shade_vertex (path_vertex.h) gives for each path alone. Other vertices,
+// and those that listeners want to see, are shaded one by one.
+
+#include <array>
+
+#include "integrators/path/drawn_numbers.h"
+#include "integrators/path/path_job.h"
+#include "integrators/path/path_state.h"
+#include "trace/intersect/ray.h"
+
+namespace pertev {
+
+inline constexpr uint32_t kMaxShadingLanes = 16;
+
+/// Paths that have hit surfaces, in a caller's arrays; at most as many as there are lanes. Lanes from `count` on repeat
+/// a path.
+struct LaneVertices {
+    uint32_t count;
+    std::array<PathState*, kMaxShadingLanes> paths;
+    std::array<const Hit*, kMaxShadingLanes> hits;
+};
+
+/// Results of vertices; one bit for each lane, that of lane 0 first.
+struct LaneResults {
+    unsigned goes_on = 0;      // the path continues; it has been moved to its next ray
+    unsigned wants_shadow = 0; // shadows[lane] is to be traced
+};
+
+/// A function that shades vertices, and how many it takes at a time.
+struct VertexShading {
+    uint32_t lanes;
+    /// Shades vertices of a job for which can_shade_lanes holds. `words`: eight lanes' in each element, as DrawnNumbers
+    /// has them.
+    LaneResults (*shade)(const PathJob& job, const LaneVertices& vertices, const VertexWords<Words8>* words,
+                         const std::array<ShadowRay*, kMaxShadingLanes>& shadows);
+};
+
+extern const VertexShading kShadingOf8;
+#if defined(PERTEV_HAS_16_LANES)
+extern const VertexShading kShadingOf16;
+#endif
+
+/// The widest that this computer's processor has.
+const VertexShading& vertex_shading();
+
+/// Whether the job's vertices may be shaded so.
+bool can_shade_lanes(const PathJob& job);
+
+} // namespace pertev

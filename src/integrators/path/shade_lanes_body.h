@@ -1,0 +1,471 @@
+#pragma once
+
+// Body of shade_lanes.h. The file that includes it names the number type: `Floats` is Floats8 or Floats16. All of it is
+// in anonymous namespaces, so that each number of lanes has functions of its own.
+
+#include <cstddef>
+#include <cstring>
+
+#include "integrators/path/film_listener.h"
+#include "integrators/path/path_vertex.h"
+#include "integrators/path/shade_lanes.h"
+
+namespace pertev {
+namespace {
+
+constexpr uint32_t kLanes = Floats::kLanes;
+using Mask = MaskOf<Floats>;
+using Words = WordOf<Floats>;
+using Vec3s = Vec3Of<Floats>;
+using Rgbs = RgbOf<Floats>;
+using Transforms = TransformOf<Floats>;
+
+/// Values that are stored lane by lane and then loaded at once.
+template <int kFields>
+struct Table {
+    alignas(64) float at[kFields][kLanes];
+
+    void set(int field, uint32_t lane, float x) { at[field][lane] = x; }
+    void set(int field, uint32_t lane, Vec3 v) {
+        set(field, lane, v.x), set(field + 1, lane, v.y), set(field + 2, lane, v.z);
+    }
+    void set(int field, uint32_t lane, Rgb c) { set(field, lane, Vec3{c.r, c.g, c.b}); }
+    Floats get(int field) const { return Floats::load(at[field]); }
+    Vec3s vec3(int field) const { return {get(field), get(field + 1), get(field + 2)}; }
+    Rgbs rgb(int field) const { return {get(field), get(field + 1), get(field + 2)}; }
+};
+
+std::array<float*, kLanes> rows_of(float (&table)[kLanes][8]) {
+    std::array<float*, kLanes> rows;
+    for (uint32_t lane = 0; lane < kLanes; ++lane) rows[lane] = table[lane];
+    return rows;
+}
+
+/// The words of all lanes.
+VertexWords<Words> all_of(const VertexWords<Words8>* words) {
+    VertexWords<Words> all;
+    const auto gather = [&](auto part) {
+        for (uint32_t k = 0; k < kLanes / kWords; ++k)
+            std::memcpy(reinterpret_cast<char*>(&part(all)) + 32 * k, &part(words[k]), 32);
+    };
+    gather([](auto& w) -> auto& { return w.light.x; });
+    gather([](auto& w) -> auto& { return w.light.y; });
+    gather([](auto& w) -> auto& { return w.direction.x; });
+    gather([](auto& w) -> auto& { return w.direction.y; });
+    gather([](auto& w) -> auto& { return w.choices.y; }); // roulette
+    return all;
+}
+
+/// Triangles that rays have hit, as they lie in memory.
+struct Triangles {
+    Transforms world_from_local, local_from_world;
+    Vec3s a, b, c;                      // local space
+    Vec3s normal_a, normal_b, normal_c; // vertex normals, or zero
+    Floats u, v;
+    Rgbs albedo;
+    Mask has_normals, is_mirrored, is_baked;
+    unsigned emits = 0; // lanes whose material emits
+};
+
+void load_transforms(const std::array<const InstanceView*, kLanes>& instances, Triangles& triangles) {
+    static_assert(offsetof(InstanceView, world_from_local) == 0 && offsetof(InstanceView, local_from_world) == 48);
+    Floats columns[3][8];
+    for (int part = 0; part < 3; ++part) {
+        std::array<const float*, kLanes> rows;
+        for (uint32_t lane = 0; lane < kLanes; ++lane) rows[lane] = &instances[lane]->world_from_local.row0.x + 8 * part;
+        load_columns(rows, columns[part]);
+    }
+    const auto vector_at = [&](int first) {
+        const auto at = [&](int i) { return columns[i / 8][i % 8]; };
+        return Vec3s{at(first), at(first + 1), at(first + 2)};
+    };
+    triangles.world_from_local = {vector_at(0), vector_at(3), vector_at(6), vector_at(9)};
+    triangles.local_from_world = {vector_at(12), vector_at(15), vector_at(18), vector_at(21)};
+}
+
+Triangles load_triangles(const SceneView& scene, const LaneVertices& vertices) {
+    enum Field {
+        kA = 0,
+        kB = 3,
+        kC = 6,
+        kNormalA = 9,
+        kNormalB = 12,
+        kNormalC = 15,
+        kU = 18,
+        kV,
+        kAlbedo,
+        kFields = 23
+    };
+    Table<kFields> table;
+    std::array<const InstanceView*, kLanes> instances;
+    unsigned have_normals = 0, are_mirrored = 0, are_baked = 0;
+    Triangles triangles;
+    for (uint32_t lane = 0; lane < kLanes; ++lane) {
+        const Hit& hit = *vertices.hits[lane];
+        const InstanceView& instance = scene.instances[hit.instance];
+        const MeshView& mesh = scene.meshes[instance.mesh];
+        const MaterialParameters& material = scene.materials[instance.material];
+        const TriangleIndices i = triangle_indices(mesh, hit.primitive);
+        instances[lane] = &instance;
+        table.set(kA, lane, mesh.positions[i.a]);
+        table.set(kB, lane, mesh.positions[i.b]);
+        table.set(kC, lane, mesh.positions[i.c]);
+        const bool has_normals = mesh.normals != nullptr;
+        const Vec3* const normals = has_normals ? mesh.normals : mesh.positions; // some numbers, which are not used
+        table.set(kNormalA, lane, normals[i.a]);
+        table.set(kNormalB, lane, normals[i.b]);
+        table.set(kNormalC, lane, normals[i.c]);
+        table.set(kU, lane, hit.u);
+        table.set(kV, lane, hit.v);
+        table.set(kAlbedo, lane, base_color_at<ShadingVariant::PlainDiffuse>(scene, material, mesh, i, hit.u, hit.v));
+        have_normals |= (has_normals ? 1u : 0u) << lane;
+        are_mirrored |= (instance.is_mirrored != 0 ? 1u : 0u) << lane;
+        are_baked |= (instance.is_baked != 0 ? 1u : 0u) << lane;
+        const bool emits = material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0;
+        triangles.emits |= (emits ? 1u : 0u) << lane;
+    }
+    load_transforms(instances, triangles);
+    triangles.a = table.vec3(kA), triangles.b = table.vec3(kB), triangles.c = table.vec3(kC);
+    triangles.normal_a = table.vec3(kNormalA), triangles.normal_b = table.vec3(kNormalB);
+    triangles.normal_c = table.vec3(kNormalC);
+    triangles.u = table.get(kU), triangles.v = table.get(kV);
+    triangles.albedo = table.rgb(kAlbedo);
+    triangles.has_normals = Mask::of_bits(have_normals);
+    triangles.is_mirrored = Mask::of_bits(are_mirrored);
+    triangles.is_baked = Mask::of_bits(are_baked);
+    return triangles;
+}
+
+/// Surface (device_scene/surface.h) of hits, with a diffuse BSDF.
+struct Surfaces {
+    Vec3s position, error, winding_normal, geometric_normal;
+    FrameOf<Floats> frame;
+    Rgbs albedo;
+    Floats tilt;
+
+    Mask is_consistent(Vec3s wo, Vec3s wi, Floats wo_z, Floats wi_z) const {
+        const Mask same_side = (dot(wo, geometric_normal) > 0) == (dot(wi, geometric_normal) > 0);
+        return same_side == (wo_z * wi_z > 0);
+    }
+    Vec3s origin_towards(Vec3s wi) const { return offset_ray_origin(position, error, geometric_normal, wi); }
+};
+
+Surfaces make_surfaces(const Triangles& t, Vec3s wo) {
+    WorldTriangleOf<Floats> triangle;
+    place_hit(triangle, {t.world_from_local, t.local_from_world, t.is_mirrored, t.is_baked}, t.a, t.b, t.c, t.u, t.v);
+    Surfaces s;
+    s.position = triangle.position, s.error = triangle.error, s.winding_normal = triangle.normal;
+    s.albedo = t.albedo;
+    s.geometric_normal = triangle.normal;
+    s.tilt = 0.0f;
+    Vec3s shading_normal = triangle.normal;
+    if (any(t.has_normals)) {
+        const Transforms& local_from_world = t.local_from_world;
+        const Vec3s sum = transform_transposed(local_from_world, t.normal_a + t.normal_b + t.normal_c);
+        const Mask is_behind = t.has_normals && dot(sum, triangle.normal) < 0;
+        const Vec3s front = select(is_behind, -triangle.normal, triangle.normal);
+        const Vec3s normal =
+            world_normal(local_from_world, interpolate(t.normal_a, t.normal_b, t.normal_c, t.u, t.v), front);
+        const Vec3s corners = {corner_tilt(local_from_world, t.normal_a, front),
+                               corner_tilt(local_from_world, t.normal_b, front),
+                               corner_tilt(local_from_world, t.normal_c, front)};
+        const Floats tilt = terminator_tilt(sine_between(normal, front), dot({1.0f - t.u - t.v, t.u, t.v}, corners));
+        const Floats side = select(dot(wo, front) < 0, Floats(-1.0f), Floats(1.0f));
+        const Vec3s valid = side * valid_normal(side * normal, side * front, wo);
+        s.geometric_normal = front;
+        s.tilt = select(t.has_normals, tilt, Floats(0.0f));
+        shading_normal = select(t.has_normals, valid, front);
+    }
+    s.frame = make_frame(shading_normal);
+    return s;
+}
+
+/// BsdfValue of the diffuse lobe.
+struct Values {
+    Rgbs f;
+    Floats pdf; // 0: f is not set
+};
+
+Values evaluate_diffuse(Rgbs albedo, Floats wo_z, Floats wi_z) {
+    const Floats pdf = select(wo_z * wi_z > 0, abs(wi_z) * kInvPi, Floats(0.0f));
+    return {pdf * albedo, pdf};
+}
+
+/// Surface::evaluate.
+Values evaluate(const Surfaces& s, Vec3s wo, Vec3s wo_local, Vec3s wi) {
+    const Vec3s wi_local = s.frame.to_local(wi);
+    const RaisedDirectionOf<Floats> from = lower_direction(wi_local, s.tilt);
+    const Values value = evaluate_diffuse(s.albedo, wo_local.z, from.direction.z);
+    const Mask is_valid = s.is_consistent(wo, wi, wo_local.z, wi_local.z) && from.slope > 0;
+    return {(1.0f / from.slope) * value.f, select(is_valid, value.pdf / from.slope, Floats(0.0f))};
+}
+
+/// LightSample of receivers.
+struct Lights {
+    Mask arrives, is_delta, has_distance, is_triangle;
+    Vec3s wi, point, normal;
+    Rgbs radiance;
+    Floats pdf;
+    TriangleId targets[kLanes];
+};
+
+/// Selected lights: a triangle's data, or the whole sample of another kind.
+struct LightTable {
+    enum Field { kA = 0, kAb = 3, kAc = 6, kRadiance = 9, kPdf = 12, kB1, kB2, kFields }; // a triangle
+    static constexpr int kPoint = kA, kWi = kAb;                                          // another kind of light
+    Table<kFields> table;
+    TriangleId targets[kLanes];
+    unsigned arrive = 0, are_triangles = 0, are_mirrored = 0, are_two_sided = 0, are_delta = 0, have_distance = 0;
+};
+
+/// Enters the light that draw_light selects for a lane.
+struct LightOfLane {
+    const LightSetView& view;
+    LightTable& to;
+    uint32_t lane;
+    Vec3 position; // the receiver's
+
+    bool triangle(uint32_t light, Vec2 b, float pmf) const {
+        using F = LightTable;
+        const EmissiveTriangle& from = view.triangles[light];
+        const Rgb radiance = view.emissions[from.material].emission;
+        const unsigned bit = 1u << lane;
+        to.table.set(F::kA, lane, from.a), to.table.set(F::kAb, lane, from.ab), to.table.set(F::kAc, lane, from.ac);
+        to.table.set(F::kRadiance, lane, radiance);
+        to.table.set(F::kPdf, lane, pmf), to.table.set(F::kB1, lane, b.x), to.table.set(F::kB2, lane, b.y);
+        to.targets[lane] = {from.instance, from.primitive};
+        to.are_triangles |= bit, to.have_distance |= bit;
+        if (from.is_mirrored != 0) to.are_mirrored |= bit;
+        if (from.is_two_sided != 0) to.are_two_sided |= bit;
+        if (!is_black(radiance)) to.arrive |= bit;
+        return true;
+    }
+    bool punctual(uint32_t number, float pmf) const {
+        LightSample sample;
+        return SampleOfKind<false, EmittersAtRest>{view, position, {}, sample}.punctual(number, pmf) && enter(sample);
+    }
+    bool environment(float pmf, SampleBits rest) const {
+        LightSample sample;
+        return SampleOfKind<false, EmittersAtRest>{view, position, {}, sample}.environment(pmf, rest) && enter(sample);
+    }
+
+private:
+    bool enter(const LightSample& sample) const {
+        const unsigned bit = 1u << lane;
+        to.table.set(LightTable::kPoint, lane, sample.light_point), to.table.set(LightTable::kWi, lane, sample.wi);
+        to.table.set(LightTable::kRadiance, lane, sample.radiance), to.table.set(LightTable::kPdf, lane, sample.pdf);
+        to.targets[lane] = {sample.instance, sample.primitive};
+        to.arrive |= bit;
+        if (sample.is_delta) to.are_delta |= bit;
+        if (sample.distance < kInfinity) to.have_distance |= bit;
+        return true;
+    }
+};
+
+/// sample_light for the receivers of `lanes`.
+void sample_lights(const LightSetView& view, unsigned lanes, Vec3s position, const SampleBitsOf<Words>& u,
+                   Lights& lights) {
+    LightTable drawn;
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const auto lane = static_cast<uint32_t>(__builtin_ctz(lanes));
+        const Vec3 receiver = {position.x[lane], position.y[lane], position.z[lane]};
+        draw_light(view, {u.x[lane], u.y[lane]}, LightOfLane{view, drawn, lane, receiver});
+    }
+    const auto& table = drawn.table;
+    lights.arrives = Mask::of_bits(drawn.arrive);
+    lights.is_delta = Mask::of_bits(drawn.are_delta);
+    lights.has_distance = Mask::of_bits(drawn.have_distance);
+    lights.is_triangle = Mask::of_bits(drawn.are_triangles);
+    lights.radiance = table.rgb(LightTable::kRadiance);
+    lights.wi = table.vec3(LightTable::kWi), lights.point = table.vec3(LightTable::kA);
+    lights.pdf = table.get(LightTable::kPdf);
+    lights.normal = {0, 0, 0};
+    for (uint32_t lane = 0; lane < kLanes; ++lane) lights.targets[lane] = drawn.targets[lane];
+    if (drawn.are_triangles == 0) return;
+    // triangle_light_at.
+    const Vec3s ab = table.vec3(LightTable::kAb), ac = table.vec3(LightTable::kAc);
+    const Vec3s point = lights.point + (table.get(LightTable::kB1) * ab + table.get(LightTable::kB2) * ac);
+    const Vec3s to_light = point - position;
+    const Floats distance_squared = length_squared(to_light), distance = sqrt(distance_squared);
+    const Vec3s wi = to_light / distance;
+    const Vec3s normal = cross(ab, ac);
+    const Mask emits =
+        Mask::of_bits(drawn.are_two_sided) || (dot(normal, wi) < 0) == !Mask::of_bits(drawn.are_mirrored);
+    const Floats pdf = lights.pdf * triangle_pdf(normal, wi, distance_squared);
+    const Mask is_triangle = lights.is_triangle;
+    lights.arrives = lights.arrives && (!is_triangle || (emits && pdf > 0 && is_finite(pdf)));
+    lights.point = select(is_triangle, point, lights.point);
+    lights.wi = select(is_triangle, wi, lights.wi);
+    lights.normal = select(is_triangle, normalize(normal), lights.normal);
+    lights.pdf = select(is_triangle, pdf, lights.pdf);
+}
+
+/// The parts of a path that shading reads and writes.
+struct Paths {
+    Vec3s direction;
+    Rgbs throughput;
+    Mask is_clamped; // scattered at least once before this vertex
+};
+
+/// sample_direct; returns the lanes that want a shadow ray.
+unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces, Vec3s wo,
+                       Vec3s wo_local, const LaneVertices& vertices, const SampleBitsOf<Words>& u,
+                       const std::array<ShadowRay*, kMaxShadingLanes>& shadows) {
+    Lights lights;
+    sample_lights(job.picture.scene.lights, lanes, surfaces.position, u, lights);
+    const Values scattered = evaluate(surfaces, wo, wo_local, lights.wi);
+    const Mask wants = lights.arrives && scattered.pdf > 0 && !is_black(scattered.f);
+    const unsigned wanted = bit_mask(wants) & lanes;
+    if (wanted == 0) return 0;
+    const Floats weight = select(lights.is_delta, Floats(1.0f), power_heuristic(lights.pdf, scattered.pdf));
+    Rgbs contribution = paths.throughput * scattered.f * ((weight / lights.pdf) * lights.radiance);
+    if (job.settings.clamp > 0) {
+        const Floats largest = max_component(contribution), limit = weight * job.settings.clamp;
+        contribution = select(paths.is_clamped && largest > limit, (limit / largest) * contribution, contribution);
+    }
+    // ray_to_light.
+    const Vec3s origin = surfaces.origin_towards(lights.wi);
+    const Vec3s end = select(
+        lights.is_triangle, offset_ray_origin(lights.point, light_point_error(lights.point), lights.normal, -lights.wi),
+        lights.point);
+    const Vec3s direction = select(lights.has_distance, end - origin, lights.wi);
+    const Floats t_max = select(lights.has_distance, Floats(1.0f), Floats(kInfinity));
+    alignas(64) float first[kLanes][8], light[3][kLanes];
+    store_columns({origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, t_max, t_max}, rows_of(first));
+    contribution.r.store(light[0]), contribution.g.store(light[1]), contribution.b.store(light[2]);
+    for (unsigned rest = wanted; rest != 0; rest &= rest - 1) {
+        const int lane = __builtin_ctz(rest);
+        const float* const row = first[lane];
+        *shadows[lane] = {.origin = {row[0], row[1], row[2]},
+                          .direction = {row[3], row[4], row[5]},
+                          .t_max = row[6],
+                          .start = {vertices.hits[lane]->instance, vertices.hits[lane]->primitive},
+                          .target = lights.targets[lane],
+                          .contribution = {light[0][lane], light[1][lane], light[2][lane]}};
+    }
+    return wanted;
+}
+
+/// Survival probability of Russian roulette, as survival_probability of a path.
+Floats survival_of(Roulette roulette, Floats throughput) {
+    if (roulette == Roulette::Throughput) return throughput;
+    const Floats fourth = sqrt(sqrt(throughput));
+    return roulette == Roulette::FourthRoot ? fourth : fourth * sqrt(sqrt(fourth));
+}
+
+/// sample_scattering; returns the lanes whose paths go on, and moves these.
+unsigned sample_scattering(const PathSettings& settings, unsigned lanes, const Paths& paths, const Surfaces& surfaces,
+                           Vec3s wo, Vec3s wo_local, const LaneVertices& vertices, const VertexWords<Words>& words) {
+    const Vec2Of<Floats> u = {unit_interval<Floats>(words.direction.x), unit_interval<Floats>(words.direction.y)};
+    Vec3s drawn = sample_cosine_hemisphere(u);
+    drawn.z = copysign(drawn.z, wo_local.z);
+    const Values value = evaluate_diffuse(surfaces.albedo, wo_local.z, drawn.z);
+    const Rgbs weight = (1.0f / value.pdf) * value.f;
+    Mask goes_on = wo_local.z != 0 && value.pdf > 1e-30f && !is_black(weight);
+    const RaisedDirectionOf<Floats> raised = raise_direction(drawn, surfaces.tilt);
+    const Floats pdf = value.pdf / raised.slope;
+    const Vec3s wi = normalize(surfaces.frame.to_world(raised.direction));
+    goes_on = goes_on && surfaces.is_consistent(wo, wi, wo_local.z, raised.direction.z) && pdf > 0;
+    unsigned going = bit_mask(goes_on) & lanes;
+
+    Rgbs throughput = paths.throughput * weight;
+    unsigned by_chance = 0;
+    for (uint32_t lane = 0; lane < kLanes; ++lane) {
+        by_chance |= (may_end_by_chance(settings, vertices.paths[lane]->depth + 1) ? 1u : 0u) << lane;
+    }
+    if ((by_chance & going) != 0) {
+        const Floats survival = survival_of(settings.roulette, max_component(throughput));
+        const Mask may_end = Mask::of_bits(by_chance) && survival < 1.0f;
+        going &= bit_mask(!may_end || unit_interval<Floats>(words.choices.y) < survival);
+        throughput = select(may_end, (1.0f / survival) * throughput, throughput);
+    }
+    if (going == 0) return 0;
+    const Vec3s origin = surfaces.origin_towards(wi);
+    alignas(64) float rows[kLanes][8];
+    store_columns({origin.x, origin.y, origin.z, wi.x, wi.y, wi.z, throughput.r, throughput.g}, rows_of(rows));
+    for (unsigned rest = going; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<uint32_t>(__builtin_ctz(rest));
+        const float* const row = rows[lane];
+        PathState& path = *vertices.paths[lane];
+        path.origin = {row[0], row[1], row[2]};
+        path.direction = {row[3], row[4], row[5]};
+        path.throughput = {row[6], row[7], throughput.b[lane]};
+        path.bsdf_pdf = pdf[lane];
+        path.start = {vertices.hits[lane]->instance, vertices.hits[lane]->primitive};
+        path.depth += 1;
+        path.rough_depth += 1;
+    }
+    return going;
+}
+
+/// Adds what the surfaces of `lanes` emit.
+void add_emission(const PathJob& job, unsigned lanes, const LaneVertices& vertices, const Surfaces& surfaces) {
+    const SceneView& scene = job.picture.scene;
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const auto lane = static_cast<uint32_t>(__builtin_ctz(lanes));
+        const Hit& hit = *vertices.hits[lane];
+        PathState& path = *vertices.paths[lane];
+        const uint32_t material = scene.instances[hit.instance].material;
+        const Vec3s& n = surfaces.winding_normal;
+        const Vec3 normal = {n.x[lane], n.y[lane], n.z[lane]};
+        if (!scene.materials[material].two_sided_emission && !(dot(normal, path.direction) < 0)) continue;
+        Surface surface = {};
+        surface.position = {surfaces.position.x[lane], surfaces.position.y[lane], surfaces.position.z[lane]};
+        surface.triangle = {hit.instance, hit.primitive};
+        surface.emission = surface_emission<false>(scene.lights, material, {});
+        FilmListeners listener(job);
+        add_surface_emission<kPlainDiffuse>(job, path, hit, surface, listener);
+    }
+}
+
+/// Adds the first hits of the paths that come from the camera.
+void add_first_hits(const PathJob& job, const LaneVertices& vertices) {
+    for (uint32_t lane = 0; lane < vertices.count; ++lane) {
+        const PathState& path = *vertices.paths[lane];
+        if (path.depth == 0) add_first_hit(job.film, path.pixel, path.sample, *vertices.hits[lane], job.picture);
+    }
+}
+
+Paths load_paths(const LaneVertices& vertices) {
+    static_assert(offsetof(PathState, throughput) == offsetof(PathState, direction) + sizeof(Vec3));
+    static_assert(offsetof(PathState, radiance) == offsetof(PathState, throughput) + sizeof(Rgb));
+    std::array<const float*, kLanes> rows;
+    unsigned are_clamped = 0;
+    for (uint32_t lane = 0; lane < kLanes; ++lane) {
+        rows[lane] = &vertices.paths[lane]->direction.x;
+        are_clamped |= (vertices.paths[lane]->depth > 0 ? 1u : 0u) << lane;
+    }
+    Floats columns[8];
+    load_columns(rows, columns);
+    return {{columns[0], columns[1], columns[2]}, {columns[3], columns[4], columns[5]}, Mask::of_bits(are_clamped)};
+}
+
+[[gnu::flatten]] LaneResults shade_lanes(const PathJob& job, const LaneVertices& vertices,
+                                         const VertexWords<Words8>* drawn,
+                                         const std::array<ShadowRay*, kMaxShadingLanes>& shadows) {
+    const SceneView& scene = job.picture.scene;
+    const unsigned all = (1u << vertices.count) - 1;
+    const Paths paths = load_paths(vertices);
+    const VertexWords<Words> words = all_of(drawn);
+    add_first_hits(job, vertices);
+    const Vec3s wo = -paths.direction;
+    const Triangles triangles = load_triangles(scene, vertices);
+    const Surfaces surfaces = make_surfaces(triangles, wo);
+    add_emission(job, triangles.emits & all, vertices, surfaces);
+    unsigned scatter = 0;
+    for (uint32_t lane = 0; lane < vertices.count; ++lane) {
+        scatter |= (vertices.paths[lane]->depth < job.settings.max_depth ? 1u : 0u) << lane;
+    }
+    if (scatter == 0) return {};
+    const Vec3s wo_local = surfaces.frame.to_local(wo);
+    LaneResults results;
+    if (scene.lights.has_lights()) {
+        results.wants_shadow =
+            sample_direct(job, scatter, paths, surfaces, wo, wo_local, vertices, words.light, shadows);
+    }
+    results.goes_on = sample_scattering(job.settings, scatter, paths, surfaces, wo, wo_local, vertices, words);
+    return results;
+}
+
+} // namespace
+} // namespace pertev

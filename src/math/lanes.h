@@ -1,0 +1,134 @@
+#pragma once
+
+// Eight floats or truth values at once, on the host only (sixteen: math/lanes16.h). Every function gives in each lane
+// the bits that its scalar namesake gives (math/scalar.h), so code that is written for a number type T gives the same
+// picture for float and for Floats8. Such code has no branch that a lane decides; it computes both results and takes
+// one by select().
+
+#include <immintrin.h>
+
+#include <array>
+#include <concepts>
+
+#include "math/scalar.h"
+#include "math/words8.h"
+
+namespace pertev {
+
+/// Eight truth values. Unlike bool, && and || evaluate both sides.
+struct Mask8 {
+    using Bits = int32_t __attribute__((vector_size(32)));
+    Bits bits; // all ones or all zeros in each lane
+
+    Mask8() = default;
+    Mask8(Bits b) : bits(b) {}
+    Mask8(bool all) : bits(Bits{} - (all ? 1 : 0)) {}
+    /// The mask with these bits, one for each lane, that of lane 0 first.
+    static Mask8 of_bits(unsigned b) { return (Bits{1, 2, 4, 8, 16, 32, 64, 128} & static_cast<int>(b)) != 0; }
+
+    friend Mask8 operator&&(Mask8 a, Mask8 b) { return a.bits & b.bits; }
+    friend Mask8 operator||(Mask8 a, Mask8 b) { return a.bits | b.bits; }
+    friend Mask8 operator!(Mask8 a) { return ~a.bits; }
+    friend Mask8 operator==(Mask8 a, Mask8 b) { return ~(a.bits ^ b.bits); }
+    friend Mask8 operator!=(Mask8 a, Mask8 b) { return a.bits ^ b.bits; }
+
+    /// One bit per lane, that of lane 0 first.
+    friend unsigned bit_mask(Mask8 a) {
+        return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(a.bits)));
+    }
+    friend bool any(Mask8 a) { return bit_mask(a) != 0; }
+    friend Words8 select(Mask8 condition, Words8 a, Words8 b) {
+        const Words8 bits = reinterpret_cast<Words8>(condition.bits);
+        return (a & bits) | (b & ~bits);
+    }
+};
+
+struct Floats8 {
+    static constexpr uint32_t kLanes = 8;
+    __m256 v;
+
+    Floats8() = default;
+    Floats8(__m256 lanes) : v(lanes) {}
+    Floats8(std::same_as<float> auto x) : v(_mm256_set1_ps(x)) {}
+    Floats8(std::same_as<int> auto x) : v(_mm256_set1_ps(static_cast<float>(x))) {}
+
+    float operator[](uint32_t lane) const { return v[lane]; }
+    static Floats8 load(const float* p) { return _mm256_loadu_ps(p); }
+    void store(float* p) const { _mm256_storeu_ps(p, v); }
+
+    friend Floats8 operator+(Floats8 a, Floats8 b) { return a.v + b.v; }
+    friend Floats8 operator-(Floats8 a, Floats8 b) { return a.v - b.v; }
+    friend Floats8 operator*(Floats8 a, Floats8 b) { return a.v * b.v; }
+    friend Floats8 operator/(Floats8 a, Floats8 b) { return a.v / b.v; }
+    friend Floats8 operator-(Floats8 a) { return -a.v; }
+
+    friend Mask8 operator<(Floats8 a, Floats8 b) { return Mask8::Bits(a.v < b.v); }
+    friend Mask8 operator>(Floats8 a, Floats8 b) { return Mask8::Bits(a.v > b.v); }
+    friend Mask8 operator<=(Floats8 a, Floats8 b) { return Mask8::Bits(a.v <= b.v); }
+    friend Mask8 operator>=(Floats8 a, Floats8 b) { return Mask8::Bits(a.v >= b.v); }
+    friend Mask8 operator==(Floats8 a, Floats8 b) { return Mask8::Bits(a.v == b.v); }
+    friend Mask8 operator!=(Floats8 a, Floats8 b) { return Mask8::Bits(a.v != b.v); }
+
+    friend Floats8 select(Mask8 condition, Floats8 a, Floats8 b) {
+        return _mm256_blendv_ps(b.v, a.v, reinterpret_cast<__m256>(condition.bits));
+    }
+    // minps returns its second operand unless the first is less, as min() does with exchanged operands; NaN likewise.
+    friend Floats8 min(Floats8 a, Floats8 b) { return _mm256_min_ps(b.v, a.v); }
+    friend Floats8 max(Floats8 a, Floats8 b) { return _mm256_max_ps(b.v, a.v); }
+    friend Floats8 clamp(Floats8 x, Floats8 lo, Floats8 hi) { return select(x > lo, select(x < hi, x, hi), lo); }
+
+    friend Words8 bits_of(Floats8 a) { return reinterpret_cast<Words8>(a.v); }
+    friend Floats8 abs(Floats8 a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a.v); }
+    friend Floats8 copysign(Floats8 magnitude, Floats8 sign) {
+        const __m256 bit = _mm256_set1_ps(-0.0f);
+        return _mm256_or_ps(_mm256_andnot_ps(bit, magnitude.v), _mm256_and_ps(bit, sign.v));
+    }
+    friend Mask8 is_finite(Floats8 a) { return Mask8::Bits((bits_of(a) & 0x7f800000u) != 0x7f800000u); }
+    friend Floats8 sqrt(Floats8 a) { return _mm256_sqrt_ps(a.v); }
+    friend Floats8 safe_sqrt(Floats8 a) { return sqrt(select(a > 0.0f, a, 0.0f)); }
+    friend Floats8 fma(Floats8 a, Floats8 b, Floats8 c) { return _mm256_fmadd_ps(a.v, b.v, c.v); }
+    friend Floats8 square(Floats8 a) { return a * a; }
+    /// Truncates to integers, whose bits are words; |a| < 2^31.
+    friend Words8 truncate_to_word(Floats8 a) { return reinterpret_cast<Words8>(_mm256_cvttps_epi32(a.v)); }
+};
+
+template <>
+struct NumberTraits<Floats8> {
+    using Mask = Mask8;
+    using Word = Words8;
+};
+template <>
+inline Floats8 float_of<Floats8>(Words8 bits) {
+    return reinterpret_cast<__m256>(bits);
+}
+
+/// Loads eight rows of eight floats and stores them transposed: columns[i] has element i of each row.
+inline void load_columns(const std::array<const float*, 8>& rows, Floats8 (&columns)[8]) {
+    __m256 r[8];
+    for (int k = 0; k < 8; ++k) r[k] = _mm256_loadu_ps(rows[k]);
+    __m256 pairs[8], fours[8];
+    for (int k = 0; k < 8; k += 2) {
+        pairs[k] = _mm256_unpacklo_ps(r[k], r[k + 1]), pairs[k + 1] = _mm256_unpackhi_ps(r[k], r[k + 1]);
+    }
+    for (int k = 0; k < 8; k += 4) {
+        fours[k] = _mm256_shuffle_ps(pairs[k], pairs[k + 2], 0x44);
+        fours[k + 1] = _mm256_shuffle_ps(pairs[k], pairs[k + 2], 0xee);
+        fours[k + 2] = _mm256_shuffle_ps(pairs[k + 1], pairs[k + 3], 0x44);
+        fours[k + 3] = _mm256_shuffle_ps(pairs[k + 1], pairs[k + 3], 0xee);
+    }
+    for (int k = 0; k < 4; ++k) {
+        columns[k].v = _mm256_permute2f128_ps(fours[k], fours[k + 4], 0x20);
+        columns[k + 4].v = _mm256_permute2f128_ps(fours[k], fours[k + 4], 0x31);
+    }
+}
+
+/// Stores the transposed columns: rows[i] gets element i of each column.
+inline void store_columns(const Floats8 (&columns)[8], const std::array<float*, 8>& rows) {
+    alignas(32) float all[8][8];
+    for (int k = 0; k < 8; ++k) columns[k].store(all[k]);
+    Floats8 transposed[8];
+    load_columns({all[0], all[1], all[2], all[3], all[4], all[5], all[6], all[7]}, transposed);
+    for (int k = 0; k < 8; ++k) transposed[k].store(rows[k]);
+}
+
+} // namespace pertev

@@ -1,0 +1,117 @@
+#pragma once
+
+// Sixteen floats or truth values at once, as math/lanes.h has eight, for processors with AVX-512. Only files that are
+// compiled for such processors include it (src/CMakeLists.txt), behind a function that asks for one
+// (has_sixteen_lanes).
+
+#include "math/lanes.h"
+
+namespace pertev {
+
+using Words16 = uint32_t __attribute__((vector_size(64)));
+
+struct Mask16 {
+    __mmask16 bits;
+
+    Mask16() = default;
+    explicit Mask16(__mmask16 b) : bits(b) {}
+    Mask16(bool all) : bits(all ? 0xffff : 0) {}
+    Mask16(int32_t __attribute__((vector_size(64))) all) : bits(_mm512_movepi32_mask(reinterpret_cast<__m512i>(all))) {}
+    static Mask16 of_bits(unsigned b) { return Mask16(static_cast<__mmask16>(b)); }
+
+    friend Mask16 operator&&(Mask16 a, Mask16 b) { return of_bits(a.bits & b.bits); }
+    friend Mask16 operator||(Mask16 a, Mask16 b) { return of_bits(a.bits | b.bits); }
+    friend Mask16 operator!(Mask16 a) { return of_bits(~unsigned{a.bits}); }
+    friend Mask16 operator==(Mask16 a, Mask16 b) { return of_bits(~(unsigned{a.bits} ^ b.bits)); }
+    friend Mask16 operator!=(Mask16 a, Mask16 b) { return of_bits(a.bits ^ b.bits); }
+
+    friend unsigned bit_mask(Mask16 a) { return a.bits; }
+    friend bool any(Mask16 a) { return a.bits != 0; }
+    friend Words16 select(Mask16 condition, Words16 a, Words16 b) {
+        return reinterpret_cast<Words16>(
+            _mm512_mask_blend_epi32(condition.bits, reinterpret_cast<__m512i>(b), reinterpret_cast<__m512i>(a)));
+    }
+};
+
+struct Floats16 {
+    static constexpr uint32_t kLanes = 16;
+    __m512 v;
+
+    Floats16() = default;
+    Floats16(__m512 lanes) : v(lanes) {}
+    Floats16(std::same_as<float> auto x) : v(_mm512_set1_ps(x)) {}
+    Floats16(std::same_as<int> auto x) : v(_mm512_set1_ps(static_cast<float>(x))) {}
+    Floats16(Floats8 first, Floats8 second) : v(_mm512_insertf32x8(_mm512_castps256_ps512(first.v), second.v, 1)) {}
+
+    float operator[](uint32_t lane) const { return v[lane]; }
+    static Floats16 load(const float* p) { return _mm512_loadu_ps(p); }
+    void store(float* p) const { _mm512_storeu_ps(p, v); }
+
+    friend Floats16 operator+(Floats16 a, Floats16 b) { return a.v + b.v; }
+    friend Floats16 operator-(Floats16 a, Floats16 b) { return a.v - b.v; }
+    friend Floats16 operator*(Floats16 a, Floats16 b) { return a.v * b.v; }
+    friend Floats16 operator/(Floats16 a, Floats16 b) { return a.v / b.v; }
+    friend Floats16 operator-(Floats16 a) { return -a.v; }
+
+    friend Mask16 operator<(Floats16 a, Floats16 b) { return compare<_CMP_LT_OQ>(a, b); }
+    friend Mask16 operator>(Floats16 a, Floats16 b) { return compare<_CMP_GT_OQ>(a, b); }
+    friend Mask16 operator<=(Floats16 a, Floats16 b) { return compare<_CMP_LE_OQ>(a, b); }
+    friend Mask16 operator>=(Floats16 a, Floats16 b) { return compare<_CMP_GE_OQ>(a, b); }
+    friend Mask16 operator==(Floats16 a, Floats16 b) { return compare<_CMP_EQ_OQ>(a, b); }
+    friend Mask16 operator!=(Floats16 a, Floats16 b) { return compare<_CMP_NEQ_UQ>(a, b); }
+
+    friend Floats16 select(Mask16 condition, Floats16 a, Floats16 b) {
+        return _mm512_mask_blend_ps(condition.bits, b.v, a.v);
+    }
+    friend Floats16 min(Floats16 a, Floats16 b) { return _mm512_min_ps(b.v, a.v); }
+    friend Floats16 max(Floats16 a, Floats16 b) { return _mm512_max_ps(b.v, a.v); }
+    friend Floats16 clamp(Floats16 x, Floats16 lo, Floats16 hi) { return select(x > lo, select(x < hi, x, hi), lo); }
+
+    friend Words16 bits_of(Floats16 a) { return reinterpret_cast<Words16>(a.v); }
+    friend Floats16 abs(Floats16 a) { return _mm512_andnot_ps(_mm512_set1_ps(-0.0f), a.v); }
+    friend Floats16 copysign(Floats16 magnitude, Floats16 sign) {
+        const __m512 bit = _mm512_set1_ps(-0.0f);
+        return _mm512_or_ps(_mm512_andnot_ps(bit, magnitude.v), _mm512_and_ps(bit, sign.v));
+    }
+    friend Mask16 is_finite(Floats16 a) { return (bits_of(a) & 0x7f800000u) != 0x7f800000u; }
+    friend Floats16 sqrt(Floats16 a) { return _mm512_sqrt_ps(a.v); }
+    friend Floats16 safe_sqrt(Floats16 a) { return sqrt(select(a > 0.0f, a, 0.0f)); }
+    friend Floats16 fma(Floats16 a, Floats16 b, Floats16 c) { return _mm512_fmadd_ps(a.v, b.v, c.v); }
+    friend Floats16 square(Floats16 a) { return a * a; }
+    friend Words16 truncate_to_word(Floats16 a) { return reinterpret_cast<Words16>(_mm512_cvttps_epi32(a.v)); }
+
+private:
+    template <int kPredicate>
+    static Mask16 compare(Floats16 a, Floats16 b) {
+        return Mask16(_mm512_cmp_ps_mask(a.v, b.v, kPredicate));
+    }
+};
+
+template <>
+struct NumberTraits<Floats16> {
+    using Mask = Mask16;
+    using Word = Words16;
+};
+template <>
+inline Floats16 float_of<Floats16>(Words16 bits) {
+    return reinterpret_cast<__m512>(bits);
+}
+
+inline void load_columns(const std::array<const float*, 16>& rows, Floats16 (&columns)[8]) {
+    Floats8 first[8], second[8];
+    load_columns({rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7]}, first);
+    load_columns({rows[8], rows[9], rows[10], rows[11], rows[12], rows[13], rows[14], rows[15]}, second);
+    for (int k = 0; k < 8; ++k) columns[k] = {first[k], second[k]};
+}
+
+inline void store_columns(const Floats16 (&columns)[8], const std::array<float*, 16>& rows) {
+    Floats8 first[8], second[8];
+    for (int k = 0; k < 8; ++k) {
+        first[k] = _mm512_castps512_ps256(columns[k].v);
+        second[k] = _mm512_extractf32x8_ps(columns[k].v, 1);
+    }
+    store_columns(first, {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7]});
+    store_columns(second, {rows[8], rows[9], rows[10], rows[11], rows[12], rows[13], rows[14], rows[15]});
+}
+
+} // namespace pertev
