@@ -119,10 +119,15 @@ def scripts():
 
 
 def parts_of(script):
-    """Returns what a script says of itself, in its docstring or in the comment at its head, and the rest of it."""
+    """Returns what a script says of itself, in its docstring or in the comment at its head, and the rest of it with what it imports."""
     text = script.read_text(encoding="utf-8")
-    said = ast.get_docstring(ast.parse(text)) or "" if script.suffix == ".py" else re.match(r"(?:#.*\n)*", text)[0].replace("\n# ", "\n")
-    return said, text.replace(said, "") if script.suffix == ".py" else text[len(said):]
+    if script.suffix != ".py":
+        said = re.match(r"(?:#.*\n)*", text)[0]
+        return said.replace("\n# ", "\n"), text[len(said):]
+    said = ast.get_docstring(ast.parse(text)) or ""
+    imported = [folder / f"{name}.py" for name in re.findall(r"(?m)^(?:from|import) (\w+)", text)
+                for folder in (script.parent, ROOT / "tests/support")]
+    return said, text.replace(said, "") + "".join(path.read_text(encoding="utf-8") for path in imported if path.exists())
 
 
 def own_commands():
@@ -130,10 +135,10 @@ def own_commands():
     for script in scripts():
         yield from ((script.name, command) for command in inline_commands(parts_of(script)[0]))
     jobs = json.loads((ROOT / "bench/jobs.json").read_text(encoding="utf-8"))
-    yield from (("jobs.json", f"pertev {job['line']}") for part in jobs.values() for job in part["jobs"])
+    yield from (("jobs.json", f"pertev {job['line']}") for table in ("parts", "devices") for part in jobs[table].values() for job in part["jobs"])
     for path in sorted((ROOT / "bench/results").glob("*.json")):
         command = json.loads(path.read_text(encoding="utf-8"))["command"] or ""
-        yield from ((path.name, one) for one in command.split("; ") if one.startswith("pertev "))
+        yield from ((path.name, one) for one in command.split("; ") if re.match(r"(?:\S*/)?pertev ", one))
 
 
 def own_faults(name, said, code, known):
@@ -158,8 +163,7 @@ def faults_of_all():
     tracked = [path.relative_to(ROOT).as_posix() for folder in FOLDERS for path in (ROOT / folder).rglob("*.*")]
     tracked += [path.name for path in ROOT.glob("*.*")]
     presets = re.findall(r'"name": "([^"]+)"', (ROOT / "CMakePresets.json").read_text(encoding="utf-8"))
-    known = "".join(path.read_text(encoding="utf-8")
-                    for path in [*(ROOT / "apps/cli").glob("*.cpp"), ROOT / "tests/support/reference_job.py", ROOT / "docs/settings.md"])
+    known = "".join(path.read_text(encoding="utf-8") for path in [*(ROOT / "apps/cli").glob("*.cpp"), ROOT / "docs/settings.md"])
     for script in scripts():
         yield from own_faults(script.name, *parts_of(script), known)
     words = 0

@@ -6,8 +6,8 @@
     tools/make_tables.py --self-test
 
 A document has `<!-- table: results/FILE.json NAME -->` ... `<!-- end -->`. After the name may stand `columns=KEY,KEY` and
-`where=KEY:VALUE|VALUE`, which select columns and rows. Numbers keep the digits that the JSON has. A unit that several columns
-share stands once, in the head of the first column.
+`where=KEY:VALUE|VALUE`, which select columns and rows. Numbers keep the digits that the JSON has. A unit that all columns of
+figures share stands once, in the head of the first column.
 
 `date` is when a file was measured; a day alone is that on which the commit `recorded` brought the last of its figures. `program`
 names the version. `command` is what makes them today, several between semicolons; words in capitals stand for files, NAME or SCENE
@@ -55,6 +55,8 @@ def faults_of(name, measured):
         faults.append(f"{name}: tables have no names, or two have one")
     for table in measured.get("tables", []):
         keys = [column["key"] for column in table["columns"]]
+        if titles := [column["title"] for column in table["columns"] if re.search(r"(?:^|, )(?:s|ms|%|[MG](?:rays|samples)/s)$", column["title"])]:
+            faults.append(f"{name}: {table['name']}: the unit of {titles[0]} stands in its title")
         if len(keys) != len(set(keys)):
             faults.append(f"{name}: {table['name']}: two columns have one key")
         if any(len(row) != len(keys) for row in table["rows"]) or not table["rows"]:
@@ -79,10 +81,10 @@ def origin_faults(measured):
                 yield "a day alone, and nothing else, has the commit that recorded it"
         except ValueError:
             yield f"{date} is no date"
-    if isinstance(program, str) and not re.fullmatch(r"pertev (?:[0-9a-f]{7,}|\d+\.\d+\.\d+ \([0-9a-f]{7,}\+?\))", program):
+    if isinstance(program, str) and not re.fullmatch(r"pertev (?:\d+\.\d+\.\d+ )?\(?[0-9a-f]{7,}\+?\)?", program):
         yield f"the program {program} names no commit"
     for one in command.split("; ") if isinstance(command, str) else []:
-        if not re.match(r"(?:pertev|pertev_tests|(?:tools|bench|tests)/\S+)(?: |$)", one):
+        if not re.match(r"(?:(?:\S*/)?pertev|pertev_tests|(?:tools|bench|tests)/\S+)(?: |$)", one):
             yield f"{one} begins with neither the program nor a script"
         yield from check_documents.script_faults("command", one)
         for pattern in re.findall(r"--source-file=(\S+)", one):
@@ -125,7 +127,7 @@ def render(path, measured, name, options):
     heads = [table["columns"][c] for c in columns]
     numeric = [any(isinstance(row[c], Digits) for row in rows) and i > 0 for i, c in enumerate(columns)]
     units = [h["unit"] for h in heads if h.get("unit")]
-    shared = units[0] if len(units) > 1 and len(set(units)) == 1 and (units[0] != "%" or len(units) == sum(numeric)) else None
+    shared = units[0] if len(units) > 1 and len(set(units)) == 1 and len(units) >= sum(numeric) else None
 
     def title(index, head):
         unit = (shared if index == 0 else None) if shared else head.get("unit")
@@ -166,6 +168,7 @@ def self_test():
     assert not faults_of("x", good)
     assert faults_of("x", {**good, "version": 2}) and faults_of("x", {k: v for k, v in good.items() if k != "device"})
     assert faults_of("x", {**good, "tables": good["tables"] * 2})
+    assert faults_of("x", {**good, "tables": [{**good["tables"][0], "columns": [{"key": "k", "title": "a, ms", "unit": None}], "rows": [[1]]}]})
     for key, bad in (("date", ["2026-11-26", "2026-11-26T16:12:08", "2026-13-01", ""]), ("program", ["pertev", "", 3]), ("driver", ["1"]),
                      ("command", ["", "x", "pertev bench; ", "tools/none.py", "tools/check_sizes.py --none", "pertev_tests --source-file=none"])):
         for value in [*bad, None] if key != "driver" else bad:
@@ -174,6 +177,8 @@ def self_test():
     assert faults_of("x", {**good, "unknown": {"date": "Why."}}) and faults_of("x", {**good, "recorded": "0adaae0"})
     assert not faults_of("x", {**good, "date": "2026-11-26", "recorded": "0adaae0"})
     text = render("results/x.json", good, "a", "")
+    one_unit = {**good, "tables": [{**good["tables"][0], "columns": [{**column, "unit": "s" if k else None} for k, column in enumerate(good["tables"][0]["columns"])]}]}
+    assert "| scene, s | rays | seconds |" in render("results/x.json", one_unit, "a", "")
     assert "| scene | rays, Mrays/s | seconds, s |" in text and "| Sponza | 1.10 |  |" in text and "3e-5" in text, text
     chosen = render("results/x.json", good, "a", "columns=k,r where=k:two_words")
     assert "1.10" not in chosen and "| two words | 2 |" in chosen, chosen
