@@ -18,6 +18,7 @@ import datetime
 import json
 import pathlib
 import re
+import subprocess
 import sys
 
 import check_documents
@@ -92,6 +93,17 @@ def origin_faults(measured):
                 yield f"{one}: there is no such test"
     if (measured["device"] is None) != (measured["driver"] is None):
         yield "a device has a driver"
+
+
+def unknown_commits(files):
+    """Messages about commits that Git has not got; none where there is no Git, or not its whole history."""
+    named = [(name, commit) for name, measured in files.items() for key in ("program", "recorded")
+             for commit in re.findall(r"\b[0-9a-f]{7,12}\b", measured.get(key) or "")]
+    run = lambda *words, text=None: subprocess.run(["git", "-C", str(ROOT), *words], input=text, capture_output=True, text=True, check=False).stdout
+    if run("rev-parse", "--is-shallow-repository") != "false\n":
+        return []
+    found = run("cat-file", "--batch-check=%(objecttype)", text="".join(f"{commit}\n" for _, commit in named)).splitlines()
+    return [f"{name}: there is no commit {commit}" for (name, commit), kind in zip(named, found) if kind != "commit"]
 
 
 def pick(table, options):
@@ -176,6 +188,7 @@ def self_test():
             assert key == "driver" or value is not None or not faults_of("x", {**good, key: value, "unknown": {key: "Why."}})
     assert faults_of("x", {**good, "unknown": {"date": "Why."}}) and faults_of("x", {**good, "recorded": "0adaae0"})
     assert not faults_of("x", {**good, "date": "2026-11-26", "recorded": "0adaae0"})
+    assert unknown_commits({}) == [] and len(unknown_commits({"x": {"recorded": "0" * 9}})) in (0, 1)
     text = render("results/x.json", good, "a", "")
     one_unit = {**good, "tables": [{**good["tables"][0], "columns": [{**column, "unit": "s" if k else None} for k, column in enumerate(good["tables"][0]["columns"])]}]}
     assert "| scene, s | rays | seconds |" in render("results/x.json", one_unit, "a", "")
@@ -203,6 +216,7 @@ def main(arguments):
         name = f"results/{path.name}"
         seen[name] = load(path.read_text(encoding="utf-8"))
         faults += faults_of(name, seen[name])
+    faults += unknown_commits(seen)
     for document in sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md"]):
         text = document.read_text(encoding="utf-8")
         if text.count("<!-- table:") != len(MARKER.findall(text)):
