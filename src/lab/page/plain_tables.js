@@ -18,7 +18,7 @@ function quantitiesOf(table, first) {
   table.columns.forEach((column, i) => {
     const values = table.rows.map((row) => measuredOf(row[i])).filter(Boolean).map((one) => Math.abs(one.y));
     if (i < first || /^(?:spp|samples|triangles|registers)$/.test(column.title) || values.length < Math.max(2, table.rows.length / 2)) return;
-    const quantity = column.unit || (/times|relMSE|FLIP|flicker|mean|ratio|share|error|efficiency|lanes/.exec(column.title)?.[0] ?? "");
+    const quantity = column.unit || (/times|ratio|share|\w+\/s$/.exec(column.title) ?? /relMSE|FLIP|flicker|mean|error|efficiency|lanes/.exec(column.title))?.[0] || "";
     groups.set(quantity, [...(groups.get(quantity) ?? []), { i, title: column.title, median: medianOf(values) }]);
   });
   return [...groups].flatMap(([quantity, columns]) => {
@@ -32,6 +32,14 @@ function quantitiesOf(table, first) {
 function namesOf(table) {
   const first = table.columns.findIndex((column, i) => table.rows.some((row) => measuredOf(row[i])));
   return first < 0 ? table.columns.length : first;
+}
+
+/** How a row is named: by as few of the first columns that vary as tell all rows apart. */
+function labelOf(table, first) {
+  const varying = [...Array(first).keys()].filter((i) => distinct(table.rows.map((row) => row[i])).length > 1);
+  const by = (count) => (row) => varying.slice(0, count).map((i) => row[i]).filter((cell) => cell !== null).join(", ");
+  const enough = varying.findIndex((_, k) => distinct(table.rows.map(by(k + 1))).length === table.rows.length);
+  return by(enough < 0 ? varying.length : enough + 1);
 }
 
 /** Rows of the table as dots on one axis, a colour for each of the columns. */
@@ -82,7 +90,7 @@ function curves(table, { quantity, columns }, x, label, title) {
 
 /** All plots of a table. Where a group has more columns than there are colours, the table's own shades show it. */
 function plotsOf(table) {
-  const first = namesOf(table), label = (row) => row.slice(0, first).filter((cell) => cell !== null).join(", ");
+  const first = namesOf(table), label = labelOf(table, first);
   const groups = new Map(table.rows.map((row) => [label(row), []]));
   for (const row of table.rows) groups.get(label(row)).push(row[first]);
   const isOver = first < table.columns.length && table.rows.length > 2 && [...groups.values()].every((values) => values.length > 2 && values.every(measuredOf) && distinct(values).length === values.length);

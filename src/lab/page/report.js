@@ -24,6 +24,7 @@ const isNumber = (value) => typeof value === "number";
 function textOf(value) {
   if (value === null || value === undefined) return "";
   if (typeof value === "boolean") return value ? "yes" : "no";
+  if (typeof value === "object") return Object.entries(value).map(([key, one]) => `${key} ${textOf(one)}`).join(", ");
   if (!isNumber(value)) return String(value);
   const size = Math.abs(value);
   if (Number.isInteger(value)) return size < 1e15 ? value.toLocaleString("en").replaceAll(",", "\u202f") : value.toExponential(3);
