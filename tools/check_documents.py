@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Fails where a document, or what a script says of itself, names what is not there: a file, an anchor, a source file, a script, a flag
-or a preset. It also fails where all documents together have more than 40,000 words, the tour names more than forty files, a text
+"""Fails where a document, a comment or what a script says of itself names what is not there: a file, an anchor, a source file, a script,
+a flag or a preset. It also fails where all documents together have more than 40,000 words, the tour names more than forty files, a text
 speaks of internal targets, or a picture has no licence in docs/notices.md.
 
     tools/check_documents.py
@@ -149,6 +149,13 @@ def own_faults(name, said, code, known):
     yield from (f"{name}: says {flag}, which neither it nor pertev has" for flag in sorted(set(FLAG.findall(said))) if flag not in code + known)
 
 
+def named_faults(name, text):
+    """Files that a source names, as its comments do, and that are not there."""
+    for file in sorted(set(re.findall(r"\b(?:tools|tests|bench|docs)/[\w/.-]+\.(?:py|sh|json|cpp|h|md)\b", text))):
+        if not (ROOT / file).exists():
+            yield f"{name}: {file} is not there"
+
+
 def broken_links(ask):
     """External links of all documents for which `ask` raises an error."""
     for document in documents():
@@ -166,6 +173,9 @@ def faults_of_all():
     known = "".join(path.read_text(encoding="utf-8") for path in [*(ROOT / "apps/cli").glob("*.cpp"), ROOT / "docs/settings.md"])
     for script in scripts():
         yield from own_faults(script.name, *parts_of(script), known)
+    for source in tracked:
+        if source.startswith(("src/", "apps/", "tests/", "bench/")) and source.endswith((".h", ".cpp", ".cu", ".py", ".js", ".txt")):
+            yield from named_faults(source, (ROOT / source).read_text(encoding="utf-8"))
     words = 0
     for document in documents():
         text = document.read_text(encoding="utf-8")
@@ -202,6 +212,7 @@ def self_test():
     assert list(script_faults("x", "tools/check_sizes.py --none")) and list(script_faults("x", "bench/none a"))
     assert not list(script_faults("x", "tools/check_sizes.py -- --none")) and not list(script_faults("x", "bench/trace_bench"))
     assert list(own_faults("x", "tools/none.py or --none", "", "")) and not list(own_faults("x", "--a-b, --c", '"--a-b"', '"--c"'))
+    assert list(named_faults("x", "// see tools/none.py")) and not list(named_faults("x", "// bench/jobs.json has it"))
     assert "--self-test" in parts_of(pathlib.Path(__file__))[0] and "--self-test" in parts_of(pathlib.Path(__file__))[1]
     assert len(list(own_commands())) > 80 and not list(broken_links(len))
 
