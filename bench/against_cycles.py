@@ -1,48 +1,20 @@
 #!/usr/bin/env python3
-"""Times whole pictures on the CPU against Cycles, in turns: `bench/against_cycles.py PERTEV [--pairs N]`.
+"""Times whole pictures on the CPU against Cycles, in turns: `bench/against_cycles.py PERTEV [--runs N] [-o MEASUREMENT.json]`.
 
-Needs PyPI's bpy (Cycles 5; `pip install bpy`) and PERTEV_SCENES (docs/scenes.md). Three jobs, all with a box filter of one
-pixel: S8 of `pertev bench render`, with its roulette and with that of `pertev render`, and Bitterli's Cornell box with the
-depth of its file. Prints for each pair how many
-samples a second, without reading and trees (Cycles: by the difference of two numbers of samples), and how fast to equal
-error: samples a second times error of a picture of the same number of samples, where the error is the mean over pixels of
-variance / (mean^2 + 0.01), from two pictures of other seeds.
+Needs PyPI's bpy (Cycles 5; `pip install bpy`) and PERTEV_SCENES (docs/scenes.md). Jobs, rates, errors and means are those of
+bench/against_mitsuba.py. Reading and trees are not timed, in Cycles by the difference of two numbers of samples.
 """
 
-import argparse
 import json
 import math
-import os
-import pathlib
-import statistics
-import sys
-import tempfile
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests/images"))
-from mitsuba_to_gltf import convert  # noqa: E402
-
-import bpy  # noqa: E402
-import numpy  # noqa: E402
-from mathutils import Matrix, Vector  # noqa: E402
-
-from peer_jobs import run_pertev, seconds_of, write_grey_obj  # noqa: E402
+import bpy
+from contest import CornellBox, main
+from mathutils import Matrix, Vector
 
 
-def exr_pixels(path):
-    image = bpy.data.images.load(str(path))
-    pixels = numpy.array(image.pixels[:], dtype=numpy.float64).reshape(-1, image.channels)[:, :3]
-    bpy.data.images.remove(image)
-    return pixels
-
-
-def error_of(first, second):
-    """relMSE of one of two pictures that differ in their seed alone."""
-    a, b = exr_pixels(first), exr_pixels(second)
-    return float(numpy.mean((a - b) ** 2 / 2 / (((a + b) / 2) ** 2 + 0.01)))
-
-
-class Cycles:
+class Scene:
     """A job in Blender's scene. Materials are plain diffuse or emission, as Pertev's."""
 
     def __init__(self, width, height, depth, threads):
@@ -73,18 +45,20 @@ class Cycles:
     def set_black(self):
         self.scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0, 0, 0, 1)
 
-    def surface(self, name, node_type, color, strength=None):
-        material = bpy.data.materials.new(name)
+    @staticmethod
+    def surface(color, strength=None):
+        """Diffuse, or with a strength an emitter."""
+        material = bpy.data.materials.new("surface")
         material.use_nodes = True
         tree = material.node_tree
         tree.nodes.clear()
-        shader, output = tree.nodes.new(node_type), tree.nodes.new("ShaderNodeOutputMaterial")
+        shader = tree.nodes.new("ShaderNodeBsdfDiffuse" if strength is None else "ShaderNodeEmission")
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
         shader.inputs["Color"].default_value = (*color, 1)
-        if strength is not None:
-            shader.inputs["Strength"].default_value = strength
         if strength is None:
             tree.links.new(shader.outputs[0], output.inputs["Surface"])
             return material
+        shader.inputs["Strength"].default_value = strength
         face, mix = tree.nodes.new("ShaderNodeNewGeometry"), tree.nodes.new("ShaderNodeMixShader")
         tree.links.new(face.outputs["Backfacing"], mix.inputs[0])  # a lamp shines from its front
         tree.links.new(shader.outputs[0], mix.inputs[1])
@@ -100,7 +74,7 @@ class Cycles:
         self.scene.collection.objects.link(thing)
         self.scene.camera = thing
 
-    def seconds(self, samples, seed=0, path=None):
+    def seconds(self, samples, seed, path=None):
         self.scene.cycles.samples, self.scene.cycles.seed = samples, seed
         self.scene.render.filepath = str(path or "")
         start = time.perf_counter()
@@ -115,105 +89,59 @@ def look_at(eye, target):
     return Matrix([[right[i], up[i], -forward[i], eye[i]] for i in range(3)] + [[0, 0, 0, 1]])
 
 
-class Sponza:
-    name, width, height, samples = "S8", 640, 360, 16
-
-    def __init__(self, scenes, folder, threads):
-        self.file = scenes / "crytek-sponza/sponza.obj"
-        self.cycles = Cycles(self.width, self.height, 8, threads)
-        self.cycles.set_sky()
-        bpy.ops.wm.obj_import(filepath=str(self.file), forward_axis="NEGATIVE_Z", up_axis="Y")
-        grey = self.cycles.surface("grey", "ShaderNodeBsdfDiffuse", (0.7, 0.7, 0.7))
-        for thing in bpy.data.objects:
-            if thing.type != "MESH":
-                continue
+def read_obj(scene, job):
+    bpy.ops.wm.obj_import(filepath=str(job.file), forward_axis="NEGATIVE_Z", up_axis="Y")
+    made = {name: scene.surface([reflectance] * 3) if not emission else scene.surface([1] * 3, emission)
+            for name, (reflectance, emission) in job.materials.items()}
+    for thing in bpy.data.objects:
+        if thing.type == "MESH":
             thing.matrix_world = Matrix()  # the file's own axes
             thing.data.shade_flat()
-            thing.data.materials.clear()
-            thing.data.materials.append(grey)
-        self.cycles.set_camera(look_at((-110, 18, -2), (60, 32, -4)), math.radians(60))
-
-    def arguments(self, path):
-        return ["bench", "render", "--job", "S8", "--scene", self.file, "-o", path]
+            for slot in thing.material_slots:
+                slot.material = made[slot.material.name.partition(".")[0]]
+    scene.set_camera(look_at(job.eye, job.target), math.radians(job.fov))
 
 
-class SponzaByDefault(Sponza):
-    """Sponza as a file for `pertev render`, whose paths end by the default Russian roulette."""
-
-    name = "S8 by the roulette of render"
-
-    def __init__(self, scenes, folder, threads):
-        super().__init__(scenes, folder, threads)
-        write_grey_obj(self.file, pathlib.Path(folder, "grey.obj"), 0.7)
-        self.file = pathlib.Path(folder, "grey.obj")
-
-    def arguments(self, path):
-        return ["render", self.file, "-o", path, "--filter", "box", "--max-depth", 8, "--environment", "1,1,1",
-                "--eye=-110,18,-2", "--target=60,32,-4", "--fov", 60]
-
-
-class CornellBox:
-    name, width, height, samples = "cornell-box", 512, 512, 16
-
-    def __init__(self, scenes, folder, threads):
-        text, _, _ = convert(scenes / "bitterli/cornell-box/scene_mitsuba3.xml")
-        self.file = pathlib.Path(folder, "box.gltf")
-        self.file.write_text(text)
-        self.cycles = Cycles(self.width, self.height, 64, threads)
-        self.cycles.set_black()
-        bpy.ops.import_scene.gltf(filepath=str(self.file))
-        for index, material in enumerate(json.loads(text)["materials"]):
-            strength = material.get("extensions", {}).get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1)
-            if any(material.get("emissiveFactor", [0])):
-                new = self.cycles.surface("lamp", "ShaderNodeEmission", material["emissiveFactor"], strength)
-            else:
-                color = material["pbrMetallicRoughness"].get("baseColorFactor", [1, 1, 1])[:3]
-                new = self.cycles.surface("wall", "ShaderNodeBsdfDiffuse", color)
-            bpy.data.materials[f"Material_{index}"].user_remap(new)  # the importer's name for one without
-        camera = next(thing for thing in bpy.data.objects if thing.type == "CAMERA")
-        camera.data.sensor_fit = "VERTICAL"
-        self.cycles.scene.camera = camera
-
-    def arguments(self, path):
-        return ["render", self.file, "-o", path, "--filter", "box", "--max-depth", 64]
+def read_gltf(scene, job):
+    bpy.ops.import_scene.gltf(filepath=str(job.file))
+    for index, material in enumerate(json.loads(job.file.read_text())["materials"]):
+        strength = material.get("extensions", {}).get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1)
+        if any(material.get("emissiveFactor", [0])):
+            new = scene.surface(material["emissiveFactor"], strength)
+        else:
+            new = scene.surface(material["pbrMetallicRoughness"].get("baseColorFactor", [1, 1, 1])[:3])
+        bpy.data.materials[f"Material_{index}"].user_remap(new)  # the importer's name for one without
+    camera = next(thing for thing in bpy.data.objects if thing.type == "CAMERA")
+    camera.data.sensor_fit = "VERTICAL"
+    scene.scene.camera = camera
 
 
-def pertev(program, job, threads, samples, seed, path):
-    """Seconds of rendering alone."""
-    return seconds_of(run_pertev(program, [*job.arguments(path), "--spp", samples, "--seed", seed, "--size",
-                                           f"{job.width}x{job.height}", "--device", "cpu", "--threads", threads]))
+class Cycles:
+    name = "Cycles"
 
+    def __init__(self, arguments):
+        self.threads = arguments.threads
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("pertev")
-    parser.add_argument("--pairs", type=int, default=3)
-    parser.add_argument("--threads", type=int, default=os.cpu_count())
-    arguments = parser.parse_args()
-    scenes = pathlib.Path(os.environ["PERTEV_SCENES"])
-    with tempfile.TemporaryDirectory() as folder:
-        for make in (Sponza, SponzaByDefault, CornellBox):
-            job = make(scenes, folder, arguments.threads)
-            ours = [pathlib.Path(folder, f"ours-{seed}.exr") for seed in (1, 2)]
-            theirs = [pathlib.Path(folder, f"theirs-{seed}.exr") for seed in (1, 2)]
-            pixels, ratios = job.width * job.height, []
-            job.cycles.seconds(1)  # reads and builds
-            for _ in range(arguments.pairs):
-                seconds = pertev(arguments.pertev, job, arguments.threads, job.samples, 1, ours[0])
-                few, many = job.cycles.seconds(job.samples // 4), job.cycles.seconds(job.samples + job.samples // 4)
-                rate, rival = pixels * job.samples / seconds, pixels * job.samples / (many - few)
-                ratios.append(rate / rival)
-                print(f"{job.name}: {rate * 1e-6:.3f} Msamples/s, Cycles {rival * 1e-6:.3f}, {ratios[-1]:.2f} times",
-                      flush=True)
-            for seed in (1, 2):
-                pertev(arguments.pertev, job, arguments.threads, job.samples, seed, ours[seed - 1])
-                job.cycles.seconds(job.samples, seed, theirs[seed - 1])
-            error, rival = error_of(*ours), error_of(*theirs)
-            means = [exr_pixels(path).mean(axis=0).round(5).tolist() for path in (ours[0], theirs[0])]
-            ratio = statistics.median(ratios)
-            print(f"{job.name}: {ratio:.2f} times the samples a second; relMSE {error:.4e}, Cycles {rival:.4e}; "
-                  f"{ratio * rival / error:.2f} times as fast to equal error; means {means[0]}, {means[1]}", flush=True)
+    @staticmethod
+    def what():
+        return f"Cycles {bpy.app.version_string}"
+
+    def prepare(self, job, width, height):
+        scene = Scene(width, height, job.depth, self.threads)
+        scene.set_sky() if job.sky else scene.set_black()
+        read_gltf(scene, job) if isinstance(job, CornellBox) else read_obj(scene, job)
+        scene.seconds(1, 0)  # reads and builds
+        return scene
+
+    @staticmethod
+    def render(scene, samples, seed, path):
+        """Writes a picture of so many samples, or times as many between a quarter and five quarters of them."""
+        if path:
+            return scene.seconds(samples, seed, path)
+        few, many = scene.seconds(samples // 4, seed), scene.seconds(samples + samples // 4, seed)
+        render = scene.scene.render
+        return render.resolution_x * render.resolution_y * samples / (many - few)
 
 
 if __name__ == "__main__":
-    main()
+    main(__doc__.splitlines()[0], Cycles, ["cpu"])

@@ -1,17 +1,21 @@
 #!/usr/bin/env python3
-"""Fails where a document names what is not there: a file, an anchor, a source file, a script or a preset. It also fails where all
-documents together have more than 40,000 words, the tour names more than forty files, a text speaks of internal targets, or a
-picture has no licence in docs/notices.md.
+"""Fails where a document, a comment or what a script says of itself names what is not there: a file, an anchor, a source file, a script,
+a flag or a preset. It also fails where all documents together have more than 40,000 words, the tour names more than forty files, a text
+speaks of internal targets, or a picture has no licence in docs/notices.md.
 
     tools/check_documents.py
+    tools/check_documents.py --links      asks for the documents' external links instead
     tools/check_documents.py --self-test
 
-tests/robust/cli_documents_test.py runs the commands that commands() finds.
+tests/robust/cli_documents_test.py runs the commands that commands() finds, and looks at the verbs and flags of own_commands().
 """
 
+import ast
+import json
 import pathlib
 import re
 import sys
+import urllib.request
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MOST_WORDS, MOST_FILES_OF_TOUR = 40_000, 40
@@ -19,6 +23,7 @@ SOURCE = re.compile(r"`([\w./-]+\.(?:h|cpp|cu|py|sh|js|md|cmake))`")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 COMMAND = re.compile(r"(?:build/bin/|bench/|tools/|tests/)[\w./-]+|pertev\b|\./setup\.sh|cmake|ctest|python3")
 TARGETS = re.compile(r"(?i)\b(?:was|were) asked for|\basked for were|\bhoped for\b|(?<![`|\w])S[58](?![`|\w])")
+FLAG = re.compile(r"(?<![\w/-])--[a-z][a-z-]*[a-z]")
 FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", "docs", "scenes"]
 # This section names files that do not exist yet.
 ON_PAPER = "## Fourteen changes on paper"
@@ -87,25 +92,94 @@ def source_faults(name, text, tracked):
             yield f"{name}: no file is called {source}"
 
 
+def script_faults(name, command):
+    """Faults of the scripts that a command names, and of the flags that it gives to one."""
+    words = re.sub(r"^[A-Z_]+=\S+ ", "", command).partition(" -- ")[0].split()
+    for word in words:
+        if word.startswith(("tools/", "tests/", "bench/", "./")) and not any((ROOT / f"{word}{end}").exists() for end in ("", ".cpp")):
+            yield f"{name}: {word} is not there: {command}"
+    script = next((ROOT / word for word in words if re.match(r"(?:tools|tests|bench)/\S+\.(?:py|sh)$", word)), None)
+    if script and script.exists():
+        _, code = parts_of(script)
+        yield from (f"{name}: {script.name} has no {flag}: {command}" for flag in FLAG.findall(" ".join(words)) if flag not in code)
+
+
 def command_faults(name, text, presets):
     """Faults of scripts and presets that commands name. The test runs the commands of the program itself."""
     for command in commands(text):
-        for word in re.sub(r"^[A-Z_]+=\S+ ", "", command).split():
-            if word.startswith(("tools/", "tests/", "./")) and not (ROOT / word).exists():
-                yield f"{name}: {word} is not there: {command}"
+        yield from script_faults(name, command)
         if match := re.search(r"--preset (\S+)", command):
             if command.startswith("cmake") and match[1] not in presets:
                 yield f"{name}: no preset {match[1]}: {command}"
+
+
+def scripts():
+    return [*sorted((ROOT / "tools").glob("*.[ps][yh]")), ROOT / "tools/nightly", *sorted((ROOT / "bench").glob("*.py")),
+            *sorted((ROOT / "tests/images").glob("*.py"))]
+
+
+def parts_of(script):
+    """Returns what a script says of itself, in its docstring or in the comment at its head, and the rest of it with what it imports."""
+    text = script.read_text(encoding="utf-8")
+    if script.suffix != ".py":
+        said = re.match(r"(?:#.*\n)*", text)[0]
+        return said.replace("\n# ", "\n"), text[len(said):]
+    said = ast.get_docstring(ast.parse(text)) or ""
+    imported = [folder / f"{name}.py" for name in re.findall(r"(?m)^(?:from|import) (\w+)", text)
+                for folder in (script.parent, ROOT / "tests/support")]
+    return said, text.replace(said, "") + "".join(path.read_text(encoding="utf-8") for path in imported if path.exists())
+
+
+def own_commands():
+    """Commands of the program outside of documents: those of scripts' texts, of jobs that are measured, and of measurements."""
+    for script in scripts():
+        yield from ((script.name, command) for command in inline_commands(parts_of(script)[0]))
+    jobs = json.loads((ROOT / "bench/jobs.json").read_text(encoding="utf-8"))
+    yield from (("jobs.json", f"pertev {job['line']}") for table in ("parts", "devices") for part in jobs[table].values() for job in part["jobs"])
+    for path in sorted((ROOT / "bench/results").glob("*.json")):
+        command = json.loads(path.read_text(encoding="utf-8"))["command"] or ""
+        yield from ((path.name, one) for one in command.split("; ") if re.match(r"(?:\S*/)?pertev ", one))
+
+
+def own_faults(name, said, code, known):
+    """Faults of what a script says of itself: scripts that are gone, and flags that neither it nor the program has."""
+    for script in sorted(set(re.findall(r"(?:tools|tests|bench)/[\w/]+\.(?:py|sh)\b", said))):
+        if not (ROOT / script).exists():
+            yield f"{name}: {script} is not there"
+    yield from (f"{name}: says {flag}, which neither it nor pertev has" for flag in sorted(set(FLAG.findall(said))) if flag not in code + known)
+
+
+def named_faults(name, text):
+    """Files that a source names, as its comments do, and that are not there."""
+    for file in sorted(set(re.findall(r"\b(?:tools|tests|bench|docs)/[\w/.-]+\.(?:py|sh|json|cpp|h|md)\b", text))):
+        if not (ROOT / file).exists():
+            yield f"{name}: {file} is not there"
+
+
+def broken_links(ask):
+    """External links of all documents for which `ask` raises an error."""
+    for document in documents():
+        for link in sorted(set(re.findall(r"\]\((https?://[^)\s]+)\)", document.read_text(encoding="utf-8")))):
+            try:
+                ask(link)
+            except OSError as error:
+                yield f"{document.name}: {link}: {error}"
 
 
 def faults_of_all():
     tracked = [path.relative_to(ROOT).as_posix() for folder in FOLDERS for path in (ROOT / folder).rglob("*.*")]
     tracked += [path.name for path in ROOT.glob("*.*")]
     presets = re.findall(r'"name": "([^"]+)"', (ROOT / "CMakePresets.json").read_text(encoding="utf-8"))
+    known = "".join(path.read_text(encoding="utf-8") for path in [*(ROOT / "apps/cli").glob("*.cpp"), ROOT / "docs/settings.md"])
+    for script in scripts():
+        yield from own_faults(script.name, *parts_of(script), known)
+    for source in tracked:
+        if source.startswith(("src/", "apps/", "tests/", "bench/")) and source.endswith((".h", ".cpp", ".cu", ".py", ".js", ".txt")):
+            yield from named_faults(source, (ROOT / source).read_text(encoding="utf-8"))
     words = 0
     for document in documents():
         text = document.read_text(encoding="utf-8")
-        words += len(text.split()) * (document.name != "CONTRIBUTING.md")
+        words += len(text.split())
         yield from link_faults(document, text, lambda file: file.read_text(encoding="utf-8") if file.suffix == ".md" else "")
         if document.name != "CHANGELOG.md": # it names files that are gone
             yield from source_faults(document.name, text, tracked)
@@ -135,6 +209,16 @@ def self_test():
     assert list(source_faults("x", "`render/none.h`", ["src/render/film.h"]))
     assert not list(source_faults("x", "`render/film.h` `film.h` `src/render/film.h`", ["src/render/film.h"]))
     assert list(command_faults("x", "    tools/none.py a", [])) and list(command_faults("x", "    cmake --preset none", ["cpu"]))
+    assert list(script_faults("x", "tools/check_sizes.py --none")) and list(script_faults("x", "bench/none a"))
+    assert not list(script_faults("x", "tools/check_sizes.py -- --none")) and not list(script_faults("x", "bench/trace_bench"))
+    assert list(own_faults("x", "tools/none.py or --none", "", "")) and not list(own_faults("x", "--a-b, --c", '"--a-b"', '"--c"'))
+    assert list(named_faults("x", "// see tools/none.py")) and not list(named_faults("x", "// bench/jobs.json has it"))
+    assert "--self-test" in parts_of(pathlib.Path(__file__))[0] and "--self-test" in parts_of(pathlib.Path(__file__))[1]
+    assert len(list(own_commands())) > 80 and not list(broken_links(len))
+
+    def refuse(link):
+        raise OSError(link)
+    assert list(broken_links(refuse))
     assert TARGETS.search("1.3 was asked for") and TARGETS.search("S5 is") and not TARGETS.search("`S5` and --job S5|S8")
 
 
@@ -142,7 +226,7 @@ def main(arguments):
     if arguments == ["--self-test"]:
         self_test()
         return 0
-    faults = list(faults_of_all())
+    faults = list(faults_of_all() if arguments != ["--links"] else broken_links(lambda link: urllib.request.urlopen(link, timeout=30).close()))
     print("\n".join(faults) or "documents name what is there")
     return 1 if faults else 0
 

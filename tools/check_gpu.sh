@@ -32,7 +32,7 @@ for part in "${parts[@]}"; do
         files='*/device_functions_test.cpp,*/lab_test.cpp,*/lab_scenes_test.cpp,*/watertight_test.cpp'
         run "$bin/pertev_tests" --device cuda --long --source-file="$files"
         ;;
-    pictures) run "$here/compare_devices.sh" "$bin/pertev" "$scenes" 1 16 64 ;;
+    pictures) run "$here/compare_devices.py" "$bin/pertev" "$scenes" 1 16 64 ;;
     sanitizers)
         for tool in memcheck racecheck initcheck synccheck; do
             run compute-sanitizer --tool "$tool" --error-exitcode 1 "$bin/pertev_tests" --device cuda \
@@ -44,29 +44,7 @@ for part in "${parts[@]}"; do
             run python3 "$here/../tests/$script.py" "$bin/pertev" --device cuda
         done
         ;;
-    bench)
-        sponza=$scenes/crytek-sponza/sponza.obj
-        box=$(mktemp --suffix=.gltf)
-        python3 "$here/../tests/images/mitsuba_to_gltf.py" "$scenes/bitterli/cornell-box/scene_mitsuba3.xml" >"$box"
-        for job in "S5 --scene $sponza" "S8 --scene $sponza" "cornell-box-65 --scene $box" "cornell-box-8 --scene $box"; do
-            # shellcheck disable=SC2086 # words
-            run "$bin/pertev" bench render --isolated --job $job
-            # shellcheck disable=SC2086
-            run "$bin/pertev" bench render --spp 64 --moves 60 --job $job
-        done
-        rm "$box"
-        run "$bin/pertev" bench render --job S5 --spp 16 --moves 60 --size 3840x2160 --scene "$sponza"
-        for tree in sbvh reinsertion hploc; do
-            run "$bin/pertev" bench render --job S5 --structure $tree --scene "$sponza"
-        done
-        run "$bin/pertev" bench
-        run "$bin/pertev" bench rays --check --axes
-        run "$bin/pertev" bench build --compare
-        run "$here/measure.py" "$bin/pertev" "$scenes" "$(mktemp -d)" start
-        for size in 1920x1080 3840x2160; do
-            run "$bin/pertev" bench frames "$sponza" --size $size
-        done
-        ;;
+    bench) run "$here/measure.py" "$bin/pertev" "$scenes" "$(mktemp -d)" record start ;;
     viewer) # nvJPEG is found in the bundle's lib/, too (the file libnvjpeg.so.13 of PyPI's nvidia-nvjpeg), or by LD_LIBRARY_PATH
         run python3 "$here/view_latency.py" "$bin/pertev" "$scenes/crytek-sponza/sponza.obj"
         run python3 "$here/view_latency.py" "$bin/pertev" "$scenes/crytek-sponza/sponza.obj" --size 3840x2160 --most 200

@@ -39,6 +39,19 @@ def render(pertev, path, size, samples, more):
         return Image.open(out).convert('RGB')
 
 
+def write_sheet(target, views, columns, quality):
+    """Pictures of one size with their names below them, side by side."""
+    width, height = views[0][1].size
+    label = 14
+    sheet = Image.new('RGB', (columns * width, -(-len(views) // columns) * (height + label)), 'white')
+    draw = ImageDraw.Draw(sheet)
+    for number, (name, view) in enumerate(views):
+        x, y = number % columns * width, number // columns * (height + label)
+        sheet.paste(view, (x, y))
+        draw.text((x + 3, y + height + 1), name[:32], fill='black')
+    sheet.save(target, quality=quality, optimize=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('pertev')
@@ -58,18 +71,11 @@ def main():
         paths += models(scene) if scene.is_dir() else [scene]
     if args.only:
         paths = [path for path in paths if any(word in str(path) for word in args.only.split(','))]
-    label = 14
-    views = [(path, render(args.pertev, path, (width, height), args.spp, args.more.split())) for path in paths]
+    views = [(path.stem, render(args.pertev, path, (width, height), args.spp, args.more.split())) for path in paths]
     failed = sum(view is None for _, view in views)
-    views = [(path, view) for path, view in views if view is not None]
-    rows = (len(views) + args.columns - 1) // args.columns
-    sheet = Image.new('RGB', (args.columns * width, rows * (height + label)), 'white')
-    draw = ImageDraw.Draw(sheet)
-    for number, (path, view) in enumerate(views):
-        x, y = number % args.columns * width, number // args.columns * (height + label)
-        sheet.paste(view, (x, y))
-        draw.text((x + 3, y + height + 1), path.stem[:32], fill='black')
-    sheet.save(args.sheet, quality=args.quality, optimize=True)
+    views = [(name, view) for name, view in views if view is not None]
+    if views:
+        write_sheet(args.sheet, views, args.columns, args.quality)
     print('%s: %d views, %d failed' % (args.sheet, len(views), failed))
     return 1 if failed else 0
 

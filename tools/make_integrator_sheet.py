@@ -12,13 +12,11 @@ import json
 import math
 import pathlib
 import struct
-import subprocess
 import sys
 import tempfile
 
-from PIL import Image, ImageDraw
-
 from gltf_buffer import GltfBuffer
+from make_first_views import render, write_sheet
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CENTRE, RADIUS, STACKS = (0.185, 0.0901, 0.17), 0.09, 48
@@ -77,21 +75,9 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         scene = arguments.keep or pathlib.Path(folder) / "box.gltf"
         make_scene(scene)
-        tiles = []
-        for name in INTEGRATORS:
-            out = pathlib.Path(folder) / f"{name}.png"
-            subprocess.run([arguments.pertev, "render", str(scene), "-o", str(out), "--integrator", name, "--size",
-                            f"{arguments.side}x{arguments.side}", "--spp", str(arguments.spp), "--exposure", "-0.5", "-q"], check=True)
-            tiles.append(Image.open(out).convert("RGB"))
-        side, caption = arguments.side, 16
-        rows = -(-len(tiles) // arguments.columns)
-        sheet = Image.new("RGB", (arguments.columns * (side + 4) - 4, rows * (side + caption + 4) - 4), "white")
-        draw = ImageDraw.Draw(sheet)
-        for i, (name, tile) in enumerate(zip(INTEGRATORS, tiles)):
-            x, y = i % arguments.columns * (side + 4), i // arguments.columns * (side + caption + 4)
-            sheet.paste(tile, (x, y))
-            draw.text((x + 2, y + side + 2), name, fill="black")
-        sheet.save(arguments.sheet, quality=85)
+        size = (arguments.side, arguments.side)
+        views = [(name, render(arguments.pertev, scene, size, arguments.spp, ["--integrator", name, "--exposure", "-0.5"])) for name in INTEGRATORS]
+        write_sheet(arguments.sheet, views, arguments.columns, 85)
 
 
 if __name__ == "__main__":

@@ -6,14 +6,22 @@
     tools/make_tables.py --self-test
 
 A document has `<!-- table: results/FILE.json NAME -->` ... `<!-- end -->`. After the name may stand `columns=KEY,KEY` and
-`where=KEY:VALUE|VALUE`, which select columns and rows. Numbers keep the digits that the JSON has. A unit that several columns
-share stands once, in the head of the first column.
+`where=KEY:VALUE|VALUE`, which select columns and rows. Numbers keep the digits that the JSON has. A unit that all columns of
+figures share stands once, in the head of the first column.
+
+`date` is when a file was measured; a day alone is that on which the commit `recorded` brought the last of its figures. `program`
+names the version. `command` is what makes them today, several between semicolons; words in capitals stand for files, NAME or SCENE
+for each that the table has. A null among these has its reason in `unknown`.
 """
 
+import datetime
 import json
 import pathlib
 import re
+import subprocess
 import sys
+
+import check_documents
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MARKER = re.compile(r"(<!-- table: (results/\S+\.json) (\S+)([^>]*?) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
@@ -40,17 +48,62 @@ def faults_of(name, measured):
     """Messages about everything that keeps a file from being a measurement; empty if it is one."""
     if not isinstance(measured, dict) or measured.get("format") != "pertev-measurement" or measured.get("version") != 1:
         return [f"{name}: not a pertev-measurement of version 1"]
-    faults = [f"{name}: lacks {key}" for key in sorted(KEYS - measured.keys())]
+    if lacks := sorted(KEYS - measured.keys()):
+        return [f"{name}: lacks {', '.join(lacks)}"]
+    faults = [f"{name}: {fault}" for fault in origin_faults(measured)]
     names = [table["name"] for table in measured.get("tables", [])]
     if len(names) != len(set(names)) or not names:
         faults.append(f"{name}: tables have no names, or two have one")
     for table in measured.get("tables", []):
         keys = [column["key"] for column in table["columns"]]
+        if titles := [column["title"] for column in table["columns"] if re.search(r"(?:^|, )(?:s|ms|%|[MG](?:rays|samples)/s)$", column["title"])]:
+            faults.append(f"{name}: {table['name']}: the unit of {titles[0]} stands in its title")
         if len(keys) != len(set(keys)):
             faults.append(f"{name}: {table['name']}: two columns have one key")
         if any(len(row) != len(keys) for row in table["rows"]) or not table["rows"]:
             faults.append(f"{name}: {table['name']}: a row has more or fewer cells than there are columns")
     return faults
+
+
+def origin_faults(measured):
+    """Messages about values that do not say what was measured when, where and how."""
+    unknown = measured.get("unknown", {})
+    for key in ("date", "program", "command", "processor"):
+        is_known = isinstance(measured[key], str) and measured[key] != "" and key not in unknown
+        if not is_known and not (measured[key] is None and unknown.get(key)):
+            yield f"{key} is neither a text nor null with a reason in unknown"
+    date, program, command = (measured[key] for key in ("date", "program", "command"))
+    if isinstance(date, str):
+        try:
+            has_day_alone = len(date) == 10 and bool(datetime.date.fromisoformat(date))
+            if not has_day_alone and datetime.datetime.fromisoformat(date.replace("Z", "+00:00")).tzinfo is None:
+                yield f"the date {date} has no time zone"
+            if has_day_alone != bool(re.fullmatch("[0-9a-f]{7,40}", measured.get("recorded", ""))):
+                yield "a day alone, and nothing else, has the commit that recorded it"
+        except ValueError:
+            yield f"{date} is no date"
+    if isinstance(program, str) and not re.fullmatch(r"pertev (?:\d+\.\d+\.\d+ )?\(?[0-9a-f]{7,}\+?\)?", program):
+        yield f"the program {program} names no commit"
+    for one in command.split("; ") if isinstance(command, str) else []:
+        if not re.match(r"(?:(?:\S*/)?pertev|pertev_tests|(?:tools|bench|tests)/\S+)(?: |$)", one):
+            yield f"{one} begins with neither the program nor a script"
+        yield from check_documents.script_faults("command", one)
+        for pattern in re.findall(r"--source-file=(\S+)", one):
+            if not any((ROOT / "tests").rglob(pattern)):
+                yield f"{one}: there is no such test"
+    if (measured["device"] is None) != (measured["driver"] is None):
+        yield "a device has a driver"
+
+
+def unknown_commits(files):
+    """Messages about commits that Git has not got; none where there is no Git, or not its whole history."""
+    named = [(name, commit) for name, measured in files.items() for key in ("program", "recorded")
+             for commit in re.findall(r"\b[0-9a-f]{7,12}\b", measured.get(key) or "")]
+    run = lambda *words, text=None: subprocess.run(["git", "-C", str(ROOT), *words], input=text, capture_output=True, text=True, check=False).stdout
+    if run("rev-parse", "--is-shallow-repository") != "false\n":
+        return []
+    found = run("cat-file", "--batch-check=%(objecttype)", text="".join(f"{commit}\n" for _, commit in named)).splitlines()
+    return [f"{name}: there is no commit {commit}" for (name, commit), kind in zip(named, found) if kind != "commit"]
 
 
 def pick(table, options):
@@ -74,7 +127,7 @@ def source_of(path, measured):
     """One line that says where the figures come from."""
     where = measured["device"] or measured["processor"]
     parts = [where, f"driver {measured['driver']}" if measured["driver"] else None,
-             (measured["program"] or "").removeprefix("pertev "), measured["date"]]
+             (measured["program"] or "").removeprefix("pertev "), (measured["date"] or "")[:10]]
     return f"([{pathlib.PurePath(path).stem}](../bench/{path}): {', '.join(p for p in parts if p)})\n"
 
 
@@ -86,7 +139,7 @@ def render(path, measured, name, options):
     heads = [table["columns"][c] for c in columns]
     numeric = [any(isinstance(row[c], Digits) for row in rows) and i > 0 for i, c in enumerate(columns)]
     units = [h["unit"] for h in heads if h.get("unit")]
-    shared = units[0] if len(units) > 1 and len(set(units)) == 1 and (units[0] != "%" or len(units) == sum(numeric)) else None
+    shared = units[0] if len(units) > 1 and len(set(units)) == 1 and len(units) >= sum(numeric) else None
 
     def title(index, head):
         unit = (shared if index == 0 else None) if shared else head.get("unit")
@@ -118,8 +171,8 @@ def strays(text, read):
 
 
 def self_test():
-    good = {"format": "pertev-measurement", "version": 1, "program": "pertev abc", "date": None,
-            "command": "x", "processor": "P", "threads": 2, "device": None, "driver": None, "title": "T",
+    good = {"format": "pertev-measurement", "version": 1, "program": "pertev 0adaae0", "date": "2026-11-26T16:12:08+00:00",
+            "command": "pertev bench; tools/make_tables.py --check", "processor": "P", "threads": 2, "device": None, "driver": None, "title": "T",
             "tables": [{"name": "a", "title": "A", "columns": [{"key": "k", "title": "scene", "unit": None},
                                                               {"key": "r", "title": "rays", "unit": "Mrays/s"},
                                                               {"key": "s", "title": "seconds", "unit": "s"}],
@@ -127,7 +180,18 @@ def self_test():
     assert not faults_of("x", good)
     assert faults_of("x", {**good, "version": 2}) and faults_of("x", {k: v for k, v in good.items() if k != "device"})
     assert faults_of("x", {**good, "tables": good["tables"] * 2})
+    assert faults_of("x", {**good, "tables": [{**good["tables"][0], "columns": [{"key": "k", "title": "a, ms", "unit": None}], "rows": [[1]]}]})
+    for key, bad in (("date", ["2026-11-26", "2026-11-26T16:12:08", "2026-13-01", ""]), ("program", ["pertev", "", 3]), ("driver", ["1"]),
+                     ("command", ["", "x", "pertev bench; ", "tools/none.py", "tools/check_sizes.py --none", "pertev_tests --source-file=none"])):
+        for value in [*bad, None] if key != "driver" else bad:
+            assert faults_of("x", {**good, key: value}), (key, value)
+            assert key == "driver" or value is not None or not faults_of("x", {**good, key: value, "unknown": {key: "Why."}})
+    assert faults_of("x", {**good, "unknown": {"date": "Why."}}) and faults_of("x", {**good, "recorded": "0adaae0"})
+    assert not faults_of("x", {**good, "date": "2026-11-26", "recorded": "0adaae0"})
+    assert unknown_commits({}) == [] and len(unknown_commits({"x": {"recorded": "0" * 9}})) in (0, 1)
     text = render("results/x.json", good, "a", "")
+    one_unit = {**good, "tables": [{**good["tables"][0], "columns": [{**column, "unit": "s" if k else None} for k, column in enumerate(good["tables"][0]["columns"])]}]}
+    assert "| scene, s | rays | seconds |" in render("results/x.json", one_unit, "a", "")
     assert "| scene | rays, Mrays/s | seconds, s |" in text and "| Sponza | 1.10 |  |" in text and "3e-5" in text, text
     chosen = render("results/x.json", good, "a", "columns=k,r where=k:two_words")
     assert "1.10" not in chosen and "| two words | 2 |" in chosen, chosen
@@ -152,6 +216,7 @@ def main(arguments):
         name = f"results/{path.name}"
         seen[name] = load(path.read_text(encoding="utf-8"))
         faults += faults_of(name, seen[name])
+    faults += unknown_commits(seen)
     for document in sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md"]):
         text = document.read_text(encoding="utf-8")
         if text.count("<!-- table:") != len(MARKER.findall(text)):

@@ -3,7 +3,7 @@
 tools/measure.py PERTEV SCENES OUT PART... [--count RAYS] [--oidn PROGRAM] [-- FLAG ...]
 
 SCENES is a folder laid out as docs/scenes.md says, OUT one for files. Parts are those of bench/jobs.json (noise, transport,
-lab, peers, profile, moving, still, start), or PART/JOB for one job; further flags go to each command (--device cuda). Jobs
+lab, peers, profile, moving, still, start, record), or PART/JOB for one job; further flags go to each command (--device cuda). Jobs
 whose scene is missing are left out. Prints the main figures as a table in Markdown.
 """
 
@@ -19,7 +19,10 @@ import sys
 import tempfile
 import time
 
+from measurement import write_measurement
+
 OWN = pathlib.Path(__file__).resolve().parent.parent
+SECONDS = [("job", "job", None), ("median_s", "median", "s"), ("least_s", "least", "s"), ("greatest_s", "greatest", "s")]
 
 
 def make_scenes(scenes, work):
@@ -31,6 +34,7 @@ def make_scenes(scenes, work):
 
     run(OWN / "tools/make_sky.py", work / "sky.exr")
     run(OWN / "tools/make_moving_box.py", work / "box.gltf")
+    run(OWN / "tools/make_moving_box.py", work / "mirror_box.gltf", "--mirror")
     veach, box = (scenes / f"bitterli/{name}/scene_mitsuba3.xml" for name in ("veach-mis", "cornell-box"))
     if veach.exists():
         run(OWN / "tools/make_veach_mis.py", veach, work / "veach-mis.obj")
@@ -55,13 +59,13 @@ def with_flags(words, flags):
 
 
 def time_processes(command, count):
-    """Seconds of whole processes, after one that is not timed."""
+    """The median, the least and the most seconds of whole processes, after one that is not timed."""
     seconds = []
     for _ in range(count + 1):
         begin = time.perf_counter()
         subprocess.run(command, check=True)
         seconds.append(time.perf_counter() - begin)
-    return [{"median_s": statistics.median(seconds[1:]), "least_s": min(seconds[1:]), "greatest_s": max(seconds[1:])}]
+    return [statistics.median(seconds[1:]), min(seconds[1:]), max(seconds[1:])]
 
 
 def rows_of(path):
@@ -79,7 +83,9 @@ def run_job(job, part, given, places, flags):
     command = [given.pertev, *with_flags(words_of(job["line"], places), flags)]
     report = pathlib.Path(given.out, job["name"].replace(" ", "-") + ".json")
     if "processes" in job:
-        return time_processes(command, job["processes"])
+        row = [job["name"], *time_processes(command, job["processes"])]
+        write_measurement(report, given.pertev, part["about"], SECONDS, [row], dict(zip(flags, flags[1:])).get("--device", "auto"), os.cpu_count(), [shlex.join(command[1:])])
+        return [dict(zip([key for key, *_ in SECONDS][1:], row[1:]))]
     if "prefix" in part:
         with open(report.with_suffix(".csv"), "w", encoding="utf-8") as output:
             subprocess.run([*words_of(part["prefix"], places), *command], stdout=output, check=True)
@@ -99,7 +105,7 @@ def run_job(job, part, given, places, flags):
 def main():
     own = sys.argv[1:]
     flags = own[own.index("--") + 1:] if "--" in own else []
-    parts = json.loads((OWN / "bench/jobs.json").read_text(encoding="utf-8"))
+    parts = json.loads((OWN / "bench/jobs.json").read_text(encoding="utf-8"))["parts"]
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("pertev", "scenes", "out"):
         parser.add_argument(name)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""How soon `pertev view` shows what is asked for: tools/view_latency.py PERTEV SCENE [options] [-- flags of pertev view],
-with a GPU by default.
+"""How soon `pertev view` shows what is asked for: tools/view_latency.py PERTEV SCENE [-o MEASUREMENT.json] [-- flags of
+pertev view], with a GPU by default.
 
 Steers a viewer 60 times a second through a WebSocket on this machine, decodes each picture with libjpeg, as a browser
 would, and acknowledges it then. For each encoder: milliseconds from an input to the first decoded picture that shows it
@@ -10,6 +10,7 @@ where colours differ or more than `--most` milliseconds (50) are beyond the fram
 
 import argparse
 import ctypes
+import math
 import os
 import pathlib
 import sys
@@ -19,10 +20,17 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "tests" / "robust"))
 from cli_run import decode_png  # pylint: disable=wrong-import-position
+from measurement import write_measurement  # pylint: disable=wrong-import-position
 from viewer_client import Client, Viewer  # pylint: disable=wrong-import-position
 
 # libjpeg's structures are read by it alone: their sizes, and where the one for errors is named (first), is all we need.
 LIBRARIES = {"libjpeg.so.62": (62, 632), "libjpeg.so.8": (80, 656)}
+
+COLUMNS = [("encoder", "--jpeg", None), ("packed_by", "packed by", None), ("size", "size of most pictures", None), ("inputs", "inputs", None),
+           ("off", "JPEG off by, of 255", None), ("mean_off", "its mean by, of 255", None), ("pictures", "pictures here", "1/s"),
+           ("rendered", "rendered", "1/s"), ("kib", "a picture", "KiB"), ("frame", "frame", "ms"), ("pack", "pack", "ms"), ("decode", "decode", "ms"),
+           ("wait", "input to decoded picture", "ms"), ("wait_95", "95th percentile of it", "ms"), ("beyond", "beyond the frame", "ms"),
+           ("beyond_95", "95th percentile beyond", "ms")]
 
 
 class Jpeg:
@@ -151,10 +159,11 @@ def main():
     parser.add_argument("--size", default="1920x1080")
     parser.add_argument("--seconds", type=float, default=10)
     parser.add_argument("--most", type=float, default=50, help="milliseconds beyond the frame, at the median")
+    parser.add_argument("-o", "--output", metavar="MEASUREMENT.json")
     own = sys.argv[1:]
     more = own[own.index("--") + 1 :] if "--" in own else []
     given = parser.parse_args(own[: len(own) - len(more) - 1] if "--" in own else own)
-    jpeg, is_good = Jpeg(os.path.abspath(given.pertev)), True
+    jpeg, is_good, rows = Jpeg(os.path.abspath(given.pertev)), True, []
     for encoder in ["auto", "cpu"] if given.device != "cpu" else ["cpu"]:
         flags = ["--jpeg", encoder, *more]
         with Viewer("--jpeg", encoder, size="320x180", spp=64, device=given.device) as viewer:
@@ -163,14 +172,14 @@ def main():
             made = Steered(viewer, jpeg, given.seconds)
         frame = share(made.frame_ms, 0.5)
         beyond = [wait - frame for wait in made.waits]
-        size = max(made.sizes, key=made.sizes.get)
-        print(f"--jpeg {encoder}: packed by {made.encoder}; off by {mean:.2f} of 255 a channel, its mean by {shift:.2f}")
-        print(f"  {made.pictures / given.seconds:.1f} pictures a second here ({share(made.rate, 0.5):.1f} rendered), "
-              f"{size[0]}x{size[1]}, {share(made.bytes, 0.5) / 1024:.0f} KiB; frame {frame:.1f} ms, "
-              f"pack {share(made.pack_ms, 0.5):.1f} ms, decode {share(made.decode_ms, 0.5):.1f} ms")
-        print(f"  input to decoded picture {share(made.waits, 0.5):.1f} ms, 95th percentile {share(made.waits, 0.95):.1f}; "
-              f"beyond the frame {share(beyond, 0.5):.1f} ms, 95th percentile {share(beyond, 0.95):.1f} ({len(beyond)} inputs)")
+        row = [encoder, made.encoder, "x".join(map(str, max(made.sizes, key=made.sizes.get))), len(beyond), mean, shift, made.pictures / given.seconds,
+               share(made.rate, 0.5), share(made.bytes, 0.5) / 1024, frame, share(made.pack_ms, 0.5), share(made.decode_ms, 0.5),
+               share(made.waits, 0.5), share(made.waits, 0.95), share(beyond, 0.5), share(beyond, 0.95)]
+        rows.append([cell if not isinstance(cell, float) else None if math.isnan(cell) else float(f"{cell:.4g}") for cell in row])
+        print("\n".join(f"{title}: {cell}{' ' * bool(unit)}{unit or ''}" for (_, title, unit), cell in zip(COLUMNS, rows[-1])), flush=True)
         is_good = is_good and mean < 5 and shift < 1 and share(beyond, 0.5) <= given.most
+    if given.output:
+        write_measurement(given.output, given.pertev, "The viewer, steered", COLUMNS, rows, given.device, os.cpu_count())
     sys.exit(0 if is_good else 1)
 
 

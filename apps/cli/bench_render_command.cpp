@@ -1,4 +1,4 @@
-// pertev bench render: one job that other renderers were timed on (bench/figures.json), and how many times as fast as
+// pertev bench render: one job that other renderers were timed on (bench/jobs.json), and how many times as fast as
 // they it is done where that can be said (lab/stored_figures.h).
 
 #include <memory>

@@ -1,6 +1,6 @@
 #include "lab/record.h"
 
-#include "lab/embedded_json.h"
+#include "lab/job_table.h"
 
 namespace pertev {
 namespace {
@@ -60,8 +60,8 @@ TransportPreset preset_of(const JsonValue& value) {
 }
 
 Record read_record() {
-    const EmbeddedJson json("figures.json");
-    const JsonValue& root = json.root();
+    const JobTable table;
+    const JsonValue& root = table.root();
     Record read = {.device = root.string_or("device", "")};
     for (const JsonValue& value : root.elements_of("scenes")) read.scenes.push_back(scene_of(value));
     for (const JsonValue& value : root.elements_of("jobs")) read.jobs.push_back(job_of(value));

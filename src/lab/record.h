@@ -1,6 +1,6 @@
 #pragma once
 
-// The table of jobs, bench/figures.json, which the build puts into the program: scenes whose rays other tracers were
+// The table of jobs, bench/jobs.json, which the build puts into the program: scenes whose rays other tracers were
 // timed on, jobs that other renderers were timed on, scenes that show what each integrator is good at, and what other
 // programs reached on one card.
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Makers of what bench/figures.json describes (lab/record.h): scenes of the five sets of rays that other tracers were
+// Makers of what bench/jobs.json describes (lab/record.h): scenes of the five sets of rays that other tracers were
 // timed on (docs/ray_sets.md), jobs that other renderers were timed on, and cameras of presets.
 //
 // S5, S8: the triangles of Crytek's Sponza, seen as rays on the record are (lab/record_scenes.h), in a 0.7 grey that

@@ -19,7 +19,7 @@ std::string report_page(std::span<const std::string> measurements) {
         data += "<script type=\"application/json\" class=\"measurement\">" + safe + "</script>\n";
     }
     std::string page(embedded_file("report.html"));
-    for (const char* name : {"report.css", "views.json", "report.js"}) {
+    for (const char* name : {"report.css", "views.json", "plain_tables.js", "report.js"}) {
         replace(page, "{{" + std::string(name) + "}}", embedded_file(name));
     }
     replace(page, "{{data}}", data);

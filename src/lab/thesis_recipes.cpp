@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "lab/embedded_json.h"
+#include "lab/job_table.h"
 
 namespace pertev {
 namespace {
@@ -30,9 +30,9 @@ ThesisRecipe recipe_of(const gltf::JsonValue& value) {
 
 const std::vector<ThesisRecipe>& thesis_recipes() {
     static const std::vector<ThesisRecipe> recipes = [] {
-        const EmbeddedJson json("thesis.json");
+        const JobTable table;
         std::vector<ThesisRecipe> all;
-        for (const gltf::JsonValue& value : json.root().elements()) all.push_back(recipe_of(value));
+        for (const gltf::JsonValue& value : table.root().elements_of("pictures")) all.push_back(recipe_of(value));
         return all;
     }();
     return recipes;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Recipes of the thesis's pictures (lab/thesis_pictures.h): one row of bench/thesis.json per picture.
+// Recipes of the thesis's pictures (lab/thesis_pictures.h): one row of bench/jobs.json per picture.
 
 #include <string>
 #include <vector>

@@ -82,32 +82,20 @@ void replace_block(Scene& scene, std::string_view block, Material material, uint
     scene.materials.push_back(std::move(material));
 }
 
-Material mirror() {
+Material material_of(const char* name, MaterialKind kind, Rgb color, float metallic, float roughness) {
     Material material;
-    material.name = "mirror sphere";
-    material.kind = MaterialKind::MetallicRoughness;
-    material.base_color = {0.95f, 0.95f, 0.95f};
-    material.metallic = 1;
-    material.roughness = 0;
+    material.name = name;
+    material.kind = kind;
+    material.base_color = color;
+    material.metallic = metallic;
+    material.roughness = roughness;
     return material;
 }
 
-Material glass() {
-    Material material;
-    material.name = "glass sphere";
-    material.kind = MaterialKind::Dielectric;
-    material.base_color = {1, 1, 1};
-    material.roughness = 0;
-    return material;
-}
-
+Material mirror() { return material_of("mirror sphere", MaterialKind::MetallicRoughness, {0.95f, 0.95f, 0.95f}, 1, 0); }
+Material glass() { return material_of("glass sphere", MaterialKind::Dielectric, {1, 1, 1}, 0, 0); }
 Material plastic() {
-    Material material;
-    material.name = "plastic sphere";
-    material.kind = MaterialKind::MetallicRoughness;
-    material.base_color = {0.15f, 0.3f, 0.65f};
-    material.roughness = 0.35f;
-    return material;
+    return material_of("plastic sphere", MaterialKind::MetallicRoughness, {0.15f, 0.3f, 0.65f}, 0, 0.35f);
 }
 
 constexpr uint32_t kSmoothRings = 48, kCoarseRings = 10;

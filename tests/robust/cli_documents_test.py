@@ -108,6 +108,17 @@ class Commands(CliTest):
                     found += 1
         self.assertGreater(found, 40)
 
+    def test_commands_of_scripts_jobs_and_measurements_have_verbs_and_flags_that_exist(self):
+        found = 0
+        for name, command in check_documents.own_commands():
+            words = command.split()[1:]
+            with self.subTest(name=name, command=command):
+                verb = verb_of(words).removesuffix(" --transport")
+                self.assertIn(f"Usage: pertev {verb} [", self.succeed(*verb.split(), "--help").stdout, "no such verb")
+                self.check_flags(words)
+                found += 1
+        self.assertGreater(found, 80)
+
     def test_a_flag_that_is_gone_is_noticed(self):
         self.assertNotIn("--no-such-flag", self.flags_of("view"))
         self.assertIn("--restir", self.flags_of("view"))

@@ -320,7 +320,7 @@ class WhatIsWritten(LabTest):
         self.check_interrupt_leaves_all("cornell-box", *SMALL)
 
     def test_an_interrupt_is_heard_while_rays_are_held_against_brute_force(self):
-        side = 100 if SANITIZED else 300
+        side = 100 if SANITIZED else 600
         write_grid(self.path("grid.ply"), side)
         line = self.lab("grid.ply", "--eye", "0.5,0.5,1", "--target", "0.5,0.4,0", *SMALL, "--threads", "1", "--json")
         report = self.interrupt(line, "brute force", 0 if SANITIZED else 0.3)

@@ -11,6 +11,21 @@ import sys
 SKIPPED = 77  # CTest's SKIP_RETURN_CODE
 
 
+def last_event(program, arguments, *events):
+    """Runs the program with --json and returns its first line of one of these events."""
+    command = [str(word) for word in (program, *arguments, "--json")]
+    print("+", *command, flush=True)
+    done = subprocess.run(command, stdout=subprocess.PIPE, check=False)
+    if done.returncode != 0:
+        last = done.stdout.decode("utf-8", "replace").strip().rsplit("\n", 1)[-1]
+        sys.exit(f"the program ended with status {done.returncode}: {last}")
+    for line in done.stdout.splitlines():
+        values = json.loads(line)
+        if values["event"] in events:
+            return values
+    sys.exit(f"the program printed no line of the event {' or '.join(events)}")
+
+
 class ReferenceJob:
     """`effort` is "ci", "long" (--long or PERTEV_LONG_TESTS=1) or "cuda" (--device cuda)."""
 
@@ -36,18 +51,7 @@ class ReferenceJob:
         return path
 
     def run(self, event, *arguments):
-        """Runs the program with --json and returns the line of that event."""
-        command = [self.program, *map(str, arguments), "--json"]
-        print("+", *command, flush=True)
-        done = subprocess.run(command, stdout=subprocess.PIPE, check=False)
-        if done.returncode != 0:
-            last = done.stdout.decode("utf-8", "replace").strip().rsplit("\n", 1)[-1]
-            sys.exit(f"the program ended with status {done.returncode}: {last}")
-        for line in done.stdout.splitlines():
-            values = json.loads(line)
-            if values["event"] == event:
-                return values
-        sys.exit(f"the program printed no line of event {event!r}")
+        return last_event(self.program, arguments, event)
 
     def check(self, what, value, low, high):
         good = value is not None and low <= value <= high

@@ -66,7 +66,7 @@ TEST_CASE("a pivoted table has a row and a column per value, and gaps") {
 TEST_CASE("a measurement has machine, command and date, and tables with keys, titles and units") {
     const Queue cpu = Queue::make_cpu();
     Measurement m = start_measurement(cpu, "Test");
-    CHECK(has(m.command, "pertev_tests"));
+    CHECK(has(m.command, "_tests"));
     CHECK(m.threads > 0);
     CHECK(m.date.size() == std::string("2026-11-26T08:00:00Z").size());
     m.processor = "Some <CPU>", m.tables = {two_rows()}, m.notes = {"a note"};

@@ -1,5 +1,6 @@
 // Draws measurements (src/lab/measurement.h) that stand in this page as JSON: facts, plots, pictures, and sortable
-// tables. What is drawn of which table stands in views.json, by the kind of measurement. Nothing is fetched.
+// tables. What is drawn of which table stands in views.json, by the kind of measurement; of other kinds plain_tables.js
+// draws what it finds. Nothing is fetched.
 "use strict";
 
 const COLORS = ["#3b78d8", "#d64545", "#2e9d5b", "#8e5bc9", "#e08a1e", "#17a2b8", "#8c564b", "#d6589f", "#7a8190", "#a3a61d"];
@@ -23,10 +24,12 @@ const isNumber = (value) => typeof value === "number";
 function textOf(value) {
   if (value === null || value === undefined) return "";
   if (typeof value === "boolean") return value ? "yes" : "no";
+  if (typeof value === "object") return Object.entries(value).map(([key, one]) => `${key} ${textOf(one)}`).join(", ");
   if (!isNumber(value)) return String(value);
   const size = Math.abs(value);
   if (Number.isInteger(value)) return size < 1e15 ? value.toLocaleString("en").replaceAll(",", "\u202f") : value.toExponential(3);
-  return size >= 1e6 || size < 1e-3 ? value.toExponential(3) : value.toPrecision(4);
+  const short = Number(value.toPrecision(4));
+  return size >= 1e6 || size < 1e-3 ? short.toExponential() : String(short);
 }
 
 const tickOf = (value) => (Math.abs(value) >= 1e6 || (value !== 0 && Math.abs(value) < 1e-3) ? value.toExponential(0) : String(Number(value.toPrecision(4))));
@@ -57,11 +60,12 @@ function showTable(table, isOpen = true) {
     return !(values.length === 1 && (values[0] === null || table.rows.length > 2));
   });
   const same = table.columns.map((column, i) => i).filter((i) => !varying.includes(i) && table.rows[0]?.[i] !== null);
-  const isText = varying.map((i) => table.rows.every((row) => !isNumber(row[i])));
+  const isText = varying.map((i) => table.rows.every((row) => !isNumber(row[i]))), shadeOf = shadesOf(table);
   let order = table.rows.map((row, i) => i), by = -1, isDown = false, most = 200, wanted = "";
   const body = make("tbody"), count = make("span"), more = make("button", { click: () => { most = Infinity; draw(); } }, "show all");
+  const units = distinct(varying.filter((i, k) => !isText[k]).map((i) => table.columns[i].unit)), shared = varying.length > 3 && units.length === 1 ? units[0] : null;
   const heads = varying.map((i, k) => make("th", { class: isText[k] ? "text" : null, title: table.columns[i].key, click: () => sort(k) },
-    table.columns[i].title, table.columns[i].unit ? make("small", {}, " " + table.columns[i].unit) : null));
+    table.columns[i].title, table.columns[i].unit && !shared ? make("small", {}, " " + table.columns[i].unit) : null));
   function sort(k) {
     isDown = by === k ? !isDown : !isText[k];
     by = k;
@@ -79,8 +83,8 @@ function showTable(table, isOpen = true) {
     const words = wanted.toLowerCase().split(/\s+/).filter(Boolean);
     const shown = order.filter((i) => words.every((word) => table.rows[i].some((cell) => textOf(cell).toLowerCase().includes(word))));
     body.replaceChildren(...shown.slice(0, most).map((i) => make("tr", {}, varying.map((c, k) => {
-      const text = textOf(table.rows[i][c]);
-      return make("td", { class: text === "" ? "none" : text.length > 60 ? "text long" : isText[k] ? "text" : null }, text === "" ? "\u2013" : text);
+      const text = textOf(table.rows[i][c]), shade = shadeOf(table.rows[i], c);
+      return make("td", { class: text === "" ? "none" : text.length > 60 ? "text long" : isText[k] ? "text" : null, style: shade === null ? null : `--shade: ${Math.round(45 * shade)}%` }, text === "" ? "\u2013" : text);
     }))));
     count.textContent = shown.length === table.rows.length ? `${shown.length} rows` : `${shown.length} of ${table.rows.length} rows`;
     more.hidden = shown.length <= most;
@@ -88,7 +92,7 @@ function showTable(table, isOpen = true) {
   const quote = (cell) => (cell === null ? "" : /[",\n]/.test(cell) ? `"${String(cell).replaceAll('"', '""')}"` : String(cell));
   const csv = () => [table.columns.map((column) => column.key), ...table.rows].map((row) => row.map(quote).join(",") + "\n").join("");
   draw();
-  const bar = make("div", { class: "bar" }, count,
+  const bar = make("div", { class: "bar" }, count, shared ? make("span", {}, `in ${shared}`) : null,
     table.rows.length > 12 ? make("input", { placeholder: "only rows with \u2026", input: (event) => { wanted = event.target.value; draw(); } }) : null,
     more, make("button", { click: () => save(`${table.name}.csv`, csv(), "text/csv") }, "CSV"),
     same.map((i) => make("span", {}, `${table.columns[i].title}: ${textOf(table.rows[0][i])}`)));
@@ -119,8 +123,15 @@ function axis(least, most, isLog, isWhole) {
 
 function plotFrame(title, svg, ...rest) {
   const text = () => new XMLSerializer().serializeToString(svg);
-  return make("div", { class: "plot" }, make("h3", {}, title), svg,
-    make("div", { class: "bar" }, make("button", { click: () => save(`${title}.svg`, text(), "image/svg+xml") }, "SVG"), rest));
+  const button = make("button", { click: () => save(`${title}.svg`, text(), "image/svg+xml") }, "SVG");
+  return make("div", { class: "plot" }, make("h3", {}, title, " ", button), svg, rest.length > 0 ? make("div", { class: "bar" }, rest) : null);
+}
+
+/** An entry of a plot's key; a click hides or shows what it names. */
+function keyOf(group, x, y, color, text) {
+  const key = make("g", { class: "key", click: () => group.setAttribute("visibility", key.classList.toggle("off") ? "hidden" : "visible") },
+    make("rect", { x, y, width: 12, height: 12, rx: 2, fill: color }), make("text", { x: x + 18, y: y + 10 }, text));
+  return key;
 }
 
 /** The slope of a straight line through the logarithms of points, by least squares. */
@@ -138,17 +149,17 @@ function lines(table, view, rows, title) {
       .map((row) => ({ x: row[view.x], y: row[view.y], low: row[view.low], high: row[view.high] })).sort((a, b) => a.x - b.x),
   })).filter((one) => one.points.length > 0);
   if (!series.some((one) => distinct(one.points.map((p) => p.x)).length > 1)) return null;
-  const names = distinct(records(table).map((row) => row[view.series]).filter((name) => name !== null)), end = (one) => one.points.at(-1).y;
+  const names = distinct((table.rows.length > 0 ? records(table) : rows).map((row) => row[view.series]).filter((name) => name !== null)), end = (one) => one.points.at(-1).y;
   series.sort((a, b) => end(b) - end(a));
   if (!view.all) series.splice(10);
   const all = series.flatMap((one) => one.points), xs = all.map((p) => p.x), ys = all.map((p) => p.y);
   const level = view.level ? rows.map((row) => row[view.level]).find(can) : undefined;
   if (level !== undefined) ys.push(level);
   const across = axis(Math.min(...xs), Math.max(...xs), view.log, xs.every(Number.isInteger)), up = axis(view.log ? Math.min(...ys) : 0, Math.max(...ys), view.log);
-  const [width, height, left, top] = [380, 300, 84, 12];
+  const [width, height, left, top] = [330, 270, 84, 12];
   const px = (x) => left + across.place(x) * width, py = (y) => top + (1 - up.place(y)) * height;
   const inside = (y) => Math.min(Math.max(y, top), top + height);
-  const keys = 40 + 6.6 * Math.max(...series.map((one) => one.name.length + (view.log ? 14 : 0)));
+  const keys = 36 + 6.4 * Math.max(...series.map((one) => one.name.length + (view.log ? 14 : 0)));
   const svg = make("svg", { xmlns: SVG, width: left + width + keys, height: top + height + 48 });
   for (const x of across.ticks) {
     svg.append(make("line", { class: "grid", x1: px(x), x2: px(x), y1: top, y2: top + height, stroke: "#ddd" }),
@@ -183,11 +194,13 @@ function lines(table, view, rows, title) {
     }
     group.append(make("polyline", { points: one.points.map((p) => `${px(p.x)},${py(p.y)}`).join(" "), fill: "none", stroke: color, "stroke-width": 2 }),
       ...one.points.map((p) => make("circle", { cx: px(p.x), cy: py(p.y), r: 3.5, fill: color }, make("title", {}, `${one.name}\n${titleOf(table, view.x)}: ${textOf(p.x)}\n${titleOf(table, view.y)}: ${textOf(p.y)}`))));
-    const fitted = view.log && distinct(one.points.map((p) => p.x)).length > 2 ? `  (slope ${slopeOf(one.points).toFixed(2)})` : "";
-    const key = make("g", { class: "key", click: () => group.setAttribute("visibility", key.classList.toggle("off") ? "hidden" : "visible") },
-      make("rect", { x: left + width + 14, y: top + 8 + 20 * i, width: 12, height: 12, rx: 2, fill: color }),
-      make("text", { x: left + width + 32, y: top + 18 + 20 * i }, one.name + fitted));
-    svg.append(group, key);
+    const slope = view.log && distinct(one.points.map((p) => p.x)).length > 2 ? slopeOf(one.points) : null;
+    if (slope !== null && view.fits) {
+      const [first, last] = [one.points[0].x, one.points.at(-1).x], middle = one.points.reduce((sum, p) => sum + Math.log(p.y) - slope * Math.log(p.x), 0) / one.points.length;
+      const fit = (x) => inside(py(Math.exp(middle) * x ** slope));
+      group.append(make("line", { class: "guide", x1: px(first), y1: fit(first), x2: px(last), y2: fit(last), stroke: "#888", "stroke-dasharray": "2 4" }));
+    }
+    svg.append(group, keyOf(group, left + width + 14, top + 8 + 20 * i, color, one.name + (slope === null ? "" : `  (slope ${slope.toFixed(2)})`)));
   });
   return plotFrame(title, svg);
 }
@@ -200,7 +213,7 @@ function bars(table, view, rows, title) {
   const holder = make("div"), kinds = view.kinds ? distinct(Object.values(view.kinds)) : distinct(shown.map(kindOf));
   const draw = (count) => {
     const some = shown.slice(0, count), most = Math.max(...some.map((row) => row[view.high] ?? row[view.y]));
-    const left = 16 + 6.6 * Math.max(...some.map((row) => row[view.label].length)), width = 340, right = 70, down = 20;
+    const left = 16 + 6.6 * Math.max(...some.map((row) => row[view.label].length)), width = 300, right = 60, down = 20;
     const px = (value) => left + (value / most) * width;
     const svg = make("svg", { xmlns: SVG, width: left + width + right, height: down * (some.length + kinds.length) + 16 });
     some.forEach((row, i) => {
@@ -271,7 +284,6 @@ function showGroup(name, pictures, isFirst) {
       const scale = zoom * (image.naturalWidth ? 1 : 0);
       inset.style.backgroundSize = `${image.naturalWidth * scale}px ${image.naturalHeight * scale}px`;
       inset.style.backgroundPosition = `${size / 2 - place[0] * image.naturalWidth * scale}px ${size / 2 - place[1] * image.naturalHeight * scale}px`;
-      inset.hidden = false;
     }
     for (const { spot, image } of spots) {
       const side = (size / zoom) * (image.clientWidth / image.naturalWidth);
@@ -283,9 +295,9 @@ function showGroup(name, pictures, isFirst) {
     place = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
     update();
   };
-  const view = (source, width) => {
-    const image = make("img", { src: source, alt: "", width: width || null }), spot = make("div", { class: "spot" });
-    const inset = make("div", { class: "inset", hidden: "", style: `width:${size}px;height:${size}px;background-image:url("${source}")` });
+  const view = (source) => {
+    const image = make("img", { src: source, alt: "", load: () => { place ??= [0.5, 0.5]; update(); } }), spot = make("div", { class: "spot" });
+    const inset = make("div", { class: "inset", style: `width:${size}px;height:${size}px;background-image:url("${source}")` });
     insets.push({ inset, image });
     spots.push({ spot, image });
     const holder = make("div", { class: "view", mousemove: (event) => { if (!pinned) look(event, image); }, click: (event) => { pinned = !pinned; look(event, image); },
@@ -310,7 +322,8 @@ function showMeasurement(m, id, isAlone) {
   const isAlarm = (note) => /^(WRONG|Not made|interrupted)|interrupted;/i.test(note);
   const isLarge = (table) => table.rows.length > 20 || kind.views.some((view) => view.table === table.name);
   const tables = m.tables.filter((table) => table.rows.length > 0);
-  const showAny = (table) => (table.rows.length === 1 ? showFacts(table) : showTable(table, table.rows.length < 400));
+  const plots = (table) => (m.kind ? [] : [make("div", { class: "plots" }, plotsOf(table))]);
+  const showAny = (table) => (table.rows.length === 1 ? showFacts(table) : [showTable(table, table.rows.length < 400), plots(table)]);
   return make("main", { id }, isAlone ? null : make("h2", {}, m.title ?? "Measurement"),
     make("div", { class: "facts" }, facts.filter(([, value]) => value).map(([name, value]) => make("span", {}, `${name} `, make("b", {}, String(value))))),
     m.command ? make("p", {}, make("code", {}, m.command)) : null,
@@ -320,14 +333,14 @@ function showMeasurement(m, id, isAlone) {
     make("div", { class: "plots" }, kind.views.map((view) => show(m, view))),
     groups.map((group, i) => showGroup(group, m.pictures.filter((picture) => picture.group === group), i === 0)),
     tables.filter(isLarge).map(showAny),
-    make("ul", { class: "notes" }, [...(m.notes ?? []).filter((note) => !isAlarm(note)), ...(kind.about ?? [])].map((note) => make("li", {}, note))));
+    make("ul", { class: "notes" }, [...Object.entries(m.unknown ?? {}).map(([key, why]) => `The ${key} is not known. ${why}`), ...(m.notes ?? []).filter((note) => !isAlarm(note)), ...(kind.about ?? [])].map((note) => make("li", {}, note))));
 }
 
 const measurements = [...document.querySelectorAll("script.measurement")].map((script) => JSON.parse(script.textContent));
 document.body.append(make("h1", {}, measurements.length === 1 ? measurements[0].title : "Pertev: measurements"));
 if (measurements.length === 1) document.title = measurements[0].title;
 else {
-  document.body.append(make("ol", {}, measurements.map((m, i) => make("li", {}, make("a", { href: `#m${i}` }, m.title), ` \u2014 ${m.device ?? m.processor ?? ""}, ${m.date ?? ""}`))));
+  document.body.append(make("ol", { class: "contents" }, measurements.map((m, i) => make("li", {}, make("a", { href: `#m${i}` }, m.title), ` \u2014 ${m.device ?? m.processor ?? ""}, ${m.date ?? ""}`))));
 }
 measurements.forEach((m, i) => document.body.append(showMeasurement(m, `m${i}`, measurements.length === 1)));
 document.body.dataset.drawn = String(measurements.length);

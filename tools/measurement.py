@@ -1,0 +1,44 @@
+"""The JSON of a measurement (src/lab/measurement.h) as scripts write it: what was measured when, where and by which command."""
+
+import datetime
+import json
+import pathlib
+import platform
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def processor():
+    for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+def gpu_of(device):
+    """Name and driver of the first GPU, where the device is that or `auto` finds it."""
+    if device == "cpu" or device == "auto" and not shutil.which("nvidia-smi"):
+        return None, None
+    query = ["nvidia-smi", "--query-gpu=name,driver_version", "--format=csv,noheader"]
+    return subprocess.run(query, stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()[0].split(", ")
+
+
+def own_command():
+    script = pathlib.Path(sys.argv[0]).resolve()
+    return " ".join([str(script.relative_to(ROOT) if script.is_relative_to(ROOT) else script.name), *sys.argv[1:]])
+
+
+def write_measurement(path, program, title, columns, rows, device, threads, notes=()):
+    """A measurement with one table; columns are (key, title, unit)."""
+    version = subprocess.run([program, "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()[0]
+    name, driver = gpu_of(device)
+    measured = {
+        "format": "pertev-measurement", "version": 1, "program": version,
+        "date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"), "command": own_command(),
+        "processor": processor(), "threads": threads, "device": name, "driver": driver, "title": title, "notes": list(notes),
+        "tables": [{"name": "jobs", "title": title, "columns": [dict(zip(("key", "title", "unit"), column)) for column in columns], "rows": rows}],
+    }
+    pathlib.Path(path).write_text(json.dumps(measured, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
