@@ -12,7 +12,7 @@
 namespace pertev {
 
 /// The next float away from zero or towards it in the direction of `sign`.
-template <class T>
+template <class T = float>
 HD inline T next_float(T x, T sign) {
     const WordOf<T> bits = bits_of(x);
     const MaskOf<T> away = (x > 0) == (sign > 0);
@@ -28,7 +28,7 @@ using PointOnTriangle = PointOnTriangleOf<float>;
 
 /// Moves the position (u, v) inwards if one of its three weights is below `least` (in [0, 1/4]). Each weight is then
 /// at least 2/3 of that; nothing changes if none is below it.
-template <class T>
+template <class T = float>
 HD inline PointOnTriangleOf<T> keep_off_edges(T u, T v, T least) {
     const T w = 1.0f - u - v;
     const MaskOf<T> is_near = !(min(w, min(u, v)) >= least);
@@ -40,7 +40,7 @@ HD inline PointOnTriangleOf<T> keep_off_edges(T u, T v, T least) {
 
 /// Offsets `point`, whose distance to a plane with unit normal `normal` has an error of at most `error` (metres, per
 /// component, >= 0), to the side of the plane that `direction` points to.
-template <class T>
+template <class T = float>
 HD inline Vec3Of<T> offset_ray_origin(Vec3Of<T> point, Vec3Of<T> error, Vec3Of<T> normal, Vec3Of<T> direction) {
     const T distance = dot(abs(normal), error);
     const Vec3Of<T> offset = select(dot(direction, normal) < 0, -distance, distance) * normal;

@@ -90,7 +90,7 @@ struct Surface {
 };
 
 /// Bound of the rounding error of a point on a light, per component: 16 units, as for an unrotated instance.
-template <class T>
+template <class T = float>
 HD inline Vec3Of<T> light_point_error(Vec3Of<T> point) {
     return 0x1p-20f * abs(point);
 }
@@ -148,7 +148,7 @@ struct WorldTriangle : WorldTriangleOf<float> {
 /// local_from_world, t: including the rounding of L itself that is 5 |M| (|L||P| + |t|), M = world_from_local. Its
 /// vertices here have an error of 4 |M||a| + 4 |T|, which is at most 8 |M| (|L||P| + |t|) and 4 |M||L| of the edges.
 /// |M||L| is at least 1, so a factor of 16 covers everything.
-template <class T>
+template <class T = float>
 HD inline Vec3Of<T> hit_error(const PlacementOf<T>& placement, Vec3Of<T> position, Vec3Of<T> ab, Vec3Of<T> ac) {
     const Vec3Of<T> edges = abs(ab) + abs(ac);
     const Vec3Of<T> if_baked = 0x1p-23f * abs(position) + 0x1.4p-21f * edges;
@@ -165,7 +165,7 @@ HD inline Vec3Of<T> hit_error(const PlacementOf<T>& placement, Vec3Of<T> positio
 /// then 4.6 e sin x - 1.7 e cos x inside the other: more than the 1.7 e of rounding from 42 degrees to flat, and for
 /// most triangles (11 e) from 17 degrees. Slivers count as at least a sixteenth as high as long, so that no point
 /// moves by more than 900 e.
-template <class T>
+template <class T = float>
 HD inline void place_hit(WorldTriangleOf<T>& triangle, const PlacementOf<T>& placement, Vec3Of<T> a, Vec3Of<T> b,
                          Vec3Of<T> c, T u, T v) {
     const TransformOf<T>& m = placement.world_from_local;
@@ -213,7 +213,7 @@ HD inline Frame tangent_frame(const InstanceView& instance, const MeshView& mesh
 }
 
 /// Sine of the angle between a vertex normal (mesh space, any length) and the geometric one.
-template <class T>
+template <class T = float>
 HD inline T corner_tilt(const TransformOf<T>& local_from_world, Vec3Of<T> local_normal, Vec3Of<T> geometric_normal) {
     const Vec3Of<T> normal = transform_transposed(local_from_world, local_normal);
     return sine_between(normalize_or(normal, geometric_normal), geometric_normal);

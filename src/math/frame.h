@@ -20,7 +20,7 @@ struct FrameOf {
 using Frame = FrameOf<float>;
 
 /// Frame around the unit vector n; the tangent is some direction across it, continuous in n except at n.z = 0.
-template <class T>
+template <class T = float>
 HD inline FrameOf<T> make_frame(Vec3Of<T> n) {
     const T sign = copysign(T(1.0f), n.z);
     const T a = -1.0f / (sign + n.z);

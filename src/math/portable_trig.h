@@ -124,7 +124,7 @@ HD inline float tan(float x) {
 }
 
 /// Sine and cosine of 2 pi u, for |u| <= 2^20: the turn is taken off exactly. At most 1 ulp off; exact at quarters.
-template <class T>
+template <class T = float>
 HD inline void sin_cos_2pi(T u, T& s, T& c) {
     const T q = portable::round_to_integer(4.0f * u);
     const T f = fma(q, T(-0.25f), u), square = f * f; // |f| <= 1/8

@@ -22,7 +22,7 @@ struct PolarPointOf {
 using PolarPoint = PolarPointOf<float>;
 
 /// Uniform in the unit disk, in polar form: concentric squares map to concentric circles.
-template <class T>
+template <class T = float>
 HD inline PolarPointOf<T> sample_disk_polar(Vec2Of<T> u) {
     const T x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
     const MaskOf<T> wide = abs(x) > abs(y) || y == 0; // the angle in the centre is 0
@@ -41,7 +41,7 @@ HD inline Vec2 sample_uniform_disk_concentric(Vec2 u) {
 }
 
 /// Density z/pi by solid angle; z > 0 for u inside (0, 1)^2.
-template <class T>
+template <class T = float>
 HD inline Vec3Of<T> sample_cosine_hemisphere(Vec2Of<T> u) {
     const PolarPointOf<T> p = sample_disk_polar(u);
     return {p.radius * p.cosine, p.radius * p.sine, safe_sqrt(fma(-p.radius, p.radius, T(1.0f)))};
@@ -75,7 +75,7 @@ HD inline Vec3 sample_uniform_cone(Vec2 u, float one_minus_cos) {
 HD inline float pdf_uniform_cone(float one_minus_cos) { return 0.5f * kInvPi / one_minus_cos; }
 
 /// Weights of the second and third vertex, uniform by area: both > 0, sum < 1 up to rounding. Density 1/area.
-template <class T>
+template <class T = float>
 HD inline Vec2Of<T> sample_uniform_triangle(Vec2Of<T> u) {
     const T half = 0.5f * min(u.x, u.y); // folds the square along its diagonal continuously
     return {select(u.x < u.y, half, u.x - half), select(u.x < u.y, u.y - half, half)};

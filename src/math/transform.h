@@ -18,21 +18,21 @@ struct TransformOf {
 };
 using Transform = TransformOf<float>;
 
-template <class T>
+template <class T = float>
 HD inline Vec3Of<T> transform_vector(const TransformOf<T>& m, Vec3Of<T> v) {
     return {dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)};
 }
-template <class T>
+template <class T = float>
 HD inline Vec3Of<T> transform_point(const TransformOf<T>& m, Vec3Of<T> p) {
     return transform_vector(m, p) + m.translation;
 }
 /// Transpose of the linear part times `n`: with m = local_from_world this transforms a normal from local to world.
-template <class T>
+template <class T = float>
 HD inline Vec3Of<T> transform_transposed(const TransformOf<T>& m, Vec3Of<T> n) {
     return n.x * m.row0 + n.y * m.row1 + n.z * m.row2;
 }
 /// Absolute values of the linear part times `v`, for error bounds.
-template <class T>
+template <class T = float>
 HD inline Vec3Of<T> transform_sizes(const TransformOf<T>& m, Vec3Of<T> v) {
     return {dot(abs(m.row0), v), dot(abs(m.row1), v), dot(abs(m.row2), v)};
 }

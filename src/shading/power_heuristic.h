@@ -9,7 +9,7 @@
 namespace pertev {
 
 /// Weight of the technique with density `pdf` > 0, where the other technique has `other_pdf`.
-template <class T>
+template <class T = float>
 HD inline T power_heuristic(T pdf, T other_pdf) {
     const T ratio = other_pdf / pdf;
     return 1.0f / (1.0f + ratio * ratio);

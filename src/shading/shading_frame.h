@@ -20,7 +20,7 @@
 namespace pertev {
 
 /// Weighted sum of three vertices' values; b1 and b2 belong to the second and third.
-template <class T>
+template <class T = float>
 HD inline Vec3Of<T> interpolate(Vec3Of<T> v0, Vec3Of<T> v1, Vec3Of<T> v2, T b1, T b2) {
     return (1.0f - b1 - b2) * v0 + b1 * v1 + b2 * v2;
 }
@@ -29,7 +29,7 @@ HD inline Vec2 interpolate(Vec2 v0, Vec2 v1, Vec2 v2, float b1, float b2) {
 }
 
 /// Returns `v` at unit length, or `otherwise` if it has no direction (zero, tiny or not finite).
-template <class T>
+template <class T = float>
 HD inline Vec3Of<T> normalize_or(Vec3Of<T> v, std::type_identity_t<Vec3Of<T>> otherwise) {
     const T squared = length_squared(v);
     return select(squared > 0x1p-80f && is_finite(squared), (1.0f / sqrt(squared)) * v, otherwise);
@@ -38,7 +38,7 @@ HD inline Vec3Of<T> normalize_or(Vec3Of<T> v, std::type_identity_t<Vec3Of<T>> ot
 /// Unit world-space shading normal on the side of the front face. `local_normal` is the interpolated vertex normal
 /// (zero: none); `geometric_normal` is unit, world space, of the front. A normal that points behind the face is
 /// considered an error of the file and replaced by the geometric one.
-template <class T>
+template <class T = float>
 HD inline Vec3Of<T> world_normal(const TransformOf<T>& local_from_world, Vec3Of<T> local_normal,
                                  Vec3Of<T> geometric_normal) {
     const Vec3Of<T> normal = normalize_or(transform_transposed(local_from_world, local_normal), geometric_normal);
@@ -79,7 +79,7 @@ HD inline Vec3 mapped_normal(const Frame& frame, Vec3 texel, float scale) {
 /// Turns `normal` (unit) as little as needed so that the mirror direction of `wo` lies above the surface. wo is unit;
 /// `geometric_normal` is unit and on wo's side; wo may lie below `normal`. The result is unit and on the side of
 /// both.
-template <class T>
+template <class T = float>
 HD inline Vec3Of<T> valid_normal(Vec3Of<T> normal, Vec3Of<T> geometric_normal, Vec3Of<T> wo) {
     const T above = dot(wo, geometric_normal);
     const T least = min(0.9f * above, T(0.01f));    // so that an unbent normal never changes

@@ -14,6 +14,8 @@
 // chapter 12; Chiang et al., "Taming the Shadow Terminator", 2019) are at most 1 and lose light: docs/conventions.md
 // has the figures.
 
+#include <type_traits>
+
 #include "base/host_device.h"
 #include "math/scalar.h"
 #include "math/vec3.h"
@@ -33,7 +35,7 @@ inline constexpr float kMinTilt = 1e-3f;
 
 /// Sine of the angle between two unit vectors, from the cross product, because the cosine is imprecise for small
 /// angles.
-template <class T>
+template <class T = float>
 HD inline T sine_between(Vec3Of<T> a, Vec3Of<T> b) {
     return length(cross(a, b));
 }
@@ -42,8 +44,8 @@ HD inline T sine_between(Vec3Of<T> a, Vec3Of<T> b) {
 /// point, `at_corners` interpolated from the triangle's three vertices. The latter hardly varies over a regular mesh,
 /// so triangles are not visible; the former is smaller except where the mesh curls. The result is 0 or in
 /// [kMinTilt, kLargestTilt].
-template <class T>
-HD inline T terminator_tilt(T here, T at_corners) {
+template <class T = float>
+HD inline T terminator_tilt(T here, std::type_identity_t<T> at_corners) {
     const T sine = max(here, at_corners);
     const T tilt = min(min(sine, T(kLargestTilt)), kHopelessTilt - sine);
     return select(tilt < kMinTilt, T(0.0f), tilt);
@@ -57,7 +59,7 @@ struct RaisedDirectionOf {
 using RaisedDirection = RaisedDirectionOf<float>;
 
 /// Changes the height |w.z| of `w` (unit) to `height`, in [0, 1].
-template <class T>
+template <class T = float>
 HD inline Vec3Of<T> at_height(Vec3Of<T> w, T height) {
     const T across = w.x * w.x + w.y * w.y;
     const T scale = select(across > 0, safe_sqrt((1.0f - height) * (1.0f + height) / across), T(0.0f));
@@ -66,7 +68,7 @@ HD inline Vec3Of<T> at_height(Vec3Of<T> w, T height) {
 
 /// Raises `w` (unit, shading frame, on either side) by `tilt` > 0. With heights x and y relative to the reach and t =
 /// tilt / reach, y = t + (1 - 2t) x + t x^2: t at the horizon, and 1 with slope 1 at the reach.
-template <class T>
+template <class T = float>
 HD inline RaisedDirectionOf<T> raise_direction(Vec3Of<T> w, T tilt) {
     const T reach = min(kTerminatorReach * tilt, T(1.0f)), height = abs(w.z);
     const MaskOf<T> is_low = !(height >= reach);
@@ -77,7 +79,7 @@ HD inline RaisedDirectionOf<T> raise_direction(Vec3Of<T> w, T tilt) {
 }
 
 /// The direction that raise_direction maps to `wi`, and the slope there.
-template <class T>
+template <class T = float>
 HD inline RaisedDirectionOf<T> lower_direction(Vec3Of<T> wi, T tilt) {
     const T reach = min(kTerminatorReach * tilt, T(1.0f)), height = abs(wi.z);
     const MaskOf<T> is_high = height >= reach, is_low = !is_high && height > tilt;

@@ -178,6 +178,6 @@ TEST_CASE("shading frames of eight lanes have the bits of one") {
         check_lanes(terminator_tilt(tilt.all(), sine_between(normal.all(), other.all())),
                     [&](uint32_t k) { return terminator_tilt(tilt.one[k], sine_between(n(k), m(k))); });
         check_lanes(offset_ray_origin(near.all(), abs(other.all()), normal.all(), wo.all()),
-                    [&](uint32_t k) { return offset_ray_origin(b(k), pertev::abs(m(k)), n(k), w(k)); });
+                    [&](uint32_t k) { return offset_ray_origin(b(k), abs(m(k)), n(k), w(k)); });
     }
 }

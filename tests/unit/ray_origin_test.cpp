@@ -102,5 +102,5 @@ TEST_CASE("a point near an edge is moved inwards, and any other is kept to the b
         CHECK(abs(place.v - v) <= 2 * least + 0x1p-22f);
         if (u >= least && v >= least && 1 - u - v >= least) CHECK((place.u == u && place.v == v));
     }
-    CHECK(keep_off_edges(0, 0, 0.25f).u == doctest::Approx(1.0 / 6)); // from a corner: 1/4, 1/4 and 1, over 3/2
+    CHECK(keep_off_edges(0.0f, 0.0f, 0.25f).u == doctest::Approx(1.0 / 6)); // from a corner: 1/4, 1/4 and 1, over 3/2
 }
