@@ -121,7 +121,7 @@ TEST_CASE("clamping limits indirect light equally under every sampling strategy,
         here.depth = depth;
         return emitted_light({.strategy = strategy, .clamp = clamp}, here, grey(5), light_pdf);
     };
-    const float weight = power_heuristic(3, 1);
+    const float weight = power_heuristic(3.0f, 1.0f);
     for (const uint32_t depth : {0u, 1u}) CHECK(found(depth, LightStrategy::Mis, 0, 10) == Rgb{10, 20, 5});
     for (const uint32_t depth : {2u, 7u}) {
         CHECK(found(depth, LightStrategy::Mis, 0, 0) == Rgb{10, 20, 5});
