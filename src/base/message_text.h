@@ -29,8 +29,8 @@ inline std::string numbered(const char* kind, std::size_t i, const std::string& 
 
 /// Text of a file shortened to fit a line of a message.
 inline std::string shortened(std::string_view text) {
-    constexpr std::size_t kMost = 200;
-    return text.size() <= kMost ? std::string(text) : fmt::format("{}...", text.substr(0, kMost));
+    constexpr std::size_t kMaxBytes = 200;
+    return text.size() <= kMaxBytes ? std::string(text) : fmt::format("{}...", text.substr(0, kMaxBytes));
 }
 
 } // namespace pertev

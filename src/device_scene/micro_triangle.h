@@ -30,7 +30,7 @@ struct OpacityMicromapView {
 };
 
 /// Maximum distance, in barycentrics, by which rounding may move a position outside its triangle.
-inline constexpr float kMostBeside = 0x1p-22f;
+inline constexpr float kMaxBeside = 0x1p-22f;
 
 /// A micro-triangle: cell (column, row) of 2^level per side, counted along u and v, and which half of it.
 struct MicroTriangle {
@@ -76,7 +76,7 @@ HD inline MicroCorners corners_of(uint32_t level, MicroTriangle t) {
 
 /// Opacity at (u, v) on triangle `primitive`; unknown if it is farther outside the triangle than a ray's hit can be.
 HD inline Opacity opacity_at(const OpacityMicromapView& map, uint32_t primitive, float u, float v) {
-    if (!(min(u, v) >= -kMostBeside && u + v <= 1 + kMostBeside)) return Opacity::Unknown;
+    if (!(min(u, v) >= -kMaxBeside && u + v <= 1 + kMaxBeside)) return Opacity::Unknown;
     const uint32_t index = micro_index(map.level, micro_triangle_of(map.level, u, v));
     const uint64_t word = uint64_t(primitive) * words_per_triangle(map.level) + index / kMicroTrianglesPerWord;
     return static_cast<Opacity>(map.states[word] >> index % kMicroTrianglesPerWord * 2 & 3u);

@@ -123,7 +123,7 @@ float stops_of(int hundredths) { return static_cast<float>(hundredths) / 100.0f;
 
 /// The most hundredths of a stop, `most` or fewer, that are fine: all are up to some exposure, and none beyond.
 template <class IsFine>
-int most_that_are_fine(int most, IsFine is_fine) {
+int max_fine(int most, IsFine is_fine) {
     if (is_fine(stops_of(most))) return most;
     int low = -kMaxHundredths, high = most;
     while (high - low > 1) {
@@ -161,10 +161,10 @@ float auto_exposure_stops(const Image& linear, ToneMap kind) {
     const float bright = light_below(tones.largest, kBrightShare);
     const float to_grey = log2(kMiddleGrey) - trimmed_log_mean(tones.luminance);
     int hundredths = to_int(floor(100.0f * to_grey + 0.5f), -kMaxHundredths, kMaxHundredths);
-    hundredths = most_that_are_fine(
+    hundredths = max_fine(
         hundredths, [&](float stops) { return tone_map(grey(bright), kind, exposure_scale(stops)).g <= kBright; });
     hundredths =
-        most_that_are_fine(hundredths, [&](float stops) { return burnt_share(linear, kind, stops) <= kBurntShare; });
+        max_fine(hundredths, [&](float stops) { return burnt_share(linear, kind, stops) <= kBurntShare; });
     return stops_of(hundredths);
 }
 

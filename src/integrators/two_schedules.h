@@ -38,13 +38,13 @@ public:
     void begin_rounds(uint32_t most) {
         if (is_pending_) seen_.wait();
         is_pending_ = false;
-        most_ = most;
+        max_ = most;
     }
-    uint32_t max_rays() const { return most_; }
+    uint32_t max_rays() const { return max_; }
     /// Returns false once no ray is left. The host launches rounds without a wait and reads the count one round late.
     bool has_rays_left(const Counts* counts) {
-        if (is_pending_) most_ = seen_.wait().rays;
-        is_pending_ = most_ > 0;
+        if (is_pending_) max_ = seen_.wait().rays;
+        is_pending_ = max_ > 0;
         if (is_pending_) seen_.take(counts);
         return is_pending_;
     }
@@ -56,7 +56,7 @@ protected:
 private:
     Readback<Counts>& seen_;
     bool is_pending_ = false;
-    uint32_t most_ = 0;
+    uint32_t max_ = 0;
 };
 
 /// Runs the stages in one thread.
@@ -70,18 +70,18 @@ public:
     void run(const char*, WorkCount count, const Stage& stage) {
         for (uint32_t i = 0; i < count.value(); ++i) stage(i);
     }
-    void begin_rounds(uint32_t most) { most_ = most; }
-    uint32_t max_rays() const { return most_; }
+    void begin_rounds(uint32_t most) { max_ = most; }
+    uint32_t max_rays() const { return max_; }
     bool has_rays_left(const Counts* counts) {
-        most_ = counts->rays;
-        return most_ > 0;
+        max_ = counts->rays;
+        return max_ > 0;
     }
 
 protected:
     const HostTrees& trees_;
 
 private:
-    uint32_t most_ = 0;
+    uint32_t max_ = 0;
 };
 
 template <class Settings, class Job>

@@ -48,7 +48,7 @@ Fields run_fields(const LabReport& report, const CombinationFigures& c, const Ru
     };
     Fields fields = {{"combination", "combination", c.name},
                      {"structure", "structure", name_of(c.combination.structure)},
-                     {"walk", "traversal", name_of(c.combination.traversal)},
+                     {"traversal", "traversal", name_of(c.combination.traversal)},
                      {"rta", "RTA", name_of_rta(o)},
                      {"near_first", "near first", o.near_first},
                      {"tests", "tests", name_of(o.tests)},

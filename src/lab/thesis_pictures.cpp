@@ -152,7 +152,7 @@ ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progre
         settings.width = std::max(1u, settings.width / 2), settings.height = std::max(1u, settings.height / 2);
     }
     if (!recipe.integrator.empty()) PERTEV_CHECK(set_integrator(settings, recipe.integrator));
-    settings.path.max_depth = std::min(settings.path.max_depth, most_depth(settings.integrator));
+    settings.path.max_depth = std::min(settings.path.max_depth, max_depth(settings.integrator));
     settings = with_settings(settings, recipe.settings);
     if (recipe.has_photons_by_size) settings.photon_map.edit().photons = thesis_detail(settings.height).photons;
     if (recipe.way == ThesisWay::Work) {

@@ -26,7 +26,7 @@ Bounds3 bounds_of(const Scene& scene, const Instance& instance) {
     return bounds;
 }
 
-/// A light without size in the middle of the lamp, a centimetre below it, of the intensity that the lamp has straight
+/// A light without size in the middle of the emitter, a centimetre below it, of the intensity that the emitter has straight
 /// down: its radiance times its area.
 void replace_emitter(Scene& scene) {
     const uint32_t emitter = instance_named(scene, "light");

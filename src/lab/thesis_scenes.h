@@ -1,7 +1,7 @@
 #pragma once
 
 // The scenes that pictures of the thesis (lab/thesis_pictures.h) are made of: the built-in Cornell box, with another
-// lamp or a ball or two in it, and the built-in caustic.
+// emitter or a ball or two in it, and the built-in caustic.
 
 #include <cstdint>
 
@@ -12,7 +12,7 @@ namespace pertev {
 
 enum class ThesisScene : uint8_t {
     Box,         // cornell-box as it is
-    PointLight,  // a point light in the lamp's place
+    PointLight,  // a point light in place of the emitter
     MirrorBall,  // a mirror sphere in the short block's place
     PlasticBall, // a point light near the front, a sphere of glossy plastic of few triangles in the short block's place
     TwoBalls,    // that point light, a mirror sphere there and one of glass in the tall block's place

@@ -8,7 +8,7 @@
 namespace pertev {
 namespace {
 
-constexpr int kMostHanging = 8; // levels between the patches on either side of an edge
+constexpr int kMaxHanging = 8; // levels between the patches on either side of an edge
 
 /// Sets the area-weighted mean of the patches of all sheets of one surface that meet at a point.
 void show_means(std::span<CornerSheet> sheets) {
@@ -56,7 +56,7 @@ private:
             sheet.shown = middle.light;
             any = true;
         }
-        if (!any || depth >= kMostHanging) return;
+        if (!any || depth >= kMaxHanging) return;
         anchor(patch, a, middle, depth + 1);
         anchor(patch, middle, b, depth + 1);
     }

@@ -135,7 +135,7 @@ std::span<CornerSheet> CornerTable::at(Vec3 position) {
     return {range.begin(), range.end()};
 }
 
-std::size_t CornerTable::most_bytes(uint64_t patches) {
+std::size_t CornerTable::max_bytes(uint64_t patches) {
     return patches * (3 * (2 * sizeof(Corner) + sizeof(uint32_t) + 2 * sizeof(CornerSheet)) + sizeof(Vec3)) +
            patches * sizeof(uint32_t);
 }

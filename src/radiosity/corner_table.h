@@ -43,7 +43,7 @@ public:
     void for_each_position(const std::function<void(std::span<CornerSheet>)>& body);
 
     /// Maximum bytes for a number of patches.
-    static std::size_t most_bytes(uint64_t patches);
+    static std::size_t max_bytes(uint64_t patches);
 
 private:
     struct Corner {

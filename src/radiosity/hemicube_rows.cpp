@@ -1,4 +1,4 @@
-// Rows of form factors by hemicubes (radiosity/hemicube.h). Lamps are patches like others; the environment and lights
+// Rows of form factors by hemicubes (radiosity/hemicube.h). Emitters are patches like others; the environment and lights
 // that no triangle is are found by shadow rays.
 
 #include <memory>

@@ -231,7 +231,7 @@ std::size_t max_hierarchical_bytes(uint64_t patches, uint64_t triangles) {
     const uint64_t most = nodes < 100000 ? nodes * nodes : kMaxLinks;
     const std::size_t links = 3 * std::min(most, kMaxLinks) * sizeof(Link);
     return std::max(links, LinkNodes::max_first_bytes(std::min(patches, 2 * triangles))) +
-           LinkNodes::most_bytes(patches, patches);
+           LinkNodes::max_bytes(patches, patches);
 }
 
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,

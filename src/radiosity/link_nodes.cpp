@@ -329,9 +329,9 @@ std::size_t LinkNodes::max_first_bytes(uint64_t faces) {
     return faces * (sizeof(std::vector<FormFactor>) + kOfAllocation + 4 * (kDirectRays + 16) * sizeof(FormFactor));
 }
 
-std::size_t LinkNodes::bytes() const { return most_bytes(tree_.patches.size(), clusters_.faces.size()); }
+std::size_t LinkNodes::bytes() const { return max_bytes(tree_.patches.size(), clusters_.faces.size()); }
 
-std::size_t LinkNodes::most_bytes(uint64_t patches, uint64_t faces) {
+std::size_t LinkNodes::max_bytes(uint64_t patches, uint64_t faces) {
     const uint64_t quads = patches / 3 + 1, clusters = 2 * faces;
     return (patches + quads) * (sizeof(LinkedPatch) + sizeof(Patch) + 5 * sizeof(Rgb) + 2 * sizeof(uint32_t)) +
            clusters * (sizeof(Cluster) + 2 * sizeof(SentLight) + 2 * sizeof(Rgb) + sizeof(uint32_t)) +

@@ -91,7 +91,7 @@ public:
     PatchTree take_tree() { return std::move(tree_); }
     std::size_t bytes() const;
     /// Maximum bytes for these numbers of patches and triangle sides.
-    static std::size_t most_bytes(uint64_t patches, uint64_t faces);
+    static std::size_t max_bytes(uint64_t patches, uint64_t faces);
     /// Additional maximum bytes during construction, before there are links.
     static std::size_t max_first_bytes(uint64_t faces);
 

@@ -201,8 +201,8 @@ RadiositySolution read_any_solution(const std::filesystem::path& path) {
     if (version == 0) {
         refuse_file(path, "no radiosity solution (pertev solve radiosity makes one)");
     }
-    constexpr uint64_t kMost = uint64_t(1) << 40; // so that no sum below passes 64 bits
-    const bool has_sizes = std::max({header.text, header.roots, header.quads, header.patches}) < kMost;
+    constexpr uint64_t kMaxCount = uint64_t(1) << 40; // so that no sum below passes 64 bits
+    const bool has_sizes = std::max({header.text, header.roots, header.quads, header.patches}) < kMaxCount;
     const bool has_light = version >= kFirstWithLight, has_extent = version >= kFirstWithExtent;
     const uint64_t before = (has_light ? sizeof(SolvedLight) : 0) + (has_extent ? sizeof(SolvedExtent) : 0);
     const uint64_t size = !has_sizes ? 0

@@ -80,7 +80,7 @@ Parts showing(const RadiositySettings& s, const Counts& counts, uint64_t threads
     parts.push_back(
         {"patches that are shown", 2 * (tree_bytes(counts.shown, counts.triangles) + counts.shown * sizeof(Rgb)) +
                                        2 * counts.shown * sizeof(uint32_t)});
-    parts.push_back({"corners", CornerTable::most_bytes(counts.shown) + WeldedVertices::most_bytes(counts.vertices)});
+    parts.push_back({"corners", CornerTable::max_bytes(counts.shown) + WeldedVertices::max_bytes(counts.vertices)});
     parts.push_back({"solution", 2 * counts.shown * sizeof(PatchLight)}); // and as a file
     return parts;
 }

@@ -48,28 +48,28 @@ private:
 };
 
 /// The patch with most unsent light; the first of several. A tree of winners, so that a change costs its height.
-class MostUnsent {
+class LargestUnsent {
 public:
-    explicit MostUnsent(std::size_t count) : leaves_(std::bit_ceil(count)), most_(2 * leaves_, 0.0) {}
+    explicit LargestUnsent(std::size_t count) : leaves_(std::bit_ceil(count)), largest_(2 * leaves_, 0.0) {}
 
     void set(std::size_t patch, double light) {
         std::size_t at = leaves_ + patch;
-        most_[at] = light;
+        largest_[at] = light;
         for (at /= 2; at > 0; at /= 2) {
-            const double larger = std::max(most_[2 * at], most_[2 * at + 1]);
-            if (most_[at] == larger) return; // nothing changes above
-            most_[at] = larger;
+            const double larger = std::max(largest_[2 * at], largest_[2 * at + 1]);
+            if (largest_[at] == larger) return; // nothing changes above
+            largest_[at] = larger;
         }
     }
     std::size_t first() const {
         std::size_t at = 1;
-        while (at < leaves_) at = most_[2 * at] >= most_[2 * at + 1] ? 2 * at : 2 * at + 1;
+        while (at < leaves_) at = largest_[2 * at] >= largest_[2 * at + 1] ? 2 * at : 2 * at + 1;
         return at - leaves_;
     }
 
 private:
     std::size_t leaves_;
-    std::vector<double> most_;
+    std::vector<double> largest_;
 };
 
 constexpr double kMinAbsorbed = 1e-6;
@@ -129,7 +129,7 @@ SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance,
     SolvedSystem solved;
     solved.irradiance = system.direct;
     std::vector<Rgb> unsent(count);
-    MostUnsent most(count);
+    LargestUnsent most(count);
     for (std::size_t i = 0; i < count; ++i) {
         const SystemPatch& patch = system.patches[i];
         unsent[i] = patch.exitance + patch.reflectance * system.direct[i];

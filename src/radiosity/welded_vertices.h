@@ -21,7 +21,7 @@ public:
 
     static constexpr float kWeld = 0x1p-22f; // four roundings of floats
     /// Maximum bytes for a number of vertices.
-    static std::size_t most_bytes(uint64_t vertices) { return vertices * (2 * sizeof(Vec3) + 4 * sizeof(uint32_t)); }
+    static std::size_t max_bytes(uint64_t vertices) { return vertices * (2 * sizeof(Vec3) + 4 * sizeof(uint32_t)); }
 
 private:
     const SceneView& scene_;

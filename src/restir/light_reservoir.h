@@ -43,7 +43,7 @@ HD inline bool make_visibility_ray(const SceneView& scene, const LightReservoir&
 /// Random-number groups of ReSTIR for a pixel's sample, far behind those of paths (integrators/path/path_state.h).
 enum RestirGroup : uint32_t {
     kGroupCandidates = 1u << 24, // candidate k of sample s uses point s * candidates + k of the group
-    kGroupPickCandidate,
+    kGroupSelectCandidate,
     kGroupNeighbours, // three groups
     kGroupReuse = kGroupNeighbours + 3,
 };

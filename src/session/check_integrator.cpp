@@ -86,9 +86,9 @@ void check_integrator(const RenderSettings& settings) {
            "illuminance",
            fmt::format("only `integrator=path`, direct, indirect and hybrid without denoising find it, not {}{}", name,
                        is_denoised ? ", denoised" : ""));
-    if (settings.path.max_depth > most_depth(settings.integrator)) {
+    if (settings.path.max_depth > max_depth(settings.integrator)) {
         throw Error(ErrorCode::OverLimit, "max_depth", fmt::format("{}", settings.path.max_depth),
-                    fmt::format("the limit with `integrator={}` is {}", name, most_depth(settings.integrator)));
+                    fmt::format("the limit with `integrator={}` is {}", name, max_depth(settings.integrator)));
     }
     const PhotonMapSettings& photons = *settings.photon_map;
     if (settings.integrator == IntegratorKind::PhotonMap && !photons_fit(photons.photons, settings.path.max_depth)) {

@@ -26,7 +26,7 @@ constexpr uint32_t kRaster = bits_of({IntegratorKind::Raster}), kReyes = bits_of
                    kPhotons = bits_of({IntegratorKind::PhotonMap}),
                    kRecords = bits_of({IntegratorKind::IrradianceCache}),
                    kRadiosity = bits_of({IntegratorKind::Radiosity});
-constexpr double kMostFloat = std::numeric_limits<float>::max();
+constexpr double kMaxRadius = std::numeric_limits<float>::max();
 
 } // namespace
 
@@ -57,10 +57,10 @@ std::vector<Setting> integrator_settings() {
             "Final gathering, or a direct estimate from the global photon map.", Of{kPhotons}, Recorded::WhereUsed),
         row("radius", "Photons", "METRES", FIELD(render.photon_map.edit().radius),
             "The search radius of the first sample; it shrinks from sample to sample.",
-            Range{kMinPhotonRadius, kMostFloat}, Unit{"m"}, Otherwise{"a hundredth of the scene"}, Of{kPhotons},
+            Range{kMinPhotonRadius, kMaxRadius}, Unit{"m"}, Otherwise{"a hundredth of the scene"}, Of{kPhotons},
             Recorded::WhereUsed),
         row("caustic_radius", "Photons", "METRES", FIELD(render.photon_map.edit().caustic_radius),
-            "The search radius of the caustic map in the first sample.", Range{kMinPhotonRadius, kMostFloat}, Unit{"m"},
+            "The search radius of the caustic map in the first sample.", Range{kMinPhotonRadius, kMaxRadius}, Unit{"m"},
             Otherwise{"a quarter of the radius"}, Of{kPhotons}, Recorded::WhereUsed),
         row("nearest", "Photons", "N", FIELD(render.photon_map.edit().nearest),
             "The number of nearest photons within the radius that an estimate uses.", Range{2, kMaxNearestPhotons},

@@ -32,13 +32,13 @@ constexpr bool is_field_of = std::is_same_v<Field, Value*> || std::is_same_v<Fie
 template <class Field>
 constexpr bool is_number = is_field_of<Field, float> || is_field_of<Field, double>;
 
-double most_of(const Setting& setting) {
+double max_of(const Setting& setting) {
     return setting.high > 0 ? setting.high : double(std::numeric_limits<float>::max());
 }
 
 std::string why_no_number_for(const Setting& setting, const std::string& text) {
-    return setting.above ? why_not_above(text, setting.low, most_of(setting))
-                         : why_no_number(text, setting.low, most_of(setting));
+    return setting.above ? why_not_above(text, setting.low, max_of(setting))
+                         : why_no_number(text, setting.low, max_of(setting));
 }
 
 std::string text_of(bool value) { return value ? "true" : "false"; }

@@ -181,7 +181,7 @@ class WhatIsMeasured(LabTest):
         self.check_hits(report)
         self.assertEqual([(rays["name"], rays["rays"], rays["hit_share"]) for rays in report["sets"]],
                          [("primary", 192, 1), ("shadow", 192, 0), ("diffuse1", 192, 1), ("diffuse2", 192, 1)])
-        brute = next(of for of in report["combinations"] if of["walk"] == "brute-force")
+        brute = next(of for of in report["combinations"] if of["traversal"] == "brute-force")
         self.assertEqual([run["triangles_per_ray"] for run in brute["runs"]], [12] * len(brute["runs"]))
 
     def test_depths_and_kinds_of_rays_are_those_requested(self):
@@ -203,16 +203,16 @@ class WhatIsMeasured(LabTest):
 
     def test_every_traversal_runs_in_a_scene_of_shared_meshes(self):
         write(self.path("boxes.gltf"), gltf_of_nested_boxes())
-        walks = self.names_of("--traversals")
-        self.assertIn("brute-force", walks)
+        traversals = self.names_of("--traversals")
+        self.assertIn("brute-force", traversals)
         # Between the boxes: the inner one or else the outer one is hit.
-        report = self.report("boxes.gltf", "--eye", "0.3,0.2,2.5", "--target", "0,0,0", "--traversals", ",".join(walks),
+        report = self.report("boxes.gltf", "--eye", "0.3,0.2,2.5", "--target", "0,0,0", "--traversals", ",".join(traversals),
                              "--structures", "binned,sbvh,kd-sah,octree")
         self.assertEqual((report["instances"], report["triangles"]), (2, 12))  # the mesh counts once
         self.check_hits(report, ["brute force has no nodes", "needs "])
         self.assertEqual({rays["name"]: rays["hit_share"] for rays in report["sets"] if not rays["any_hit"]},
                          {"primary": 1, "diffuse1": 1, "diffuse2": 1})
-        self.assertEqual({of["walk"] for of in report["combinations"] if of["runs"]}, set(walks))
+        self.assertEqual({of["traversal"] for of in report["combinations"] if of["runs"]}, set(traversals))
 
     def test_pairs_that_make_no_sense_are_listed_with_the_reason_beside_what_was_measured(self):
         pair = ["box.obj", *INSIDE, "--structures", "octree,binned", "--traversals", "while-while,kd"]
@@ -264,7 +264,7 @@ class WhatIsMeasured(LabTest):
 
     def test_the_old_name_of_traversals_is_accepted_and_hidden(self):
         report = self.report("box.obj", *INSIDE, "--structures", "binned", "--walks", "if-if")
-        self.assertEqual({of["walk"] for of in report["combinations"]}, {"if-if"})
+        self.assertEqual({of["traversal"] for of in report["combinations"]}, {"if-if"})
         shown = self.succeed("lab", "--help", "all").stdout
         self.assertIn("--traversals", shown)
         self.assertNotIn("--walks", shown)

@@ -21,7 +21,7 @@
 namespace pertev::hploc {
 
 inline constexpr uint32_t kKept = 16;        // maximum number of clusters that a radix node leaves to its parent
-inline constexpr uint32_t kMost = 2 * kKept; // maximum number of clusters before merging
+inline constexpr uint32_t kMaxClusters = 2 * kKept; // maximum number of clusters before merging
 inline constexpr uint32_t kSearchRadius = 8; // neighbours searched on either side
 
 struct Climb {
@@ -101,8 +101,8 @@ HD inline Cluster cluster_left(const Climb& climb, uint32_t first, uint32_t end,
 
 /// Merges the clusters of a node in one thread.
 HD inline void join_range(const Climb& climb, const LeafRange& range) {
-    Cluster clusters[kMost];
-    Bounds3 boxes[kMost];
+    Cluster clusters[kMaxClusters];
+    Bounds3 boxes[kMaxClusters];
     uint32_t count = 0;
     const auto take = [&](uint32_t first, uint32_t end) {
         const uint32_t most = end - first < climb.kept() ? end - first : climb.kept();
@@ -117,7 +117,7 @@ HD inline void join_range(const Climb& climb, const LeafRange& range) {
     take(range.middle, range.last + 1);
     const uint32_t leave = clusters_to_leave(climb, range);
     while (count > leave) {
-        uint64_t best[kMost];
+        uint64_t best[kMaxClusters];
         for (uint32_t i = 0; i < count; ++i) best[i] = ~uint64_t(0);
         for (uint32_t i = 0; i < count; ++i) {
             for (uint32_t k = i + 1; k < count && k <= i + kSearchRadius; ++k) {

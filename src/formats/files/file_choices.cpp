@@ -62,11 +62,11 @@ std::vector<std::string> list_of(const Kind& kind, std::span<const std::string> 
 
 /// Text of an item for messages.
 std::string text_of(const Kind& kind, std::span<const std::string> names) {
-    constexpr std::size_t kMost = 20;
+    constexpr std::size_t kMaxShown = 20;
     std::string text;
     const std::vector<std::string> list = list_of(kind, names);
-    for (std::size_t i = 0; i < std::min(list.size(), kMost); ++i) text += "\n  " + shortened(list[i]);
-    if (names.size() > kMost) text += fmt::format("\n  and {} more (pertev info)", names.size() - kMost);
+    for (std::size_t i = 0; i < std::min(list.size(), kMaxShown); ++i) text += "\n  " + shortened(list[i]);
+    if (names.size() > kMaxShown) text += fmt::format("\n  and {} more (pertev info)", names.size() - kMaxShown);
     return text;
 }
 

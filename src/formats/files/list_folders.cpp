@@ -10,7 +10,7 @@ namespace pertev {
 namespace {
 
 constexpr std::size_t kMaxEntries = 20000; // total for all folders
-constexpr std::size_t kMostLevels = 16;
+constexpr std::size_t kMaxLevels = 16;
 constexpr std::size_t kMaxNamed = 20;
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
@@ -86,7 +86,7 @@ void FolderListing::list_level(std::vector<fs::path>& level, std::size_t folder_
 void FolderListing::list() {
     for (const fs::path& folder : folders_) {
         std::vector<fs::path> level = {folder};
-        for (std::size_t i = 0; i < kMostLevels && !level.empty(); ++i) list_level(level, component_count(folder));
+        for (std::size_t i = 0; i < kMaxLevels && !level.empty(); ++i) list_level(level, component_count(folder));
     }
     std::ranges::sort(files_, {}, &File::path); // folders may lie in one another, and have no order of their own
     const auto same = [](const File& a, const File& b) { return a.path == b.path; };

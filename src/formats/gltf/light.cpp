@@ -17,7 +17,7 @@ void set_cone(float inner, float outer, Light& light) {
     light.cos_outer = min(cos(outer), light.cos_inner - kSharpestEdge);
 }
 
-/// Angles out of range are brought into it: the lamp is there with the cone that comes nearest.
+/// Angles out of range are brought into it, so that the light has the nearest valid cone.
 void read_cone(const JsonValue& spot, Light& light, Messages& messages) {
     constexpr float widest = kPi / 2;
     const float requested_inner = spot.float_or("innerConeAngle", 0),

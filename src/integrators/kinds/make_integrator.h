@@ -87,7 +87,7 @@ struct IntegratorDescriptor {
     /// Whether only point, spot and directional lights illuminate surfaces.
     bool needs_punctual_lights = false;
     /// The largest PathSettings::max_depth.
-    uint32_t most_depth = kMaxPathDepth - 1;
+    uint32_t max_depth = kMaxPathDepth - 1;
     /// Returns how many samples per pixel together take hardly longer than one.
     uint32_t (*samples_at_once)(uint64_t pixels) = [](uint64_t) { return 1u; };
     std::unique_ptr<Integrator> (*make)(Queue&, const IntegratorSettings&) = nullptr;
@@ -107,7 +107,7 @@ inline bool finds_all_light(IntegratorKind kind) { return describe(kind).finds_a
 inline bool rasterises_camera(IntegratorKind kind) { return describe(kind).rasterises_camera; }
 inline bool has_shutter(IntegratorKind kind) { return describe(kind).has_shutter; }
 inline bool needs_punctual_lights(IntegratorKind kind) { return describe(kind).needs_punctual_lights; }
-inline uint32_t most_depth(IntegratorKind kind) { return describe(kind).most_depth; }
+inline uint32_t max_depth(IntegratorKind kind) { return describe(kind).max_depth; }
 inline uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pixels) {
     return describe(settings.integrator).samples_at_once(pixels);
 }

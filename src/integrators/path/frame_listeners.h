@@ -115,15 +115,15 @@ public:
     }
 
 private:
-    static constexpr uint32_t kMost = 1023;
+    static constexpr uint32_t kMaxCode = 1023;
     HD static uint32_t part(float share) {
-        return static_cast<uint32_t>(to_int(fma(share, static_cast<float>(kMost), 0.5f), 0, kMost));
+        return static_cast<uint32_t>(to_int(fma(share, static_cast<float>(kMaxCode), 0.5f), 0, kMaxCode));
     }
     HD static uint32_t packed(Rgb share) { return part(share.r) | part(share.g) << 10 | part(share.b) << 20; }
     HD static Rgb unpacked(uint32_t bits) {
-        constexpr float kInv = 1.0f / static_cast<float>(kMost);
-        return kInv * Rgb{static_cast<float>(bits & kMost), static_cast<float>(bits >> 10 & kMost),
-                          static_cast<float>(bits >> 20 & kMost)};
+        constexpr float kInv = 1.0f / static_cast<float>(kMaxCode);
+        return kInv * Rgb{static_cast<float>(bits & kMaxCode), static_cast<float>(bits >> 10 & kMaxCode),
+                          static_cast<float>(bits >> 20 & kMaxCode)};
     }
 
     const NoisyFrameView& frame_;

@@ -128,8 +128,8 @@ HD inline uint64_t max_wide(uint64_t pixels) { return min(max_work(pixels) / kWi
 /// Returns false if wide micropolygons have visited so many cells that the pass is aborted.
 HD inline bool may_search(const ReyesPass& pass, uint64_t cells) {
     if (pass.wide == nullptr || cells <= kWideCells) return true;
-    constexpr uint64_t kMost = 1u << 15; // prevents overflow of the count, whatever a round of pieces adds
-    const auto more = static_cast<uint32_t>(min(cells / kWideCells, kMost));
+    constexpr uint64_t kMaxBlocks = 1u << 15; // prevents overflow of the count, whatever a round of pieces adds
+    const auto more = static_cast<uint32_t>(min(cells / kWideCells, kMaxBlocks));
     return atomic_add(pass.wide, more) <= max_wide(pass.samples.pixels());
 }
 

@@ -19,14 +19,14 @@ constexpr double kMaxPiecesOfTriangle = 64;               // added to kMaxWorkOf
 constexpr uint32_t kRoundsPerUpdate = 8;                  // rounds between updates of the farthest depths
 constexpr uint32_t kStack = 1u << 19, kMaxUnderWay = 1u << 16;
 
-// Why the stack suffices: a round takes at least `kLeast` pieces off the top and leaves at most four of each, one
-// level deeper. Thus a piece 4 kLeast higher is one level deeper, and no level exceeds kMostLevels. Larger rounds
+// Why the stack suffices: a round takes at least `kMinRound` pieces off the top and leaves at most four of each, one
+// level deeper. Thus a piece 4 kMinRound higher is one level deeper, and no level exceeds kMaxLevels. Larger rounds
 // never use the reserve for that.
-constexpr uint32_t kLeast = 1024, kReserve = 4 * kLeast * (kMostLevels + 2);
+constexpr uint32_t kMinRound = 1024, kReserve = 4 * kMinRound * (kMaxLevels + 2);
 
 uint32_t pieces_at_once(uint32_t height) {
     const uint32_t capacity_left = height < kStack - kReserve ? (kStack - kReserve - height) / 4 : 0;
-    return std::min({height, std::max(kLeast, capacity_left), kMaxUnderWay});
+    return std::min({height, std::max(kMinRound, capacity_left), kMaxUnderWay});
 }
 
 uint64_t samples_held(uint64_t pixels, uint32_t samples) {

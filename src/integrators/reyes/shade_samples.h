@@ -22,7 +22,7 @@ struct Micropolygon {
         piece = whole_triangle(number);
         for (;;) {
             for (int k = 0; k < 3; ++k) points[k] = triangle.point(pass.camera.is_perspective, piece.corners[k]);
-            const uint32_t edges = piece.level < kMostLevels ? long_edges(pass, triangle, points) : 0;
+            const uint32_t edges = piece.level < kMaxLevels ? long_edges(pass, triangle, points) : 0;
             if (edges == 0) return true;
             piece = child_of(piece, edges, child_on_way(way, piece.level));
         }

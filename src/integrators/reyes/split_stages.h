@@ -96,7 +96,7 @@ struct SplitPieces {
         DicedPoint points[3];
         for (int k = 0; k < 3; ++k) points[k] = triangle.point(pass.camera.is_perspective, piece.corners[k]);
         if (triangle.is_outside(pass.camera, points) || is_hidden_piece(pass, triangle, points)) return;
-        const uint32_t edges = piece.level < kMostLevels ? long_edges(pass, triangle, points) : 0;
+        const uint32_t edges = piece.level < kMaxLevels ? long_edges(pass, triangle, points) : 0;
         if (edges == 0) return hide_micropolygon<kPass>(pass, triangle, piece, points);
         const uint32_t children = child_count(edges), first = atomic_add(pieces.count, children);
         for (uint32_t k = 0; k < children && first + k < pieces.capacity; ++k) {

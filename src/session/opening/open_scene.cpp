@@ -53,8 +53,8 @@ void turn_and_scale(const SceneOptions& options, Scene& scene, Messages& message
     if (options.environment_scale != 1) warn("environment_scale");
 }
 
-/// Whether such a lamp is set before light is added. An environment is set last, after scaling, and so are added
-/// lamps.
+/// Returns whether `emitter` names an emitter of the file, which is set before light is added. An environment is set
+/// last, after scaling, and so are added lights.
 bool names_emitter_of_file(const Scene& scene, const EmitterStrength& emitter) {
     if (scene.environment) return false;
     const auto is_called_so = [&](const auto& thing) { return has_name(names_of(scene, thing), emitter.name); };
@@ -85,10 +85,10 @@ bool wants_ground(Ground ground, const Scene& scene, DefaultLight light, const S
 
 /// Joins the texts of a list for a message.
 std::string in_a_row(const std::vector<std::string>& list) {
-    constexpr std::size_t kMost = 8;
+    constexpr std::size_t kMaxShown = 8;
     std::string text;
-    for (std::size_t i = 0; i < std::min(list.size(), kMost); ++i) text += (i > 0 ? ", " : "") + shortened(list[i]);
-    return list.size() > kMost ? fmt::format("{} and {} more (pertev info)", text, list.size() - kMost) : text;
+    for (std::size_t i = 0; i < std::min(list.size(), kMaxShown); ++i) text += (i > 0 ? ", " : "") + shortened(list[i]);
+    return list.size() > kMaxShown ? fmt::format("{} and {} more (pertev info)", text, list.size() - kMaxShown) : text;
 }
 
 /// Says which animation plays if the file has several and none was chosen.
@@ -172,7 +172,7 @@ Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use, 
         emitters, [&](const EmitterStrength& emitter) { return names_emitter_of_file(scene, emitter); });
     set_emitters(scene, {emitters.begin(), others.begin()}, efficacy);
     Surroundings around;
-    // Someone who switches off the last lamp of a file wants it dark.
+    // Someone who switches off the last light of a file wants it dark.
     const bool is_turned_off = has_light && lacks_light(scene);
     const DefaultLight light = is_turned_off ? DefaultLight::None : add_default_light(scene, use, messages, &around);
     if (wants_ground(ground, scene, light, around)) {

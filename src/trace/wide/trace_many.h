@@ -27,8 +27,8 @@ void traverse_scene_together(const HostTrees& scene, uint32_t count, const RayOf
     using Accept = decltype(accept_of(0));
     using Visitor = decltype(make_visitor(std::declval<const Accept&>(), std::declval<const Ray&>()));
     using Packet = WidePacket<kOptions, Visitor>;
-    constexpr uint32_t kSize = kWidePacket, kMostAlone = 256, kViewRays = 3;
-    std::array<uint32_t, kMostAlone> alone;
+    constexpr uint32_t kSize = kWidePacket, kMaxAlone = 256, kViewRays = 3;
+    std::array<uint32_t, kMaxAlone> alone;
     uint32_t waiting = 0;
     const auto send_alone = [&] {
         traverse_scene_in_flight<kOptions>(
@@ -39,7 +39,7 @@ void traverse_scene_together(const HostTrees& scene, uint32_t count, const RayOf
     };
     const auto put_alone = [&](uint32_t first, uint32_t some) {
         for (uint32_t i = 0; i < some; ++i) alone[waiting++] = first + i;
-        if (waiting + kSize > kMostAlone) send_alone();
+        if (waiting + kSize > kMaxAlone) send_alone();
     };
     HostTrees instances = scene;
     instances.baked = {};

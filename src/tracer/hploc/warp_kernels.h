@@ -165,7 +165,7 @@ struct alignas(16) GroupMemory {
 };
 inline constexpr uint32_t kLast = 0x80000000u;
 
-__device__ inline uint64_t least_of_group(uint64_t x) {
+__device__ inline uint64_t min_of_group(uint64_t x) {
     for (uint32_t step = 1; step < kMaxWidth; step *= 2) {
         const auto other = static_cast<uint64_t>(__shfl_xor_sync(kAllLanes, static_cast<unsigned long long>(x), step));
         x = other < x ? other : x;
@@ -220,7 +220,7 @@ __device__ inline uint32_t slot_of_lane(uint32_t child, Vec3 from, uint32_t k) {
                 if (free >> s & 1u && cost < own) own = cost;
             }
         }
-        const uint64_t least = least_of_group(wants ? own : ~uint64_t(0));
+        const uint64_t least = min_of_group(wants ? own : ~uint64_t(0));
         if (least == ~uint64_t(0)) continue; // no lane of this group wants a slot
         const auto taken = static_cast<uint32_t>(least & 7u);
         free &= ~(1u << taken);
