@@ -68,7 +68,7 @@ public:
         return true;
     }
 
-    /// Whether the viewer is ending, so that refusals are not the sender's fault.
+    /// Returns whether the viewer is ending, so that refusals are not the sender's fault.
     bool is_closed() const {
         const std::lock_guard lock(mutex_);
         return is_closed_;

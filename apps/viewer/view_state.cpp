@@ -265,7 +265,7 @@ std::vector<ViewSetting> make_settings() {
     return all;
 }
 
-/// Why the value is invalid for the setting; empty if it is valid.
+/// Returns why the value is invalid for the setting; empty if it is valid.
 std::string why_no_value(const ViewSetting& setting, const SettingValue& value) {
     if (setting.kind == Kind::Choice) {
         const std::string* text = std::get_if<std::string>(&value);

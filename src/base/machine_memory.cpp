@@ -17,7 +17,7 @@ std::size_t number_in(const std::filesystem::path& file) {
     return in >> bytes ? bytes : SIZE_MAX;
 }
 
-/// Minimum over a group and all of its ancestors.
+/// Returns the minimum limit, in bytes, of a group and all of its ancestors.
 std::size_t min_limit(const std::filesystem::path& root, std::filesystem::path group, const char* file) {
     std::size_t least = SIZE_MAX;
     for (; !group.empty(); group = group.parent_path()) least = std::min(least, number_in(root / group / file));

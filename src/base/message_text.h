@@ -18,10 +18,10 @@ inline std::string counted(uint64_t count, const char* thing) {
     return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
-/// The verb for a count.
+/// Returns the verb for a count.
 inline const char* is_or_are(uint64_t count) { return count == 1 ? "is" : "are"; }
 
-/// Item `i` of a list of the scene; `origin` is its location in the file.
+/// Names item `i` of a list of the scene; `origin` is its location in the file.
 inline std::string numbered(const char* kind, std::size_t i, const std::string& name, const std::string& origin = "") {
     const std::string location = origin.empty() ? fmt::format("{} {}", kind, i) : origin;
     return fmt::format("{}{}{}", location, name.empty() ? "" : " ", name);

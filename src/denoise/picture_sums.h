@@ -20,8 +20,8 @@ struct PictureGuide {
 /// Number of other surfaces that samples of one pixel may hit and that are distinguished.
 inline constexpr int kNeighbourSurfaces = 2;
 
-/// The light of a pixel is that of its samples over the sum of their divisors, not the mean of their signals, so that
-/// light which a normal map concentrates on the bright parts of a texture is preserved.
+/// Sums of a picture's samples. The light of a pixel is that of its samples over the sum of their divisors, not the
+/// mean of their signals, so that light which a normal map concentrates on the bright parts of a texture is preserved.
 struct PictureSums {
     // Sums of light.
     Float4* diffuse;       // rgb of samples on the guide's surface, scattered by diffuse lobes; their number
@@ -42,8 +42,8 @@ struct PictureSums {
     Float4* neighbour_gloss[kNeighbourSurfaces];   // for the other signal; their number
 };
 
-/// Whether `point`, camera space, with the normal `normal`, lies on the surface that `guide` shows at `pixel`, whose
-/// normal must make an angle with it whose cosine exceeds `cosine`.
+/// Returns whether `point`, camera space, with the normal `normal`, lies on the surface that `guide` shows at `pixel`,
+/// whose normal must make an angle with it whose cosine exceeds `cosine`.
 HD inline bool shows_surface(const PictureGuide& guide, const CameraView& camera, uint32_t width, uint32_t pixel,
                              uint32_t object, Vec3 point, Vec3 normal, float cosine) {
     if (guide.object[pixel] != object) return false;

@@ -59,7 +59,7 @@ public:
     uint32_t shown_height() const { return upsampled_ ? upsampled_->height() : height_; }
     /// Device time of the last add(), in seconds. Waits for it.
     double seconds() const { return timer_.seconds(); }
-    /// RGB, linear, of the last frame.
+    /// Picture of the last frame: RGB, linear.
     Image picture() const;
     /// Computes the last frame's picture for a display, times 2^exposure_stops, and starts its copy to the host.
     void display(ToneMap tone_map, float exposure_stops);

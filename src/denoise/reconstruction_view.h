@@ -46,7 +46,7 @@ HD inline Float4 pack(const Guide& g) {
 }
 HD inline uint32_t object_of(Float4 packed) { return bits_of(packed.w); }
 HD inline float depth_of(Float4 packed) { return packed.z; }
-/// 2^23 + n is the float whose lowest bits are n, which is cheaper than a conversion.
+/// Unpacks the normal of a guide. 2^23 + n is the float whose lowest bits are n, which is cheaper than a conversion.
 HD inline Vec3 normal_of(Float4 packed) {
     constexpr uint32_t k2To23 = 0x4b000000;
     constexpr float kZero = 8388608.0f + 32767.0f, kScale = 1.0f / 32767.0f;

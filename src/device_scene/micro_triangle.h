@@ -17,7 +17,7 @@ namespace pertev {
 
 enum class Opacity : uint32_t { Unknown = 0, Transparent = 1, Opaque = 2 };
 
-/// A word has 16 micro-triangles, so a triangle has at least one word.
+/// Limits of the subdivision level. A word has 16 micro-triangles, so a triangle has at least one word.
 inline constexpr uint32_t kMinMicroLevel = 2, kMaxMicroLevel = 9, kMicroTrianglesPerWord = 16;
 
 HD constexpr uint32_t micro_triangles(uint32_t level) { return 1u << 2 * level; }
@@ -51,8 +51,8 @@ HD inline MicroTriangle micro_triangle_at(uint32_t level, uint32_t index) {
     return {index / 2, row, index % 2 != 0};
 }
 
-/// The one that contains (u, v), or an adjacent one if rounding has moved (u, v) outside the triangle or onto an
-/// edge.
+/// The micro-triangle that contains (u, v), or an adjacent one if rounding has moved (u, v) outside the triangle or
+/// onto an edge.
 HD inline MicroTriangle micro_triangle_of(uint32_t level, float u, float v) {
     const int last = (1 << level) - 1;
     const auto side = static_cast<float>(last + 1);
@@ -63,7 +63,7 @@ HD inline MicroTriangle micro_triangle_of(uint32_t level, float u, float v) {
     return {static_cast<uint32_t>(column), static_cast<uint32_t>(row), is_upper};
 }
 
-/// Its corners as barycentrics (u, v).
+/// Corners of a micro-triangle as barycentrics (u, v).
 struct MicroCorners {
     Vec2 at[3];
 };
@@ -82,7 +82,7 @@ HD inline Opacity opacity_at(const OpacityMicromapView& map, uint32_t primitive,
     return static_cast<Opacity>(map.states[word] >> index % kMicroTrianglesPerWord * 2 & 3u);
 }
 
-/// Known opacity of a candidate. `maps`: [instance]; null: none.
+/// Opacity of a candidate as far as micromaps determine it. `maps` is [instance], or null if there are none.
 HD inline Opacity known_opacity(const OpacityMicromapView* maps, uint32_t instance, uint32_t primitive, float u,
                                 float v) {
     if (maps == nullptr) return Opacity::Unknown;

@@ -17,7 +17,7 @@ constexpr uint32_t kDrawnPoints = 240;
 constexpr Vec3 kAsked = {0.38f, 0.52f, 0};
 constexpr double kDrawnSide = 440, kDrawnMargin = 10, kDrawnTop = 28;
 
-/// Points that are dense in two places and sparse between them, like photons.
+/// Returns points that are dense in two places and sparse between them, like photons.
 std::vector<Vec3> scattered_points() {
     std::vector<Vec3> points;
     for (uint32_t i = 0; points.size() < kDrawnPoints; ++i) {

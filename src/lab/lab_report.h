@@ -33,7 +33,8 @@ struct RunFigures {
     std::optional<double> node_lanes, triangle_lanes;     // mean number of active lanes of 32 during a test
     std::optional<double> node_sectors, triangle_sectors; // 32-byte sectors per load of 16 bytes a lane, 1 to 32
     uint64_t different = 0; // number of rays with another result; only tests that may miss hits can have any
-    /// The figures are copied from another combination that is the same traversal (any hit with RTA on, for example).
+    /// True if the figures are copied from another combination that is the same traversal (any hit with RTA on, for
+    /// example).
     bool is_copy = false;
 };
 
@@ -91,7 +92,7 @@ struct Refusal {
 };
 std::vector<Refusal> refusals_by_reason(const std::vector<CombinationFigures>& combinations);
 
-/// Whether the report contains anything new: figures, or a combination that is wrong.
+/// Returns whether the report contains anything new: figures, or a combination that is wrong.
 bool has_findings(const LabReport& report);
 
 /// Returns the combination's run on a set, or null.

@@ -63,10 +63,10 @@ struct Record {
     std::vector<TransportPreset> presets; // cornell, caustic, blind, door, cove, many-lights
 };
 
-/// Read once.
+/// Returns the record, which is parsed at the first call.
 const Record& the_record();
 
-/// The one of this name, or null.
+/// Returns the element with this name, or null.
 template <class Named>
 const Named* find_named(const std::vector<Named>& all, std::string_view name) {
     for (const Named& one : all) {

@@ -41,7 +41,7 @@ std::size_t host_bytes_of(const RenderSettings& picture) {
     return make_integrator(queue, picture)->max_host_bytes({.width = picture.width, .height = picture.height});
 }
 
-/// The mean of two pictures with equal sample counts, which is the picture of all samples.
+/// Returns the mean of two pictures with equal sample counts, which is the picture of all samples.
 Image mean_of(const Image& a, const Image& b) {
     Image mean = a;
     for (std::size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * a.pixels[i] + 0.5f * b.pixels[i];
@@ -97,7 +97,7 @@ public:
     }
 
 private:
-    /// Why the integrator cannot render the scene; empty if it can.
+    /// Returns why the integrator cannot render the scene; empty if it can.
     std::string why_not(const std::string& integrator) const {
         try {
             const RenderSettings picture = settings_of(settings_, integrator, 0);
@@ -148,7 +148,7 @@ private:
         if (keep_going_ && !keep_going_(now)) throw TransportStopped{};
     }
 
-    /// Seconds that a turn has left; `made_s` of the elapsed seconds were spent before its first sample.
+    /// Returns the seconds that a turn has left; `made_s` of the elapsed seconds were spent before its first sample.
     double left_of_turn_s(const TransportRow& row, double seconds, uint32_t samples, double made_s = 0) const {
         if (!row.repetitions.empty()) return std::max(0.0, row.repetitions.front().back().seconds - seconds);
         const double to_most_s = (seconds - made_s) / std::max(1u, samples) * (settings_.max_samples - samples);

@@ -37,7 +37,7 @@ std::string place_of(std::string_view name) {
     return place;
 }
 
-/// The difference of the films' sums, `a` minus `b`.
+/// Returns the difference of the films' sums, `a` minus `b`.
 Image difference(const Image& a, const Image& b) {
     Image left = a;
     for (std::size_t i = 0; i < left.pixels.size(); ++i) left.pixels[i] = std::max(0.0f, a.pixels[i] - b.pixels[i]);
@@ -56,7 +56,7 @@ void normalise(Image& picture) {
     for (float& value : picture.pixels) value *= scale;
 }
 
-/// Radiosity settings of a panel in a picture with these settings.
+/// Returns the radiosity settings of a panel in a picture with these settings.
 RadiositySettings solution_of(const RadiosityPanel& panel, const RenderSettings& settings) {
     const ThesisDetail detail = thesis_detail(settings.height);
     RadiositySettings requested;
@@ -70,14 +70,14 @@ RadiositySettings solution_of(const RadiosityPanel& panel, const RenderSettings&
     return requested;
 }
 
-/// The settings' text for the command line.
+/// Returns the text of settings for the command line.
 std::string settings_of(const RadiosityPanel& panel, const RadiositySettings& requested) {
     return fmt::format(" `patch_size={}` `subdivisions={}`{}{}", requested.patch_size, requested.subdivisions,
                        panel.is_early ? fmt::format(" `solver=southwell` `steps={}`", requested.steps) : "",
                        panel.is_flat ? " `flat_patches`" : "");
 }
 
-/// Each setting is NAME or NAME=VALUE, as the table of settings has them.
+/// Returns `settings` with those given as NAME or NAME=VALUE, in the syntax of the table of settings.
 RenderSettings with_settings(const RenderSettings& settings, const std::vector<std::string>& given) {
     PictureOptions options;
     options.render = settings;
@@ -183,7 +183,7 @@ ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progre
     return picture;
 }
 
-/// Renders once; its progress is reported as the share [from, to] of the picture's.
+/// Renders once and reports its progress as the share [from, to] of the picture's.
 RenderResult ThesisPictures::render_once(const Job& job, const RenderSettings& settings, double from, double to) {
     RenderResult result = render_picture(queue_, job.prepared, job.camera, settings, [&](const RenderProgress& now) {
         return job.tell("rendering", from + (to - from) * now.samples_done / now.samples);

@@ -33,18 +33,19 @@ struct ThesisPicture {
     std::string file() const { return name + (svg.empty() ? ".png" : ".svg"); }
 };
 
-/// Names of all pictures in the thesis's order, and of all files that may hold them.
+/// Returns the names of all pictures in the thesis's order.
 std::vector<std::string> thesis_picture_names();
+/// Returns the names of all files that may hold them.
 std::vector<std::string> thesis_picture_files();
 
 /// Makes pictures one by one. A picture's exposure does not depend on its size.
 class ThesisPictures {
 public:
-    /// Called with the current work and the finished share of the picture; returning false ends it.
+    /// A function that is called with the current work and the finished share of the picture; returning false ends it.
     using Progress = std::function<bool(const char* doing, double share)>;
 
-    /// `settings` gives size, samples, depth and the path tracer's body. Pictures that stand side by side have half
-    /// the width and height. `queue` must outlive this.
+    /// Takes size, samples, depth and the path tracer's body from `settings`. Pictures that stand side by side have
+    /// half the width and height. `queue` must outlive this.
     ThesisPictures(Queue& queue, const RenderSettings& settings) : queue_(queue), settings_(settings) {}
 
     /// Makes the picture with this name. Throws Error(Interrupted) if it is stopped before there is anything to show,

@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-/// How a picture is made.
+/// The way in which a picture is made.
 enum class ThesisWay : uint8_t {
     Render,    // by an integrator
     Radiosity, // by a radiosity solution that is then rendered
@@ -55,7 +55,7 @@ struct ThesisRecipe {
     float stops = 2;                   // exposure stops
 };
 
-/// Ordered as the thesis is.
+/// Returns all recipes in the order of the thesis.
 const std::vector<ThesisRecipe>& thesis_recipes();
 
 } // namespace pertev

@@ -29,10 +29,10 @@ constexpr const auto& names_of_all(ThesisScene) { return kThesisSceneNames; }
 
 Scene make_thesis_scene(ThesisScene which);
 
-/// Its view in a picture of this width / height.
+/// Returns the scene's camera for a picture of this width / height.
 Camera camera_of(ThesisScene which, const Scene& scene, float aspect);
 
-/// Name on the command line with the camera's settings; empty if only this file has the scene.
+/// Returns the scene's name on the command line with the camera's settings; empty if only this file has the scene.
 const char* command_of(ThesisScene which);
 
 } // namespace pertev

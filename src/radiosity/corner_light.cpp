@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMaxHanging = 8; // levels between the patches on either side of an edge
 
-/// Sets the area-weighted mean of the patches of all sheets of one surface that meet at a point.
+/// Sets the light of all sheets of one surface that meet at a point to the area-weighted mean of their patches.
 void show_means(std::span<CornerSheet> sheets) {
     for (CornerSheet& sheet : sheets) {
         double sum[3] = {}, areas = 0;

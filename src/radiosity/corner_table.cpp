@@ -29,8 +29,9 @@ uint32_t direction_of(Vec3 normal) {
     return (face * kDirections + v) * kDirections + u;
 }
 
-/// A place on an edge has the same bits whichever triangle's edge it is: the third term is 0, a product depends on the
-/// vertex and its weight alone, and the sum of two does not depend on their order.
+/// Position between the corners of a triangle. On an edge its bits are the same for all triangles of the edge: the
+/// third term is 0, a product depends only on the vertex and its weight, and the sum of two does not depend on their
+/// order.
 Vec3 position_between(const Vec3 (&corner)[3], double u, double v) {
     const double w = 1 - u - v;
     const auto between = [&](float a, float b, float c) {

@@ -21,7 +21,8 @@ struct Lit {
 
 Lit operator+(Lit a, Lit b) { return {a.light + b.light, a.area + b.area}; }
 
-/// How light a triangle side is: the power of 4 that is not above light / mean, from -6 to 1.
+/// Level of a triangle side's light: the exponent of the greatest power of 4 that is not above light / mean, from -6 to
+/// 1.
 int light_level(float light, double mean) {
     const double power = 0.5 * std::logb(static_cast<double>(light) / mean);
     return to_int(static_cast<float>(std::floor(power)), -6, 1);
@@ -195,7 +196,8 @@ void LinkNodes::receive(NodeCode receiver, std::span<const Link> links) {
     (is_patch(receiver) ? gathered_[number_of(receiver)] : quad_gathered_[receiver]) = received;
 }
 
-/// Down: what a quad gathers, all its parts receive. Up: it sends the mean of what they do.
+/// Passes light down and up a tree of parts: all parts of a quad receive what it gathers, and it sends the mean of what
+/// they send.
 LinkNodes::Pushed LinkNodes::push(PatchCode code, Rgb above) {
     if (is_patch(code)) {
         const uint32_t i = number_of(code);
@@ -293,7 +295,7 @@ void LinkNodes::add_patches() {
     stale_.clear();
 }
 
-/// Finds the direct light of a patch that may be divided, per quarter, to see whether it should be. Returns false,
+/// Finds the direct light of a patch that may be divided, per quarter, to decide whether it should be. Returns false,
 /// with the patch unchanged, if the watch was over meanwhile, because rows are then incomplete.
 bool LinkNodes::find_direct(uint32_t number, RowMaker& of_whole, RowMaker& of_quarter) {
     const Patch& patch = tree_.patches[number];

@@ -15,12 +15,12 @@ struct Receiver {
     float factor; // from the receiver to the sender
 };
 
-/// For each patch, those that receive light from it, by ascending number.
+/// The patches that receive light from each patch, by ascending number.
 class Receivers {
 public:
     explicit Receivers(const RadiositySystem& system) : starts_(system.patches.size() + 1) {}
 
-    /// Returns false if it must stop.
+    /// Finds the receivers. Returns false if the solution must end.
     bool find(const RadiositySystem& system, const KeepSolving& keep_going) {
         const auto goes_on = [&](std::size_t i) { return i % 1024 != 0 || !keep_going || keep_going(1); };
         all_.resize(system.factor_count());
@@ -47,7 +47,8 @@ private:
     std::vector<Receiver> all_;
 };
 
-/// The patch with most unsent light; the first of several. A tree of winners, so that a change costs its height.
+/// Finds the patch with most unsent light, the first of several, by a tree of maxima, so that a change costs its
+/// height.
 class LargestUnsent {
 public:
     explicit LargestUnsent(std::size_t count) : leaves_(std::bit_ceil(count)), largest_(2 * leaves_, 0.0) {}
@@ -95,9 +96,9 @@ Spread operator+(const Spread& a, const Spread& b) {
     return sum;
 }
 
-/// Irradiance if unsent light were distributed evenly, with all of its reflections. A patch whose hemisphere is
-/// covered by others with the share s sends them s of its light, and receives s of the distributed light; patches
-/// that face nothing take no part.
+/// Returns the irradiance if unsent light were distributed evenly, with all of its reflections. A patch whose
+/// hemisphere is covered by others with the share s sends them s of its light, and receives s of the distributed light;
+/// patches that face nothing take no part.
 Rgb ambient_of(const RadiositySystem& system, const std::vector<Rgb>& unsent) {
     const Spread spread = tree_sum(unsent.size(), [&](uint64_t i) -> Spread {
         const SystemPatch& patch = system.patches[i];

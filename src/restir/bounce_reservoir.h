@@ -31,7 +31,7 @@ struct alignas(16) BounceReservoir {
 };
 static_assert(sizeof(BounceReservoir) == 48);
 
-/// A reservoir's point as seen from a surface.
+/// A reservoir's point relative to a surface that reuses it.
 struct Reconnection {
     Vec3 wi;       // unit, towards it
     float measure; // solid angle per barycentric measure

@@ -97,7 +97,8 @@ private:
     }
 };
 
-/// Makes a shadow ray to the selected item from the pixel of entry `entry`, if its visibility is unknown.
+/// The stage that makes a shadow ray to the selected item from the pixel of entry `entry`, if its visibility is
+/// unknown.
 template <class Reservoir>
 struct QueueVisibilityRays {
     SceneView scene;
@@ -126,7 +127,7 @@ struct QueueVisibilityRays {
     }
 };
 
-/// Evaluates the traced shadow rays.
+/// The stage that evaluates the traced shadow rays.
 template <class Reservoir>
 struct CountVisible {
     VisibilityRaysView rays;
@@ -144,7 +145,7 @@ struct CountVisible {
     }
 };
 
-/// Divides the weight by the shares of all entries that could have kept the item.
+/// The stage that divides the weight by the shares of all entries that could have selected the item.
 template <class Reservoir>
 struct FinishReuse {
     Reservoir* reservoirs;

@@ -18,8 +18,8 @@ struct RisSelection {
     float u;       // uniform in (0, 1)
     float sum = 0; // sum of weights so far
 
-    /// Whether the next item, of `weight`, replaces the selected one. An item with a weight of 0 or not finite is never
-    /// selected.
+    /// Returns whether the next item, of `weight`, replaces the selected one. An item with a weight of 0 or not finite
+    /// is never selected.
     HD bool takes(float weight) {
         if (!(weight > 0) || !is_finite(weight)) return false;
         sum += weight;

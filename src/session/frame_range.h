@@ -36,7 +36,7 @@ struct FrameRange {
     double turn_before(uint32_t frame) const { return turntable == 0 ? 0 : turn_of(frame % turntable + turntable - 1); }
 };
 
-/// Whether `pattern` names a file for each frame, that is, contains a '#'.
+/// Returns whether `pattern` names a file for each frame, that is, contains a '#'.
 bool names_frames(const std::string& pattern);
 /// Name of a frame's file: the frame's number, zero-padded, replaces each run of '#'. All '#' must be in the file's
 /// name, not in its folder's.

@@ -29,8 +29,9 @@ public:
 
     /// Waits until the device is known. Throws Error(BadInput) if a named GPU cannot be used.
     bool is_cuda();
-    /// Whether the device may be a GPU, without waiting for a driver: true if that is not known yet but a driver's
-    /// library exists. Data made for a GPU may then turn out to be unused, and a named GPU may still be refused.
+    /// Returns whether the device may be a GPU, without waiting for a driver: true if that is not known yet but a
+    /// driver's library exists. Data made for a GPU may then turn out to be unused, and a named GPU may still be
+    /// refused.
     bool may_be_cuda();
     /// Waits for the queue; must be called once. Throws Error(BadInput, DeviceFault).
     std::unique_ptr<Queue> take();

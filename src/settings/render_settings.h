@@ -69,7 +69,7 @@ void set_default_size(RenderSettings& settings, const Camera* own);
 /// scatterings to `frame_depth`, which loses light.
 RenderSettings settings_of_frames(RenderSettings settings);
 
-/// Whether both give the same picture for the same scene, camera and number of samples.
+/// Returns whether both give the same picture for the same scene, camera and number of samples.
 bool same_picture(const RenderSettings& a, const RenderSettings& b);
 
 struct RenderProgress {

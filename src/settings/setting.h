@@ -114,11 +114,11 @@ struct Setting {
 };
 
 bool is_switch(const Setting& setting);
-/// Whether it accepts any number of values.
+/// Returns whether it accepts any number of values.
 bool is_list(const Setting& setting);
 /// Returns all possible values; empty if they are not listed.
 std::vector<std::string> choices_of(const Setting& setting);
-/// Whether that integrator has it.
+/// Returns whether that integrator has it.
 bool has_setting(IntegratorKind integrator, const Setting& setting);
 
 /// Returns why the text is no value, according to its range, its choices and its kind; empty if it is one.

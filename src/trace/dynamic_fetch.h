@@ -32,7 +32,7 @@
 
 namespace pertev {
 
-/// The visitor of one kind of search, made for each ray, and the result. `accept` outlives it.
+/// One kind of search: the visitor, made for each ray, and the result. `accept` outlives it.
 template <bool kAny, class Accept>
 struct RaySearch;
 

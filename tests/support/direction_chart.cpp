@@ -14,7 +14,7 @@ constexpr double kFullTurn = 6.283185307179586;
 ///     height = normal.z cos(a) + across(y) sin(a),   across(y) = tangent.z cos(2 pi y) + bitangent.z sin(2 pi y).
 struct HeightCircle {
     double along, max_across, turn_of_max; // normal.z; the largest across and its y, in radians
-    double height, width;                    // width of the chart
+    double height, width;                  // width of the chart
 
     HeightCircle(const DirectionChart& chart, double h)
         : along(static_cast<double>(chart.frame.normal.z)), height(h), width(chart.width) {

@@ -55,7 +55,6 @@ struct Tlas {
 /// moving instance has the box of all its positions. Its ray is first moved back (RigidMotion), with an error of at
 /// most 16 u (|o| + |pivot| + |place|) and as much in t times the rotated direction: growth is 16 more, and R
 /// includes pivots and positions.
-/// and R holds pivot and places.
 Tlas build_tlas(std::span<const PlacedBvh> instances);
 
 } // namespace pertev

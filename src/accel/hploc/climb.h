@@ -20,9 +20,9 @@
 
 namespace pertev::hploc {
 
-inline constexpr uint32_t kKept = 16;        // maximum number of clusters that a radix node leaves to its parent
+inline constexpr uint32_t kKept = 16;               // maximum number of clusters that a radix node leaves to its parent
 inline constexpr uint32_t kMaxClusters = 2 * kKept; // maximum number of clusters before merging
-inline constexpr uint32_t kSearchRadius = 8; // neighbours searched on either side
+inline constexpr uint32_t kSearchRadius = 8;        // neighbours searched on either side
 
 struct Climb {
     ClusterTree tree;
@@ -43,7 +43,7 @@ struct LeafRange {
     HD uint32_t size() const { return last - first + 1; }
 };
 
-/// Whether the gap after leaf i is deeper in the radix tree than the gap after leaf k.
+/// Returns whether the gap after leaf i is deeper in the radix tree than the gap after leaf k.
 HD inline bool is_deeper(const uint64_t* codes, uint32_t i, uint32_t k) {
     if (codes == nullptr) return (i ^ (i + 1)) < (k ^ (k + 1));
     const uint64_t of_i = codes[i] ^ codes[i + 1], of_k = codes[k] ^ codes[k + 1];
@@ -78,7 +78,7 @@ HD inline bool go_up(const Climb& climb, LeafRange& range) {
     return true;
 }
 
-/// Whether the node's clusters must be merged; otherwise its clusters are its leaves.
+/// Returns whether the node's clusters must be merged; otherwise its clusters are its leaves.
 HD inline bool needs_joining(const Climb& climb, const LeafRange& range) {
     return range.size() > climb.kept() || range.size() == climb.tree.count;
 }
@@ -150,7 +150,7 @@ HD inline void join_range(const Climb& climb, const LeafRange& range) {
     if (range.size() == climb.tree.count) *climb.root = clusters[0].node;
 }
 
-/// One call per leaf: climbs while it is the second to arrive.
+/// The stage that builds the tree. The call for a leaf climbs while it is the second to arrive at a node.
 struct ClimbFromLeaves {
     Climb climb;
 

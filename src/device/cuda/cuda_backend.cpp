@@ -53,7 +53,7 @@ private:
 
 class CudaBackend;
 
-/// Pinned memory, and an event after the work that writes it.
+/// A copy to the host by pinned memory and an event after the work that writes it.
 class CudaHostCopy final : public HostCopy {
 public:
     /// Device `index` must be the current one. `backend` outlives it.

@@ -12,7 +12,7 @@ constexpr std::pair<std::string_view, double> kUnits[] = {{"m", 1},     {"cm", 0
                                                           {"km", 1000}, {"in", 0.0254}, {"ft", 0.3048}};
 constexpr double kMinUnit = 1e-12, kMaxUnit = 1e12;
 
-/// Metres, y up, from the file's coordinates.
+/// Returns the transform from the file's coordinates to metres with y up.
 Transform metres_from(const FileSpace& space) {
     const auto unit = static_cast<float>(space.unit_m);
     switch (space.up_axis) {

@@ -32,7 +32,7 @@ std::size_t component_count(const fs::path& path) {
     return static_cast<std::size_t>(std::distance(path.begin(), path.end()));
 }
 
-/// How well a file fits a name; the greatest is the best.
+/// The degree to which a file fits a name; the greatest is the best.
 struct Fit {
     std::size_t components = 0; // at the end, that are those of the name
     bool is_direct = false;     // they are all there is below the folder

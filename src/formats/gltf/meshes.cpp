@@ -67,7 +67,7 @@ std::vector<Meshes::Part> Meshes::read_parts(uint32_t index) {
     return parts;
 }
 
-/// One that cannot be read leaves the default material.
+/// Returns the index of a primitive's material; that of the default material if it cannot be read.
 uint32_t Meshes::material_of(const JsonValue& primitive) {
     std::optional<uint32_t> material;
     read_or_leave_out(fmt::format("the material of {}", primitive.pointer()), messages_,

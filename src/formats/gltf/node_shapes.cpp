@@ -7,7 +7,7 @@
 namespace pertev::gltf {
 namespace {
 
-/// Morph targets of each mesh: the most that a primitive of it has (the format wants the same of all).
+/// Returns the number of morph targets of each mesh: the maximum over its primitives, which should all have the same.
 std::vector<std::size_t> count_targets(const Document& document) {
     std::vector<std::size_t> counts;
     for (const JsonValue& mesh : document.table("meshes")) {
@@ -23,7 +23,7 @@ std::vector<std::size_t> count_targets(const Document& document) {
     return counts;
 }
 
-/// The weights at rest of the morph targets: the node's own, else its mesh's, by target.
+/// Returns the weights of the morph targets at rest: the node's own, otherwise its mesh's.
 std::vector<float> read_weights(const JsonValue& node, const JsonValue& mesh, Messages& messages) {
     const std::optional<JsonValue> own = node.find("weights"), source = own ? own : mesh.find("weights");
     std::vector<float> weights;

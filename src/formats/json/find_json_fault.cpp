@@ -48,7 +48,8 @@ private:
         return true;
     }
 
-    /// After a value: closes what ends there; true at the comma before another value, false at the text's end too.
+    /// Closes the arrays and objects that end after a value. Returns true at a comma before another value, and false at
+    /// a fault and at the end of the text.
     bool next() {
         while (!open_.empty()) {
             if (accept(',')) return true;
@@ -66,7 +67,7 @@ private:
     }
     bool colon() { return accept(':') || fail("a colon after the name"); }
 
-    /// A string, number or word.
+    /// Accepts a string, number or word.
     bool token(const char* expected) {
         skip_space();
         const std::string_view rest = text_.substr(at_);

@@ -134,13 +134,14 @@ std::size_t pixel_count(const TextureImage& image) {
     return max(image.rgba8.pixels.size(), image.rgba_float.pixels.size()) / 4;
 }
 
-/// In [0, 1]; of 8-bit images as stored.
+/// Returns a channel in [0, 1]; that of an 8-bit image as stored.
 float value(const TextureImage& image, std::size_t pixel, int channel) {
     const std::size_t at = 4 * pixel + static_cast<std::size_t>(channel);
     return image.rgba8.pixels.empty() ? image.rgba_float.pixels[at] : static_cast<float>(image.rgba8.pixels[at]) / 255;
 }
 
-/// A tangent-space normal map is bluish, and its texels are unit vectors; a height map is grey.
+/// Returns whether an image is a tangent-space normal map, which is bluish and whose texels are unit vectors; a height
+/// map is grey.
 bool looks_like_normals(const TextureImage& image) {
     std::size_t good = 0, seen = 0;
     for (std::size_t i = 0; i < pixel_count(image); i += 7, ++seen) {

@@ -112,7 +112,7 @@ inline uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pix
     return describe(settings.integrator).samples_at_once(pixels);
 }
 
-/// Whether both give the same samples.
+/// Returns whether both give the same samples.
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b);
 
 /// `queue` outlives the integrator.

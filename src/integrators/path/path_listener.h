@@ -70,7 +70,7 @@ struct PathListener {
     HD bool takes(const PathState&, const EmitterPoint&, float) { return false; }
     /// Light that the ray hit, possibly black, is added next.
     HD void emitted(const PathState&, Rgb) {}
-    /// Whether a vertex samples a light with a shadow ray.
+    /// Returns whether a vertex samples a light with a shadow ray.
     HD bool wants_direct(const PathState&, const Hit&, const Surface&) { return true; }
     /// A shadow ray goes along `wi`. The vertex is a SurfaceVertex, or that of a medium (medium.h).
     template <class Vertex>

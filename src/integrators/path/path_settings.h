@@ -48,7 +48,7 @@ struct PathSettings {
     bool operator==(const PathSettings&) const = default;
 };
 
-/// Whether Russian roulette is applied at vertex `vertex` of a path, counted from 1.
+/// Returns whether Russian roulette is applied at vertex `vertex` of a path, counted from 1.
 HD inline bool may_end_by_chance(const PathSettings& settings, uint32_t vertex) {
     return vertex >= settings.roulette_depth;
 }

@@ -160,7 +160,7 @@ struct AimFromKind {
     }
 
 private:
-    /// Whether the targets are narrower than the disc through which distant light enters.
+    /// Returns whether the targets are narrower than the disc through which distant light enters.
     HD bool are_narrow() const { return area_of_discs(targets) < square(freely.world.radius); }
 };
 

@@ -127,7 +127,7 @@ private:
         shadow.contribution = ray.weight * f_times_light;
         return true;
     }
-    /// Whether the sampled point lies in a transparent part of the emitter.
+    /// Returns whether the sampled point lies in a transparent part of the emitter.
     HD bool is_hole(const LightSample& light) const {
         if (light.instance == kNoLight || picture.scene.any_alpha == 0) return false;
         const AcceptHit accept = {picture.scene, {}, {}, tree_key(state, settings.seed, number(), true)};

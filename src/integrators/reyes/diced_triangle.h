@@ -112,8 +112,8 @@ struct DicedTriangle {
         return point;
     }
 
-    /// Whether the edge must be halved: its length through its middle exceeds `rate` pixels, or is undefined because
-    /// the edge crosses the plane of the eye.
+    /// Returns whether the edge must be halved: its length through its middle exceeds `rate` pixels, or is undefined
+    /// because the edge crosses the plane of the eye.
     HD bool is_long(const Pinhole& camera, double rate, const DicedPoint& a, const DicedPoint& b) const {
         const float u = 0.5f * (a.at.x + b.at.x) * 0x1p23f, v = 0.5f * (a.at.y + b.at.y) * 0x1p23f;
         if (!(floor(u) == u && floor(v) == v)) return false; // its middle would have no exact weights
@@ -123,7 +123,7 @@ struct DicedTriangle {
         return is_long(camera, 0.5 * rate, a.position, middle) || is_long(camera, 0.5 * rate, middle, b.position);
     }
 
-    /// Whether no part of the triangle between the points can be in the picture.
+    /// Returns whether no part of the triangle between the points can be in the picture.
     HD bool is_outside(const Pinhole& camera, const DicedPoint (&p)[3]) const {
         const double beyond = camera.filter_radius + 2; // pixels
         const double x = camera.x_of(camera.width + beyond), y = camera.y_of(camera.height + beyond);

@@ -14,7 +14,7 @@ namespace pertev {
 // Culling of pieces that cannot be visible: hidden backs, and pieces behind everything that the samples there show
 // already. Such a piece has no nearest micropolygon, so the time of its culling does not change the picture.
 
-/// Whether a piece is behind everything visible in all pixels that it may cover. Only tested if these are few;
+/// Returns whether a piece is behind everything visible in all pixels that it may cover. Only tested if these are few;
 /// otherwise its children will be.
 HD inline bool is_behind(const ReyesPass& pass, const DicedTriangle& triangle, const DicedPoint (&p)[3]) {
     constexpr int32_t kMaxSamplesOnce = 64;

@@ -39,8 +39,8 @@ Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use =
 Scene open_scene(const std::string& scene, Messages& messages, SceneUse use = SceneUse::Picture);
 
 /// Reads a scene with `formats/read_scene.h` and adds nothing. Says which scene of a file with several is shown and,
-/// for files that cannot say which faces of an emitter emit, comments on its emitters (session/survey/emitter_fronts.h).
-/// Throws Error.
+/// for files that cannot say which faces of an emitter emit, comments on its emitters
+/// (session/survey/emitter_fronts.h). Throws Error.
 Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
 
 } // namespace pertev

@@ -11,7 +11,7 @@ namespace pertev {
 
 enum class DefaultLight { None, Sky, Emitters }; // None: the scene has light, or nothing to be lit
 
-/// Whether a scene with surfaces to be lit has no lights (above 0, at rest or at a time), no emitters and no
+/// Returns whether a scene with surfaces to be lit has no lights (above 0, at rest or at a time), no emitters and no
 /// environment.
 bool lacks_light(const Scene& scene);
 

@@ -12,8 +12,8 @@ namespace pertev {
 namespace {
 
 constexpr std::size_t kMaxNames = 5;
-constexpr std::size_t kMaxEmitters = 16;          // maximum number of tested emitters
-constexpr std::size_t kMaxOfEmitter = 4;          // tested triangles per emitter, spread over its list
+constexpr std::size_t kMaxEmitters = 16;           // maximum number of tested emitters
+constexpr std::size_t kMaxOfEmitter = 4;           // tested triangles per emitter, spread over its list
 constexpr uint64_t kMaxSceneTriangles = 2'000'000; // a tenth of a second for 128 rays on one core
 constexpr float kMuchMore = 20;                    // room behind per metre in front
 
@@ -60,7 +60,8 @@ void warn_of_turned_emitters(const Scene& scene, const std::vector<const Instanc
         for (std::size_t k = 0; k < hits.size(); k += 2) {
             const float off = 0.5f * length(rays[k].origin - rays[k + 1].origin);
             const float front = off + hits[k].distance, back = off + hits[k + 1].distance;
-            // No hit behind may mean the sky above an emitter that correctly shines down; then the scene's extent counts.
+            // No hit behind may mean the sky above an emitter that correctly shines down; then the scene's extent
+            // counts.
             const float distance_text =
                 back < kInfinity ? back : reach_of(box, rays[k + 1].origin, rays[k + 1].direction);
             if (!(kMuchMore * front < distance_text)) continue;

@@ -29,7 +29,7 @@ public:
     /// Loads the record of an earlier run and returns false if there is none. Throws Error(BadInput) for a file that
     /// is no such record, and for one with other settings, of which it names the first.
     bool load();
-    /// Whether all files of the frame exist with the recorded bytes.
+    /// Returns whether all files of the frame exist with the recorded bytes.
     bool has(uint32_t frame) const;
     /// Records the frame's files, which have just been written, and the hash of its picture, and writes the record.
     /// Throws Error(BadInput, FileWrite).

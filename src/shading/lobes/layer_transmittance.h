@@ -42,7 +42,7 @@ struct SpecularBranches {
     Vec3 refracted = {};              // unit, on the other side; valid if `refraction` is not black
 };
 
-/// Result of draw().
+/// Result of a lobe's draw().
 struct LobeDraw {
     BsdfSample sample = {};  // for a delta lobe as if it were alone; else only wi and is_transmission are set; pdf 0:
                              // no sample

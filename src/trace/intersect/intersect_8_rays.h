@@ -21,8 +21,8 @@ struct TriangleHit8 {
     alignas(32) float t[8], u[8], v[8];
 };
 
-/// Bit k of the result is set if ray k of `requested` hits the triangle with t_min < t < t_max and t <= t_limit; its
-/// hit is in `hits`.
+/// Tests eight rays against a triangle. Bit k of the result is set if ray k of `requested` hits it with t_min < t <
+/// t_max and t <= t_limit; its hit is in `hits`.
 [[gnu::always_inline]] inline unsigned intersect_8_rays(const Ray* rays, const RayShear8& ray, __m256 t_min,
                                                         __m256 t_max, __m256 t_limit, const BvhTriangle& triangle,
                                                         unsigned requested, TriangleHit8& hits) {

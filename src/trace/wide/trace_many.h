@@ -20,7 +20,7 @@ enum class RayOrder {
     Together,  // tests whether each eight consecutive rays are coherent
 };
 
-/// Traverses the scene with many rays: see traverse_scene_in_flight.
+/// Traverses the scene with many rays, in packets where they are coherent and otherwise by traverse_scene_in_flight.
 template <TraversalOptions kOptions, class RayOf, class AcceptOf, class MakeVisitor, class End>
 void traverse_scene_together(const HostTrees& scene, uint32_t count, const RayOf& ray_of, const AcceptOf& accept_of,
                              const MakeVisitor& make_visitor, const End& end_of) {
@@ -85,7 +85,7 @@ void trace_closest_many(const HostTrees& scene, uint32_t count, RayOrder order, 
     }
 }
 
-/// Occlusion of `count` rays: met[i].
+/// Occlusion of `count` rays: met[i] is whether ray i hits anything.
 template <TraversalOptions kOptions, class RayOf, class AcceptOf>
 void trace_any_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
                     const AcceptOf& accept_of, bool* met) {

@@ -49,7 +49,7 @@ public:
         }
     }
 
-    /// Whether the rays are coherent; others must not run.
+    /// Returns whether the rays are coherent; others must not run.
     bool is_coherent() const { return is_coherent_; }
 
     void run(Visitor* visitors, int count) {
@@ -156,7 +156,7 @@ private:
         float min_inv, max_inv, max_near, min_far;
     };
 
-    /// make_ray_shear of eight rays that share the first one's order of axes.
+    /// Makes the shears of eight rays that share the first one's order of axes, like make_ray_shear.
     void set_shear(Eight& eight, const Lanes& lanes, const RayShear& first) {
         RayShear8& shear = eight.shear;
         shear.kx = first.kx, shear.ky = first.ky, shear.kz = first.kz;
@@ -226,7 +226,8 @@ private:
         return n;
     }
 
-    /// enters_children (traverse_wide.h) of child k for eight rays: nonzero if any enters, with the entry parameters.
+    /// Tests the box of child k for eight rays, like enters_children (traverse_wide.h). The result is nonzero if any
+    /// ray enters, with the entry parameters.
     [[gnu::always_inline]] int enter_child(const Eight& eight, const WideBvhNode<kWideChildren>& node, int k,
                                            __m256& entry) const {
         const auto near = [&](int axis) {

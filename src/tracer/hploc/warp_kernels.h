@@ -53,7 +53,7 @@ __device__ inline uint32_t take_clusters(const Climb& climb, const LeafRange& ra
     return static_cast<uint32_t>(__popc(there));
 }
 
-/// join_range by all lanes of a warp.
+/// Merges the clusters of a node by all lanes of a warp, like join_range.
 __device__ inline void join_range_together(const Climb& climb, const LeafRange& range, WarpClusters& all,
                                            uint32_t lane) {
     uint32_t count = take_clusters(climb, range, all, lane);
@@ -98,7 +98,7 @@ __device__ inline void join_range_together(const Climb& climb, const LeafRange& 
     __syncwarp();
 }
 
-/// ClimbFromLeaves, with ranges merged by all lanes of the warp, one node after the other.
+/// Climbs like ClimbFromLeaves, with ranges merged by all lanes of the warp, one node after the other.
 __device__ inline void climb_together(const Climb& climb, WarpClusters& all) {
     const uint32_t n = climb.tree.count, lane = threadIdx.x & 31u;
     const uint32_t leaf = blockIdx.x * blockDim.x + threadIdx.x;
@@ -182,8 +182,8 @@ __device__ inline uint32_t sum_before(uint32_t x, uint32_t k) {
     return sum - x;
 }
 
-/// children_of in parallel: each lane gets a child or kNone, in the binary tree's order. A subtree that may have j
-/// roots owns j consecutive lanes, so its halves know theirs.
+/// Finds the children of a wide node in parallel, like children_of: each lane gets a child or kNone, in the binary
+/// tree's order. A subtree that may have j roots owns j consecutive lanes, so its halves know theirs.
 __device__ inline uint32_t child_of_lane(const ClusterTree& tree, uint32_t node, GroupMemory& memory, uint32_t k) {
     uint2 own = k == 0 ? make_uint2(node, kMaxWidth) : make_uint2(kNone, 0);
     memory.entries[k] = own;
@@ -206,7 +206,7 @@ __device__ inline uint32_t child_of_lane(const ClusterTree& tree, uint32_t node,
     }
 }
 
-/// choose_slots for the lane's child (kNone if it has none).
+/// Chooses the slot of the lane's child (kNone if it has none), like choose_slots.
 __device__ inline uint32_t slot_of_lane(uint32_t child, Vec3 from, uint32_t k) {
     uint32_t slot = kNone, free = 0xffu;
     bool wants = child != kNone;
@@ -232,7 +232,8 @@ __device__ inline uint32_t slot_of_lane(uint32_t child, Vec3 from, uint32_t k) {
     return slot;
 }
 
-/// EmitWide::make by the eight lanes of each group that is ready. All lanes of the warp must call it.
+/// Makes wide nodes like EmitWide::make, by the eight lanes of each group that is ready. All lanes of the warp must
+/// call it.
 __device__ inline void make_together(const EmitWide& emit, uint32_t index, const WideItem& item, bool is_ready,
                                      GroupMemory& memory) {
     const ClusterTree& tree = emit.tree;
