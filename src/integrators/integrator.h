@@ -96,7 +96,7 @@ public:
     /// Lets render() return early when `*flag` is true, if it can; the film must then be discarded. Null: never.
     virtual void abandon_when(const std::atomic<bool>*) {}
 
-    /// Rays traced since begin().
+    /// Number of rays traced since begin().
     virtual RayCounts rays() const = 0;
 };
 

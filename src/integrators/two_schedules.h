@@ -92,7 +92,7 @@ public:
     using Capacity = typename Job::Capacity;
     using Counts = typename Job::Counts;
 
-    /// The memory of a wavefront is kMaxBytes at most.
+    /// Makes an integrator whose wavefront takes at most kMaxBytes.
     TwoSchedules(Queue& queue, const Settings& settings, bool in_loop, uint32_t batch)
         : Base(queue, settings, in_loop, batch), seen_(queue) {}
 

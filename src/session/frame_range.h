@@ -42,9 +42,9 @@ bool names_frames(const std::string& pattern);
 /// name, not in its folder's.
 std::string frame_file(const std::string& pattern, uint32_t frame);
 
-/// Returns how long the shutter is open; none if that was not given. Throws Error(BadInput).
+/// Returns the times of the shutter; none if they were not given. Throws Error(BadInput).
 std::optional<Shutter> shutter(const PictureOptions& options);
-/// Returns the frames that are asked for; none for a single picture. Throws Error(BadInput).
+/// Returns the requested frames; none for a single picture. Throws Error(BadInput).
 std::optional<FrameRange> frame_range(const PictureOptions& options);
 
 } // namespace pertev

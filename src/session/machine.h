@@ -24,7 +24,7 @@ std::unique_ptr<Queue> take_machine(const MachineOptions& options, Messages& mes
 /// no driver, a named GPU is refused at once; everything else is known later.
 class ComingMachine {
 public:
-    /// Throws as choose_device. `messages` outlives it.
+    /// Starts to take the machine; `messages` outlives it. Throws as choose_device.
     ComingMachine(const MachineOptions& options, Messages& messages);
 
     /// Waits until the device is known. Throws Error(BadInput) if a named GPU cannot be used.

@@ -10,7 +10,7 @@ namespace {
 
 #define FIELD PERTEV_SETTING_FIELD
 
-/// The integrator's name sets two fields.
+/// Returns the field of the integrator's name, which sets two fields.
 SettingField integrator_field(PictureOptions& options) {
     return NamedField{
         &options.render, [](const void* f) { return integrator_name(*static_cast<const RenderSettings*>(f)); },

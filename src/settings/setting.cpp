@@ -15,13 +15,13 @@ struct Overloaded : Cases... {
     using Cases::operator()...;
 };
 
-/// The field in default options, whose kind does not depend on the options.
+/// Returns the field in default options, because its kind does not depend on the options.
 SettingField some_field(const Setting& setting) {
     static PictureOptions any;
     return setting.field(any);
 }
 
-/// The field, which must not be written.
+/// Returns the field, which must not be written.
 SettingField field_in(const PictureOptions& options, const Setting& setting) {
     return setting.field(const_cast<PictureOptions&>(options));
 }
@@ -54,7 +54,7 @@ std::string text_of(Number number) {
     return fmt::format("{}", number);
 }
 
-/// The parsers of values know no setting: their reasons begin with the text.
+/// Makes an error about a setting from the reason of a parser, which knows no setting and begins with the text.
 Error about(const Setting& setting, const std::string& text, ErrorCode code, std::string_view why) {
     for (const std::string& start : {text + " is ", text + ": "}) {
         if (why.starts_with(start)) why.remove_prefix(start.size());

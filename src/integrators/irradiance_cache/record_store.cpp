@@ -20,7 +20,7 @@ PointOctree tree_over_centres(std::span<const Sphere> records) {
     return tree;
 }
 
-/// Least radius in the subtree of each node.
+/// Returns the least radius in the subtree of each node.
 std::vector<float> min_radii(const PointOctree& tree) {
     std::vector<float> least(tree.nodes.size());
     for (std::size_t i = tree.nodes.size(); i-- > 0;) { // reverse depth-first order: children come before their

@@ -66,7 +66,7 @@ public:
         kept_ = kept;
         first_ = unpacked(bits_of(kept.diffuse.w));
     }
-    /// Light that the camera ray itself hits is not scattered.
+    /// Leaves out light that the camera ray itself hits, because it is not scattered.
     HD void emitted(const PathState&, Rgb light) {
         if (!frame_.splits_light()) return;
         const Rgb more = first_ * light;

@@ -61,7 +61,7 @@ private:
         return draw_vertex(job_.settings.sampler, keys, depths, has_choices);
     }
 
-    /// Key of the path's ray at its depth, for the coins of blended surfaces only.
+    /// Key of the path's ray at its depth, for blended surfaces only.
     uint32_t key_of(const PathState& path, bool is_shadow) const {
         return job_.picture.scene.any_alpha != 0 ? path_key(path, job_.settings.seed, is_shadow) : 0;
     }

@@ -32,7 +32,7 @@ inline constexpr uint32_t kCrowd = 128;
 inline constexpr uint32_t kShares = 32;           // shares of such a lookup
 inline constexpr uint32_t kMaxSharing = 1u << 18; // threads at once
 
-/// Evaluates all lookups. Those with many photons are left to be shared if GatherView has room for that.
+/// The stage that evaluates all lookups. Those with many photons are left to be shared if GatherView has room for that.
 template <ShadingVariant kVariant, PhotonSearch kSearch>
 struct EstimateRadiance {
     SubpathScene scene;
@@ -76,7 +76,7 @@ struct EstimateRadiance {
             atomic_add(&all.global[c], sums.global[c]);
         }
     }
-    /// Adds the sums of that lookup to the film after all shares are done.
+    /// Adds the sums of a shared lookup to the film after all shares are done.
     HD void add_shared(uint32_t at) const { add_sums(gather.load(gather.crowded[at]), gather.shared_sums[at]); }
 
 private:
@@ -163,8 +163,8 @@ private:
     }
 };
 
-/// Shares the lookups with many photons among threads: thread i takes share i % kShares of lookups i / kShares, i /
-/// kShares + sharing / kShares, ...
+/// The stage that shares the lookups with many photons among threads: thread i takes share i % kShares of lookups i /
+/// kShares, i / kShares + sharing / kShares, ...
 template <ShadingVariant kVariant>
 struct ShareLookups {
     EstimateRadiance<kVariant, PhotonSearch::Grid> estimate;
@@ -178,7 +178,7 @@ struct ShareLookups {
     }
 };
 
-/// Adds the shared lookups to the film.
+/// The stage that adds the shared lookups to the film.
 template <ShadingVariant kVariant>
 struct AddSharedLookups {
     EstimateRadiance<kVariant, PhotonSearch::Grid> estimate;

@@ -16,7 +16,7 @@ enum class PhotonSearch : uint8_t {
     Octree, // accel/octree/point_octree.h, built on the host
 };
 
-/// How indirect light at the first diffuse surface is found.
+/// Method to find indirect light at the first diffuse surface.
 enum class PhotonGather : uint8_t {
     Direct, // in the global map at that surface
     Final,  // by one further ray, with the global map where it arrives

@@ -31,7 +31,7 @@ struct Radiosity {
         vertex.follow_specular(kMinWeight);
     }
 
-    /// None, because the solution contains it.
+    /// Default ambient light: none, because the solution contains it.
     static Rgb ambient(const EnvironmentView*) { return {0, 0, 0}; }
 };
 

@@ -114,7 +114,7 @@ struct TreeVertex {
     }
 
 private:
-    /// Not inlined, so that a kernel contains it once.
+    /// Scattered light. It is not inlined, so that a kernel contains it once.
     HD_CALL static BsdfValue scattered(const Surface& surface, Vec3 wo, Vec3 wi, LobeClasses classes) {
         return surface.evaluate(wo, wi, classes);
     }

@@ -35,7 +35,7 @@ struct DisplacementsView {
     const DisplacementView* of_material = nullptr; // [count]
     uint32_t count = 0;                            // later materials have none
 
-    /// Returns null if the material has none.
+    /// Returns the displacement of a material; null if it has none.
     HD const DisplacementView* find(uint32_t material) const {
         if (material >= count || of_material[material].heights == nullptr) return nullptr;
         return of_material + material;
@@ -58,7 +58,7 @@ struct DicedTriangle {
     DoubleVec3 row_x, row_y, row_depth; // rows of camera-from-mesh
     double reach;                       // maximum displacement of any coordinate in camera space, metres
 
-    /// Returns false if the triangle is hidden.
+    /// Loads a triangle. Returns false if it is hidden.
     HD bool begin(const Pinhole& camera, const SceneView& scene, const DisplacementsView& displacements,
                   uint32_t number) {
         if (!triangle_corners(camera, scene, number, corners)) return false;

@@ -57,7 +57,7 @@ struct SampleLists {
     HD uint32_t pixels() const { return width * height; }
 };
 
-/// Finds the position of sample i of a pass.
+/// The stage that finds the position of sample i of a pass.
 struct PositionSamples {
     CameraRays camera;
     SamplerKind sampler;
@@ -81,7 +81,8 @@ struct PositionSamples {
     }
 };
 
-/// Finds the farthest visible depth of the samples on the list of cell i; anything beyond it stays hidden.
+/// The stage that finds the farthest visible depth of the samples on the list of cell i; anything beyond it stays
+/// hidden.
 struct FindFar {
     SampleLists samples;
 
@@ -108,7 +109,7 @@ struct ReyesPass {
     SampleLists samples;
 };
 
-/// On a displaced surface the micropolygon's own winding determines its front.
+/// Returns whether the micropolygon is a hidden back. On a displaced surface its own winding determines its front.
 HD inline bool is_hidden_back(const InstanceView& placed, const ProjectedPlane& plane) {
     if (placed.hides_back == 0) return false;
     const double away = plane.is_perspective ? plane.constant : plane.depth; // component of the normal away from the

@@ -39,14 +39,14 @@ uint64_t texels(const HeightMaps& maps) {
     return sum;
 }
 
-/// Number of materials up to the last one with heights.
+/// Returns the number of materials up to the last one with heights.
 uint64_t materials_of(const HeightMaps& maps) {
     uint64_t count = 0;
     for (const HeightMap& map : maps) count = std::max(count, uint64_t(map.material) + 1);
     return count;
 }
 
-/// Maximum of |scale (h - middle)|.
+/// Returns the maximum of |scale (h - middle)|.
 float reach_of(const HeightMap& map) {
     float reach = 0;
     for (const float h : map.heights.pixels) reach = std::max(reach, std::abs(map.scale * (h - map.middle)));
@@ -104,8 +104,9 @@ void ReyesIntegrator::upload_heights() {
     uploaded_ = settings_.heights;
 }
 
-/// Heights that are large relative to the scene fold its surfaces over each other without end. Because hidden pieces
-/// are found in arbitrary order, two runs may differ by some pieces before this limit.
+/// Throws Error(OverLimit) for too much work: heights that are large relative to the scene fold its surfaces over each
+/// other without end. Because hidden pieces are found in arbitrary order, two runs may differ by some pieces before
+/// this limit.
 void ReyesIntegrator::check_work(uint64_t pieces, uint32_t wide) const {
     if (!settings_.heights) return;
     const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;

@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-/// Reconstructs a micropolygon from its triangle and its path of splits.
+/// A micropolygon, reconstructed from its triangle and its path of splits.
 struct Micropolygon {
     DicedTriangle triangle;
     Piece piece;
@@ -69,7 +69,7 @@ struct Micropolygon {
         return s;
     }
 
-    /// Its single colour towards the eye, W/(sr m2).
+    /// The micropolygon's single colour towards the eye, W/(sr m2).
     HD Rgb color(const ReyesPass& pass) const {
         const CameraRays& camera = pass.picture.camera;
         constexpr float kThird = 1.0f / 3;
@@ -96,7 +96,7 @@ private:
     }
 };
 
-/// Shades all samples of a pixel.
+/// The stage that shades all samples of a pixel.
 struct ShadeSamples {
     ReyesPass pass;
     FilmView film;

@@ -62,7 +62,8 @@ struct PiecesView {
     uint32_t capacity;
 };
 
-/// Takes piece i of a round: `from_stack` pieces from the top of the stack, then triangles from `first_triangle` on.
+/// The stage that takes piece i of a round: `from_stack` pieces from the top of the stack, then triangles from
+/// `first_triangle` on.
 struct TakePieces {
     PiecesView pieces;
     uint32_t height, from_stack; // `height` of the stack before the round
@@ -75,7 +76,7 @@ struct TakePieces {
     }
 };
 
-/// Bit k means that the edge from point k to the next one must be halved.
+/// Edges that must be halved: bit k means the edge from point k to the next one.
 HD inline uint32_t long_edges(const ReyesPass& pass, const DicedTriangle& triangle, const DicedPoint (&p)[3]) {
     uint32_t edges = 0;
     for (uint32_t k = 0; k < 3; ++k) {

@@ -24,7 +24,8 @@ struct Whitted {
         vertex.follow_specular(kMinWeight);
     }
 
-    /// The default is the mean of the environment, which is right for a convex diffuse surface under a uniform sky.
+    /// Default ambient light: the mean of the environment, which is right for a convex diffuse surface under a uniform
+    /// sky.
     static Rgb ambient(const EnvironmentView* environment) {
         return environment != nullptr ? environment->mean : Rgb{0, 0, 0};
     }

@@ -21,7 +21,7 @@
 namespace pertev {
 namespace {
 
-/// Returns nothing if the options set no environment.
+/// Returns the environment that the options set; nothing if they set none.
 std::optional<Environment> environment_of(const SceneOptions& options, Messages& messages) {
     Environment environment;
     if (Rgb color; parse_rgb(options.environment, color)) {
@@ -70,7 +70,8 @@ void show_back_faces(Scene& scene, Messages& messages) {
     if (!any_hidden) messages.warn({"show_back_faces", "", "no surface of the scene has a hidden back"});
 }
 
-/// `light` is the light that was added. `around` describes the scene if that is a sky.
+/// Returns whether a ground is added. `light` is the light that was added. `around` describes the scene if that is a
+/// sky.
 bool wants_ground(Ground ground, const Scene& scene, DefaultLight light, const Surroundings& around) {
     switch (ground) {
     case Ground::Off:
@@ -91,7 +92,7 @@ std::string in_a_row(const std::vector<std::string>& list) {
     return list.size() > kMaxShown ? fmt::format("{} and {} more (pertev info)", text, list.size() - kMaxShown) : text;
 }
 
-/// Says which animation plays if the file has several and none was chosen.
+/// Adds a notice of the animation that plays if the file has several and none was chosen.
 void report_animation(const Scene& scene, const std::string& file, Messages& messages) {
     if (scene.clips.size() < 2) return;
     const std::vector<std::string> clips = list_clips(scene.clips);

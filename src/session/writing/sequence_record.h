@@ -19,8 +19,8 @@ class SequenceRecord {
 public:
     using Settings = std::vector<std::pair<std::string, std::string>>; // names and values
 
-    /// `outputs` are names with '#' (session/frame_range.h). `settings` is everything that determines the frames'
-    /// pictures.
+    /// Makes a record. `outputs` are names with '#' (session/frame_range.h); `settings` is everything that determines
+    /// the frames' pictures.
     SequenceRecord(std::vector<std::string> outputs, Settings settings);
 
     /// Path of the record: "frame-####.json" for "frame-####.png".
@@ -34,7 +34,7 @@ public:
     /// Records the frame's files, which have just been written, and the hash of its picture, and writes the record.
     /// Throws Error(BadInput, FileWrite).
     void add(uint32_t frame, const std::string& picture);
-    /// Throws Error(BadInput) if the frame is recorded with another hash of its picture.
+    /// Checks a frame's picture. Throws Error(BadInput) if it is recorded with another hash.
     void check_picture(uint32_t frame, const std::string& picture) const;
 
 private:
