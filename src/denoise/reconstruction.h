@@ -96,7 +96,7 @@ private:
     std::unique_ptr<HostCopy> display_; // null before the first display()
     std::size_t display_bytes_ = 0;
     Buffer<Float4> layers_;                   // empty until they are requested
-    std::optional<UpsampledFrame> upsampled_; // if the picture has another size than its light
+    std::optional<UpsampledFrame> upsampled_; // exists if the picture has another size than its light
 };
 
 } // namespace pertev

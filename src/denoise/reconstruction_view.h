@@ -21,7 +21,7 @@ namespace pertev {
 struct HistoryView {
     Float4* guide;   // packed Guide
     Float4* diffuse; // mean of the signal over the frames that saw this surface point; their number
-    Float4* gloss;   // for the other signal, like diffuse
+    Float4* gloss;   // like diffuse, for the other signal
     Vec2* squares;   // mean square of the luminances of both
     Float4* recent;  // means over few frames: rgb diffuse, luminance of the other
     Float4* shown;   // the reconstructed picture as shown_color; w is unused

@@ -12,7 +12,7 @@ namespace {
 using Triple = std::array<double, 3>;
 
 constexpr double kLargest = 4;
-constexpr double kMinDeterminant = 1e-4; // that of Rec. 709's primaries is 0.11
+constexpr double kMinDeterminant = 1e-4; // the primaries of Rec. 709 have 0.11
 
 constexpr ColorMatrix kBradford = {{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
 

@@ -72,7 +72,7 @@ inline std::optional<std::string> if_not_empty(const std::string& text) {
 /// A value with its column.
 struct ResultField {
     const char* key;
-    const char* title; // for people; empty: the key alone, and a terminal leaves the column out
+    const char* title; // for people; empty: the page shows the key, and a terminal leaves the column out
     ResultCell value;
     const char* unit = "";
     const char* format = ""; // fmt's format for numbers on a terminal

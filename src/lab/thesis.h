@@ -20,7 +20,7 @@ namespace pertev {
 
 /// One column of the tables.
 struct ThesisVariant {
-    const char* name; // for example "PSWW" or "PSWW-R"
+    const char* name; // such as "PSWW" or "PSWW-R"
     const char* meaning;
     Combination combination;
 };

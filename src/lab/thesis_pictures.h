@@ -19,7 +19,7 @@ namespace pertev {
 struct ThesisPicture {
     std::string name;       // file name without its extension, for example "figure-3.7a"
     std::string place;      // "Figure 3.7", for example; pictures with one place and title stand side by side
-    std::string title;      // for example "radiosity"
+    std::string title;      // such as "radiosity"
     std::string shows;      // content of the picture and its algorithm
     std::string integrator; // integrator's name; empty if the picture is not rendered
     std::string command; // a command that makes the same bytes on this device, with settings still to phrase; empty if

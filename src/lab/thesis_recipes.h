@@ -47,7 +47,7 @@ struct ThesisRecipe {
     ThesisWay way = ThesisWay::Render;
     ThesisScene scene = ThesisScene::Box;
     std::string integrator;
-    bool is_whole = false;             // else one panel of several: half the width and height
+    bool is_whole = false;             // otherwise one panel of several: half the width and height
     std::vector<std::string> settings; // NAME or NAME=VALUE, beside scene, integrator and patches
     bool has_photons_by_size = false;  // thesis_detail's
     RadiosityPanel panel = {};         // for Radiosity

@@ -15,7 +15,7 @@ enum class ThesisScene : uint8_t {
     PointLight,  // a point light in place of the emitter
     MirrorBall,  // a mirror sphere in the short block's place
     PlasticBall, // a point light near the front, a sphere of glossy plastic of few triangles in the short block's place
-    TwoBalls,    // that point light, a mirror sphere there and one of glass in the tall block's place
+    TwoBalls,    // the point light, a mirror sphere, and one of glass in place of the tall block
     Caustic,     // caustic, with the camera of the transport report
 };
 

@@ -35,7 +35,7 @@ struct TransportRow {
     std::string name;
     std::string light;      // the light that it finds, in Heckbert's notation unless it is all light
     bool finds_all = false; // it is unbiased: its error consists only of noise
-    std::string refused;    // why it has no figures; empty if it has some or was not reached
+    std::string refused;    // reason why it has no figures; empty if it has some or was not reached
     /// True if its light is solved and not sampled: each picture shows its own solution, which more samples do not
     /// improve.
     bool is_solved = false;

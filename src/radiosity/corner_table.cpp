@@ -79,7 +79,7 @@ CornerTable::CornerTable(const SceneView& scene, const PatchTree& tree, std::spa
 
 std::vector<CornerTable::Corner> CornerTable::corners_by_bucket() {
     std::vector<Corner> corners(sheet_of_.size()), sorted(sheet_of_.size());
-    std::vector<uint32_t>& bucket = sheet_of_; // until it is known which sheet
+    std::vector<uint32_t>& bucket = sheet_of_; // until the sheets are known
     parallel_for(normals_.size(), 256, [&](uint64_t i) {
         for (uint32_t k = 0; k < 3; ++k) {
             const Vec2 at = tree_.patches[i].corners.at[k];

@@ -8,7 +8,7 @@ namespace pertev {
 namespace {
 
 double sum_of(Rgb c) { return static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b); }
-constexpr std::size_t kPatchesAtOnce = 1024; // between two looks at whether to go on
+constexpr std::size_t kPatchesAtOnce = 1024; // between two queries of whether to go on
 
 /// The light that leaves one or many patches, and its change, W.
 struct Sweep {

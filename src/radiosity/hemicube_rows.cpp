@@ -12,7 +12,7 @@ namespace {
 
 using PlacedCorners = HemicubeScene::PlacedCorners;
 
-constexpr uint64_t kWorkOfTriangle = 8, kWorkOfCheck = 1u << 17; // at whether to go on
+constexpr uint64_t kWorkOfTriangle = 8, kWorkOfCheck = 1u << 17; // work between two queries of the watch
 
 std::vector<PlacedCorners> all_triangles(const SceneView& scene) {
     std::vector<PlacedCorners> all;

@@ -59,7 +59,7 @@ void LinkFactors::queue_patches(const Link& link, uint32_t rays, uint32_t key, Q
         if (!(factor > 0)) continue;
         if (test_visibility(receiver, start, source, point_on_patch(scene_.view(), source, on_source), factor))
             continue;
-        queued.known += factor; // the place drawn lies below the horizon
+        queued.known += factor; // the drawn point lies below the horizon
         ++queued.seen;
     }
 }

@@ -46,7 +46,7 @@ Hash128 content_hash(const RadiositySolution& solution) {
     hasher.add(std::as_bytes(std::span(solution.roots)));
     hasher.add(std::as_bytes(std::span(solution.quads)));
     hasher.add(std::as_bytes(std::span(solution.patches)));
-    if (solution.extent != SolvedExtent{}) { // so that whole ones have the hash that they have had from the start
+    if (solution.extent != SolvedExtent{}) { // complete ones keep their hash from before there were others
         hasher.add_value(static_cast<uint32_t>(solution.extent.part));
         hasher.add(std::as_bytes(std::span(&solution.extent.left, 1)));
     }

@@ -81,7 +81,7 @@ Parts showing(const RadiositySettings& s, const Counts& counts, uint64_t threads
         {"patches that are shown", 2 * (tree_bytes(counts.shown, counts.triangles) + counts.shown * sizeof(Rgb)) +
                                        2 * counts.shown * sizeof(uint32_t)});
     parts.push_back({"corners", CornerTable::max_bytes(counts.shown) + WeldedVertices::max_bytes(counts.vertices)});
-    parts.push_back({"solution", 2 * counts.shown * sizeof(PatchLight)}); // and as a file
+    parts.push_back({"solution", 2 * counts.shown * sizeof(PatchLight)}); // twice: in memory and as a file
     return parts;
 }
 
@@ -95,7 +95,7 @@ SolveMemory predict_memory(const PreparedScene& prepared, const RadiositySetting
     const uint64_t all = count_patches(view, patch_size);
     memory.patches = all;
     if (settings.solver == RadiositySolver::Hierarchical) {
-        memory.patches = std::min<uint64_t>(memory.patches, kMaxPatches); // it divides what it has to
+        memory.patches = std::min<uint64_t>(memory.patches, kMaxPatches); // fewer patches are divided
     } else {
         check_patch_count(memory.patches, patch_size);
     }

@@ -16,7 +16,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kRowsOfThread = 4; // at least, one after the other
+constexpr uint64_t kRowsOfThread = 4; // minimum number per thread, one after the other
 
 [[noreturn]] void interrupt() {
     throw Error(

@@ -144,7 +144,7 @@ SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance,
     count_left();
     Receivers receivers(system);
     const uint64_t max_steps = steps > 0 ? steps : kMaxSweeps * count;
-    uint64_t work = 0; // since the last look at whether to go on
+    uint64_t work = 0; // since the watch was last queried
     bool goes_on = receivers.find(system, keep_going);
     while (goes_on && solved.left > tolerance && solved.steps < max_steps) {
         const std::size_t sender = most.first();

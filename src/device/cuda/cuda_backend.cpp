@@ -180,7 +180,7 @@ public:
 private:
     struct Stream {
         cudaStream_t stream = nullptr;
-        cudaEvent_t reached = nullptr; // for which another stream waits
+        cudaEvent_t reached = nullptr; // another stream waits for it
     };
 
     static Stream make_stream() {

@@ -34,7 +34,7 @@ std::size_t component_count(const fs::path& path) {
 
 /// The degree to which a file fits a name; the greatest is the best.
 struct Fit {
-    std::size_t components = 0; // at the end, that are those of the name
+    std::size_t components = 0; // number of last components that are those of the name
     bool is_direct = false;     // they are all there is below the folder
     bool is_same_case = false;  // same case in all of them
     auto operator<=>(const Fit&) const = default;

@@ -68,7 +68,7 @@ private:
         std::optional<std::variant<Rgba8Image, Image>> image; // after decoding
         std::optional<ColorMatrix> color_matrix;              // to Rec. 709, if its colours have other primaries
         bool is_png = false;
-        std::optional<Remark> fault; // why it cannot be decoded
+        std::optional<Remark> fault; // reason why it cannot be decoded
         Messages messages = {};
     };
     void decode_within(uint64_t limit);

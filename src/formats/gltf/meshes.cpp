@@ -101,7 +101,7 @@ std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, uint32_t nod
         if (!read->targets.empty() || scene_.nodes[node].skin != kNoSkin) {
             add_shape(primitive, node, std::move(read->targets));
         }
-    } catch (const Error&) { // its caller says so
+    } catch (const Error&) { // the caller reports it
         scene_.meshes.resize(meshes);
         scene_.shapes.resize(shapes);
         throw;

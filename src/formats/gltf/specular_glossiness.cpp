@@ -150,7 +150,7 @@ void convert_textures(const std::vector<PendingConversion>& pending, uint64_t li
             messages.leave_out({location, fmt::format("{}; the specular-glossiness texture is left out", why)});
             specular = material.metallic_texture = {};
         };
-        if (!diffuse.has_image() && !specular.has_image()) continue; // the loader has told why
+        if (!diffuse.has_image() && !specular.has_image()) continue; // the loader has reported why
         if (diffuse.has_image() && specular.has_image() && !use_same_coordinates(diffuse, specular)) {
             use_factors("its two textures use different coordinates");
             continue;

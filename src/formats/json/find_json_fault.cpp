@@ -90,7 +90,7 @@ private:
     RepairJson repair_;
     std::size_t at_ = 0;
     std::string open_;       // the brackets that are not closed yet
-    bool may_close_ = false; // nothing stands yet after the last of them
+    bool may_close_ = false; // true if nothing follows the last of them yet
     std::optional<JsonFault> fault_;
     simdjson::dom::parser parser_;
 };

@@ -62,7 +62,7 @@ public:
     std::vector<Vec4> colors; // colours of its positions, as written; or empty
     std::vector<RawGroup> groups;
     std::vector<ObjMaterialFiles> material_files;
-    std::optional<Remark> first_bad_face; // why its first face was left out
+    std::optional<Remark> first_bad_face; // reason why its first face was left out
     CountedLines bad_faces, bad_numbers, short_faces, points_and_lines, free_form, unknown;
 
 private:

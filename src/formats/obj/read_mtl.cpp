@@ -46,7 +46,7 @@ private:
         if (from.name.empty()) return ref;
         try {
             ref.image = loader_.add_file(FileLocation{path_.string(), from.line}, gltf::plain_file_name(from.name));
-        } catch (const Error& error) { // it may not be read
+        } catch (const Error& error) { // the file is outside the allowed folders
             if (error.code() != ErrorCode::BadInput) throw;
             messages_.leave_out(error.remark().and_then("; only its factor is used"));
         }

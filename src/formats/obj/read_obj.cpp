@@ -112,7 +112,7 @@ void wind_after_normals(Mesh& mesh) {
 std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs::path& obj, const FileAccess& access,
                                           Messages& messages) {
     const FileLocation location = {obj.string(), line.line};
-    bool is_refused = false; // where a file may not be read, that has been told
+    bool is_refused = false; // true once a refused file has been reported
     const auto find = [&](const std::string& name) -> std::optional<fs::path> {
         try {
             return access.find(location, name, messages);
@@ -157,7 +157,7 @@ public:
                 read(line);
                 loader_.decode();
             });
-        } catch (const std::system_error&) { // no thread can be had
+        } catch (const std::system_error&) { // no thread is left
         }
     }
     /// Waits for the first materials, reads those of the other `lines`, and returns all.
@@ -188,7 +188,7 @@ private:
 Material grey_material(const std::string& name, const ObjData& data) {
     Material material;
     material.name = name;
-    if (!data.colors.empty()) material.base_color = grey(1); // the vertex colours tell
+    if (!data.colors.empty()) material.base_color = grey(1); // the vertex colours replace it
     return material;
 }
 

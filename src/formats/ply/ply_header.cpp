@@ -142,7 +142,7 @@ private:
         for (const TypeName& known : kTypeNames) {
             if (known.name == name) return known.type;
         }
-        if (header_.format == PlyFormat::Ascii) { // where a value is a word, however many bytes it would have
+        if (header_.format == PlyFormat::Ascii) { // here a value is a word, whatever its size in bytes
             repaired(fmt::format("\"{}\" is not a type; its values are read as numbers", shortened(name)));
             return PlyType::Float64;
         }

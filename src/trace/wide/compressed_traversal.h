@@ -158,7 +158,7 @@ struct CompressedTraversal {
         bool ended = false;
         const auto are_enough = [&] { return count_lanes(ballot(lanes, !state.triangles.is_empty())) >= enough; };
         if (are_enough()) { // all of `lanes` take part in each vote
-            do {            // this form is 1 % faster than one loop that votes first
+            do {            // 1 % faster than one loop that votes first
                 if (!state.triangles.is_empty() && test_triangle(bvh, ray, instance, state, visitor, counter)) {
                     ended = true;
                     state.stop();
