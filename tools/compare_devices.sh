@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Renders scenes on the CPU and in CUDA and compares the hashes of the pictures, of their layers and of what the denoiser makes of
-# them: tools/compare_devices.sh PERTEV SCENES [SPP ...]. SCENES is a folder laid out as docs/scenes.md says. Then sequences, and
+# Renders scenes on the CPU and in CUDA and compares the hashes of the pictures, of their layers and of the denoised pictures:
+# tools/compare_devices.sh PERTEV SCENES [SPP ...]. SCENES is a folder laid out as docs/scenes.md says. Then sequences, and
 # frames of moving pictures, reconstructed. Exits 1 when a picture differs.
 set -uo pipefail
 pertev=$1 scenes=$2
@@ -8,7 +8,7 @@ shift 2
 counts=("${@:-4}")
 status=0
 
-hashes_in() { # event; of the picture, and of its layers and of the denoised picture where there are some
+hashes_in() { # event; prints the hashes of the picture and, if there are any, of its layers and of the denoised picture
     sed -n 's/.*"event":"'"$1"'".*"hash":"\([0-9a-f]*\)","layers_hash":\([^,]*\),"denoised_hash":\([^,]*\),.*/\1 \2 \3/p' |
         sed 's/ null//g; s/"//g; s/ /+/g'
 }
@@ -17,28 +17,28 @@ hash_of() { # spp, device, scene and its flags
     shift 2
     "$pertev" render "$@" --device "$device" --spp "$spp" --size 640x360 -o "$work/$device.exr" --json 2>&1 | hashes_in done
 }
-sequence_of() { # device, scene and its flags; of the frames' hashes, of which each must be there
+sequence_of() { # device, scene and its flags; prints a hash of the frames' hashes, all of which must exist
     local device=$1 frames
     shift
     frames=$("$pertev" render "$@" --device "$device" --frames 0-3 --size 320x180 -o "$work/$device-#.exr" --json 2>&1 | hashes_in frame)
     [ "$(wc -l <<<"$frames")" = 4 ] && md5sum <<<"$frames" | cut -c1-32
 }
 
-# The hash of the 31st frame of each sequence that docs/real_time.md has figures of.
+# Prints the hash of the 31st frame of a sequence in docs/real_time.md.
 frame_of() { # device, scene and its flags
     local device=$1
     shift
     "$pertev" bench sequence "$@" --device "$device" --size 320x240 -q --json 2>&1 |
         sed -n 's/.*"last_frame":"\([0-9a-f]*\)".*/\1/p'
 }
-# Light that arrives at a place: all that is said of it, to the last digit.
+# Prints all results of measuring light at a point, to the last digit.
 light_at() { "$pertev" measure "$@" --json -q 2>&1 | grep '"event":"measure"' | sed 's/"seconds":[0-9.e+-]*//; s/"device":"[^"]*"//'; }
 
-verdict_of() { # what the CPU gave, what CUDA gave; sets verdict
+verdict_of() { # result of the CPU, result of CUDA; sets verdict
     verdict=same
     [ -n "$1" ] && [ "$1" = "$2" ] || { verdict=DIFFERENT; status=1; }
 }
-each_row() { # what is compared, and the command that gives it of a device and a row; rows of a name and arguments on stdin
+each_row() { # quantity, and the command that prints it for a device and a row; rows with a name and arguments on stdin
     local what=$1 name arguments cpu cuda
     shift
     while read -r name arguments; do

@@ -13,7 +13,7 @@ namespace pertev::test {
 
 enum class MeetingKind : uint8_t { ActiveMask, Ballot, All, MatchAny, Shuffle, Sync };
 
-/// Where a lane waits, and with what.
+/// The point at which a lane waits, and its argument.
 struct Meeting {
     MeetingKind kind;
     uint32_t mask;  // mask that the lane passed

@@ -73,7 +73,7 @@ Scene read_gltf_text(const std::string& json);
 /// The fault of a document, from "model.gltf" on: the message of the Error that reading throws, or the first warning
 /// of something left out, without the words that say what. "" if there is neither. Other exceptions are passed on.
 std::string gltf_fault(const std::string& json);
-/// Whether a warning holds all of `parts`.
+/// Returns whether a warning holds all of `parts`.
 bool has_warning(const Messages& messages, const std::vector<std::string>& parts);
 
 } // namespace pertev::test

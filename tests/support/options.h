@@ -18,7 +18,7 @@ uint64_t effort(uint64_t count, uint64_t long_count);
 /// variable is not set or the file is not there.
 std::optional<std::filesystem::path> test_scene(const std::filesystem::path& relative);
 
-/// Whether test_scene() found nothing so far.
+/// Returns whether test_scene() found nothing so far.
 bool scene_was_missing();
 
 /// A new empty folder, removed at exit.

@@ -61,7 +61,7 @@ HD inline float portable_second_argument(uint32_t input) {
     return float_of((h & 0x80ffffffu) + 0x3f000000u); // +-[0.5, 2^1.99]
 }
 
-/// Whether reciprocal_of_normal accepts x; for other inputs its value counts as 0.
+/// Returns whether reciprocal_of_normal accepts x; for other inputs its value counts as 0.
 HD inline bool has_reciprocal(float x) { return abs(x) >= 0x1p-126f && abs(x) < 0x1p126f; }
 
 /// Bits of function(input as a float). sin_cos_2pi takes the input as a fraction of 2^32; what it gives is in

@@ -22,7 +22,7 @@ std::optional<Error> thrown_error(const Body& body) {
     return std::nullopt;
 }
 
-/// Whether it has this code and is about this setting, with this value unless that is empty.
+/// Returns whether it has this code and is about this setting, with this value unless that is empty.
 inline bool is_about(const std::optional<Error>& error, ErrorCode code, std::string_view setting,
                      std::string_view value = {}) {
     return error && error->code() == code && error->setting() == setting && (value.empty() || error->value() == value);

@@ -47,7 +47,7 @@ void write_bytes(const std::filesystem::path& path, const std::vector<std::byte>
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// Why the file is not taken for `scene`.
+/// Returns why the file is not taken for `scene`.
 std::string why_refused(const std::filesystem::path& path, const Scene& scene) {
     Messages messages;
     return test::bad_input_message([&] { read_solution(path, scene, messages); });

@@ -12,7 +12,7 @@ using namespace pertev;
 
 namespace {
 
-/// How often each item of `weights` is selected, of `draws` evenly spread numbers.
+/// Returns how often each item of `weights` is selected, of `draws` evenly spread numbers.
 std::vector<double> shares_selected(const std::vector<float>& weights, uint32_t draws) {
     std::vector<double> shares(weights.size());
     for (uint32_t k = 0; k < draws; ++k) {
