@@ -82,11 +82,11 @@ class WhatIsRefused(LabTest):
                                  ("--size 32768x32768", "--size", "44.0 GiB"),
                                  ("--rays record --count 400000000", "--count", "16.4 GiB")]:
             self.refuse(4, *self.lab("cornell-box", *SMALL, *line.split()), preexec_fn=limit_addresses(6),
-                        says=["out of memory", "rays and what they meet", size, flag])
+                        says=[size, flag])
 
     def test_help_explains_depths(self):
         text = " ".join(self.succeed("lab", "--help").stdout.split())
-        self.assertIn("at most 9; LAST alone is 1-LAST", text)
+        self.assertIn("at most 9", text)
 
     def test_a_scene_is_required_and_must_have_triangles(self):
         self.refuse(2, *self.lab(), says=["SCENE"])
@@ -122,14 +122,14 @@ class WhatIsRefused(LabTest):
         report = self.report("box.obj", *INSIDE, *SMALL, "--rays", "diffuse", "--depths", "2")
         self.assertEqual([rays["name"] for rays in report["sets"]], ["diffuse1"])
 
-    def test_a_cpu_is_said_to_have_no_persistent_threads(self):
+    def test_persistent_threads_are_reported_as_missing_on_a_cpu(self):
         outcome = self.run_pertev(*self.lab("box.obj", *INSIDE, *SMALL, "--persistent", "on"))
         self.assertIn(outcome.status, [0, 2], outcome)
         self.assertRegex(outcome.stderr, "(?i)persistent")
         self.assertRegex(outcome.stderr, "CPU|CUDA")
         self.assertNotRegex(outcome.stdout, r"(?m)^binned (if-if|wide8) .*\d\.\d", "measured as something else")
 
-    def test_the_thesis_takes_no_choice_of_combinations_or_rays(self):
+    def test_choices_of_combinations_or_rays_are_refused_with_the_thesis(self):
         for flag in ["--structures binned", "--traversals packet", "--rta on", "--order off", "--tests fast",
                      "--rays primary", "--rta both", "--no-heat-maps"]:
             with self.subTest(flag=flag):
@@ -269,7 +269,7 @@ class WhatIsMeasured(LabTest):
         self.assertIn("--traversals", shown)
         self.assertNotIn("--walks", shown)
 
-    def test_what_is_named_twice_is_measured_once(self):
+    def test_a_name_given_twice_is_measured_once(self):
         once = self.report("box.obj", *INSIDE, "--structures", "binned,octree", "--traversals", "if-if,octree")
         for twice in [["--structures", "binned,octree,binned", "--traversals", "if-if,octree"],
                       ["--structures", "binned,octree", "--structures", "binned", "--traversals", "if-if,octree"],

@@ -28,6 +28,11 @@ inline bool is_about(const std::optional<Error>& error, ErrorCode code, std::str
     return error && error->code() == code && error->setting() == setting && (value.empty() || error->value() == value);
 }
 
+/// Returns whether it has this code and is about this place of a file.
+inline bool is_at(const std::optional<Error>& error, ErrorCode code, const FileLocation& place) {
+    return error && error->code() == code && error->location() == place;
+}
+
 inline bool says(const std::optional<Error>& error, const std::string& text) {
     return error && std::string(error->what()).find(text) != std::string::npos;
 }
