@@ -42,7 +42,7 @@ public:
              const TemporalGradientsView& change, const ReconstructionSettings& settings);
 
     /// Makes a picture at another resolution, that of `features`: a frame whose paths end at the first surface, seen
-    /// by `camera`. `frame`, the light, is seen by `light_camera`. A change of the picture's size is a cut.
+    /// by `camera`. `frame`, the light, belongs to `light_camera`. A change of the picture's size is a cut.
     void add_upsampled(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
                        const CameraView& camera, const SceneView& scene, const PreviousScene& before,
                        const TemporalGradientsView& change, const ReconstructionSettings& settings);

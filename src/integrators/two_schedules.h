@@ -10,7 +10,7 @@
 //   Counts             the counts of rays, to which counts() points
 //   Loop, Wavefront    the schedules: LoopSchedule and WavefrontSchedule with functions that trace the job's rays
 //   first, count       the range of samples that runs
-// lay_out(job, memory, room) places its arrays (lay_out_arrays), and rays_of(counts) returns the rays of a range.
+// lay_out(job, memory, capacity) places its arrays (lay_out_arrays), and rays_of(counts) returns the rays of a range.
 
 #include <algorithm>
 #include <vector>
@@ -105,8 +105,8 @@ protected:
         Job job = {};
         return lay_out(job, nullptr, capacity);
     }
-    /// Returns the room of as many samples as fit into `bytes`, at most `most` and at least kMinCount. room_of(n) is
-    /// the room of n samples.
+    /// Returns the capacity for as many samples as fit into `bytes`, at most `most` and at least kMinCount.
+    /// capacity_of(n) is the capacity for n samples.
     template <class CapacityOf>
     static Capacity capacity_within(std::size_t bytes, uint64_t most, const CapacityOf& capacity_of) {
         const std::size_t each = bytes_of(capacity_of(kMinCount)) / kMinCount;

@@ -110,7 +110,7 @@ FoundPoints found_in_octree() {
     PointsWithin<decltype(keep)> within = {result.radius_squared, keep};
     Watched<PointsWithin<decltype(keep)>> watched = {within, result.looked_at};
     search_points(view_of(tree), result.at, watched);
-    result.visited = watched.requested; // the radius is asked for once per node
+    result.visited = watched.requested; // the radius is requested once per node
     std::ranges::sort(result.found);
     std::ranges::sort(result.looked_at);
     result.nodes = static_cast<uint32_t>(tree.nodes.size());

@@ -275,7 +275,7 @@ private:
         const Stopwatch watch;
         const RenderSettings picture = settings_of(settings_, row.name, repetition_seed(settings_, number));
         const uint32_t samples = std::min(kSolutionSamples, settings_.max_samples);
-        const auto tell = [&](const char* what, double share) {
+        const auto report = [&](const char* what, double share) {
             progress(fmt::format("{}, solution {}: {}", doing, figures.size() + 1, what), share,
                      left_of_turn_s(row, watch.seconds(), 0));
             return true;
@@ -283,7 +283,7 @@ private:
         try {
             for (bool is_next = true; is_next;) {
                 const auto level = static_cast<uint32_t>(figures.size());
-                SolvedPicture solved = solve_picture(queue_, prepared_, camera_, picture, level, samples, tell);
+                SolvedPicture solved = solve_picture(queue_, prepared_, camera_, picture, level, samples, report);
                 row.bytes = std::max(row.bytes, solved.device_bytes);
                 row.host_bytes = std::max(row.host_bytes, solved.host_bytes);
                 row.invalid_samples += solved.invalid_samples;
@@ -385,10 +385,10 @@ uint32_t next_samples(const TransportFigures& last, double share_s, uint32_t mos
     return next >= std::max(least, last.samples + 1.0) ? static_cast<uint32_t>(next) : 0;
 }
 
-void warm_up(Session& session, const std::function<void()>& tell) {
+void warm_up(Session& session, const std::function<void()>& report) {
     bool has_begun = false;
     session.render(1, [&](const RenderProgress& now) {
-        if (tell) tell();
+        if (report) report();
         return now.made_share >= 1 || !std::exchange(has_begun, true);
     });
     session.cut();

@@ -52,7 +52,7 @@ uint32_t next_samples(const TransportFigures& last, double share_s, uint32_t mos
 /// Renders one uncounted sample per pixel, so that memory allocation, caches and the driver's first launches are not
 /// timed. If the integrator prepares something before its samples, rendering stops once that has begun: it is made
 /// only once and timed. The film is cleared afterwards. Throws what Session::render throws.
-void warm_up(Session& session, const std::function<void()>& tell = {});
+void warm_up(Session& session, const std::function<void()>& report = {});
 
 /// Lets all integrators take their first turn, then all their second, and so on, so that an interrupt leaves results
 /// of each. An integrator's first repetition has 1, 2, 4, ... samples as long as the next picture fits into its share

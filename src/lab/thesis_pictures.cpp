@@ -130,7 +130,7 @@ struct ThesisPictures::Job {
     Camera camera;
     PreparedScene prepared;
 
-    bool tell(const char* doing, double share) const { return !progress || progress(doing, share); }
+    bool report(const char* doing, double share) const { return !progress || progress(doing, share); }
 };
 
 ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progress) {
@@ -186,7 +186,7 @@ ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progre
 /// Renders once and reports its progress as the share [from, to] of the picture's.
 RenderResult ThesisPictures::render_once(const Job& job, const RenderSettings& settings, double from, double to) {
     RenderResult result = render_picture(queue_, job.prepared, job.camera, settings, [&](const RenderProgress& now) {
-        return job.tell("rendering", from + (to - from) * now.samples_done / now.samples);
+        return job.report("rendering", from + (to - from) * now.samples_done / now.samples);
     });
     if (result.samples == 0) throw Error(ErrorCode::Interrupted, "interrupted before a picture had a sample");
     return result;
@@ -239,7 +239,7 @@ void ThesisPictures::show_radiosity(const Job& job, ThesisPicture& picture) {
     const RadiosityPanel& panel = job.recipe.panel;
     const RadiositySettings requested = solution_of(panel, job.settings);
     const SolvedRadiosity solved = solve_radiosity(
-        job.prepared, requested, [&](const char* what, double share) { return job.tell(what, 0.5 * share); });
+        job.prepared, requested, [&](const char* what, double share) { return job.report(what, 0.5 * share); });
     if (solved.stats.was_interrupted) throw Error(ErrorCode::Interrupted, "interrupted");
     const SolveStats& stats = solved.stats;
     picture.solve_seconds = stats.factor_seconds + stats.solve_seconds + stats.divide_seconds;

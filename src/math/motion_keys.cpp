@@ -163,7 +163,7 @@ FittedMotions fit_motions(std::span<const PlacedBox> things, const TransformsAt&
         if (segments == kMaxMotionSegments) return fitted;
         bool is_good = std::ranges::all_of(looks, is_good_at);
         for (uint32_t k = 0; k < segments && is_good; ++k) {
-            // No even parts of a segment: what comes back in such parts would be seen at its ends alone.
+            // No even parts of a segment: what comes back in such parts would be visible only at its ends.
             for (const double part : {0.21, 0.5, 0.83}) is_good = is_good && is_good_at((k + part) / segments);
         }
         if (is_good) return fitted;

@@ -28,7 +28,7 @@ struct MotionKey {
 };
 static_assert(sizeof(MotionKey) == 32);
 
-/// A motion at one time: p maps to turn(p - pivot) + place.
+/// A motion at one time: p maps to turn(p - pivot) + position.
 struct RigidMotion {
     Vec3 row0 = {1, 0, 0}, row1 = {0, 1, 0}, row2 = {0, 0, 1}; // rows of the rotation
     Vec3 pivot = {0, 0, 0}, position = {0, 0, 0};

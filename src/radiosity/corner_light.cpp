@@ -49,7 +49,7 @@ private:
         End middle = {0.5 * (a.u + b.u), 0.5 * (a.v + b.v), {}, 0.5f * (a.light + b.light)};
         middle.position = table_.position_of(patch, middle.u, middle.v);
         if (middle.position == a.position || middle.position == b.position)
-            return; // floats tell no finer corners apart
+            return; // floats do not distinguish finer corners
         bool any = false;
         for (CornerSheet& sheet : table_.at(middle.position)) {
             if (!is_same_surface(table_.normal_of(patch), sheet.normal)) continue;

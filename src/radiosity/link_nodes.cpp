@@ -245,10 +245,10 @@ void LinkNodes::sort(std::vector<Link>& links) const {
     links = std::move(sorted);
 }
 
-void LinkNodes::divide(std::span<const uint8_t> wishes) {
-    became_.assign(wishes.size(), kNoPatch);
-    for (uint32_t i = 0; i < wishes.size(); ++i) {
-        if (wishes[i] == 0 || tree_.patches.size() + 3 > kMaxPatches) continue;
+void LinkNodes::divide(std::span<const uint8_t> requested) {
+    became_.assign(requested.size(), kNoPatch);
+    for (uint32_t i = 0; i < requested.size(); ++i) {
+        if (requested[i] == 0 || tree_.patches.size() + 3 > kMaxPatches) continue;
         const auto quad = static_cast<uint32_t>(tree_.quads.size());
         quad_shapes_.push_back(patch_shapes_[i]);
         quad_patches_.push_back(tree_.patches[i]);

@@ -77,7 +77,7 @@ public:
     void sort(std::vector<Link>& links) const;
 
     /// Divides the patches that are marked, [patches].
-    void divide(std::span<const uint8_t> wishes);
+    void divide(std::span<const uint8_t> requested);
     /// Updates a link from before the last divide().
     Link after_division(Link link) const {
         link.receiver = now(link.receiver);

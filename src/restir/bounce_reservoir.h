@@ -35,7 +35,7 @@ static_assert(sizeof(BounceReservoir) == 48);
 struct Reconnection {
     Vec3 wi;       // unit, towards it
     float measure; // solid angle per barycentric measure
-    float side;    // which side is seen, in the sense of BounceReservoir::side
+    float side;    // visible side, in the sense of BounceReservoir::side
     bool is_there;
 };
 

@@ -26,7 +26,7 @@ std::vector<Setting> picture_settings() {
     constexpr uint32_t kTracing = kShown | kBench | kBenchRays;
     return {
         row("size", "Picture", "WIDTHxHEIGHT", FIELD(size), "The width and height of the picture in pixels.",
-            Otherwise{"1280x720, or the shape that the scene's camera asks for"}, On{kLooking}, Mark::Common),
+            Otherwise{"1280x720, or the shape of the scene's camera"}, On{kLooking}, Mark::Common),
         row("tone_map", "Picture", "NAME", FIELD(tone_map), "The tone mapping of PNG and JPEG output.",
             Otherwise{"agx"}, On{kShown}, Mark::Common),
         row("exposure", "Picture", "STOPS|auto", FIELD(exposure),

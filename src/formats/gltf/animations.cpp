@@ -236,7 +236,7 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::sp
             nodes.insert(document.index_into("nodes", *node));
         }
     };
-    Messages unreported; // read_animations tells what cannot be read
+    Messages unreported; // read_animations reports what cannot be read
     auto clip = clips.begin();
     for (const JsonValue& animation : animations_of(document, unreported)) {
         if (!(clip++)->plays) continue;

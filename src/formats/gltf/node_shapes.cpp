@@ -16,7 +16,7 @@ std::vector<std::size_t> count_targets(const Document& document) {
             for (const JsonValue& primitive : mesh.elements_of("primitives")) {
                 if (const auto targets = primitive.find("targets")) most = std::max(most, targets->elements().size());
             }
-        } catch (const Error&) { // meshes.cpp tells it of parts that are shown
+        } catch (const Error&) { // meshes.cpp reports it for parts that are shown
         }
         counts.push_back(most);
     }
@@ -67,7 +67,7 @@ void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene, 
     for (std::size_t i = 0; i < sources.size(); ++i) {
         try {
             read(i);
-        } catch (const Error& error) { // place_nodes tells it of nodes that are shown
+        } catch (const Error& error) { // place_nodes reports it for nodes that are shown
             if (error.code() != ErrorCode::BadInput) throw;
         }
     }

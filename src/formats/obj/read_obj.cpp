@@ -97,7 +97,7 @@ Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
     return mesh;
 }
 
-/// Turns those triangles round whose vertex normals point behind them: the winding tells the front of an emitter.
+/// Turns those triangles round whose vertex normals point behind them: the winding defines the front of an emitter.
 void wind_after_normals(Mesh& mesh) {
     if (mesh.normals.empty()) return;
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
