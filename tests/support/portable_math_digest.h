@@ -112,7 +112,7 @@ HD inline uint32_t portable_math_value(int function, uint32_t input) {
     return 0;
 }
 
-/// Running sum that depends on every value and on the order of no two: add it up over any split of the inputs.
+/// A sum that depends on every value but not on their order, so that it may be added up over any split of the inputs.
 HD inline uint64_t portable_math_term(uint32_t input, uint32_t value) {
     uint64_t h = (static_cast<uint64_t>(input) << 32 | value) * 0x9e3779b97f4a7c15u;
     h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9u;
