@@ -44,7 +44,7 @@ function(pertev_gather name extension list)
     list(REMOVE_ITEM files ${some})
     set(text "")
     foreach(file IN LISTS some)
-      file(RELATIVE_PATH file ${PROJECT_SOURCE_DIR}/src ${file}) # the same text wherever the tree lies, for ccache
+      file(RELATIVE_PATH file ${PROJECT_SOURCE_DIR}/src ${file}) # text that does not depend on the tree's folder, for ccache
       string(APPEND text "#include \"${file}\"\n")
     endforeach()
     set(gathered ${PROJECT_BINARY_DIR}/gathered/${name}_${batch}.${extension})

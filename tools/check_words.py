@@ -2,7 +2,8 @@
 """Refuses comments that begin as a fragment and commit subjects that are too long, with file and line.
 
 A comment, docstring or trailing comment names a thing or is a sentence, and is understood without its neighbour. One that
-begins with a word of FRAGMENTS leans on another one. Subjects are checked for the commits that follow the one that added
+begins with a word of FRAGMENTS leans on another one, and the comment of a declaration that begins with one of CLAUSES is
+half a sentence. Subjects are checked for the commits that follow the one that added
 this file; where there is no git or no history, they are not checked.
 
 `check_words.py [ROOT]` checks the tree, `--count [ROOT]` prints how many faults each folder has, `--self-test` checks this
@@ -18,9 +19,11 @@ import sys
 import tempfile
 import tokenize
 
-FOLDERS = ["src", "apps", "tests", "tools", "bench"]
+FOLDERS = ["src", "apps", "tests", "tools", "bench", "cmake", ".ci"]
 C_SUFFIXES = {".h", ".cpp", ".cu", ".inl", ".js"}
-FRAGMENTS = re.compile(r"(?:of|what|those|the same|likewise|as|beside)\b", re.IGNORECASE)
+SCRIPT_SUFFIXES = {".cmake", ".sh"}
+FRAGMENTS = re.compile(r"[/*!<#\s]*(?:of|what|those|the same|likewise|as|beside)\b", re.IGNORECASE)
+CLAUSES = re.compile(r"/// *(?:whether|why|how|where|when)\b", re.IGNORECASE)
 LONGEST_SUBJECT = 72
 
 # Strings are matched so that a "//" in one begins no comment; a ' between digits separates them.
@@ -40,7 +43,7 @@ def comments_of_c(text):
         is_continued = not before.strip() and column_above.get(line - 1) == len(before)
         column_above[line] = len(before)
         if not is_continued:
-            yield line, match[0].lstrip("/*!< \n")
+            yield line, match[0]
 
 
 def comments_of_python(text, name):
@@ -53,22 +56,44 @@ def comments_of_python(text, name):
         if token.type == tokenize.COMMENT:
             line, column = token.start
             if token.line[:column].strip() or column_above.get(line - 1) != column:
-                yield line, token.string.lstrip("# ")
+                yield line, token.string
             column_above[line] = column
 
 
+def comments_of_script(text):
+    """Yields (line, text) of each comment in a shell script or a CMake file. A "#" in quotes of its line begins none."""
+    column_above = {}
+    for line, content in enumerate(text.splitlines(), 1):
+        match = re.match(r"""(?:"(?:\\.|[^"\\])*"|'[^']*'|[^"'#]|(?<=\S)#)*(?<!\S)(?=#)""", content)
+        if match and not (line == 1 and content.startswith("#!")):
+            if match[0].strip() or column_above.get(line - 1) != match.end():
+                yield line, content[match.end():]
+            column_above[line] = match.end()
+
+
+def comments_of(file):
+    """The comments of a file, or nothing if its kind has none."""
+    if file.suffix in C_SUFFIXES:
+        return comments_of_c(file.read_text(encoding="utf-8"))
+    if file.suffix == ".py":
+        return comments_of_python(file.read_text(encoding="utf-8"), str(file))
+    if file.suffix in SCRIPT_SUFFIXES or file.name == "CMakeLists.txt":
+        return comments_of_script(file.read_text(encoding="utf-8"))
+    if file.is_file() and not file.suffix:
+        text = file.read_bytes()
+        if re.match(rb"#!.*sh\n", text):
+            return comments_of_script(text.decode("utf-8"))
+    return ()
+
+
 def comment_faults(root):
-    for folder in FOLDERS:
-        for file in sorted((root / folder).rglob("*")):
-            if file.suffix in C_SUFFIXES:
-                comments = comments_of_c(file.read_text(encoding="utf-8"))
-            elif file.suffix == ".py":
-                comments = comments_of_python(file.read_text(encoding="utf-8"), str(file))
-            else:
-                continue
-            for line, comment in comments:
-                if FRAGMENTS.match(comment):
-                    yield f"{file.relative_to(root)}:{line}: a comment is no fragment: {comment.splitlines()[0]}"
+    files = [file for folder in FOLDERS for file in sorted((root / folder).rglob("*"))]
+    for file in [*files, root / "CMakeLists.txt", *sorted(root.glob("*.sh"))]:
+        if not file.exists():
+            continue
+        for line, comment in comments_of(file):
+            if FRAGMENTS.match(comment) or CLAUSES.match(comment):
+                yield f"{file.relative_to(root)}:{line}: a comment is no fragment: {comment.splitlines()[0]}"
 
 
 def git(root, *arguments):
@@ -91,7 +116,7 @@ def subject_faults(root):
             yield f"commit {name}: the subject has {len(subject)} characters, over {LONGEST_SUBJECT}: {subject}"
 
 
-# Suffix, text, and the line of the fault; 0 where there is none.
+# End of a file's name, text, and the line of the fault; 0 if there is none.
 CASES = [
     (".h", "int a; // of one\n", 1),
     (".h", "\n/// Those that there are.\nint a;\n", 2),
@@ -107,17 +132,25 @@ CASES = [
     (".py", "def f():\n    '''Of one.'''\n", 2),
     (".py", "a = 1  # beside it\n", 1),
     (".py", "a = '# of'\n# A list\n# of names.\n", 0),
+    (".h", "/// Whether it is.\nbool a();\n", 1),
+    (".h", "// Why it is so\nbool a();\n", 0),
+    (".cmake", "set(a b) # of c\n", 1),
+    ("/CMakeLists.txt", "# A list\n# of names\nset(a [[#]] \"# of\")\n", 0),
+    (".sh", "a=$#\n# What it is\n", 2),
+    (".sh", "a='# of'; b=${a#of}\n", 0),
+    ("/run", "#!/bin/bash\n# As before\n", 2),
 ]
 
 
 def self_test():
     failures = []
-    for suffix, text, line in CASES:
+    for name, text, line in CASES:
         with tempfile.TemporaryDirectory() as folder:
-            (pathlib.Path(folder) / "src").mkdir()
-            (pathlib.Path(folder) / "src" / f"a{suffix}").write_text(text)
+            file = pathlib.Path(folder) / "src" / f"a{name}"
+            file.parent.mkdir(parents=True)
+            file.write_text(text)
             faults = list(comment_faults(pathlib.Path(folder)))
-            if len(faults) != bool(line) or (line and not faults[0].startswith(f"src/a{suffix}:{line}: ")):
+            if len(faults) != bool(line) or (line and not faults[0].startswith(f"src/a{name}:{line}: ")):
                 failures.append(f"{text!r}: {faults}")
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder) / "whole"

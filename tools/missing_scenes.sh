@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# One line on the public scenes (docs/scenes.md) that PERTEV_SCENES has not got, and on the tests that are skipped for want
-# of them, in whole or in part. Nothing where no test lacks any.
+# Prints a line that names the public scenes (docs/scenes.md) that PERTEV_SCENES lacks, and the tests that are skipped
+# without them, wholly or in part; nothing if no test lacks a scene.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -124,7 +124,7 @@ TRANSPORT_MUTATIONS = [
                    "++pass) render_pass(static_cast<uint32_t>(rays_.camera / (picture_.camera.width * picture_.camera.height)), film);")],
              ["consistency/two_devices"]),
     Mutation("Southwell takes the last of several patches with most unsent light",
-             [edit("src/radiosity/southwell.cpp", "most_[2 * at] >= most_[2 * at + 1] ? 2 * at", "most_[2 * at] > most_[2 * at + 1] ? 2 * at")],
+             [edit("src/radiosity/southwell.cpp", "largest_[2 * at] >= largest_[2 * at + 1] ? 2 * at", "largest_[2 * at] > largest_[2 * at + 1] ? 2 * at")],
              ["unit/radiosity_solvers"]),
     Mutation("ambient light that is not reflected on",
              [edit("src/radiosity/southwell.cpp", "std::max(1 - spread.reflected[k] / area, kMinAbsorbed)", "std::max(1 - 0 * spread.reflected[k] / area, kMinAbsorbed)")],

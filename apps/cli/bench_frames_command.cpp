@@ -25,7 +25,8 @@ struct FramesFlags {
     bool still = false;
 };
 
-/// A traversal: forward by a thousandth of the scene a frame, looking to the left and to the right.
+/// Returns the camera of a frame, which moves forward by a thousandth of the scene per frame and looks to the left and
+/// to the right.
 Camera camera_of(const Camera& first, uint32_t frame, float scene_size) {
     const float k = static_cast<float>(frame);
     return moved(first, 0.35f * sin(k * 0.05f), {0, 0, -0.001f * scene_size * k});

@@ -46,7 +46,7 @@ void turn_signals_into_errors() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-/// Whether CLI11 takes the value of a flag as false, case-insensitively.
+/// Returns whether CLI11 takes the value of a flag as false, case-insensitively.
 bool is_no(std::string_view value) {
     std::string small(value);
     std::ranges::transform(small, small.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
@@ -54,7 +54,7 @@ bool is_no(std::string_view value) {
     return std::ranges::find(kNo, small) != std::end(kNo);
 }
 
-/// Whether errors are wanted as JSON: also where the line is wrong, so that no verb has read it.
+/// Returns whether errors are wanted as JSON: also where the line is wrong, so that no verb has read it.
 bool wants_json(int argc, char** argv) {
     bool json = false; // by the last that says so, as the verb reads it
     for (int i = 1; i < argc; ++i) {
@@ -123,7 +123,7 @@ int run(std::vector<std::string> words, bool json) {
     }
 }
 
-/// Whether the standard output is a pipe whose reader has gone, as `head` does once it has its lines.
+/// Returns whether the standard output is a pipe whose reader has gone, as `head` does once it has its lines.
 bool is_reader_gone() {
     pollfd out = {STDOUT_FILENO, POLLOUT, 0};
     return ::poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLHUP)) != 0;

@@ -26,7 +26,7 @@ struct RenderFlags : PictureOptions {
     ReportFlags report;
 };
 
-/// Whether an output is tone-mapped: PNG or JPEG.
+/// Returns whether an output is tone-mapped: PNG or JPEG.
 bool writes_tone_mapped(const RenderFlags& flags);
 
 /// Checks everything that can be checked before the scene is read. Throws Error, especially for an output that cannot

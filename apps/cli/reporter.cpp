@@ -24,7 +24,7 @@ void write_now(std::FILE* file, const std::string& text) {
     std::fflush(file);
 }
 
-/// Whether stderr is a terminal that moves its cursor when told so.
+/// Returns whether stderr is a terminal that moves its cursor when told so.
 bool is_drawn_on() {
     const char* const kind = std::getenv("TERM");
     return ::isatty(STDERR_FILENO) == 1 && kind != nullptr && std::string_view(kind) != "dumb";

@@ -65,7 +65,7 @@ void check_host(const std::string& host) {
     }
 }
 
-/// Where a desktop is, its browser opens the address.
+/// Opens the address in the browser of the desktop, if there is one.
 void open_browser(const std::string& address) {
     if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
     const char* arguments[] = {"xdg-open", address.c_str(), nullptr};
@@ -158,7 +158,7 @@ void let_time_move(const ViewFlags& flags, const RenderSetup& ready, ViewerStart
     }
 }
 
-/// Where the view turns about what is in the middle of the picture, unless a target was given.
+/// Returns the first pose. The view turns about the point in the middle of the picture, unless a target was given.
 Pose start_pose(const PictureRecord& record, const Scene& scene, FrameSource& source, float scene_size) {
     const Camera& camera = record.camera.camera;
     float distance = 0.5f * scene_size;

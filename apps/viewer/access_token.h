@@ -11,7 +11,8 @@ namespace pertev {
 /// none.
 std::string make_token(int bytes = 16);
 
-/// Whether both texts are equal. The time depends only on the length of `given`, never on how much of it matches.
+/// Returns whether both texts are equal. The time depends only on the length of `given`, never on how much of it
+/// matches.
 bool equal_in_constant_time(std::string_view given, std::string_view secret);
 
 } // namespace pertev

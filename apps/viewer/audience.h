@@ -68,7 +68,7 @@ public:
     /// Sends an answer to one client; 0: to all.
     void notify(uint32_t client, const std::string& text);
     bool is_anyone_there() const;
-    /// Whether some client is ready but has not got the last picture.
+    /// Returns whether some client is ready but has not got the last picture.
     bool is_behind(double now_s) const;
 
     // For the thread that packs pictures.

@@ -9,7 +9,7 @@ namespace fs = std::filesystem;
 namespace pertev {
 namespace {
 
-/// Whether no word goes on at `at`, so that a path may begin there.
+/// Returns whether no word goes on at `at`, so that a path may begin there.
 bool is_beginning(const std::string& text, std::size_t at) {
     constexpr std::string_view before = " \t\"'`=:;,([{<";
     return at == 0 || before.find(text[at - 1]) != before.npos;
@@ -31,8 +31,8 @@ bool is_folder(const std::string& path) {
     return fs::is_directory(path, fault);
 }
 
-/// How much of `rest`, which begins a path, is folders of this machine up to the last slash, the slash included. What
-/// only looks like a path, as /nodes/3 of a JSON document, has none.
+/// Returns how much of `rest`, which begins a path, is folders of this machine up to the last slash, the slash
+/// included. What only looks like a path, as /nodes/3 of a JSON document, has none.
 std::size_t folders_size(std::string_view rest) {
     std::size_t size = 0;
     for (std::size_t slash = rest.find('/'); slash != rest.npos; slash = rest.find('/', slash + 1)) {
@@ -42,7 +42,7 @@ std::size_t folders_size(std::string_view rest) {
     return size > 1 ? size : 0; // the root alone says nothing, and JSON pointers begin with its slash
 }
 
-/// Whether /home alone, say, is named.
+/// Returns whether /home alone, say, is named.
 bool is_below_root(std::string_view rest) {
     constexpr std::string_view ends = " \t\"'`:;,()";
     return rest.starts_with('/') && is_folder(std::string(rest.substr(0, rest.find_first_of(ends))));

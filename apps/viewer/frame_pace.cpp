@@ -8,14 +8,14 @@ namespace {
 
 constexpr float kScales[] = {1.0f, 0.75f, 0.5f, 0.375f, 0.25f, 0.1875f, 0.125f, 0.09375f, 0.0625f, 0.046875f, 0.03125f};
 constexpr int kLast = static_cast<int>(std::size(kScales)) - 1;
-constexpr double kHeadroom = 0.8; // fraction of the time in which a larger picture must fit
-constexpr double kLeast = 0.3;    // minimum fraction of the frame's time that is attributed to the picture
+constexpr double kHeadroom = 0.8;        // fraction of the time in which a larger picture must fit
+constexpr double kMinPictureShare = 0.3; // minimum fraction of the frame's time that is attributed to the picture
 
 } // namespace
 
 bool FramePace::fits(int step, double headroom) const {
     const double size = static_cast<double>(kScales[step]);
-    return full_s_ * size * size <= headroom * std::max(frame_s_ - other_s_, kLeast * frame_s_);
+    return full_s_ * size * size <= headroom * std::max(frame_s_ - other_s_, kMinPictureShare * frame_s_);
 }
 
 void FramePace::took(float scale, double seconds, double other_s) {

@@ -23,7 +23,7 @@ public:
     double full_s() const { return full_s_; }
     /// Sets another target time for the next scales.
     void keep(double frame_s) { frame_s_ = frame_s; }
-    /// Whether frames of this scale meet the target time, by earlier frames.
+    /// Returns whether frames of this scale meet the target time, by earlier frames.
     bool keeps_rate() const;
 
 private:

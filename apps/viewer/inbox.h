@@ -38,7 +38,7 @@ using Command = std::variant<Steer, Save, Joined>;
 
 class Inbox {
 public:
-    static constexpr std::size_t kMost = 4096;
+    static constexpr std::size_t kMaxCommands = 4096;
 
     /// Sets `abandon` while commands wait that make the current samples useless, and `hurry` while commands wait that
     /// do that or only change how samples are shown. Both outlive the inbox.
@@ -60,7 +60,7 @@ public:
     /// Returns false if there is no room, or it is closed.
     bool put(Command command) {
         const std::lock_guard lock(mutex_);
-        if (is_closed_ || commands_.size() >= kMost) return false;
+        if (is_closed_ || commands_.size() >= kMaxCommands) return false;
         const Steer* steer = std::get_if<Steer>(&command);
         if (steer != nullptr) raise_for(foresee(steer->message));
         commands_.push_back(std::move(command));
@@ -68,7 +68,7 @@ public:
         return true;
     }
 
-    /// Whether the viewer is ending, so that refusals are not the sender's fault.
+    /// Returns whether the viewer is ending, so that refusals are not the sender's fault.
     bool is_closed() const {
         const std::lock_guard lock(mutex_);
         return is_closed_;

@@ -14,7 +14,7 @@ constexpr int kLowest = 30, kHighest = 92;
 // otherwise a queue would never shrink.
 constexpr double kStray = 0.002, kStep = 0.5, kRelease = 0.98, kMaxHold = 1.2;
 
-double least_of_late(double least, double value) { return least == 0 ? value : std::min(1.01 * least, value); }
+double min_of_late(double least, double value) { return least == 0 ? value : std::min(1.01 * least, value); }
 
 } // namespace
 
@@ -57,10 +57,10 @@ void LinkPace::learn(double bytes, double seconds) {
 }
 
 void LinkPace::hold(double client_s) {
-    min_round_trip_s_ = least_of_late(min_round_trip_s_, round_trip_s_);
-    least_client_s_ = least_of_late(least_client_s_, std::max(client_s, 0.0));
+    min_round_trip_s_ = min_of_late(min_round_trip_s_, round_trip_s_);
+    min_client_s_ = min_of_late(min_client_s_, std::max(client_s, 0.0));
     const double late_s = round_trip_s_ - min_round_trip_s_ - kStray;
-    hold_s_ = late_s > 0 ? std::min(hold_s_ + kStep * late_s, kMaxHold * least_client_s_) : kRelease * hold_s_;
+    hold_s_ = late_s > 0 ? std::min(hold_s_ + kStep * late_s, kMaxHold * min_client_s_) : kRelease * hold_s_;
 }
 
 void LinkPace::adapt(double bytes) {
@@ -89,8 +89,8 @@ void LinkPace::adapt(double bytes) {
 }
 
 std::size_t LinkPace::piece_bytes(double seconds) const {
-    constexpr double kLeast = 16384, kMost = 1 << 20;
-    return static_cast<std::size_t>(std::clamp(rate_ * seconds, kLeast, kMost));
+    constexpr double kMinBytes = 16384, kMaxBytes = 1 << 20;
+    return static_cast<std::size_t>(std::clamp(rate_ * seconds, kMinBytes, kMaxBytes));
 }
 
 } // namespace pertev

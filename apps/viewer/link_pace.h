@@ -60,7 +60,7 @@ private:
     float scale_ = 1;
     int calm_ = 0; // consecutive acknowledgements without delay
     // Recent minima, which grow by a hundredth per picture until a smaller value comes.
-    double min_round_trip_s_ = 0, least_client_s_ = 0;
+    double min_round_trip_s_ = 0, min_client_s_ = 0;
     double hold_s_ = 0;
 };
 

@@ -37,9 +37,10 @@ struct RequestVerdict {
 /// The host of "name:port", "1.2.3.4" or "[::1]:80", brackets included; nothing for an invalid one, for one with a
 /// user name, and for a port that is no number.
 std::optional<std::string_view> host_of(std::string_view authority);
-/// Whether a Host header names this server: localhost, 127.0.0.1, [::1] or `own`, case-insensitive, with any port.
+/// Returns whether a Host header names this server: localhost, 127.0.0.1, [::1] or `own`, case-insensitive, with any
+/// port.
 bool is_own_host(std::string_view header, std::string_view own);
-/// Whether an Origin header is the page of exactly this host and port.
+/// Returns whether an Origin header is the page of exactly this host and port.
 bool is_same_origin(std::string_view origin, std::string_view host_header);
 /// The value of the cookie with this name; nothing if there is none, or more than one.
 std::optional<std::string_view> cookie_named(std::string_view header, std::string_view name);

@@ -51,8 +51,8 @@ uint32_t aovs_of(ShownLayer layer) {
 
 bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
 
-/// Whether a moving frame belongs to the session's sequence (Session::render_frame), as all do that show more than
-/// raw samples.
+/// Returns whether a moving frame belongs to the session's sequence (Session::render_frame), as all do that show more
+/// than raw samples.
 bool is_of_sequence(const ViewState& view) {
     return makes_frames(view.picture.integrator) &&
            (view.is_reconstructed || view.restir.light != RestirLight::Off || view.reconstruction.resolution_scale < 1);
@@ -62,7 +62,7 @@ bool same_metering(const RenderSettings& a, const RenderSettings& b) {
     return same_light(a, b) && a.width == b.width && a.height == b.height && a.transparent == b.transparent;
 }
 
-/// Whether a picture displayed `as` this has the requested tones and exposure. `exposed` has the current stops.
+/// Returns whether a picture displayed `as` this has the requested tones and exposure. `exposed` has the current stops.
 bool is_shown_as(const Display& as, const FrameRequest& request, const ShownFrame& exposed) {
     return as.tone_map == request.view.display.tone_map && as.exposure_stops == exposed.exposure_stops;
 }
@@ -234,7 +234,7 @@ void SessionFrames::meter_still(const FrameRequest& request, bool is_small) {
     begin_exposed(request, session_.meter(request.view.display.tone_map));
 }
 
-/// Whether the film has samples of exactly this picture at rest.
+/// Returns whether the film has samples of exactly this picture at rest.
 bool SessionFrames::film_goes_on(const FrameRequest& request) {
     return session_.history().samples > 0 && session_.camera() == request.camera &&
            same_picture(session_.settings(), settings_for(request, 1));
@@ -355,8 +355,8 @@ const std::string& SessionFrames::film_hash() {
     return hashed_.hash;
 }
 
-/// Whether the picture at rest should replace the reconstruction. Tested only at powers of two, each of which has the
-/// previous one as its half.
+/// Returns whether the picture at rest should replace the reconstruction. Tested only at powers of two, each of which
+/// has the previous one as its half.
 bool SessionFrames::beats_reconstruction(const FrameRequest& request) {
     const uint32_t samples = session_.history().samples;
     if (!std::has_single_bit(samples)) return false;

@@ -41,11 +41,11 @@ public:
     /// The camera with this lens at its position.
     Camera camera(const Camera& lens) const;
     const Pose& pose() const { return pose_; }
-    /// Whether a user has moved it.
+    /// Returns whether a user has moved it.
     bool is_own() const { return is_own_; }
-    /// Whether text (eye, target, up) states its position to the bit.
+    /// Returns whether text (eye, target, up) states its position to the bit.
     bool is_given_by_pose() const;
-    /// Whether time moves it.
+    /// Returns whether time moves it.
     bool moves_with_time() const;
     bool is_at_start() const { return guide_ == Guide::Start; }
     const std::string& name() const { return name_; }

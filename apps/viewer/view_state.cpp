@@ -95,7 +95,7 @@ std::string why_no_layer(ShownLayer layer, const RenderSettings& settings) {
 }
 
 std::string why_too_deep(const RenderSettings& settings) {
-    const uint32_t most = most_depth(settings.integrator);
+    const uint32_t most = max_depth(settings.integrator);
     if (settings.path.max_depth <= most) return {};
     return fmt::format("{}: at most {} scatterings", integrator_name(settings), most);
 }
@@ -192,7 +192,7 @@ std::vector<ViewSetting> make_settings() {
     shared_number(
         "max_depth", "Max depth", "Light", Kind::Whole, 1, [](const ViewState& s) { return s.picture.path.max_depth; },
         [](ViewState& s, float v) {
-            s.picture.path.max_depth = std::min(static_cast<uint32_t>(v), most_depth(s.picture.integrator));
+            s.picture.path.max_depth = std::min(static_cast<uint32_t>(v), max_depth(s.picture.integrator));
             s.moving_depth = s.picture.path.max_depth;
         });
     shared_number(
@@ -265,7 +265,7 @@ std::vector<ViewSetting> make_settings() {
     return all;
 }
 
-/// Why the value is invalid for the setting; empty if it is valid.
+/// Returns why the value is invalid for the setting; empty if it is valid.
 std::string why_no_value(const ViewSetting& setting, const SettingValue& value) {
     if (setting.kind == Kind::Choice) {
         const std::string* text = std::get_if<std::string>(&value);

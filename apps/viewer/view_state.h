@@ -77,10 +77,10 @@ struct ViewSetting {
 /// All settings, in the panel's order.
 const std::vector<ViewSetting>& view_settings();
 
-/// Whether the picture at rest of `after` needs other samples than that of `before`.
+/// Returns whether the picture at rest of `after` needs other samples than that of `before`.
 bool restarts(const ViewState& before, const ViewState& after);
 
-/// Whether the same samples are displayed differently in `after`.
+/// Returns whether the same samples are displayed differently in `after`.
 bool is_shown_otherwise(const ViewState& before, const ViewState& after);
 
 /// Gives the picture the shape of a window of this size in pixels, unless its size was requested. Returns whether the
@@ -91,7 +91,7 @@ bool take_window_shape(ViewState& state, uint32_t width, uint32_t height);
 std::string set_view_setting(ViewState& state, const std::string& name, const SettingValue& value);
 
 const char* name_of(ShownLayer layer);
-/// Whether the layer belongs to the reconstruction, without which it does not exist.
+/// Returns whether the layer belongs to the reconstruction, without which it does not exist.
 bool is_of_frames(ShownLayer layer);
 
 } // namespace pertev

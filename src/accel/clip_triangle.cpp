@@ -12,7 +12,7 @@ struct Polygon {
     int count = 0;
 };
 
-/// Keeps the points with sign * at[axis] <= sign * plane.
+/// Clips a polygon to the points with sign * at[axis] <= sign * plane.
 void cut(Polygon& polygon, int axis, double plane, double sign) {
     bool all = true;
     for (int i = 0; i < polygon.count; ++i) all = all && sign * (polygon.points[i].at[axis] - plane) <= 0;

@@ -33,7 +33,7 @@ HD inline float square_of_radius(float radius) { return radius >= 0 ? radius * r
 
 class NearestPoints {
 public:
-    /// `points` has room for `capacity` elements. Points farther than the radius are ignored.
+    /// Collects in `points`, which has room for `capacity` elements. Points farther than the radius are ignored.
     HD NearestPoints(NearPoint* points, uint32_t capacity, float radius_squared)
         : points_(points), capacity_(capacity), limit_(capacity > 0 ? radius_squared : -1.0f) {}
 

@@ -9,7 +9,7 @@ Heartbeat::Heartbeat(std::chrono::milliseconds interval, std::function<void(doub
     : interval_(interval), report_(std::move(report)) {
     try {
         thread_ = std::thread([this] { beat(); });
-    } catch (const std::system_error&) { // no thread left; the work matters more
+    } catch (const std::system_error&) { // no thread is left; the work matters more
     }
 }
 

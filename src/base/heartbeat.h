@@ -30,7 +30,7 @@ private:
 
     std::chrono::milliseconds interval_;
     std::function<void(double, const std::string&)> report_;
-    std::mutex mutex_; // for the two below
+    std::mutex mutex_; // guards the two members below
     std::string work_;
     bool is_over_ = false;
     std::condition_variable over_;

@@ -9,8 +9,8 @@
 
 namespace pertev {
 
-/// Moves the part that fills whole pages of 2 MB into such pages, if possible. The bytes keep their addresses and
-/// values; any thread may read them meanwhile.
+/// Moves the part of `bytes` that fills whole pages of 2 MB into such pages, if possible. The bytes keep their
+/// addresses and values; any thread may read them meanwhile.
 void use_huge_pages(std::span<const std::byte> bytes);
 
 } // namespace pertev

@@ -27,7 +27,8 @@ std::size_t utf8_length(std::string_view text) {
     return bad_second ? 0 : length;
 }
 
-/// Converts the parts of `text` between separators by `json_of` to an array; nothing if that returns nothing for one.
+/// Converts the parts of `text` between separators by `json_of` to an array; nothing if `json_of` returns nothing for a
+/// part.
 template <class JsonOf>
 std::optional<std::string> json_array(std::string_view text, char separator, const JsonOf& json_of) {
     std::string list;
@@ -41,7 +42,7 @@ std::optional<std::string> json_array(std::string_view text, char separator, con
     }
 }
 
-/// For a nonzero number outside the range of doubles: whether it is too small, not too large.
+/// Returns whether a nonzero number outside the range of doubles is too small rather than too large.
 bool is_too_small(std::string_view text) {
     const std::size_t e = text.find_first_of("eE");
     return e == std::string_view::npos ? text.find('.') < 3 : text.substr(e + 1).starts_with('-');

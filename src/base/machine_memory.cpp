@@ -17,8 +17,8 @@ std::size_t number_in(const std::filesystem::path& file) {
     return in >> bytes ? bytes : SIZE_MAX;
 }
 
-/// Minimum over a group and all of its ancestors.
-std::size_t least_of(const std::filesystem::path& root, std::filesystem::path group, const char* file) {
+/// Returns the minimum limit, in bytes, of a group and all of its ancestors.
+std::size_t min_limit(const std::filesystem::path& root, std::filesystem::path group, const char* file) {
     std::size_t least = SIZE_MAX;
     for (; !group.empty(); group = group.parent_path()) least = std::min(least, number_in(root / group / file));
     return std::min(least, number_in(root / file));
@@ -41,9 +41,9 @@ std::size_t group_memory_bytes(const std::filesystem::path& groups, const std::f
         if (first == std::string::npos || second == std::string::npos) continue;
         const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
         const std::filesystem::path group = std::filesystem::path(line.substr(second + 1)).relative_path();
-        if (controllers == ",,") least = std::min(least, least_of(folder, group, "memory.max"));
+        if (controllers == ",,") least = std::min(least, min_limit(folder, group, "memory.max"));
         if (controllers.find(",memory,") != std::string::npos) {
-            least = std::min(least, least_of(folder / "memory", group, "memory.limit_in_bytes"));
+            least = std::min(least, min_limit(folder / "memory", group, "memory.limit_in_bytes"));
         }
     }
     return least;

@@ -11,7 +11,7 @@ namespace pertev {
 /// unknown.
 std::size_t machine_memory_bytes();
 
-/// Whether that is the limit of a container or a service rather than of the machine.
+/// Returns whether machine_memory_bytes() is the limit of a container or a service rather than of the machine.
 bool is_memory_of_group();
 
 /// Least memory limit of a process's control groups, bytes; SIZE_MAX: none. `groups` is its /proc/self/cgroup;

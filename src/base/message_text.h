@@ -18,10 +18,10 @@ inline std::string counted(uint64_t count, const char* thing) {
     return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
-/// The verb for a count.
+/// Returns the verb for a count.
 inline const char* is_or_are(uint64_t count) { return count == 1 ? "is" : "are"; }
 
-/// Item `i` of a list of the scene; `origin` is its location in the file.
+/// Names item `i` of a list of the scene; `origin` is its location in the file.
 inline std::string numbered(const char* kind, std::size_t i, const std::string& name, const std::string& origin = "") {
     const std::string location = origin.empty() ? fmt::format("{} {}", kind, i) : origin;
     return fmt::format("{}{}{}", location, name.empty() ? "" : " ", name);
@@ -29,8 +29,8 @@ inline std::string numbered(const char* kind, std::size_t i, const std::string& 
 
 /// Text of a file shortened to fit a line of a message.
 inline std::string shortened(std::string_view text) {
-    constexpr std::size_t kMost = 200;
-    return text.size() <= kMost ? std::string(text) : fmt::format("{}...", text.substr(0, kMost));
+    constexpr std::size_t kMaxBytes = 200;
+    return text.size() <= kMaxBytes ? std::string(text) : fmt::format("{}...", text.substr(0, kMaxBytes));
 }
 
 } // namespace pertev

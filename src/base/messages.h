@@ -28,18 +28,19 @@ struct Message {
 
 class Messages {
 public:
-    /// Something was repaired, or a request has no effect.
+    /// Adds a warning: something was repaired, or a request has no effect.
     void warn(Remark remark) { add(true, std::move(remark)); }
-    /// The picture lacks something that the input has. For a file with many faults only the first is named.
+    /// Adds a warning that the picture lacks something that the input has. For a file with many faults only the first
+    /// is named.
     void leave_out(Remark remark) {
         const bool is_one_too_many = left_out_ >= kMaxLeftOut && !indices_[1].contains(remark.text());
         Message& message = all_[add(true, is_one_too_many ? Remark(kMoreLeftOut) : std::move(remark))];
         if (!message.is_left_out) ++left_out_;
         message.is_left_out = true;
     }
-    /// A default was used, or there is other information.
+    /// Adds a notice: a default was used, or there is other information.
     void note(Remark remark) { add(false, std::move(remark)); }
-    /// The picture has something that the input lacks.
+    /// Adds a notice that the picture has something that the input lacks.
     void make_up(Remark remark) { all_[add(false, std::move(remark))].is_made_up = true; }
 
     /// Appends all messages of `other`.
@@ -62,7 +63,7 @@ private:
     static constexpr std::size_t kMaxLeftOut = 100;
     static constexpr const char* kMoreLeftOut = "further things are left out; only the first are listed";
 
-    /// Returns its index in all_.
+    /// Adds a message and returns its index in all_.
     std::size_t add(bool is_warning, Remark remark) {
         std::string text = remark.text();
         const auto [found, is_new] = indices_[is_warning ? 1 : 0].try_emplace(text, all_.size());

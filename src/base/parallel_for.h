@@ -18,7 +18,7 @@ int thread_count();
 /// Runs body(begin, end) over disjoint ranges of at least `grain` indices that cover [0, count).
 void parallel_for_ranges(uint64_t count, uint64_t grain, const std::function<void(uint64_t, uint64_t)>& body);
 
-/// Runs both, possibly concurrently, and returns when both are done.
+/// Runs `a` and `b`, possibly concurrently, and returns when both are done.
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b);
 
 template <class Body>

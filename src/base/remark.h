@@ -32,7 +32,7 @@ struct Remark {
     Remark(std::string why) : reason(std::move(why)) {}
     Remark(const char* why) : reason(why) {}
     Remark(FileLocation where, std::string why) : location(std::move(where)), reason(std::move(why)) {}
-    /// `value` is empty if the setting has none or if it does not matter.
+    /// Makes a remark about a setting. The value is empty if the setting has none or if it does not matter.
     Remark(std::string name, std::string its_value, std::string why)
         : setting(std::move(name)), value(std::move(its_value)), reason(std::move(why)) {}
 

@@ -11,8 +11,8 @@
 
 namespace pertev {
 
-/// `kFollows` means that light may have changed since the previous frame. Code for that would slow down the other
-/// case.
+/// The stage that accumulates the signals over frames. `kFollows` means that light may have changed since the previous
+/// frame; code for that would slow down the other case.
 template <bool kFollows>
 struct AccumulateSignals {
     NoisyFrameView frame;

@@ -81,7 +81,6 @@ private:
 
     /// Samples the previously shown picture with Catmull-Rom splines (Jimenez, "Filmic SMAA", SIGGRAPH 2016), which
     /// blur less than linear interpolation.
-    /// than straight lines.
     HD Rgb sample(Vec2 position) const {
         const float x = position.x - 0.5f, y = position.y - 0.5f, left = floor(x), top = floor(y);
         const Weights wx = spline(x - left), wy = spline(y - top);
@@ -112,7 +111,7 @@ private:
     }
 };
 
-/// One call per pixel: computes the bytes that a display shows of a reconstructed picture.
+/// The stage that computes the bytes of a reconstructed picture for a display, with one call per pixel.
 struct ShowPicture {
     const Float4* picture; // shown_color
     ToneMap kind;

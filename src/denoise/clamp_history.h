@@ -17,7 +17,8 @@ struct ClampHistory {
     bool limits;
     bool has_gloss; // see AccumulateSignals
     static constexpr float kFewFrames = 4;
-    /// If few samples contribute most of the light, most pixels do not have enough of them to know their variance.
+    /// Factor on deviations. If few samples contribute most of the light, most pixels do not have enough of them to
+    /// know their variance.
     static constexpr float kTails = 4;
     static constexpr float kUnknown = 1e6f; // lets the filter average as much as guides allow
 
@@ -100,9 +101,9 @@ private:
     HD static float deviation_of_frames(float square_mean, Float4 mean) {
         return safe_sqrt(square_mean - square(fused_luminance(rgb_of(mean))));
     }
-    /// The mean of recent frames is noisy too: over some twenty pixels by a tenth of a single frame's deviation. Five
-    /// times that is allowed, because otherwise light from few bright samples would be lost wherever the last frames
-    /// had none.
+    /// Clamps `x` to the neighbourhood of the mean of recent frames. That is noisy too: over some twenty pixels by a
+    /// tenth of a single frame's deviation. Five times that is allowed, because otherwise light from few bright samples
+    /// would be lost wherever the last frames had none.
     HD static float within(float x, float mean, float deviation, float of_frames) {
         const float most = 2.0f * deviation + 0.5f * of_frames;
         return clamp(x, mean - most, mean + most);
@@ -120,7 +121,7 @@ private:
         if (held == light) return mean;
         return light > 0 ? with_w((held / light) * rgb_of(mean), mean.w) : with_w(grey(max(held, 0.0f)), mean.w);
     }
-    /// Variance of a mean over mean.w frames. Few frames say little about their own spread.
+    /// Variance of a mean over mean.w frames. A few frames do not determine their own spread.
     HD float variance(float square_mean, Float4 mean, float over_neighbours) const {
         if (mean.w < kFewFrames) return over_neighbours * (kFewFrames / max(mean.w, 1.0f));
         return kTails * max(square_mean - square(fused_luminance(rgb_of(mean))), 0.0f) / mean.w;

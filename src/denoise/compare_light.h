@@ -9,7 +9,8 @@
 
 namespace pertev {
 
-/// Compares the light of both pictures where they show the same surface; elsewhere the gradient is unknown.
+/// The stage that compares the light of both pictures where they show the same surface; elsewhere the gradient is
+/// unknown.
 struct CompareLight {
     NoisyFrameView before, after; // scene as it was, and as it is
     Float4 *guide, *was, *is;

@@ -22,7 +22,7 @@ public:
     virtual uint32_t feature_samples() const = 0;
     /// Adds the hits of a sample's camera rays. `frame` may have no light.
     virtual void add_features(const NoisyFrame& frame, const SceneView& scene) = 0;
-    /// Adds the next sample of each pixel.
+    /// Adds the next sample of each pixel, with light.
     virtual void add(const NoisyFrame& frame, const SceneView& scene) = 0;
     /// Returns RGB, linear, of the samples since begin(), of which there is at least one.
     virtual Image picture() = 0;

@@ -66,7 +66,7 @@ private:
         Rgb light, divisors;
         float signal, squares, samples; // luminances, their squares
 
-        /// Spread around their own mean.
+        /// Squared deviations from the mean of the samples, at least 0.
         HD float spread() const { return max(squares - square(signal) / samples, 0.0f); }
     };
     HD Sums diffuse_of(uint32_t at) const {
@@ -99,8 +99,9 @@ private:
             if (freedoms >= kFreedoms) return within / freedoms;
             return pixels >= 6 && all.samples > 1 ? all.spread() / (all.samples - 1) : kUnknown;
         }
-        /// A pixel without samples on its guide's surface takes the mean of its neighbours. If its own samples spread
-        /// more than those of its neighbours, it uses its own spread, or a single bright one would remain.
+        /// Mean and variance of a pixel. A pixel without samples on its guide's surface takes the mean of its
+        /// neighbours. If its own samples spread more than those of its neighbours, it uses its own spread, because
+        /// otherwise a single bright one would remain.
         HD Float4 mean(const Sums& own, float scale) const {
             const Sums& known = own.samples > 0 ? own : all;
             const Rgb light = known.samples > 0 ? known.light / known.divisors : Rgb{0, 0, 0};

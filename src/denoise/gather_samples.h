@@ -9,7 +9,7 @@
 
 namespace pertev {
 
-/// Copies the guides from a frame of rays through pixels' centres, and clears the sums.
+/// The stage that copies the guides from a frame of rays through pixels' centres, and clears the sums.
 struct BeginSums {
     GBufferView centres;
     PictureGuide guide;
@@ -31,8 +31,8 @@ struct BeginSums {
     }
 };
 
-/// Makes the guides' normals for the filter: means over the pixel, like its light. The unsmoothed guides are kept for
-/// more samples.
+/// The stage that makes the guides' normals for the filter: means over the pixel, like its light. The unsmoothed guides
+/// are kept for more samples.
 struct SmoothGuide {
     PictureGuide guide;
     PictureSums sums;
@@ -70,7 +70,7 @@ struct SampledSurfaces {
         f.point = transform_transposed(camera.world_from_camera, point - camera.world_from_camera.translation);
         return f;
     }
-    /// Whether the sample's own pixel shows its surface; bumps belong to it.
+    /// Returns whether the sample's own pixel shows its surface, regardless of bumps.
     HD bool shows_own(uint32_t pixel, const Found& f) const {
         return shows_surface(guide, camera, width, pixel, f.object, f.point, f.normal, 0.5f);
     }
@@ -94,7 +94,7 @@ struct SampledSurfaces {
     }
 };
 
-/// Sums the hits of the pixel's camera rays.
+/// The stage that sums the hits of a pixel's camera rays.
 struct GatherFeatures {
     SampledSurfaces samples;
 
@@ -144,7 +144,7 @@ private:
     }
 };
 
-/// Sums the light of the pixel's samples, whose features have been gathered.
+/// The stage that sums the light of a pixel's samples, whose features have been gathered.
 struct GatherLight {
     SampledSurfaces samples;
 

@@ -12,7 +12,7 @@
 
 namespace pertev {
 
-/// One call per pixel: its ray, and the key of its coin for blended surfaces.
+/// The stage that makes the ray through the middle of each pixel, and its key for blended surfaces.
 struct CentreRays {
     CameraView camera;
     uint32_t width, first; // width in pixels; index of the first pixel
@@ -27,8 +27,8 @@ struct CentreRays {
     }
 };
 
-/// One call per pixel. A point that was behind the previous camera has no motion; one that did not exist is assumed
-/// to have been at its present position.
+/// The stage that computes the motion of each pixel's hit. A point that was behind the previous camera has no motion;
+/// one that did not exist is assumed to have been at its present position.
 struct MotionOfHits {
     FrameCameras cameras;
     SceneView scene;

@@ -22,8 +22,8 @@ public:
     PictureDenoiser(Queue& queue, uint32_t width, uint32_t height);
 
     void begin(const NoisyFrame& centres, const CameraView& camera) override;
-    /// Requires samples 0 to kFeatures - 1 before any light, so that edges and textures are smooth even with few
-    /// samples.
+    /// Returns kFeatures: samples 0 to kFeatures - 1 are required before any light, so that edges and textures are
+    /// smooth even with few samples.
     uint32_t feature_samples() const override { return kFeatures; }
     void add_features(const NoisyFrame& frame, const SceneView& scene) override;
     void add(const NoisyFrame& frame, const SceneView& scene) override;

@@ -20,14 +20,14 @@ struct PictureGuide {
 /// Number of other surfaces that samples of one pixel may hit and that are distinguished.
 inline constexpr int kNeighbourSurfaces = 2;
 
-/// The light of a pixel is that of its samples over the sum of their divisors, not the mean of their signals, so that
-/// light which a normal map concentrates on the bright parts of a texture is preserved.
+/// Sums of a picture's samples. The light of a pixel is that of its samples over the sum of their divisors, not the
+/// mean of their signals, so that light which a normal map concentrates on the bright parts of a texture is preserved.
 struct PictureSums {
     // Sums of light.
     Float4* diffuse;       // rgb of samples on the guide's surface, scattered by diffuse lobes; their number
     Float4* gloss;         // rgb, scattered by other lobes
     Float4* diffuse_share; // rgb of divisors of these samples; luminances of the signal
-    Float4* gloss_share;   // for the other signal, like diffuse_share
+    Float4* gloss_share;   // like diffuse_share, for the other signal
     Vec2* squares;         // squares of these luminances
     Float4* neighbour;     // rgb of samples on another known surface, scattered; their number
     Float4* loose;         // rgb of samples whose surface no nearby guide shows; their number
@@ -36,14 +36,14 @@ struct PictureSums {
     Float4* normal;        // normal of the guide's surface; their number
     Float4* met;           // rgb of emission; number of loose samples, whose emission is excluded
     Float4* diffuse_color; // rgb of divisors of the guide's surface
-    Float4* gloss_color;   // for the other signal, like diffuse_color
+    Float4* gloss_color;   // like diffuse_color, for the other signal
     Float4* neighbour_diffuse[kNeighbourSurfaces]; // divisors of another surface; bits of a pixel whose guide shows it,
                                                    // kNoHit: none
     Float4* neighbour_gloss[kNeighbourSurfaces];   // for the other signal; their number
 };
 
-/// Whether `point`, camera space, with the normal `normal`, lies on the surface that `guide` shows at `pixel`, whose
-/// normal must make an angle with it whose cosine exceeds `cosine`.
+/// Returns whether `point`, camera space, with the normal `normal`, lies on the surface that `guide` shows at `pixel`,
+/// whose normal must make an angle with it whose cosine exceeds `cosine`.
 HD inline bool shows_surface(const PictureGuide& guide, const CameraView& camera, uint32_t width, uint32_t pixel,
                              uint32_t object, Vec3 point, Vec3 normal, float cosine) {
     if (guide.object[pixel] != object) return false;

@@ -42,7 +42,7 @@ public:
              const TemporalGradientsView& change, const ReconstructionSettings& settings);
 
     /// Makes a picture at another resolution, that of `features`: a frame whose paths end at the first surface, seen
-    /// by `camera`. `frame`, the light, is seen by `light_camera`. A change of the picture's size is a cut.
+    /// by `camera`. `frame`, the light, belongs to `light_camera`. A change of the picture's size is a cut.
     void add_upsampled(const NoisyFrame& frame, const CameraView& light_camera, const NoisyFrame& features,
                        const CameraView& camera, const SceneView& scene, const PreviousScene& before,
                        const TemporalGradientsView& change, const ReconstructionSettings& settings);
@@ -59,7 +59,7 @@ public:
     uint32_t shown_height() const { return upsampled_ ? upsampled_->height() : height_; }
     /// Device time of the last add(), in seconds. Waits for it.
     double seconds() const { return timer_.seconds(); }
-    /// RGB, linear, of the last frame.
+    /// Picture of the last frame: RGB, linear.
     Image picture() const;
     /// Computes the last frame's picture for a display, times 2^exposure_stops, and starts its copy to the host.
     void display(ToneMap tone_map, float exposure_stops);
@@ -96,7 +96,7 @@ private:
     std::unique_ptr<HostCopy> display_; // null before the first display()
     std::size_t display_bytes_ = 0;
     Buffer<Float4> layers_;                   // empty until they are requested
-    std::optional<UpsampledFrame> upsampled_; // if the picture has another size than its light
+    std::optional<UpsampledFrame> upsampled_; // exists if the picture has another size than its light
 };
 
 } // namespace pertev

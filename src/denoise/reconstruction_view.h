@@ -21,7 +21,7 @@ namespace pertev {
 struct HistoryView {
     Float4* guide;   // packed Guide
     Float4* diffuse; // mean of the signal over the frames that saw this surface point; their number
-    Float4* gloss;   // for the other signal, like diffuse
+    Float4* gloss;   // like diffuse, for the other signal
     Vec2* squares;   // mean square of the luminances of both
     Float4* recent;  // means over few frames: rgb diffuse, luminance of the other
     Float4* shown;   // the reconstructed picture as shown_color; w is unused
@@ -46,7 +46,7 @@ HD inline Float4 pack(const Guide& g) {
 }
 HD inline uint32_t object_of(Float4 packed) { return bits_of(packed.w); }
 HD inline float depth_of(Float4 packed) { return packed.z; }
-/// 2^23 + n is the float whose lowest bits are n, which is cheaper than a conversion.
+/// Unpacks the normal of a guide. 2^23 + n is the float whose lowest bits are n, which is cheaper than a conversion.
 HD inline Vec3 normal_of(Float4 packed) {
     constexpr uint32_t k2To23 = 0x4b000000;
     constexpr float kZero = 8388608.0f + 32767.0f, kScale = 1.0f / 32767.0f;

@@ -37,9 +37,8 @@ struct Taps {
     float sum;        // sum of weights before the division
 };
 
-/// Finds which of the four have seen `object` at about this depth with about this normal; if none has, it uses the
-/// nearest matching pixel around, because along an edge a pixel sees one side or the other. `depth` <= 0 accepts any
-/// depth.
+/// Finds the taps that have seen `object` at about this depth with about this normal; if none has, it uses the nearest
+/// matching pixel around, because along an edge a pixel sees one side or the other. `depth` <= 0 accepts any depth.
 HD inline Taps find_taps(const HistoryView& before, const FrameCameras& cameras, Vec2 pixel, float depth, Vec3 normal,
                          float min_cosine, uint32_t object) {
     Taps taps = {0, {0, 0, 0, 0}, 0};

@@ -15,7 +15,7 @@ HD inline Rgb shown_color(Rgb light) {
     return {0.25f * c.r + 0.5f * c.g + 0.25f * c.b, 0.5f * (c.r - c.b), 0.5f * c.g - 0.25f * (c.r + c.b)};
 }
 
-/// Decodes it; luminances above 2^20 are indistinguishable.
+/// Decodes an encoded colour to light, W/(sr m2); luminances above 2^20 are indistinguishable.
 HD inline Rgb light_of_shown(Rgb shown) {
     const float low = shown.r - shown.b;
     const Rgb c = {max(low + shown.g, 0.0f), max(shown.r + shown.b, 0.0f), max(low - shown.g, 0.0f)};

@@ -29,7 +29,7 @@ inline std::size_t float4s_of_tones(uint32_t width, uint32_t height) {
     return 2 * columns * (height + rows);
 }
 
-/// One call per row of pixels and column of blocks.
+/// The stage that sums the part of a row of pixels in a block, with one call per row of pixels and column of blocks.
 struct SumBlockRows {
     const Float4* shown; // shown_color
     NoisyFrameView frame;
@@ -55,7 +55,7 @@ struct SumBlockRows {
     }
 };
 
-/// One call per block: its mean, and in w of `scattered` the fraction that counts.
+/// The stage that computes the mean of each block, and in w of `scattered` the fraction that counts.
 struct MeanOfBlockRows {
     BlockSums rows;
     uint32_t height, side, columns;

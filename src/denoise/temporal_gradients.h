@@ -29,7 +29,7 @@ public:
     TemporalGradients(Queue& queue, uint32_t frame_width, uint32_t frame_height, bool splits_light,
                       const TemporalGradientsMemory& memory);
 
-    /// Whether they fit frames like this one.
+    /// Returns whether the pictures fit frames like this one.
     bool fits(const NoisyFrame& frame) const {
         return frame_width_ == frame.width() && frame_height_ == frame.height() &&
                before_.splits_light() == frame.splits_light();
@@ -38,7 +38,7 @@ public:
     // The scene as it was and as it is, with the same camera and random numbers.
     NoisyFrame& before() { return before_; }
     NoisyFrame& after() { return after_; }
-    /// Compares both pictures.
+    /// Compares both pictures and returns the gradients.
     TemporalGradientsView compare();
 
 private:

@@ -12,10 +12,11 @@ namespace pertev {
 
 class UpsampledFrame {
 public:
-    /// Takes the size of the picture.
+    /// Allocates memory for a picture of this size.
     UpsampledFrame(Queue& queue, uint32_t width, uint32_t height);
 
-    /// `features` is a frame of this size, seen by `camera`, whose paths end at the first surface.
+    /// Makes the next picture from `light`. `features` is a frame of the picture's size, seen by `camera`, whose paths
+    /// end at the first surface.
     void add(const NoisyFrame& features, const CameraView& camera, const CoarseLight& light, const SceneView& scene,
              const PreviousScene& before, const ReconstructionSettings& settings, bool has_history);
 

@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-/// Adds and returns the old value.
+/// Adds `value` to `*target` and returns the old value.
 HD inline uint32_t atomic_add(uint32_t* target, uint32_t value) {
 #if PERTEV_ON_DEVICE
     return atomicAdd(target, value);

@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-/// Stores `value` and returns the old one.
+/// Stores `value` in `*target` and returns the old value.
 HD inline uint32_t atomic_exchange(uint32_t* target, uint32_t value) {
 #if PERTEV_ON_DEVICE
     return atomicExch(target, value);

@@ -16,7 +16,8 @@ public:
     virtual ~TimeMark() = default;
     /// Records the time when all work queued so far is done.
     virtual void record() = 0;
-    /// Waits for both time stamps, which belong to one queue and have been recorded. Throws Error(DeviceFault).
+    /// Returns the seconds from `earlier` to this time stamp, after waiting for both. They belong to one queue and have
+    /// been recorded. Throws Error(DeviceFault).
     virtual double seconds_since(const TimeMark& earlier) const = 0;
 };
 
@@ -55,12 +56,12 @@ public:
     virtual void let_wait(int waiting, int other) = 0;
     virtual std::size_t free_bytes() const = 0;
 
-    /// Returns null if there is not enough memory; throws Error(DeviceFault) for anything else.
+    /// Allocates device memory. Returns null if there is not enough; throws Error(DeviceFault) for any other failure.
     virtual void* allocate(std::size_t bytes) = 0;
     virtual void free(void* memory) noexcept = 0;
     virtual void copy_to_device(void* device, const void* host, std::size_t bytes) = 0;
     virtual void copy_to_host(void* host, const void* device, std::size_t bytes) = 0;
-    /// Copies in the stream's order.
+    /// Copies device memory to device memory, in the stream's order.
     virtual void copy_on_device(void* to, const void* from, std::size_t bytes) = 0;
     virtual void fill(void* device, unsigned char value, std::size_t bytes) = 0;
     /// Waits for all work queued on the current stream so far. Throws Error(DeviceFault) that names `stage`, the last
@@ -72,14 +73,14 @@ public:
     virtual std::unique_ptr<HostCopy> make_host_copy(std::size_t bytes) = 0;
 };
 
-/// Why CUDA device `index` cannot be used, or empty if it can: no support compiled in, no driver, no such device, or
-/// an architecture for which the binary has no code. The calling thread's device does not change.
+/// Returns why CUDA device `index` cannot be used, or empty if it can: no support compiled in, no driver, no such
+/// device, or an architecture for which the binary has no code. The calling thread's device does not change.
 std::string why_no_cuda(int index);
-/// Whether there may be a CUDA device, that is, a driver library. The answer is immediate, while the first CUDA call
-/// takes a tenth of a second, and starting a driver a quarter.
+/// Returns whether there may be a CUDA device, that is, a driver library. The answer is immediate, while the first CUDA
+/// call takes a tenth of a second, and starting a driver a quarter.
 bool may_have_cuda();
 int cuda_device_count();
-/// Throws Error(BadInput) with the reason of why_no_cuda.
+/// Makes the backend of CUDA device `index`. Throws Error(BadInput) with the reason of why_no_cuda.
 std::unique_ptr<DeviceBackend> make_cuda_backend(int index);
 
 } // namespace pertev

@@ -23,7 +23,7 @@ public:
     /// Allocates `count` elements without initialising them. `name` appears in the message of Error(OutOfMemory).
     Buffer(Queue& queue, std::size_t count, const std::string& name)
         : queue_(&queue), data_(static_cast<T*>(queue.allocate(count * sizeof(T), name))), count_(count) {}
-    /// Copies `values`.
+    /// Allocates a buffer with a copy of `values`.
     Buffer(Queue& queue, std::span<const T> values, const std::string& name) : Buffer(queue, values.size(), name) {
         upload(values);
     }
@@ -40,7 +40,8 @@ public:
         return *this;
     }
 
-    /// Ensures room for `count` elements. A smaller buffer is freed first, so that both need not fit into memory.
+    /// Grows the buffer to at least `count` elements, whose values are undefined. The smaller one is freed first, so
+    /// that both need not fit into memory.
     void grow(Queue& queue, std::size_t count, const std::string& name) {
         if (count_ >= count) return;
         *this = Buffer();
@@ -63,14 +64,14 @@ public:
         if (count_ > 0) queue_->copy_to_host(values.data(), data_, count_ * sizeof(T));
         return values;
     }
-    /// Host access for reading: in place, or through `copy` if the device has its own memory.
+    /// Returns the elements for reading on the host: in place, or in `copy` if the device has its own memory.
     std::span<const T> read(std::vector<T>& copy) const {
         if (queue_ == nullptr || !queue_->is_cuda()) return {data_, count_};
         copy = download();
         return copy;
     }
     void zero() { fill(0); }
-    /// Sets every byte.
+    /// Sets every byte of the buffer to `value`.
     void fill(unsigned char value) {
         if (count_ > 0) queue_->fill(data_, value, count_ * sizeof(T));
     }

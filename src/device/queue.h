@@ -21,12 +21,12 @@ namespace pertev {
 class Queue {
 public:
     static Queue make_cpu();
-    /// Throws Error(BadInput) with the reason if the device cannot be used.
+    /// Returns a queue of CUDA device `index`. Throws Error(BadInput) with the reason if the device cannot be used.
     static Queue make_cuda(int index);
     /// Returns a queue that counts the bytes of buffers and allocates no memory. Nothing may read a buffer's address,
     /// and nothing is copied, filled or launched. The count predicts the memory of the same code on a device.
     static Queue make_dry_run(bool is_cuda);
-    /// Buffers point to their queue, so it may move only before it has allocated memory.
+    /// Moves a queue that has not allocated memory; later its buffers would point to the old one.
     Queue(Queue&& other);
 
     bool is_cuda() const { return backend_->is_cuda(); }
@@ -77,7 +77,7 @@ public:
     void check_launch() { backend_->check_launch(stage_); }
     const void* wait(HostCopy& copy) { return copy.wait(stage_); }
 
-    /// For device/device_timer.h and device/readback.h.
+    /// Makes a time stamp for device/device_timer.h.
     std::unique_ptr<TimeMark> make_time_mark() { return backend_->make_time_mark(); }
     std::unique_ptr<HostCopy> make_host_copy(std::size_t bytes) { return backend_->make_host_copy(bytes); }
 
@@ -91,20 +91,20 @@ public:
     void copy_to_host(void* host, const void* device, std::size_t bytes) {
         backend_->copy_to_host(host, device, bytes);
     }
-    /// Copies in the stream's order.
+    /// Copies device memory to device memory, in the stream's order.
     void copy_on_device(void* to, const void* from, std::size_t bytes) { backend_->copy_on_device(to, from, bytes); }
     void zero(void* device, std::size_t bytes) { backend_->fill(device, 0, bytes); }
-    /// Sets every byte.
+    /// Sets every byte to `value`, in the stream's order.
     void fill(void* device, unsigned char value, std::size_t bytes) { backend_->fill(device, value, bytes); }
 
     std::size_t allocated_bytes() const { return allocated_; }
     std::size_t peak_bytes() const { return peak_; }
-    /// Number of allocations, and bytes uploaded, since the queue was made.
+    /// Number of allocations since the queue was made.
     uint64_t allocation_count() const { return allocation_count_; }
     uint64_t uploaded_bytes() const { return uploaded_; }
     std::size_t free_bytes() const { return backend_->free_bytes(); }
 
-    /// Made before each launch: names its stage for errors, and makes the queue's device the thread's current one.
+    /// The scope of a launch. It names the stage for errors, and makes the queue's device the thread's current one.
     class Scope {
     public:
         Scope(Queue& queue, const char* stage) {

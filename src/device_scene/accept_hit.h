@@ -21,7 +21,7 @@ struct TriangleId {
     bool operator==(const TriangleId&) const = default;
 };
 
-/// Alpha of the material there: its factor, the textures' and the vertex colour's.
+/// Alpha of the material at a point of a triangle: its factor times that of the texture and of the vertex colour.
 HD inline float alpha_at(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
                          uint32_t primitive, float u, float v) {
     const TriangleIndices i = triangle_indices(mesh, primitive);
@@ -37,9 +37,9 @@ HD inline float alpha_at(const SceneView& scene, const MaterialParameters& mater
     return alpha;
 }
 
-/// Key of a blended surface's coin: the triangle, but on its border the edge or the corner at the hit, identified by
-/// the positions of its ends. A ray exactly through an edge hits the triangles on both sides of it
-/// (trace/intersect/intersect_triangle.h), and with one coin they count as one surface.
+/// Key of the random decision of a blended surface: the triangle, but on its border the edge or the corner at the hit,
+/// identified by the positions of its ends. A ray exactly through an edge hits the triangles on both sides of it
+/// (trace/intersect/intersect_triangle.h), and with one decision they count as one surface.
 HD inline uint32_t coin_owner(const MeshView& mesh, uint32_t primitive, float u, float v) {
     constexpr float kMinWeight = 0x1p-20f; // rounding of weights is at most a quarter of this
     const float w = 1.0f - u - v;
@@ -56,7 +56,7 @@ HD inline uint32_t coin_owner(const MeshView& mesh, uint32_t primitive, float u,
     return sum;
 }
 
-/// Key of the coin of blended surfaces for a ray of a sample's path after `depth` scatterings.
+/// Key of the random decisions of blended surfaces for a ray of a sample's path after `depth` scatterings.
 HD inline uint32_t coin_key(SampleKey sample, uint32_t depth, bool is_shadow) {
     return hash_words(sample.pixel, sample.sample, sample.seed, depth * 2 + (is_shadow ? 1u : 0u)).x;
 }
@@ -78,7 +78,7 @@ struct AcceptHit {
         return pertev::move_back(scene.motions.at(motion, time), ray);
     }
 
-    /// Whether alpha lets the candidate count.
+    /// Returns whether the candidate counts by its alpha.
     HD bool passes_alpha(uint32_t instance, uint32_t primitive, float u, float v) const {
         const Opacity known = known_opacity(scene.micromaps, instance, primitive, u, v);
         if (known != Opacity::Unknown) return known == Opacity::Opaque;
@@ -92,8 +92,8 @@ struct AcceptHit {
     }
 };
 
-/// Whether the instance, at its position at rest, culls the side that a camera ray of this direction (world space)
-/// reaches. It is tested in the mesh's own space, where the winding defines the front, mirrored or not.
+/// Returns whether the instance, at its position at rest, culls the side that a camera ray of this direction (world
+/// space) reaches. It is tested in the mesh's own space, where the winding defines the front, mirrored or not.
 HD inline bool hides_side(const SceneView& scene, Vec3 direction, uint32_t instance, uint32_t primitive) {
     const InstanceView& placed = scene.instances[instance];
     if (placed.hides_back == 0) return false;

@@ -25,16 +25,16 @@ struct TraceQuery {
     bool is_opaque() const { return scene == nullptr; }
 };
 
-/// Whether the candidate counts on an instance at rest that may let rays pass. It is not inlined, so that its texture
-/// lookups cost the traversal no registers.
+/// Returns whether the candidate counts on an instance at rest that may let rays pass. It is not inlined, so that its
+/// texture lookups cost the traversal no registers.
 HD_CALL inline bool passes_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
                                    uint32_t instance, uint32_t primitive, float u, float v) {
     if (hides_backs && hides_side(*scene, ray->direction, instance, primitive)) return true;
     return scene->any_alpha != 0 && !AcceptHit{*scene, {}, {}, key}.passes_alpha(instance, primitive, u, v);
 }
 
-/// Whether the candidate counts on an instance that may have moved. `time` is null if nothing moves while the shutter
-/// is open.
+/// Returns whether the candidate counts on an instance that may have moved. `time` is null if nothing moves while the
+/// shutter is open.
 HD_CALL inline bool passes_moved_surface(const SceneView* scene, const Ray* ray, uint32_t key, bool hides_backs,
                                          const float* time, uint32_t instance, uint32_t primitive, float u, float v) {
     const AcceptHit accept{*scene, {}, {}, key, time != nullptr ? *time : kAtRest};
@@ -52,8 +52,8 @@ HD_CALL inline MovedLine moved_back(const SceneView* scene, uint32_t motion, con
     return {now.move_back(ray->origin), now.turn_back(ray->direction)};
 }
 
-/// For scenes whose surfaces are all opaque and without culled backs: the traversal has no registers to spare for
-/// others.
+/// Acceptance for scenes whose surfaces are all opaque and without culled backs. It is separate because the traversal
+/// has no registers to spare for others.
 struct AcceptOpaque {
     const TraceQuery& query;
     uint32_t i; // index of the ray
@@ -71,8 +71,8 @@ private:
     }
 };
 
-/// `kMayMove` is false if everything is static, as baked triangles always are. Another argument would slow down every
-/// candidate on a surface with alpha.
+/// Acceptance for any scene. `kMayMove` is false if everything is static, as baked triangles always are. It is no
+/// function argument, because that would slow down every candidate on a surface with alpha.
 template <bool kMayMove>
 struct AcceptQueued {
     const TraceQuery& query;

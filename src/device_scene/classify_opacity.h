@@ -109,15 +109,15 @@ HD inline ValueRange range_of_texels(const TexelBoundsView& bounds, const TexelS
 /// Range of the channel of `ref` on the micro-triangle.
 HD inline ValueRange texture_range(const MeshView& mesh, const TextureRef& ref, const TexelBoundsView& bounds,
                                    TriangleIndices i, const MicroCorners& corners) {
-    constexpr float kMostCoordinate = 0x1p100f; // sums of these are finite
-    // Sum at a vertex without signs: a position and a corner round by less than 2^-20 of it together, and kMostBeside
+    constexpr float kMaxUv = 0x1p100f; // sums of these are finite
+    // Sum at a vertex without signs: a position and a corner round by less than 2^-20 of it together, and kMaxBeside
     // is at most 2^-20 of it.
     constexpr float kRounding = 0x1p-18f;
     Vec2 size = {0, 0};
     const float ends[3][2] = {{0, 0}, {1, 0}, {0, 1}};
     for (const auto& end : ends) {
         const Vec2 uv = texture_coordinate(mesh, ref, i, end[0], end[1]);
-        if (!(abs(uv.x) < kMostCoordinate && abs(uv.y) < kMostCoordinate)) return any_value();
+        if (!(abs(uv.x) < kMaxUv && abs(uv.y) < kMaxUv)) return any_value();
         size.x = max(size.x, abs(ref.m00 * uv.x) + abs(ref.m01 * uv.y) + abs(ref.m02));
         size.y = max(size.y, abs(ref.m10 * uv.x) + abs(ref.m11 * uv.y) + abs(ref.m12));
     }

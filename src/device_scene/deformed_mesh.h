@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-/// Plain device pointers.
+/// A mesh whose vertices move, as plain device pointers.
 struct DeformedMesh {
     uint32_t mesh = 0;       // index into Scene::meshes
     uint32_t tree = 0;       // index of its own tree (MeshPlacement::blas_of_mesh)

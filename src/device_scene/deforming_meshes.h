@@ -24,9 +24,9 @@ public:
 
     uint64_t version() const { return version_; } // the latest DeformedMesh::version
     bool is_empty() const { return meshes_.empty(); }
-    /// Sets the scene's meshes, by their indices, to the vertices here.
+    /// Points the scene's meshes, by their indices, to the vertices of this object.
     void point(std::vector<MeshView>& meshes) const;
-    /// `meshes` are the scene's, on the device, after point(). Uploads those of before().
+    /// Uploads the meshes of before(). `meshes` are the scene's, on the device, after point().
     void set_meshes(const std::vector<MeshView>& meshes);
 
     /// Moves the vertices of meshes with a changed pose to prepared.poses; allocates nothing.

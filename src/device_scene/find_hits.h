@@ -28,7 +28,7 @@ inline void find_hits(const HostTrees& trees, const SceneView& scene, bool from_
     find_hits(trees, count, order, ray_of, accept_camera, hits);
 }
 
-/// Whether each of `count` rays hits anything.
+/// Returns whether each of `count` rays hits anything.
 template <class RayOf, class AcceptOf>
 inline void find_occlusions(const HostTrees& trees, uint32_t count, RayOrder order, const RayOf& ray_of,
                             const AcceptOf& accept_of, bool* met) {

@@ -7,7 +7,7 @@
 
 namespace pertev {
 
-/// Base colour of the material there, [0, 1] per channel.
+/// Base colour of the material at a point of a triangle, [0, 1] per channel.
 template <ShadingVariant kVariant = ShadingVariant::General>
 HD inline Rgb base_color_at(const SceneView& scene, const MaterialParameters& material, const MeshView& mesh,
                             TriangleIndices i, float u, float v) {

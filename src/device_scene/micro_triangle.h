@@ -17,7 +17,7 @@ namespace pertev {
 
 enum class Opacity : uint32_t { Unknown = 0, Transparent = 1, Opaque = 2 };
 
-/// A word has 16 micro-triangles, so a triangle has at least one word.
+/// Limits of the subdivision level. A word has 16 micro-triangles, so a triangle has at least one word.
 inline constexpr uint32_t kMinMicroLevel = 2, kMaxMicroLevel = 9, kMicroTrianglesPerWord = 16;
 
 HD constexpr uint32_t micro_triangles(uint32_t level) { return 1u << 2 * level; }
@@ -30,7 +30,7 @@ struct OpacityMicromapView {
 };
 
 /// Maximum distance, in barycentrics, by which rounding may move a position outside its triangle.
-inline constexpr float kMostBeside = 0x1p-22f;
+inline constexpr float kMaxBeside = 0x1p-22f;
 
 /// A micro-triangle: cell (column, row) of 2^level per side, counted along u and v, and which half of it.
 struct MicroTriangle {
@@ -51,8 +51,8 @@ HD inline MicroTriangle micro_triangle_at(uint32_t level, uint32_t index) {
     return {index / 2, row, index % 2 != 0};
 }
 
-/// The one that contains (u, v), or an adjacent one if rounding has moved (u, v) outside the triangle or onto an
-/// edge.
+/// The micro-triangle that contains (u, v), or an adjacent one if rounding has moved (u, v) outside the triangle or
+/// onto an edge.
 HD inline MicroTriangle micro_triangle_of(uint32_t level, float u, float v) {
     const int last = (1 << level) - 1;
     const auto side = static_cast<float>(last + 1);
@@ -63,7 +63,7 @@ HD inline MicroTriangle micro_triangle_of(uint32_t level, float u, float v) {
     return {static_cast<uint32_t>(column), static_cast<uint32_t>(row), is_upper};
 }
 
-/// Its corners as barycentrics (u, v).
+/// Corners of a micro-triangle as barycentrics (u, v).
 struct MicroCorners {
     Vec2 at[3];
 };
@@ -76,13 +76,13 @@ HD inline MicroCorners corners_of(uint32_t level, MicroTriangle t) {
 
 /// Opacity at (u, v) on triangle `primitive`; unknown if it is farther outside the triangle than a ray's hit can be.
 HD inline Opacity opacity_at(const OpacityMicromapView& map, uint32_t primitive, float u, float v) {
-    if (!(min(u, v) >= -kMostBeside && u + v <= 1 + kMostBeside)) return Opacity::Unknown;
+    if (!(min(u, v) >= -kMaxBeside && u + v <= 1 + kMaxBeside)) return Opacity::Unknown;
     const uint32_t index = micro_index(map.level, micro_triangle_of(map.level, u, v));
     const uint64_t word = uint64_t(primitive) * words_per_triangle(map.level) + index / kMicroTrianglesPerWord;
     return static_cast<Opacity>(map.states[word] >> index % kMicroTrianglesPerWord * 2 & 3u);
 }
 
-/// Known opacity of a candidate. `maps`: [instance]; null: none.
+/// Opacity of a candidate as far as micromaps determine it. `maps` is [instance], or null if there are none.
 HD inline Opacity known_opacity(const OpacityMicromapView* maps, uint32_t instance, uint32_t primitive, float u,
                                 float v) {
     if (maps == nullptr) return Opacity::Unknown;

@@ -53,7 +53,7 @@ struct EmittersAt {
     HD RigidMotion operator()(uint32_t instance) const { return motions.of_instance_at(instance, time); }
 };
 
-/// sample_light for a scene; `moves` means that something in it moves.
+/// Samples a light like sample_light, for a scene. `moves` means that something in it moves.
 template <bool kTextures = true, class Choice = ChosenByPower>
 HD INLINE_ON_DEVICE bool draw_direct(const SceneView& scene, bool moves, const LightContext& context, SampleBits u,
                                      LightSample& sample) {
@@ -62,7 +62,8 @@ HD INLINE_ON_DEVICE bool draw_direct(const SceneView& scene, bool moves, const L
                  : sample_light<kTextures, Choice>(scene.lights, context, u, sample);
 }
 
-/// Density with which draw_direct, for `context`, samples the point of `surface`, 1/sr; 0 if that is no light.
+/// Density with which draw_direct, for `context`, samples the point of `surface`, 1/sr; 0 if the surface is not an
+/// emitter.
 template <class Choice = ChosenByPower>
 HD inline float pdf_direct(const SceneView& scene, bool moves, const LightContext& context, const Surface& surface) {
     const uint32_t light = light_of(scene.lights, surface.triangle.instance, surface.triangle.primitive);

@@ -15,8 +15,9 @@ namespace pertev {
 
 class PartArrays {
 public:
-    /// upload() will set `target` to the copy of `values`, or null if empty. Both must stay in place until then.
-    /// `values` may contain targets of arrays added before, because they are copied after all pointers are set.
+    /// Adds an array: upload() will set `target` to the copy of `values`, or null if empty. Both must stay in place
+    /// until then. `values` may contain targets of arrays added before, because they are copied after all pointers are
+    /// set.
     template <class T>
     void add(std::span<const T> values, const T*& target) {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -27,7 +28,7 @@ public:
         add(std::span<const T>(values), target);
     }
 
-    /// Size of the buffer.
+    /// Size of the buffer that upload() needs, bytes.
     std::size_t bytes() const;
     /// Reuses `buffer` if it is large enough; otherwise frees it and allocates another. `name` appears in the message
     /// of Error(OutOfMemory), after which the part is empty.

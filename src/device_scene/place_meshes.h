@@ -49,7 +49,7 @@ struct SceneTriangles {
     SceneTriangles() = default;
     SceneTriangles(const Scene& scene, const MeshPlacement& placement);
     uint64_t count() const;
-    /// Part 0 has the baked ones; the meshes follow.
+    /// Triangles of a part: part 0 has the baked ones; the meshes follow.
     const std::vector<BvhTriangle>& part(std::size_t number) const { return number == 0 ? baked : meshes[number - 1]; }
     std::size_t parts() const { return 1 + meshes.size(); }
 };

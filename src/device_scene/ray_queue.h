@@ -39,7 +39,6 @@ struct RayQueueView {
     const Ray* rays = nullptr;
     // Instance and primitive of the triangle that a ray leaves, and of the one at which it is aimed; neither is hit.
     // kNoHit: none. Null: none for any ray.
-    // kNoHit: none. Null: none of any ray.
     const Uint2* starts = nullptr;
     const Uint2* targets = nullptr;
     const uint32_t* keys = nullptr; // keys of the coins of blended surfaces; null if no surface is blended

@@ -10,7 +10,7 @@ namespace {
 // Each list below defines the contents of a part. Arrays that are made only for the device are parameters, so that
 // they outlive the list.
 
-/// Vertices of meshes with a pose belong to DeformingMeshes.
+/// Returns the arrays of all geometry but the vertices of meshes with a pose, which belong to DeformingMeshes.
 PartArrays list_geometry(const PlacedScene& prepared, std::vector<MeshView>& meshes, SceneView& view) {
     const Scene& scene = *prepared.scene;
     PartArrays arrays;
@@ -154,7 +154,7 @@ void SceneOnDevice::update(Queue& queue, const PlacedScene& prepared, uint32_t p
     update_micromaps(queue, *prepared.scene, parts);
 }
 
-/// Not used on a CPU, where texture lookups cost less than making micromaps.
+/// Updates opacity micromaps on a GPU. A CPU has none, because there texture lookups cost less than making micromaps.
 void SceneOnDevice::update_micromaps(Queue& queue, const Scene& scene, uint32_t parts) {
     if (!queue.is_cuda()) return;
     constexpr uint32_t kMadeOf = kPartShapes | kPartGeometry | kPartMaterials | kPartTextures;

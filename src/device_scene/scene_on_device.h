@@ -12,7 +12,7 @@
 
 namespace pertev {
 
-/// Parts of a scene that may change separately. A set of them is a uint32_t.
+/// Parts of a scene that may change separately, as bits of a set of type uint32_t.
 enum ScenePart : uint32_t {
     kPartGeometry = 1,     // meshes
     kPartInstances = 2,    // their transforms and motions, and the world's origin; whether their materials have alpha
@@ -39,7 +39,7 @@ public:
 
     void update(Queue& queue, const PlacedScene& prepared, uint32_t parts);
 
-    /// Meshes whose vertices have moved here, for refitting trees.
+    /// Meshes whose vertices have moved on the device, for refitting trees.
     std::vector<DeformedMesh> deformed(const PlacedScene& prepared) const {
         return deforming_.deformed(prepared, meshes_);
     }
@@ -66,7 +66,7 @@ private:
     Buffer<std::byte> geometry_, instances_, materials_, lights_, environment_, textures_;
 };
 
-/// The value of SceneView::known.
+/// The simplest shading variant that covers the scene.
 ShadingVariant shading_variant(const Scene& scene);
 
 /// Bytes that SceneOnDevice allocates.

@@ -63,7 +63,7 @@ struct SceneView {
     MotionsView motions;     // while the shutter is open
 };
 
-/// Whether a camera ray that hits this instance shows the background; true for kNoHit too.
+/// Returns whether a camera ray that hits this instance shows the background; true for kNoHit too.
 HD inline bool shows_background(const SceneView& scene, uint32_t instance) {
     return instance == kNoHit || instance + 1 == scene.background;
 }

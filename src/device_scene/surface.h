@@ -25,17 +25,17 @@ struct Surface {
     bool is_unlit;
     float tilt; // tilt of the interpolated normal (shadow_terminator.h); 0 if the mesh has none
 
-    /// Returns the context of a draw of light that is scattered to `wo`; `time`: of the ray, while the shutter is open.
+    /// Returns the context of a draw of light that is scattered to `wo`; `time` is the ray's while the shutter is open.
     HD LightContext light_context(Vec3 wo, float time = kAtRest) const {
         return {position, dot(wo, frame.normal) < 0 ? -frame.normal : frame.normal, bsdf.lets_through(), time};
     }
 
-    /// Whether both directions are on the same side of the triangle.
+    /// Returns whether both directions are on the same side of the triangle.
     HD bool same_side(Vec3 wo, Vec3 wi) const {
         return (dot(wo, geometric_normal) > 0) == (dot(wi, geometric_normal) > 0);
     }
-    /// Whether the shading frame classifies the pair as the triangle does, as reflection or transmission. Where they
-    /// disagree (near the horizon of a bent normal) no light is scattered, because it would leak.
+    /// Returns whether the shading frame classifies the pair as the triangle does, as reflection or transmission. Where
+    /// they disagree (near the horizon of a bent normal) no light is scattered, because it would leak.
     HD bool is_consistent(Vec3 wo, Vec3 wi, Vec3 wo_local, Vec3 wi_local) const {
         return same_side(wo, wi) == (wo_local.z * wi_local.z > 0);
     }
@@ -55,7 +55,8 @@ struct Surface {
     /// Approximate fraction of evaluate() from diffuse lobes, [0, 1]: a guide for denoisers.
     HD Rgb diffuse_share(Vec3 wo, Vec3 wi) const { return bsdf.diffuse_share(frame.to_local(wo), frame.to_local(wi)); }
 
-    /// Samples a wi in world space with the density of evaluate(), or of a delta lobe; pdf 0: none.
+    /// Samples a wi in world space with the density of evaluate(), or that of a delta lobe; the pdf is 0 if there is no
+    /// sample.
     HD BsdfSample sample(Vec3 wo, float u_lobe, Vec2 u) const {
         const Vec3 wo_local = frame.to_local(wo);
         BsdfSample sample = bsdf.sample(wo_local, u_lobe, u);
@@ -85,7 +86,7 @@ struct Surface {
         return !(frame.normal == geometric_normal);
     }
 
-    /// Mirrors at the triangle's plane.
+    /// Mirrors a direction at the triangle's plane.
     HD Vec3 folded(Vec3 wi) const { return wi - (2.0f * dot(wi, geometric_normal)) * geometric_normal; }
 };
 
@@ -115,7 +116,7 @@ HD inline Ray ray_to_light(const LightSample& light, Vec3 position, Vec3 error, 
     return ray;
 }
 
-/// How an instance's mesh lies in the world (InstanceView).
+/// Placement of an instance's mesh in the world (InstanceView).
 template <class T>
 struct PlacementOf {
     const TransformOf<T>& world_from_local;
@@ -142,12 +143,12 @@ struct WorldTriangle : WorldTriangleOf<float> {
     TriangleIndices i;
 };
 
-/// The bound in units of 2^-24. For a baked triangle the traversal uses the same vertices, so the error comes from
-/// rounding the point P and the offset origin (1 each), the terms of a + u ab + v ac (3) and the test of a triangle
-/// from there (6): 2 of |P| and 10 of the edges. In an instance the traversal transforms the origin by L =
-/// local_from_world, t: including the rounding of L itself that is 5 |M| (|L||P| + |t|), M = world_from_local. Its
-/// vertices here have an error of 4 |M||a| + 4 |T|, which is at most 8 |M| (|L||P| + |t|) and 4 |M||L| of the edges.
-/// |M||L| is at least 1, so a factor of 16 covers everything.
+/// Bound of the rounding error of a hit's position, metres per component. In units of 2^-24: for a baked triangle the
+/// traversal uses the same vertices, so the error comes from rounding the point P and the offset origin (1 each), the
+/// terms of a + u ab + v ac (3) and the test of a triangle from there (6): 2 of |P| and 10 of the edges. In an instance
+/// the traversal transforms the origin by L = local_from_world, t: including the rounding of L itself that is 5 |M|
+/// (|L||P| + |t|), M = world_from_local. Its vertices here have an error of 4 |M||a| + 4 |T|, which is at most 8 |M|
+/// (|L||P| + |t|) and 4 |M||L| of the edges. |M||L| is at least 1, so a factor of 16 covers everything.
 template <class T = float>
 HD inline Vec3Of<T> hit_error(const PlacementOf<T>& placement, Vec3Of<T> position, Vec3Of<T> ab, Vec3Of<T> ac) {
     const Vec3Of<T> edges = abs(ab) + abs(ac);
@@ -158,7 +159,8 @@ HD inline Vec3Of<T> hit_error(const PlacementOf<T>& placement, Vec3Of<T> positio
     return select(placement.is_baked, if_baked, 0x1p-20f * transform_sizes(placement.world_from_local, local));
 }
 
-/// Why no light leaks at an edge: there the computed point may be behind a neighbour's plane by its error e (the
+/// Sets all of `triangle` from its corners in local space, with the position moved off its edges so that no light leaks
+/// there. At an edge the computed point may be behind a neighbour's plane by its error e (the
 /// largest component), and an offset along its own normal does not correct that. So each of its weights is at least
 /// 16 e s / (2 area), with s the longest component of ab and ac; that is 16 e s / length >= 4.6 e away from an edge
 /// of that length. If the neighbour forms an angle x with this triangle, the origin, up to 1.7 e off this one, is

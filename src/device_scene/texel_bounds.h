@@ -53,7 +53,7 @@ HD inline ValueRange cell_of(const TexelBoundsView& bounds, uint32_t level, uint
     return is_finite(value) ? ValueRange{value, value} : any_value();
 }
 
-/// Cells along a side of a box that are read one by one.
+/// Maximum number of cells along a side of a box that are read one by one.
 inline constexpr uint32_t kMaxCells = 8;
 
 /// Range of all texels of the box, and of some beside it.

@@ -11,7 +11,7 @@ HD inline Vec2 texture_coordinate(const MeshView& mesh, const TextureRef& ref, T
     return uv != nullptr ? interpolate(uv, i, u, v) : Vec2{0, 0};
 }
 
-/// Multiplies `factor` by the channel of `ref`.
+/// Returns `factor` times the channel of `ref`, at barycentrics (u, v) of a triangle.
 HD inline float textured_factor(const SceneView& scene, const MeshView& mesh, float factor, const TextureRef& ref,
                                 TriangleIndices i, float u, float v) {
     if (!ref.has_image()) return factor;

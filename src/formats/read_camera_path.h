@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-/// Throws Error(BadInput) that names the file, the JSON pointer, and what would be right.
+/// Reads a camera path. Throws Error(BadInput) that names the file, the JSON pointer, and what would be right.
 CameraPath read_camera_path(const std::filesystem::path& path);
 
 } // namespace pertev

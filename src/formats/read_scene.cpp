@@ -35,7 +35,7 @@ const std::array kReaders = {
     FormatReader{".glb", read_gltf, true, true},
 };
 
-/// Null for an extension that no reader has.
+/// Returns the reader for a file's extension; null if there is none.
 const FormatReader* find_reader(const std::filesystem::path& path) {
     const std::string extension = lower_case_extension(path);
     const auto found = std::ranges::find(kReaders, extension, &FormatReader::extension);

@@ -18,14 +18,15 @@ namespace pertev {
 /// validate().
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
 
-/// Whether files of this name's format can say if a surface emits from one face or from both; built-in scenes can.
+/// Returns whether files of this name's format can say if a surface emits from one face or from both; built-in scenes
+/// can.
 bool defines_emitter_sides(const std::filesystem::path& path);
 
-/// Whether files of this name's format define their unit and up axis, so that ReadOptions::space has no effect;
+/// Returns whether files of this name's format define their unit and up axis, so that ReadOptions::space has no effect;
 /// built-in scenes do.
 bool defines_space(const std::filesystem::path& path);
 
-/// Whether a name could be a scene's: it has an extension from above or is that of a built-in scene.
+/// Returns whether a name could be a scene's: it has an extension from above or is that of a built-in scene.
 bool is_scene_name(const std::filesystem::path& path);
 /// List of the possible names for messages: "a scene file (.obj ...) nor a built-in scene (...)".
 std::string scene_kinds();

@@ -20,8 +20,8 @@ struct Tone {
     double weight;
 };
 
-/// Luminance, weighted towards the middle of the picture, where the thing is; and the largest channel, by which paint
-/// burns, weighted alike everywhere.
+/// Luminance, weighted towards the middle of the picture, where the subject is; and the largest channel, which
+/// determines what burns out, with one weight everywhere.
 struct Tones {
     std::vector<Tone> luminance, largest; // from dark to bright
 };
@@ -38,7 +38,8 @@ struct DoubleRgb {
     }
 };
 
-/// How much a place counts in the mean: 1 in the middle of the picture, 1/8 in its corners. `x` and `y`: [0, 1].
+/// Returns the weight of a position in the mean: 1 in the middle of the picture, 1/8 in its corners. `x` and `y` are in
+/// [0, 1].
 double position_weight(double x, double y) {
     const double inwards = std::max(0.0, 1 - 2 * ((x - 0.5) * (x - 0.5) + (y - 0.5) * (y - 0.5)));
     return 0.125 + 0.875 * inwards * inwards;
@@ -55,9 +56,9 @@ float weight_of(const Image& image, const float* pixel) {
     return has_weight(image) ? clamp(pixel[image.channels - 1], 0.0f, 1.0f) : 1.0f;
 }
 
-/// Means of each of about 40 blocks along the longer side. Of single pixels the logarithms would tell of the noise: few
-/// samples leave many pixels dark and a few bright, and the picture would come out too bright. Blocks without light
-/// tell nothing.
+/// Returns the means of blocks, about 40 along the longer side. Logarithms of single pixels would depend on the noise:
+/// few samples leave many pixels dark and a few bright, and the picture would come out too bright. Blocks without light
+/// are left out.
 Tones block_tones(const Image& image) {
     const uint32_t side = std::max<uint32_t>(1, std::max(image.width, image.height) / 40);
     const uint32_t columns = (image.width + side - 1) / side, rows = (image.height + side - 1) / side;
@@ -108,7 +109,7 @@ float trimmed_log_mean(const std::vector<Tone>& tones) {
     return static_cast<float>(sum / (last - first));
 }
 
-/// Light that `share` of the weight lies above.
+/// Returns the light that is exceeded by the fraction `share` of the weight.
 float light_below(const std::vector<Tone>& tones, double share) {
     double left = share * total_weight(tones);
     for (std::size_t i = tones.size(); i-- > 0;) {
@@ -118,12 +119,13 @@ float light_below(const std::vector<Tone>& tones, double share) {
     return tones.front().light;
 }
 
-/// Rounded once, so that it is the float that a reader makes of the same number in decimals.
+/// Converts to stops with one rounding, so that the result is the float that a reader makes of the same decimal number.
 float stops_of(int hundredths) { return static_cast<float>(hundredths) / 100.0f; }
 
-/// The most hundredths of a stop, `most` or fewer, that are fine: all are up to some exposure, and none beyond.
+/// Returns the largest number of hundredths of a stop, at most `most`, for which `is_fine` is true. It is true up to
+/// some exposure and false beyond.
 template <class IsFine>
-int most_that_are_fine(int most, IsFine is_fine) {
+int max_fine(int most, IsFine is_fine) {
     if (is_fine(stops_of(most))) return most;
     int low = -kMaxHundredths, high = most;
     while (high - low > 1) {
@@ -138,7 +140,7 @@ bool is_burnt(Rgb light, ToneMap kind, float scale) {
     return to_byte(shown.r) == 255 && to_byte(shown.g) == 255 && to_byte(shown.b) == 255;
 }
 
-/// Share of what counts that comes out white.
+/// Returns the fraction of the counting weight that comes out white.
 double burnt_share(const Image& image, ToneMap kind, float stops) {
     const float scale = exposure_scale(stops);
     double burnt = 0, all = 0;
@@ -161,10 +163,9 @@ float auto_exposure_stops(const Image& linear, ToneMap kind) {
     const float bright = light_below(tones.largest, kBrightShare);
     const float to_grey = log2(kMiddleGrey) - trimmed_log_mean(tones.luminance);
     int hundredths = to_int(floor(100.0f * to_grey + 0.5f), -kMaxHundredths, kMaxHundredths);
-    hundredths = most_that_are_fine(
+    hundredths = max_fine(
         hundredths, [&](float stops) { return tone_map(grey(bright), kind, exposure_scale(stops)).g <= kBright; });
-    hundredths =
-        most_that_are_fine(hundredths, [&](float stops) { return burnt_share(linear, kind, stops) <= kBurntShare; });
+    hundredths = max_fine(hundredths, [&](float stops) { return burnt_share(linear, kind, stops) <= kBurntShare; });
     return stops_of(hundredths);
 }
 

@@ -12,7 +12,7 @@ namespace {
 using Triple = std::array<double, 3>;
 
 constexpr double kLargest = 4;
-constexpr double kMinDeterminant = 1e-4; // that of Rec. 709's primaries is 0.11
+constexpr double kMinDeterminant = 1e-4; // the primaries of Rec. 709 have 0.11
 
 constexpr ColorMatrix kBradford = {{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
 
@@ -46,10 +46,10 @@ ColorMatrix inverse(const ColorMatrix& m) {
     return to;
 }
 
-/// X, Y and Z of a white of luminance 1.
+/// Returns X, Y and Z of a white of luminance 1.
 Triple white_of(const Chromaticity& c) { return {c.x / c.y, 1, (1 - c.x - c.y) / c.y}; }
 
-/// X, Y and Z from R, G and B. Nothing where the primaries are degenerate.
+/// Returns the matrix from R, G, B to X, Y, Z; nothing if the primaries are degenerate.
 std::optional<ColorMatrix> xyz_from(const ColorPrimaries& p) {
     for (const Chromaticity& c : {p.red, p.green, p.blue, p.white}) {
         if (!(std::abs(c.x) <= kLargest && std::abs(c.y) <= kLargest)) return std::nullopt;
@@ -67,7 +67,7 @@ std::optional<ColorMatrix> xyz_from(const ColorPrimaries& p) {
     return to;
 }
 
-/// X, Y and Z of what looks in the light of one white as X, Y and Z do in that of another.
+/// Returns the chromatic adaptation of X, Y, Z from one white to another; nothing if it is degenerate.
 std::optional<ColorMatrix> adaptation(const Chromaticity& from, const Chromaticity& to) {
     const Triple before = multiply(kBradford, white_of(from)), after = multiply(kBradford, white_of(to));
     ColorMatrix gains = {};

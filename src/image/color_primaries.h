@@ -25,7 +25,7 @@ inline constexpr ColorPrimaries kRec709 = {
 
 using ColorMatrix = std::array<std::array<double, 3>, 3>; // row by row
 
-/// Whether the primaries are those of Rec. 709, up to 0.0005 per number.
+/// Returns whether the primaries are those of Rec. 709, up to 0.0005 per number.
 bool is_rec709(const ColorPrimaries& primaries);
 
 /// The matrix from linear R, G, B with these primaries to linear Rec. 709. Nothing if they are degenerate: a number

@@ -107,7 +107,7 @@ private:
         }
     }
 
-    /// Numbers that cannot be read are 0.
+    /// Reads the numbers of a line PRIMARIES; those that cannot be read are 0.
     void read_primaries(std::string_view text) {
         std::array<double, 8> numbers = {};
         for (double& number : numbers) {

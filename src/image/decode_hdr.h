@@ -22,7 +22,7 @@ Image decode_hdr(std::span<const std::byte> bytes, const std::string& name);
 /// The numbers of the header's line PRIMARIES; nothing if there is none, or eight zeros, which Photoshop writes for
 /// none.
 std::optional<ColorPrimaries> read_hdr_primaries(std::span<const std::byte> bytes, const std::string& name);
-/// See read_image_header.
+/// Reads the header of an HDR file under the contract of read_image_header.
 ImageHeader read_hdr_header(std::span<const std::byte> bytes, const std::string& name);
 
 } // namespace pertev

@@ -27,7 +27,7 @@ namespace pertev {
 std::variant<Rgba8Image, Image> decode_image(std::span<const std::byte> bytes, const std::string& name,
                                              Messages* messages = nullptr);
 
-/// The size of that picture according to the file's header. Throws Error for an invalid header.
+/// Returns the size of the picture according to the file's header. Throws Error for an invalid header.
 ImageHeader read_image_header(std::span<const std::byte> bytes, const std::string& name);
 
 } // namespace pertev

@@ -14,9 +14,9 @@
 
 namespace pertev {
 
-/// See decode_image.
+/// Decodes a JPEG file under the contract of decode_image.
 Rgba8Image decode_jpeg(std::span<const std::byte> bytes, const std::string& name, Messages* messages);
-/// See read_image_header.
+/// Reads the header of a JPEG file under the contract of read_image_header.
 ImageHeader read_jpeg_header(std::span<const std::byte> bytes, const std::string& name);
 
 } // namespace pertev

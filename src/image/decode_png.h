@@ -14,10 +14,10 @@
 
 namespace pertev {
 
-/// See decode_image.
+/// Decodes a PNG file under the contract of decode_image.
 std::variant<Rgba8Image, Image> decode_png(std::span<const std::byte> bytes, const std::string& name,
                                            Messages* messages);
-/// See read_image_header.
+/// Reads the header of a PNG file under the contract of read_image_header.
 ImageHeader read_png_header(std::span<const std::byte> bytes, const std::string& name);
 
 } // namespace pertev

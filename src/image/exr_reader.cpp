@@ -179,7 +179,7 @@ std::vector<ExrChannel> ExrReader::read(std::size_t part, const std::vector<Chan
             base = reinterpret_cast<char*>(to.values.emplace<0>(count).data());
         // OpenEXR wants the address that pixel (0, 0) would have, which is usually outside: integers, not pointers.
         const int64_t shift = 4 * (data.y0 * data.width + data.x0);
-        // NOLINTNEXTLINE(performance-no-int-to-ptr): it is what the library's interface asks for
+        // NOLINTNEXTLINE(performance-no-int-to-ptr): the library's interface requires it
         char* origin = reinterpret_cast<char*>(reinterpret_cast<intptr_t>(base) - shift);
         frame.insert(channel.name,
                      Imf::Slice(as_uint ? Imf::UINT : Imf::FLOAT, origin, 4, static_cast<std::size_t>(data.width) * 4));

@@ -33,13 +33,13 @@ float value_at(const Image& linear, std::size_t pixel, float factor) {
     return factor * (linear.channels < 3 ? p[0] : luminance(Rgb{p[0], p[1], p[2]}));
 }
 
-/// Where a value lies on the scale: 0 at its beginning, 1 at its end.
+/// Returns the position of a value on the scale: 0 at its beginning, 1 at its end.
 float place_on(const FalseColorScale& scale, float value) {
     if (!(value > scale.least)) return 0;
     return value < scale.most ? log(value / scale.least) / log(scale.most / scale.least) : 1.0f;
 }
 
-/// Calls what(number) for 1, 2 and 5 times each power of ten that a float holds, from the least on.
+/// Calls what(number) for 1, 2 and 5 times each power of ten that a float can hold, in ascending order.
 template <class What>
 void for_round_numbers(const What& what) {
     for (double ten = 1e-30; ten < 1e31; ten *= 10) {

@@ -85,7 +85,7 @@ Plane convolve(const Plane& from, Size size, const std::vector<float>& across, c
     Plane middle(size.count()), to(size.count());
     parallel_for(rows, 4, [&](uint64_t y) {
         const float* row = from.data() + y * static_cast<std::size_t>(size.width);
-        std::vector<float> wide(static_cast<std::size_t>(size.width + 2 * radius)); // the row and what repeats its ends
+        std::vector<float> wide(static_cast<std::size_t>(size.width + 2 * radius)); // the row and copies of its ends
         for (int x = 0; x < size.width + 2 * radius; ++x)
             wide[static_cast<std::size_t>(x)] = row[clamp(x - radius, 0, size.width - 1)];
         float* result = middle.data() + y * static_cast<std::size_t>(size.width);
@@ -159,7 +159,7 @@ void normalize_signed(std::vector<float>& taps, const std::vector<float>& across
     for (float& tap : taps) tap /= (tap > 0 ? positive : -negative) * other;
 }
 
-constexpr uint64_t kPixels = 4096; // at least, that a thread takes at once
+constexpr uint64_t kPixels = 4096; // minimum number that a thread takes at once
 
 struct Features {
     Plane edges, points; // strength at each pixel

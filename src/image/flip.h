@@ -20,8 +20,9 @@ struct FlipResult {
     Image map;       // 1 channel, the error of each pixel in [0, 1]
 };
 
-/// LDR-FLIP. Pictures of 3 or 4 channels, linear Rec. 709 as read_image gives them for PNG and JPEG; clamped to [0, 1],
-/// NaN counts as 0. Symmetric. Throws Error(BadInput) when the sizes differ.
+/// Computes LDR-FLIP of pictures with 3 or 4 channels, linear Rec. 709 as read_image returns them for PNG and JPEG.
+/// Values are clamped to [0, 1], and NaN counts as 0. The result is symmetric. Throws Error(BadInput) if the sizes
+/// differ.
 FlipResult flip(const Image& picture, const Image& reference, float pixels_per_degree = kDefaultPixelsPerDegree);
 
 /// HDR-FLIP: the maximum LDR-FLIP of each pixel over a range of exposures that follows from the reference's

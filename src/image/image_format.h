@@ -17,7 +17,7 @@ std::optional<ImageFormat> recognise_image(std::span<const std::byte> bytes);
 
 /// Extensions of pictures that are read and written.
 inline constexpr std::string_view kPictureExtensions[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr"};
-/// Whether the name has one of kPictureExtensions, in either case.
+/// Returns whether the name has one of kPictureExtensions, in either case.
 bool is_picture_name(const std::filesystem::path& file);
 
 } // namespace pertev

@@ -27,7 +27,7 @@ double square_of_difference(float x, float r) {
 
 double relative_square(float x, float r) { return square_of_difference(x, r) / (double(r) * double(r) + 0.01); }
 
-/// The `keep` part of the pixels, those with the least errors first, at least one.
+/// Returns the fraction `keep` of the pixels with the least errors, at least one, in ascending order of their errors.
 std::vector<std::size_t> pixels_of_least_error(const std::vector<double>& errors, double keep) {
     PERTEV_CHECK(keep > 0 && keep <= 1);
     std::vector<std::size_t> order(errors.size());

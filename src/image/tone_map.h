@@ -74,9 +74,9 @@ HD inline float exposure_scale(float stops) { return exp2(stops); }
 /// Tone-maps linear light times `scale` to display-encoded sRGB in [0, 1]. Any input is allowed: NaN and negative
 /// values count as 0, infinity as 2^40.
 HD inline Rgb tone_map(Rgb linear, ToneMap kind, float scale = 1.0f) {
-    constexpr float kMost = 0x1p40f; // its square is still finite
-    const Rgb c = {clamp(linear.r * scale, 0.0f, kMost), clamp(linear.g * scale, 0.0f, kMost),
-                   clamp(linear.b * scale, 0.0f, kMost)};
+    constexpr float kMaxLight = 0x1p40f; // its square is still finite
+    const Rgb c = {clamp(linear.r * scale, 0.0f, kMaxLight), clamp(linear.g * scale, 0.0f, kMaxLight),
+                   clamp(linear.b * scale, 0.0f, kMaxLight)};
     switch (kind) {
     case ToneMap::Srgb:
         return srgb_encode(c);

@@ -17,8 +17,8 @@ using Rgbe = std::array<uint8_t, 4>;
 float power_of_2(int exponent) { return float_of(static_cast<uint32_t>(exponent + 127) << 23); }
 
 Rgbe rgbe_of(Rgb c) {
-    constexpr float kMost = 255.0f * 0x1p119f; // mantissa 255, exponent 255
-    c = {clamp(c.r, 0.0f, kMost), clamp(c.g, 0.0f, kMost), clamp(c.b, 0.0f, kMost)};
+    constexpr float kMaxLight = 255.0f * 0x1p119f; // mantissa 255, exponent 255
+    c = {clamp(c.r, 0.0f, kMaxLight), clamp(c.g, 0.0f, kMaxLight), clamp(c.b, 0.0f, kMaxLight)};
     const float largest = max_component(c);
     if (!(largest >= 0x1p-120f)) return {0, 0, 0, 0};
     // largest = m 2^e with m in [128, 256), so that its mantissa is m, rounded.

@@ -66,7 +66,7 @@ bool write_all(JpegWriter& writer, uint32_t width, uint32_t height, int quality,
     return true;
 }
 
-/// Rows [first, first + height) of `picture` as a file of their own.
+/// Encodes rows [first, first + height) of `picture` as a separate file.
 std::vector<std::byte> encode_rows(const Rgba8Image& picture, uint32_t first, uint32_t height, int quality,
                                    bool half_chroma) {
     const std::size_t row_bytes = std::size_t(picture.width) * 4;
@@ -88,7 +88,8 @@ void check_picture(const Rgba8Image& picture, int quality) {
 
 constexpr int kStartOfFrame = 0xc0, kStartOfScan = 0xda; // second bytes of markers
 
-/// Where the segment of this marker begins, its 0xff; walks the segments before the scan, which our own writer wrote.
+/// Returns the position of the 0xff that begins the segment with this marker. Searches the segments before the scan,
+/// which were written by this program.
 std::size_t find_segment(const std::vector<std::byte>& file, int marker) {
     std::size_t at = 2; // behind the start of the image
     for (;;) {

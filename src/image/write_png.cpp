@@ -33,7 +33,7 @@ void append_number(Bytes& to, uint32_t number) { // the high byte first
 
 const Bytef* zlib_bytes(const std::byte* bytes) { return reinterpret_cast<const Bytef*>(bytes); }
 
-/// `name`: four letters.
+/// Appends a chunk; `name` has four letters.
 void append_chunk(Bytes& to, const char* name, const Bytes& data) {
     append_number(to, static_cast<uint32_t>(data.size()));
     const std::size_t start = to.size();
@@ -42,7 +42,8 @@ void append_chunk(Bytes& to, const char* name, const Bytes& data) {
     append_number(to, static_cast<uint32_t>(crc32_z(0, zlib_bytes(to.data() + start), to.size() - start)));
 }
 
-/// A row as the file has it: filter 1 (Sub), then each byte less that of the pixel to the left.
+/// Writes a row in the form of the file: filter 1 (Sub), then the difference of each byte from that of the pixel to the
+/// left.
 void filter_row(const uint8_t* rgba, uint32_t width, std::size_t channels, std::byte* to) {
     *to++ = std::byte{1};
     uint8_t left[4] = {};
@@ -54,8 +55,8 @@ void filter_row(const uint8_t* rgba, uint32_t width, std::size_t channels, std::
     }
 }
 
-/// Bytes [begin, end) as a part of one deflate stream (RFC 1951), which may repeat what stands before them and ends at
-/// a whole byte. Throws std::bad_alloc.
+/// Returns bytes [begin, end) as a part of one deflate stream (RFC 1951). The part may refer to bytes before it and
+/// ends at a whole byte. Throws std::bad_alloc.
 Bytes deflate_part(const Bytes& bytes, std::size_t begin, std::size_t end) {
     z_stream stream{};
     if (deflateInit2(&stream, kLevel, Z_DEFLATED, -kWindowBits, kMemory, Z_FILTERED) != Z_OK) throw std::bad_alloc();
@@ -80,8 +81,8 @@ Bytes deflate_part(const Bytes& bytes, std::size_t begin, std::size_t end) {
     return part;
 }
 
-/// One zlib stream (RFC 1950) in parts. Parts hold so many of the bytes on any number of threads, so that the stream
-/// does not depend on it.
+/// Returns one zlib stream (RFC 1950) in parts of `part_bytes` input bytes, so that the stream does not depend on the
+/// number of threads.
 std::vector<Bytes> deflate_in_parts(const Bytes& bytes, std::size_t part_bytes) {
     PERTEV_CHECK(part_bytes < std::numeric_limits<uInt>::max() / 2);
     struct Part {

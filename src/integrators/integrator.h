@@ -66,7 +66,7 @@ public:
     /// Announces that the next begin() gets the same picture and settings as the last one, so that precomputed data
     /// may be kept.
     virtual void expect_same_picture() {}
-    /// Whether the current picture has precomputed data that begin() of another picture would discard.
+    /// Returns whether the current picture has precomputed data that begin() of another picture would discard.
     virtual bool has_made() const { return false; }
 
     /// Precomputes what all samples of the current picture need, if it is missing; otherwise render() does it. Calls
@@ -96,7 +96,7 @@ public:
     /// Lets render() return early when `*flag` is true, if it can; the film must then be discarded. Null: never.
     virtual void abandon_when(const std::atomic<bool>*) {}
 
-    /// Rays traced since begin().
+    /// Number of rays traced since begin().
     virtual RayCounts rays() const = 0;
 };
 

@@ -14,8 +14,8 @@ namespace pertev {
 template <class Settings>
 class IntegratorBase : public Integrator {
 public:
-    /// `queue` outlives the integrator. `in_loop` asks for the loop, which runs if the tracer has host trees. `batch`
-    /// limits the samples in flight of a wavefront.
+    /// Makes an integrator; `queue` outlives it. `in_loop` requests the loop, which runs if the tracer has host trees.
+    /// `batch` limits the samples in flight of a wavefront.
     explicit IntegratorBase(Queue& queue, const Settings& settings, bool in_loop = false, uint32_t batch = 0)
         : queue_(queue), settings_(settings), picture_settings_(settings), batch_(batch), in_loop_(in_loop) {}
 
@@ -29,7 +29,7 @@ public:
     void abandon_when(const std::atomic<bool>* flag) override { abandon_ = flag; }
     RayCounts rays() const override { return rays_; }
 
-    /// The settings take effect at the next begin().
+    /// Changes the settings at the next begin().
     void set_settings(const Settings& settings) { settings_ = settings; }
 
 protected:

@@ -10,7 +10,7 @@
 //   Counts             the counts of rays, to which counts() points
 //   Loop, Wavefront    the schedules: LoopSchedule and WavefrontSchedule with functions that trace the job's rays
 //   first, count       the range of samples that runs
-// lay_out(job, memory, room) places its arrays (lay_out_arrays), and rays_of(counts) returns the rays of a range.
+// lay_out(job, memory, capacity) places its arrays (lay_out_arrays), and rays_of(counts) returns the rays of a range.
 
 #include <algorithm>
 #include <vector>
@@ -38,13 +38,13 @@ public:
     void begin_rounds(uint32_t most) {
         if (is_pending_) seen_.wait();
         is_pending_ = false;
-        most_ = most;
+        max_ = most;
     }
-    uint32_t max_rays() const { return most_; }
+    uint32_t max_rays() const { return max_; }
     /// Returns false once no ray is left. The host launches rounds without a wait and reads the count one round late.
     bool has_rays_left(const Counts* counts) {
-        if (is_pending_) most_ = seen_.wait().rays;
-        is_pending_ = most_ > 0;
+        if (is_pending_) max_ = seen_.wait().rays;
+        is_pending_ = max_ > 0;
         if (is_pending_) seen_.take(counts);
         return is_pending_;
     }
@@ -56,7 +56,7 @@ protected:
 private:
     Readback<Counts>& seen_;
     bool is_pending_ = false;
-    uint32_t most_ = 0;
+    uint32_t max_ = 0;
 };
 
 /// Runs the stages in one thread.
@@ -70,18 +70,18 @@ public:
     void run(const char*, WorkCount count, const Stage& stage) {
         for (uint32_t i = 0; i < count.value(); ++i) stage(i);
     }
-    void begin_rounds(uint32_t most) { most_ = most; }
-    uint32_t max_rays() const { return most_; }
+    void begin_rounds(uint32_t most) { max_ = most; }
+    uint32_t max_rays() const { return max_; }
     bool has_rays_left(const Counts* counts) {
-        most_ = counts->rays;
-        return most_ > 0;
+        max_ = counts->rays;
+        return max_ > 0;
     }
 
 protected:
     const HostTrees& trees_;
 
 private:
-    uint32_t most_ = 0;
+    uint32_t max_ = 0;
 };
 
 template <class Settings, class Job>
@@ -92,7 +92,7 @@ public:
     using Capacity = typename Job::Capacity;
     using Counts = typename Job::Counts;
 
-    /// The memory of a wavefront is kMaxBytes at most.
+    /// Makes an integrator whose wavefront takes at most kMaxBytes.
     TwoSchedules(Queue& queue, const Settings& settings, bool in_loop, uint32_t batch)
         : Base(queue, settings, in_loop, batch), seen_(queue) {}
 
@@ -105,8 +105,8 @@ protected:
         Job job = {};
         return lay_out(job, nullptr, capacity);
     }
-    /// Returns the room of as many samples as fit into `bytes`, at most `most` and at least kMinCount. room_of(n) is
-    /// the room of n samples.
+    /// Returns the capacity for as many samples as fit into `bytes`, at most `most` and at least kMinCount.
+    /// capacity_of(n) is the capacity for n samples.
     template <class CapacityOf>
     static Capacity capacity_within(std::size_t bytes, uint64_t most, const CapacityOf& capacity_of) {
         const std::size_t each = bytes_of(capacity_of(kMinCount)) / kMinCount;

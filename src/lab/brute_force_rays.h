@@ -43,8 +43,8 @@ struct BruteForceRays {
     }
 
 private:
-    /// Whether the triangle, seen along the ray, lies entirely to one side of it. The exact edge signs then differ,
-    /// so the triangle test would refuse it. This check takes a sixth of the work.
+    /// Returns whether the triangle, seen along the ray, lies entirely to one side of it. The exact edge signs then
+    /// differ, so the triangle test would refuse it. This check takes a sixth of the work.
     HD static bool is_beside(const BvhTriangle& t, Vec3 origin, const RayShear& ray) {
         const Vec3 a = shear(t.a - origin, ray), b = shear(t.b - origin, ray), c = shear(t.c - origin, ray);
         return (a.x > 0 && b.x > 0 && c.x > 0) || (a.x < 0 && b.x < 0 && c.x < 0) || (a.y > 0 && b.y > 0 && c.y > 0) ||

@@ -9,10 +9,10 @@
 namespace pertev {
 namespace {
 
-/// The shortest text that reads back as the same floats; "-0" is written as "0".
+/// Returns the shortest text that reads back as the same floats; "-0" is written as "0".
 std::string text_of(Vec3 v) { return fmt::format("{},{},{}", v.x + 0.0f, v.y + 0.0f, v.z + 0.0f); }
 
-/// The shortest text of a position, given in the file's coordinates.
+/// Returns the shortest text of a position, in the file's coordinates.
 std::string text_of(Vec3 p, DoubleVec3 origin) {
     if (origin == DoubleVec3{0, 0, 0}) return text_of(p);
     const DoubleVec3 place = origin + to_double(p);

@@ -17,7 +17,7 @@ constexpr uint32_t kDrawnPoints = 240;
 constexpr Vec3 kAsked = {0.38f, 0.52f, 0};
 constexpr double kDrawnSide = 440, kDrawnMargin = 10, kDrawnTop = 28;
 
-/// Points that are dense in two places and sparse between them, like photons.
+/// Returns points that are dense in two places and sparse between them, like photons.
 std::vector<Vec3> scattered_points() {
     std::vector<Vec3> points;
     for (uint32_t i = 0; points.size() < kDrawnPoints; ++i) {
@@ -110,7 +110,7 @@ FoundPoints found_in_octree() {
     PointsWithin<decltype(keep)> within = {result.radius_squared, keep};
     Watched<PointsWithin<decltype(keep)>> watched = {within, result.looked_at};
     search_points(view_of(tree), result.at, watched);
-    result.visited = watched.requested; // the radius is asked for once per node
+    result.visited = watched.requested; // the radius is requested once per node
     std::ranges::sort(result.found);
     std::ranges::sort(result.looked_at);
     result.nodes = static_cast<uint32_t>(tree.nodes.size());

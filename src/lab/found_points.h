@@ -13,7 +13,7 @@ namespace pertev {
 
 /// A search and everything that it visited.
 struct FoundPoints {
-    const char* tree;                // for example "kd-tree"
+    const char* tree;                // such as "kd-tree"
     std::vector<Vec3> points;        // in the unit square, z = 0
     Vec3 at;                         // the query point
     float radius_squared = 0;        // the circle about `at` that encloses the found points

@@ -15,7 +15,7 @@ namespace pertev {
 /// more rows at the bottom for the scale.
 Rgba8Image draw_heat_map(std::span<const uint32_t> counts, uint32_t width, uint32_t height, uint32_t most);
 
-/// The count that one pixel in two hundred exceeds: a good end for the scale.
+/// Returns the count that one pixel in two hundred exceeds: a good end for the scale.
 uint32_t scale_end(std::span<const uint32_t> counts);
 
 } // namespace pertev

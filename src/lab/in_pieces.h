@@ -12,10 +12,11 @@
 
 namespace pertev {
 
-/// Called after each piece with the finished share, (0, 1]. It may throw, which ends the work.
+/// A function that is called after each piece with the finished share, (0, 1]. It may throw, which ends the work.
 using PieceDone = std::function<void(double share)>;
 
-/// First piece for rays that a CPU traces: for each thread, as many as launch() gives it at a time; whole packets.
+/// Returns the size of the first piece of rays that a CPU traces: for each thread, the number that launch() gives it at
+/// a time, in whole packets.
 inline uint64_t first_piece_of_rays() { return 256 * static_cast<uint64_t>(thread_count()); }
 
 /// Calls work(begin, count) on consecutive parts of [0, count) that cover it; work must be finished when it returns.

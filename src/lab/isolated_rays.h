@@ -27,8 +27,8 @@ Tracer make_tracer(Queue& queue, const Combination& combination, const PreparedS
 /// The tracer that renders use for rays of this set's kind.
 const Combination& tracer_of_pictures(const RaySet& set, const TracerChoice& choice);
 
-/// `prepared` must come from `scene` and keep its coordinates. `between()` is called now and then and may throw to
-/// end the work.
+/// Makes the record's sets for a scene. `prepared` must come from `scene` and keep its coordinates. `between()` is
+/// called now and then and may throw to end the work.
 std::vector<RaySet> make_isolated_sets(Queue& queue, const Scene& scene, const Camera& camera,
                                        const PreparedScene& prepared, uint32_t count,
                                        const std::function<void()>& between);

@@ -16,12 +16,12 @@ namespace pertev {
 /// A set of rays of one kind, traced as a whole. The proven traversal is compared with brute force; all others are
 /// compared with it (lab/run_lab.h).
 struct SetFigures {
-    std::string name; // for example "primary", "shadow" or "diffuse1"
+    std::string name; // such as "primary", "shadow" or "diffuse1"
     bool any_hit = false;
     int depth = 0; // ray's position in a path, 1 for camera rays; 0 if the set is not part of a frame
     uint64_t rays = 0;
     double hit_share = 0;
-    uint64_t brute_force_rays = 0; // how many rays of the proven traversal were compared with brute force
+    uint64_t brute_force_rays = 0; // number of rays of the proven traversal that were compared with brute force
 };
 
 /// Figures of one combination on one set.
@@ -33,7 +33,8 @@ struct RunFigures {
     std::optional<double> node_lanes, triangle_lanes;     // mean number of active lanes of 32 during a test
     std::optional<double> node_sectors, triangle_sectors; // 32-byte sectors per load of 16 bytes a lane, 1 to 32
     uint64_t different = 0; // number of rays with another result; only tests that may miss hits can have any
-    /// The figures are copied from another combination that is the same traversal (any hit with RTA on, for example).
+    /// True if the figures are copied from another combination that is the same traversal (any hit with RTA on, for
+    /// example).
     bool is_copy = false;
 };
 
@@ -41,8 +42,8 @@ struct CombinationFigures {
     Combination combination;
     std::optional<uint32_t> structure; // index into LabReport::structures; absent if it was never reached
     std::string name;
-    std::string refused;                       // why there are no figures; empty if there are
-    bool wrong = false;                        // it differs from the proven traversal; `refused` says where
+    std::string refused;                       // reason why there are no figures; empty if there are
+    bool wrong = false;                        // it differs from the proven traversal; `refused` says on which rays
     std::optional<int> registers, local_bytes; // registers and local bytes per thread of the closest-hit kernel
     std::optional<double> occupancy;           // resident warps as a share of the possible number, limited by
                                                // registers
@@ -91,7 +92,7 @@ struct Refusal {
 };
 std::vector<Refusal> refusals_by_reason(const std::vector<CombinationFigures>& combinations);
 
-/// Whether the report contains anything new: figures, or a combination that is wrong.
+/// Returns whether the report contains anything new: figures, or a combination that is wrong.
 bool has_findings(const LabReport& report);
 
 /// Returns the combination's run on a set, or null.

@@ -11,7 +11,8 @@
 namespace pertev {
 namespace {
 
-/// Returns null if the combination was never reached or its structure could not be built.
+/// Returns the figures of a combination's structure; null if the combination was never reached or its structure could
+/// not be built.
 const StructureFigures* structure_of(const LabReport& report, const CombinationFigures& c) {
     if (!c.structure || *c.structure >= report.structures.size()) return nullptr;
     const StructureFigures& s = report.structures[*c.structure];
@@ -48,7 +49,7 @@ Fields run_fields(const LabReport& report, const CombinationFigures& c, const Ru
     };
     Fields fields = {{"combination", "combination", c.name},
                      {"structure", "structure", name_of(c.combination.structure)},
-                     {"walk", "traversal", name_of(c.combination.traversal)},
+                     {"traversal", "traversal", name_of(c.combination.traversal)},
                      {"rta", "RTA", name_of_rta(o)},
                      {"near_first", "near first", o.near_first},
                      {"tests", "tests", name_of(o.tests)},
@@ -120,7 +121,7 @@ ResultTable runs_of(const LabReport& report) {
     return table;
 }
 
-/// Combinations that are wrong, missing results, and what was not run, with the reasons.
+/// Returns notes on combinations that are wrong, missing results, and combinations that were not run, with the reasons.
 std::vector<std::string> notes_of(const LabReport& report) {
     std::vector<std::string> notes;
     for (const CombinationFigures& c : report.combinations) {

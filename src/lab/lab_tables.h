@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-/// `head` says which machine and command.
+/// Makes the tables of a report. `head` names the machine and the command.
 Measurement measurement_of(const LabReport& report, Measurement head = {});
 
 /// Returns text for a terminal: structures, million rays per second by combination and set (fastest first), frames per

@@ -1,6 +1,6 @@
 #pragma once
 
-// Lists the combinations that the laboratory is asked to measure, each once. Combinations that cannot be measured
+// Lists the combinations that the laboratory is to measure, each once. Combinations that cannot be measured
 // carry the reason.
 
 #include <vector>

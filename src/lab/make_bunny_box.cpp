@@ -10,7 +10,8 @@ namespace {
 constexpr uint32_t kWallQuads = 32; // along each side of a wall
 constexpr float kRoughness = 0.05f; // relative to the edge's length
 
-/// Unit normals of vertices, weighted by area; a vertex without one keeps zero. Summed in the triangles' order.
+/// Returns unit normals of vertices, weighted by area and summed in the triangles' order; zero for a vertex without
+/// one.
 std::vector<Vec3> vertex_normals(const Mesh& mesh) {
     std::vector<Vec3> normals(mesh.positions.size());
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {

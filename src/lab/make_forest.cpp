@@ -32,7 +32,7 @@ private:
 // record.
 constexpr uint32_t kGroundNumbers = 1144, kTreeNumbers = 4, kLeafNumbers = 0x4c454146u;
 
-/// Value noise in [0, 1): random values on a grid, blended smoothly.
+/// Returns value noise in [0, 1): random values on a grid, blended smoothly.
 float value_noise(float x, float z, uint32_t octave) {
     const float fx = floor(x), fz = floor(z);
     const auto corner = [&](int i, int j) {
@@ -45,7 +45,7 @@ float value_noise(float x, float z, uint32_t octave) {
     return lerp(lerp(corner(0, 0), corner(1, 0), s), lerp(corner(0, 1), corner(1, 1), s), t);
 }
 
-/// Height of the ground in [0, kHills), metres.
+/// Returns the height of the ground in [0, kHills), metres.
 float ground_height(float x, float z) {
     float sum = 0, weight = 1, total = 0, scale = 1.0f / kCell;
     for (int octave = 0; octave < kOctaves; ++octave) {

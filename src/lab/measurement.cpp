@@ -22,9 +22,11 @@ std::size_t characters(const std::string& text) {
     return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-/// A line for each row. The first column is aligned left, the others right; each is as wide as its longest cell (in
-/// UTF-8 characters), with two blanks between columns.
-std::string align_columns(const std::vector<std::vector<std::string>>& rows) {
+enum class Align { Left, Right };
+
+/// Returns a line for each row. The first column is aligned left; each column is as wide as its longest cell (in UTF-8
+/// characters), with two blanks between columns.
+std::string align_columns(const std::vector<std::vector<std::string>>& rows, Align others = Align::Right) {
     std::vector<std::size_t> widths;
     for (const auto& row : rows) {
         widths.resize(std::max(widths.size(), row.size()));
@@ -35,7 +37,7 @@ std::string align_columns(const std::vector<std::vector<std::string>>& rows) {
         std::string line;
         for (std::size_t i = 0; i < row.size(); ++i) {
             const std::string pad(widths[i] - characters(row[i]), ' ');
-            line += i == 0 ? row[i] + pad : "  " + pad + row[i];
+            line += (i == 0 ? "" : "  ") + (i == 0 || others == Align::Left ? row[i] + pad : pad + row[i]);
         }
         line.erase(line.find_last_not_of(' ') + 1); // npos + 1 is 0, so a line of blanks becomes empty
         text += line + '\n';
@@ -52,7 +54,7 @@ std::string json_list(const All& all, const Text& text) {
 
 std::string text_or_null(const std::string& text) { return text.empty() ? "null" : json_string(text); }
 
-/// RFC 4648, section 4.
+/// Encodes bytes in base64 (RFC 4648, section 4).
 std::string base64(const std::vector<std::byte>& bytes) {
     constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
@@ -89,13 +91,13 @@ std::string json_of(const ResultTable& table) {
                        json_string(table.title), json_list(table.columns, column), json_list(table.rows, row));
 }
 
-/// The text of a file of /proc, whose size is not known beforehand; empty if there is none.
+/// Returns the text of a file of /proc, whose size is not known beforehand; empty if there is none.
 std::string system_text(const char* path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Returns the rest of the line behind `key` and blanks.
+/// Returns the rest of the line after `key` and blanks.
 std::string value_after(const std::string& text, std::string_view key, std::string_view end = "\n") {
     const std::size_t at = text.find(key);
     if (at == std::string::npos) return {};
@@ -103,7 +105,7 @@ std::string value_after(const std::string& text, std::string_view key, std::stri
     return begin == std::string::npos ? "" : text.substr(begin, text.find_first_of(end, begin) - begin);
 }
 
-/// The words of this process, quoted where a shell would part them.
+/// Returns the command line of this process, quoted where a shell would split it.
 std::string command_line() {
     std::string line, word;
     for (const char c : system_text("/proc/self/cmdline")) {
@@ -284,17 +286,13 @@ std::string line_of(const ResultTable& table, std::optional<std::size_t> row) {
 }
 
 std::string text_of(const Fields& fields) {
-    std::vector<std::pair<std::string, std::string>> lines;
-    std::size_t width = 0;
+    std::vector<std::vector<std::string>> lines;
     for (const ResultField& f : fields) {
         if (*f.title == '\0' || !f.value.is_there()) continue;
         const std::string value = f.value.text(f.format);
-        lines.emplace_back(f.title, *f.unit != '\0' ? value + ' ' + f.unit : value);
-        width = std::max(width, lines.back().first.size());
+        lines.push_back({f.title, *f.unit != '\0' ? value + ' ' + f.unit : value});
     }
-    std::string text;
-    for (const auto& [title, value] : lines) text += fmt::format("{:{}}  {}\n", title, width, value);
-    return text;
+    return align_columns(lines, Align::Left);
 }
 
 } // namespace pertev

@@ -51,7 +51,7 @@ public:
     std::string json() const;
     /// Returns the value for CSV (RFC 4180): quoted if necessary, true as 1.
     std::string csv() const;
-    /// For a terminal. `format` is that of a number, "" for the usual one; "-" if there is no value.
+    /// Returns the value for a terminal; "-" if there is none. `format` is that of a number, "" for the usual one.
     std::string text(const std::string& format) const;
 
 private:
@@ -69,10 +69,10 @@ inline std::optional<std::string> if_not_empty(const std::string& text) {
     return text.empty() ? std::nullopt : std::optional(text);
 }
 
-/// A value with the column that it stands in.
+/// A value with its column.
 struct ResultField {
     const char* key;
-    const char* title; // for people; empty: the key alone, and a terminal leaves the column out
+    const char* title; // for people; empty: the page shows the key, and a terminal leaves the column out
     ResultCell value;
     const char* unit = "";
     const char* format = ""; // fmt's format for numbers on a terminal
@@ -87,9 +87,9 @@ struct ResultTable {
     std::vector<Column> columns = {};
     std::vector<std::vector<ResultCell>> rows = {};
 
-    /// Appends a row. The first row makes the columns; all have the same.
+    /// Appends a row. The first row defines the columns, which all other rows must have.
     void add(const Fields& fields);
-    /// Throw Error(DeviceFault) if there is no such column.
+    /// Returns the column with this key. Throws Error(DeviceFault) if there is none.
     const Column& column(std::string_view key) const;
     const ResultCell& at(std::size_t row, std::string_view key) const;
 };
@@ -117,25 +117,26 @@ struct Measurement {
     const ResultTable& table(std::string_view name) const;
 };
 
-/// A measurement of this program on this machine and this queue's device, now, by the command that runs.
+/// Starts a measurement: fills in the program, machine, device of `queue`, date and command line.
 Measurement start_measurement(const Queue& queue, std::string title);
 
-/// With `event` the object says so first. With `has_images` pictures carry their bytes, as a page needs them.
+/// Returns the measurement as a JSON object, which begins with the member "event" unless `event` is empty. With
+/// `has_images` pictures carry their bytes, as a page needs them.
 std::string json_of(const Measurement& measurement, std::string_view event = "", bool has_images = false);
-/// A row as an object of its own; without an event it says none.
+/// Returns a row as a JSON object, which begins with the member "event" unless `event` is empty.
 std::string json_of(std::string_view event, const Fields& fields);
-/// A table of the measurement with a header line. In front of each row stand program, date, processor, threads and
-/// device, and the row of the table "scene" if there is such a table.
+/// Returns a table of the measurement as CSV with a header line. Each row begins with program, date, processor, threads
+/// and device, and with the row of the table "scene" if there is such a table.
 std::string csv_of(const Measurement& measurement, std::string_view table);
-/// The values of column `y`, with a row for each value of column `row` and a column for each value of column `across`,
-/// in the order in which they appear. Rows without the latter are left out.
+/// Returns the values of column `y`, with a row for each value of column `row` and a column for each value of column
+/// `across`, in the order in which they appear. Rows without the latter are left out.
 ResultTable pivot(const ResultTable& table, std::string_view row, std::string_view across, std::string_view y);
 /// Returns the columns with a title, aligned.
 std::string text_of(const ResultTable& table);
-/// Returns one row alone, in columns as wide as its title or 8 characters (the first 16), so that rows can be
-/// printed as they come; `row` is the head's if it is none.
+/// Returns one row, or the titles if `row` is nothing, in columns as wide as their titles but at least 8 characters
+/// (the first 16), so that rows can be printed as they come.
 std::string line_of(const ResultTable& table, std::optional<std::size_t> row);
-/// A line a field, for a result of one row.
+/// Returns a line per field with a title, for a result of one row.
 std::string text_of(const Fields& fields);
 
 } // namespace pertev

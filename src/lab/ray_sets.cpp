@@ -36,8 +36,8 @@ struct StartPoints {
     std::size_t first_group = 0; // number of hits of the first parents; the rest come from the second parents
 };
 
-/// The triangle's unit normal, facing against `direction`. Computed in doubles, so that a sliver's cross product does
-/// not lose its digits.
+/// Returns the triangle's unit normal, facing against `direction`. It is computed in doubles, so that a sliver's cross
+/// product does not lose its digits.
 Vec3 normal_against(const Scene& scene, const RayHit& hit, Vec3 direction) {
     const Instance& instance = scene.instances[hit.instance];
     const Mesh& mesh = scene.meshes[instance.mesh];
@@ -111,8 +111,8 @@ std::vector<Ray> make_primary(const RaySetJob& job, uint32_t count, uint32_t fir
     return rays;
 }
 
-/// The random state of ray o. Rays are numbered from 0 in each group; the second group's seed is offset by the size
-/// of the first.
+/// Returns the random state of ray o. Rays are numbered from 0 in each group; the second group's seed is offset by the
+/// size of the first.
 uint32_t state_of(const StartPoints& starts, std::size_t o, uint32_t seed) {
     const bool is_first = o < starts.first_group;
     const std::size_t made = is_first ? 0 : starts.first_group;

@@ -34,26 +34,25 @@ struct RaySetJob {
 struct FrameSize {
     uint32_t width = 0, height = 0;
 };
-/// The largest 16:9 frame of whole tiles that fits into `count` rays four times: 1920 x 1080 for 8,294,400 rays. It
-/// has at least 64 x 36 pixels, of which a smaller count uses a part.
+/// Returns the largest 16:9 frame of whole tiles that fits into `count` rays four times: 1920 x 1080 for 8,294,400
+/// rays. It has at least 64 x 36 pixels, of which a smaller count uses a part.
 FrameSize record_frame(uint32_t count);
 
-/// The record's five sets: "primary", "shadow", "diffuse1", "diffuse2" and "diffuse3". Primary rays are whole frames
-/// with one sample per pixel until there are `count` rays. Other sets start at the hits of the set before, in order.
-/// If these are fewer than `count`, the hits of a second such set with other random numbers follow; if both together
-/// are fewer, the set is smaller.
+/// Makes the record's five sets: "primary", "shadow", "diffuse1", "diffuse2" and "diffuse3". Primary rays are whole
+/// frames with one sample per pixel until there are `count` rays. Other sets start at the hits of the set before, in
+/// order. If these are fewer than `count`, the hits of a second such set with other random numbers follow; if both
+/// together are fewer, the set is smaller.
 std::vector<RaySet> make_record_ray_sets(const RaySetJob& job, uint32_t count);
 
-/// "along_axes" has the rays of `from`, turned to each one's nearest axis. "beside_axes" has the same rays tilted by
-/// a thousandth to both sides, so that they hit nearly the same surfaces. A traversal takes equal time for both
-/// unless zero components of the direction slow it down.
+/// Makes two sets. "along_axes" has the rays of `from`, turned to each one's nearest axis. "beside_axes" has the same
+/// rays tilted by a thousandth to both sides, so that they hit nearly the same surfaces. A traversal takes equal time
+/// for both unless zero components of the direction slow it down.
 std::vector<RaySet> make_axis_ray_sets(const RaySet& from);
 
 inline constexpr int kMaxFrameDepth = 8;
 
-/// The sets of one frame: "primary" with one ray per pixel, "shadow" and "diffuse1" from its hits, and so on to
-/// "diffuse<depth>", each from the hits of the set before. Rays that leave the scene end, so sets shrink. `depth` is
-/// in
+/// Makes the sets of one frame: "primary" with one ray per pixel, "shadow" and "diffuse1" from its hits, and so on to
+/// "diffuse<depth>", each from the hits of the set before. Rays that leave the scene end, so sets shrink. `depth` is in
 /// [0, kMaxFrameDepth].
 std::vector<RaySet> make_frame_ray_sets(const RaySetJob& job, int depth);
 
@@ -73,8 +72,8 @@ inline uint32_t secondary_state(uint32_t ray, uint32_t seed) { return hash_word(
 
 inline constexpr uint32_t kShadowTargets = 64;
 
-/// Targets of the shadow rays: fixed points in the middle 80 % of the box in x and z, and from 15 to 85 % of its
-/// height.
+/// Returns the targets of the shadow rays: fixed points in the middle 80 % of the box in x and z, and from 15 to 85 %
+/// of its height.
 std::array<Vec3, kShadowTargets> shadow_targets(const Bounds3& box);
 
 } // namespace pertev

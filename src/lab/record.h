@@ -31,7 +31,7 @@ struct RecordedSet {
 struct RecordScene {
     std::string name;
     std::string file;       // under the folder of public scenes; empty: generated
-    uint32_t triangles = 0; // that have an area
+    uint32_t triangles = 0; // number of triangles with an area
     RecordView view;
     std::vector<RecordedSet> sets; // in the order in which they are made
     double optix_fast_trace_s = 0,
@@ -53,20 +53,20 @@ struct TransportPreset {
     std::string name, scene; // a built-in scene
     std::string shows;
     std::string reference_integrator; // which of path and bidirectional has the less noise at equal time
-    std::optional<RecordView> view;   // else the scene's own camera is taken
+    std::optional<RecordView> view;   // otherwise the scene's own camera is used
 };
 
 struct Record {
-    std::string device;                   // that all stored figures are of
+    std::string device;                   // device of all stored figures
     std::vector<RecordScene> scenes;      // sponza, bunny, forest
     std::vector<RecordJob> jobs;          // S5, S8, cornell-box-65, cornell-box-8
     std::vector<TransportPreset> presets; // cornell, caustic, blind, door, cove, many-lights
 };
 
-/// Read once.
+/// Returns the record, which is parsed at the first call.
 const Record& the_record();
 
-/// The one of this name, or null.
+/// Returns the element with this name, or null.
 template <class Named>
 const Named* find_named(const std::vector<Named>& all, std::string_view name) {
     for (const Named& one : all) {

@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-/// The file's triangles alone, all in one mesh in the file's order, without normals.
+/// Returns only the file's triangles, in one mesh in the file's order, without normals.
 Mesh read_one_mesh(const std::filesystem::path& path, Messages& messages) {
     ReadOptions options;
     options.geometry_only = true;

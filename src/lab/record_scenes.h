@@ -24,23 +24,24 @@ inline constexpr uint32_t kRecordRays = 8294400; // four frames of 1920 x 1080
 
 Camera record_camera(const RecordScene& scene);
 
-/// The file of a scene that has one, under the folder of public scenes (docs/scenes.md). Throws Error(BadInput) where
-/// it is not there.
+/// Returns the file of a scene that has one, below the folder of public scenes (docs/scenes.md). Throws Error(BadInput)
+/// if it does not exist.
 std::filesystem::path record_file(const RecordScene& scene, const std::filesystem::path& folder);
 
-/// Geometry in one mesh, grey, with the camera. The forest needs no folder. Throws as record_file.
+/// Makes the scene of the record: geometry in one mesh, grey, with the camera. The forest needs no folder. Throws as
+/// record_file.
 Scene make_record_scene(const RecordScene& scene, const std::filesystem::path& folder, Messages& messages);
 
-/// Size, samples, filter and depth of the job.
+/// Returns the settings of a job: size, samples, filter and depth.
 RenderSettings job_settings(const RecordJob& job);
 
-/// The job's scene, of the file that has its geometry. Throws Error.
+/// Reads the job's scene from the file that has its geometry. Throws Error.
 Scene make_job_scene(const RecordJob& job, const std::string& file, Messages& messages);
 
-/// For pictures of this width / height. Throws Error(BadInput).
+/// Returns the job's camera for pictures of this width / height. Throws Error(BadInput).
 Camera job_camera(const RecordJob& job, const Scene& scene, float aspect, Messages& messages);
 
-/// The preset's own view, if it has one.
+/// Returns the preset's own view; all defaults if it has none.
 CameraChoice camera_choice(const TransportPreset& preset);
 
 } // namespace pertev

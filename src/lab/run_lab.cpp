@@ -24,7 +24,7 @@
 namespace pertev {
 namespace {
 
-/// Thrown when keep_going returns false; everything measured so far is kept.
+/// The exception when keep_going returns false; everything measured so far is kept.
 struct Stopped {};
 
 /// The proven traversal. Some of its rays are compared with brute force, so that every other combination can be
@@ -91,7 +91,7 @@ private:
     void progress(const std::string& doing, double share_of_that = 0) {
         if (keep_going_ && !keep_going_(progress_now(doing, share_of_that))) throw Stopped{};
     }
-    /// Progress callback for work in pieces. `doing` must outlive it.
+    /// Returns a progress callback for work in pieces. `doing` must outlive it.
     PieceDone progress_of(const std::string& doing) {
         return [this, &doing](double share) { progress(doing, share); };
     }
@@ -169,7 +169,7 @@ private:
                                          : make_frame_ray_sets(job, settings_.depth - 1);
     }
 
-    /// Runs f and says what the memory was for if it runs out. Throws Error(OutOfMemory) before that if not even the
+    /// Runs f and, if memory runs out, reports what it was for. Throws Error(OutOfMemory) before that if not even the
     /// camera rays and their hits fit.
     template <class F>
     void with_memory_for_rays(const F& f) const {
@@ -291,8 +291,8 @@ private:
         }
     }
 
-    /// Any-hit traversals with and without RTA are identical, as there is no nearest hit to use. Returns the figures
-    /// of the one that was measured.
+    /// Returns the figures of an identical combination that was measured, or null: any-hit traversals with and without
+    /// RTA are identical, because there is no nearest hit to use.
     const RunFigures* same_run(const CombinationFigures& c, uint32_t set) const {
         if (!sets_[set].figures.any_hit) return nullptr;
         for (const auto& [rta, at_pops] : {std::pair(true, true), std::pair(true, false), std::pair(false, true)}) {
@@ -314,8 +314,7 @@ private:
     }
 
     static uint32_t count_of(const TracedSet& set) { return static_cast<uint32_t>(set.rays.size()); }
-    /// Runs work over the set: at once on a GPU, as when timed, since it is soon done; in pieces on a CPU, where it
-    /// may take an hour.
+    /// Runs work over the set: at once on a GPU, as in the timed runs; in pieces on a CPU, where it may take an hour.
     template <class Work>
     void over_set(const TracedSet& set, const std::string& doing, const Work& work) {
         if (queue_.is_cuda()) {
@@ -325,7 +324,8 @@ private:
         }
     }
 
-    /// Returns false if the combination differs from the proven traversal; it then has no figures.
+    /// Compares a combination with the proven traversal. Returns false if they differ; the combination then has no
+    /// figures.
     bool check(CombinationFigures& c, const TracedSet& set, const Tracer& tracer, const std::string& doing,
                RunFigures& run) {
         HitsOnDevice hits(queue_, set.rays.size());
@@ -380,7 +380,8 @@ private:
         run.triangle_sectors = ratio(counts.triangle_sectors, counts.triangle_requests);
     }
 
-    /// One heat map per structure and traversal, from the first combination, which has the most options on.
+    /// Returns whether to make a heat map: one per structure and traversal, from the first combination, which has the
+    /// most options on.
     bool wants_heat_map(const CombinationFigures& c, const TracedSet& set) const {
         const auto is_same = [&](const Combination& other) {
             return other.structure == c.combination.structure && other.traversal == c.combination.traversal;

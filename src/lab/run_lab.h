@@ -47,10 +47,11 @@ struct LabProgress {
     const LabReport* so_far = nullptr; // set after each structure: results so far, for the caller to save
 };
 
-/// Stops early, with `interrupted` set, when keep_going returns false; a running build or timed run is finished
-/// first. Throws Error(BadInput) for a scene without triangles or if no combination can be measured,
-/// Error(OutOfMemory) if the rays do not fit, and Error(DeviceFault) if the proven traversal differs from brute force.
-/// A combination that differs from the proven traversal or does not fit into memory has no figures but a reason.
+/// Measures all combinations of the settings. Stops early, with `interrupted` set, when keep_going returns false; a
+/// running build or timed run is finished first. Throws Error(BadInput) for a scene without triangles or if no
+/// combination can be measured, Error(OutOfMemory) if the rays do not fit, and Error(DeviceFault) if the proven
+/// traversal differs from brute force. A combination that differs from the proven traversal or does not fit into memory
+/// has no figures but a reason.
 LabReport run_lab(Queue& queue, const Scene& scene, const Camera& camera, const LabSettings& settings,
                   const std::function<bool(const LabProgress&)>& keep_going);
 

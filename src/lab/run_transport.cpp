@@ -41,7 +41,7 @@ std::size_t host_bytes_of(const RenderSettings& picture) {
     return make_integrator(queue, picture)->max_host_bytes({.width = picture.width, .height = picture.height});
 }
 
-/// The mean of two pictures with equal sample counts, which is the picture of all samples.
+/// Returns the mean of two pictures with equal sample counts, which is the picture of all samples.
 Image mean_of(const Image& a, const Image& b) {
     Image mean = a;
     for (std::size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * a.pixels[i] + 0.5f * b.pixels[i];
@@ -97,7 +97,7 @@ public:
     }
 
 private:
-    /// Why the integrator cannot render the scene; empty if it can.
+    /// Returns why the integrator cannot render the scene; empty if it can.
     std::string why_not(const std::string& integrator) const {
         try {
             const RenderSettings picture = settings_of(settings_, integrator, 0);
@@ -148,7 +148,7 @@ private:
         if (keep_going_ && !keep_going_(now)) throw TransportStopped{};
     }
 
-    /// Seconds that a turn has left; `made_s` of the elapsed seconds were spent before its first sample.
+    /// Returns the seconds that a turn has left; `made_s` of the elapsed seconds were spent before its first sample.
     double left_of_turn_s(const TransportRow& row, double seconds, uint32_t samples, double made_s = 0) const {
         if (!row.repetitions.empty()) return std::max(0.0, row.repetitions.front().back().seconds - seconds);
         const double to_most_s = (seconds - made_s) / std::max(1u, samples) * (settings_.max_samples - samples);
@@ -275,7 +275,7 @@ private:
         const Stopwatch watch;
         const RenderSettings picture = settings_of(settings_, row.name, repetition_seed(settings_, number));
         const uint32_t samples = std::min(kSolutionSamples, settings_.max_samples);
-        const auto tell = [&](const char* what, double share) {
+        const auto report = [&](const char* what, double share) {
             progress(fmt::format("{}, solution {}: {}", doing, figures.size() + 1, what), share,
                      left_of_turn_s(row, watch.seconds(), 0));
             return true;
@@ -283,7 +283,7 @@ private:
         try {
             for (bool is_next = true; is_next;) {
                 const auto level = static_cast<uint32_t>(figures.size());
-                SolvedPicture solved = solve_picture(queue_, prepared_, camera_, picture, level, samples, tell);
+                SolvedPicture solved = solve_picture(queue_, prepared_, camera_, picture, level, samples, report);
                 row.bytes = std::max(row.bytes, solved.device_bytes);
                 row.host_bytes = std::max(row.host_bytes, solved.host_bytes);
                 row.invalid_samples += solved.invalid_samples;
@@ -385,10 +385,10 @@ uint32_t next_samples(const TransportFigures& last, double share_s, uint32_t mos
     return next >= std::max(least, last.samples + 1.0) ? static_cast<uint32_t>(next) : 0;
 }
 
-void warm_up(Session& session, const std::function<void()>& tell) {
+void warm_up(Session& session, const std::function<void()>& report) {
     bool has_begun = false;
     session.render(1, [&](const RenderProgress& now) {
-        if (tell) tell();
+        if (report) report();
         return now.made_share >= 1 || !std::exchange(has_begun, true);
     });
     session.cut();

@@ -35,7 +35,7 @@ struct TransportSettings {
     uint32_t reference_samples = 1024; // at least 2; an odd number is rounded down
 };
 
-/// The seed of a repetition. The seeds of the reference's halves differ from all of these, for at most
+/// Returns the seed of a repetition. The seeds of the reference's halves differ from all of these, for at most
 /// kMaxRepetitions.
 inline uint32_t repetition_seed(const TransportSettings& settings, uint32_t repetition) {
     return settings.picture.path.seed + repetition;
@@ -44,15 +44,15 @@ inline uint32_t reference_seed(const TransportSettings& settings, uint32_t half)
     return settings.picture.path.seed + 0x80000000u + half;
 }
 
-/// The number of samples of the next picture after `last`: twice as many if they fit into `share_s` seconds, else as
-/// many as fit if that is at least an eighth more, else 0. made_seconds is already spent and not counted again. At
-/// most `most`.
+/// Returns the number of samples of the next picture after `last`, at most `most`: twice as many if they fit into
+/// `share_s` seconds, otherwise as many as fit if that is at least an eighth more, otherwise 0. made_seconds is already
+/// spent and not counted again.
 uint32_t next_samples(const TransportFigures& last, double share_s, uint32_t most);
 
 /// Renders one uncounted sample per pixel, so that memory allocation, caches and the driver's first launches are not
 /// timed. If the integrator prepares something before its samples, rendering stops once that has begun: it is made
 /// only once and timed. The film is cleared afterwards. Throws what Session::render throws.
-void warm_up(Session& session, const std::function<void()>& tell = {});
+void warm_up(Session& session, const std::function<void()>& report = {});
 
 /// Lets all integrators take their first turn, then all their second, and so on, so that an interrupt leaves results
 /// of each. An integrator's first repetition has 1, 2, 4, ... samples as long as the next picture fits into its share

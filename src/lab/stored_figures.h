@@ -19,18 +19,19 @@
 
 namespace pertev {
 
-/// Whether a build of this many triangles is on the record. `scene` is null for a scene that is not.
+/// Returns whether a build of this many triangles is on the record. `scene` is null for a scene that is not.
 bool is_on_record(std::string_view device, const RecordScene* scene, uint64_t triangles);
-/// Whether rays of set number `set`, seen by the scene's own camera, are on the record.
+/// Returns whether rays of set number `set`, seen by the scene's own camera, are on the record.
 bool is_on_record(std::string_view device, const RecordScene* scene, uint64_t triangles, std::size_t set, uint64_t rays,
                   double hit_share);
-/// Whether a picture of this mean over all pixels and channels is on the record.
+/// Returns whether a picture of this mean over all pixels and channels is on the record.
 bool is_on_record(std::string_view device, const RecordJob& job, const RenderSettings& settings, uint64_t triangles,
                   double mean);
 
-/// How many times as fast as the stored figure a run on the record is; else nothing.
+/// Makes the field of a ratio: how many times as fast as the stored figure a run is, if it is on the record; otherwise
+/// nothing.
 ResultField ratio_field(const char* key, const char* title, bool is_on_record, double ratio);
-/// A line for people that says what the figures of this job belong to.
+/// Returns a line for people that states which scene and settings the stored figures of this job belong to.
 std::string why_no_ratios(const RecordJob& job);
 
 /// Summary of at least one ratio.

@@ -29,7 +29,7 @@ const CombinationFigures* find(const LabReport& report, const Combination& wante
     return at == report.combinations.end() ? nullptr : &*at;
 }
 
-/// Says what is missing, repeats the notes of each scene, and counts hits that inexact tests miss.
+/// Returns notes: on what is missing, those of each scene, and the number of hits that inexact tests miss.
 std::vector<std::string> notes_of(const ThesisReport& thesis) {
     std::vector<std::string> notes;
     for (const std::string& line : thesis.lacking) notes.push_back("Not made: " + line);
@@ -85,7 +85,7 @@ ResultTable scenes_of(const ThesisReport& thesis) {
 
 bool is_rendered(const ThesisPicture& picture) { return picture.stats.samples > 0; }
 
-/// A picture's caption: what it shows, how it was made, and how long that took.
+/// Returns a picture's caption: what it shows, how it was made, and how long that took.
 std::string caption_of(const ThesisPicture& picture) {
     std::string text = picture.shows;
     if (is_rendered(picture)) {

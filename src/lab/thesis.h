@@ -20,12 +20,12 @@ namespace pertev {
 
 /// One column of the tables.
 struct ThesisVariant {
-    const char* name; // for example "PSWW" or "PSWW-R"
+    const char* name; // such as "PSWW" or "PSWW-R"
     const char* meaning;
     Combination combination;
 };
 
-/// The variants on this kind of device; a CPU has none with persistent threads.
+/// Returns the variants on this kind of device; a CPU has none with persistent threads.
 std::vector<ThesisVariant> thesis_variants(bool is_cuda);
 
 /// Reports of the Cornell box and Sibenik, in this order, with exactly the variants' combinations. The caller
@@ -38,14 +38,14 @@ struct ThesisReport {
     std::vector<std::string> lacking;            // parts that could not be made, with the reason, one line each
 };
 
-/// Tables "frames" (a row for each scene, variant and depth, of which the page draws tables 6.3 to 6.6 and figures 6.9
-/// to 6.11), "pictures" of chapters 2 to 4, "variants" and "scenes". Notes say what has no figures and why, and how
-/// many rays A loses.
+/// Makes the tables "frames" (a row for each scene, variant and depth, of which the page draws tables 6.3 to 6.6 and
+/// figures 6.9 to 6.11), "pictures" of chapters 2 to 4, "variants" and "scenes". Notes say what has no figures and why,
+/// and how many rays A loses.
 Measurement measurement_of(const ThesisReport& thesis, Measurement head = {});
 std::string text_of(const ThesisReport& thesis);
 
-/// How each picture was made and how long that took, one row per picture. Values that a picture does not have are
-/// empty.
+/// Makes a table of the pictures, one per row: how each was made and how long that took. Values that a picture does not
+/// have are empty.
 ResultTable table_of(std::span<const ThesisPicture> pictures);
 
 } // namespace pertev

@@ -37,7 +37,7 @@ std::string place_of(std::string_view name) {
     return place;
 }
 
-/// The difference of the films' sums, `a` minus `b`.
+/// Returns the difference of the films' sums, `a` minus `b`.
 Image difference(const Image& a, const Image& b) {
     Image left = a;
     for (std::size_t i = 0; i < left.pixels.size(); ++i) left.pixels[i] = std::max(0.0f, a.pixels[i] - b.pixels[i]);
@@ -56,7 +56,7 @@ void normalise(Image& picture) {
     for (float& value : picture.pixels) value *= scale;
 }
 
-/// Radiosity settings of a panel in a picture with these settings.
+/// Returns the radiosity settings of a panel in a picture with these settings.
 RadiositySettings solution_of(const RadiosityPanel& panel, const RenderSettings& settings) {
     const ThesisDetail detail = thesis_detail(settings.height);
     RadiositySettings requested;
@@ -70,14 +70,14 @@ RadiositySettings solution_of(const RadiosityPanel& panel, const RenderSettings&
     return requested;
 }
 
-/// The settings' text for the command line.
+/// Returns the text of settings for the command line.
 std::string settings_of(const RadiosityPanel& panel, const RadiositySettings& requested) {
     return fmt::format(" `patch_size={}` `subdivisions={}`{}{}", requested.patch_size, requested.subdivisions,
                        panel.is_early ? fmt::format(" `solver=southwell` `steps={}`", requested.steps) : "",
                        panel.is_flat ? " `flat_patches`" : "");
 }
 
-/// Each setting is NAME or NAME=VALUE, as the table of settings has them.
+/// Returns `settings` with those given as NAME or NAME=VALUE, in the syntax of the table of settings.
 RenderSettings with_settings(const RenderSettings& settings, const std::vector<std::string>& given) {
     PictureOptions options;
     options.render = settings;
@@ -130,7 +130,7 @@ struct ThesisPictures::Job {
     Camera camera;
     PreparedScene prepared;
 
-    bool tell(const char* doing, double share) const { return !progress || progress(doing, share); }
+    bool report(const char* doing, double share) const { return !progress || progress(doing, share); }
 };
 
 ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progress) {
@@ -152,7 +152,7 @@ ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progre
         settings.width = std::max(1u, settings.width / 2), settings.height = std::max(1u, settings.height / 2);
     }
     if (!recipe.integrator.empty()) PERTEV_CHECK(set_integrator(settings, recipe.integrator));
-    settings.path.max_depth = std::min(settings.path.max_depth, most_depth(settings.integrator));
+    settings.path.max_depth = std::min(settings.path.max_depth, max_depth(settings.integrator));
     settings = with_settings(settings, recipe.settings);
     if (recipe.has_photons_by_size) settings.photon_map.edit().photons = thesis_detail(settings.height).photons;
     if (recipe.way == ThesisWay::Work) {
@@ -183,10 +183,10 @@ ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progre
     return picture;
 }
 
-/// Renders once; its progress is reported as the share [from, to] of the picture's.
+/// Renders once and reports its progress as the share [from, to] of the picture's.
 RenderResult ThesisPictures::render_once(const Job& job, const RenderSettings& settings, double from, double to) {
     RenderResult result = render_picture(queue_, job.prepared, job.camera, settings, [&](const RenderProgress& now) {
-        return job.tell("rendering", from + (to - from) * now.samples_done / now.samples);
+        return job.report("rendering", from + (to - from) * now.samples_done / now.samples);
     });
     if (result.samples == 0) throw Error(ErrorCode::Interrupted, "interrupted before a picture had a sample");
     return result;
@@ -239,7 +239,7 @@ void ThesisPictures::show_radiosity(const Job& job, ThesisPicture& picture) {
     const RadiosityPanel& panel = job.recipe.panel;
     const RadiositySettings requested = solution_of(panel, job.settings);
     const SolvedRadiosity solved = solve_radiosity(
-        job.prepared, requested, [&](const char* what, double share) { return job.tell(what, 0.5 * share); });
+        job.prepared, requested, [&](const char* what, double share) { return job.report(what, 0.5 * share); });
     if (solved.stats.was_interrupted) throw Error(ErrorCode::Interrupted, "interrupted");
     const SolveStats& stats = solved.stats;
     picture.solve_seconds = stats.factor_seconds + stats.solve_seconds + stats.divide_seconds;

@@ -19,7 +19,7 @@ namespace pertev {
 struct ThesisPicture {
     std::string name;       // file name without its extension, for example "figure-3.7a"
     std::string place;      // "Figure 3.7", for example; pictures with one place and title stand side by side
-    std::string title;      // for example "radiosity"
+    std::string title;      // such as "radiosity"
     std::string shows;      // content of the picture and its algorithm
     std::string integrator; // integrator's name; empty if the picture is not rendered
     std::string command; // a command that makes the same bytes on this device, with settings still to phrase; empty if
@@ -33,18 +33,19 @@ struct ThesisPicture {
     std::string file() const { return name + (svg.empty() ? ".png" : ".svg"); }
 };
 
-/// Names of all pictures in the thesis's order, and of all files that may hold them.
+/// Returns the names of all pictures in the thesis's order.
 std::vector<std::string> thesis_picture_names();
+/// Returns the names of all files that may hold them.
 std::vector<std::string> thesis_picture_files();
 
 /// Makes pictures one by one. A picture's exposure does not depend on its size.
 class ThesisPictures {
 public:
-    /// Called with the current work and the finished share of the picture; returning false ends it.
+    /// A function that is called with the current work and the finished share of the picture; returning false ends it.
     using Progress = std::function<bool(const char* doing, double share)>;
 
-    /// `settings` gives size, samples, depth and the path tracer's body. Pictures that stand side by side have half
-    /// the width and height. `queue` must outlive this.
+    /// Takes size, samples, depth and the path tracer's body from `settings`. Pictures that stand side by side have
+    /// half the width and height. `queue` must outlive this.
     ThesisPictures(Queue& queue, const RenderSettings& settings) : queue_(queue), settings_(settings) {}
 
     /// Makes the picture with this name. Throws Error(Interrupted) if it is stopped before there is anything to show,

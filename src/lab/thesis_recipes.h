@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-/// How a picture is made.
+/// The way in which a picture is made.
 enum class ThesisWay : uint8_t {
     Render,    // by an integrator
     Radiosity, // by a radiosity solution that is then rendered
@@ -47,7 +47,7 @@ struct ThesisRecipe {
     ThesisWay way = ThesisWay::Render;
     ThesisScene scene = ThesisScene::Box;
     std::string integrator;
-    bool is_whole = false;             // else one panel of several: half the width and height
+    bool is_whole = false;             // otherwise one panel of several: half the width and height
     std::vector<std::string> settings; // NAME or NAME=VALUE, beside scene, integrator and patches
     bool has_photons_by_size = false;  // thesis_detail's
     RadiosityPanel panel = {};         // for Radiosity
@@ -55,7 +55,7 @@ struct ThesisRecipe {
     float stops = 2;                   // exposure stops
 };
 
-/// Ordered as the thesis is.
+/// Returns all recipes in the order of the thesis.
 const std::vector<ThesisRecipe>& thesis_recipes();
 
 } // namespace pertev

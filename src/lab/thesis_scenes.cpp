@@ -26,8 +26,8 @@ Bounds3 bounds_of(const Scene& scene, const Instance& instance) {
     return bounds;
 }
 
-/// A light without size in the middle of the lamp, a centimetre below it, of the intensity that the lamp has straight
-/// down: its radiance times its area.
+/// Replaces the emitter by a point light in its middle, a centimetre below it, with the intensity that the emitter has
+/// straight down: its radiance times its area.
 void replace_emitter(Scene& scene) {
     const uint32_t emitter = instance_named(scene, "light");
     const Bounds3 bounds = bounds_of(scene, scene.instances[emitter]);
@@ -40,10 +40,10 @@ void replace_emitter(Scene& scene) {
     scene.instances[emitter].is_hidden = true;
 }
 
-/// To where the eye sees what it lights: under the ceiling, near the open front.
+/// Moves the light under the ceiling near the open front, so that the camera sees the surfaces that it lights.
 void move_light_forward(Scene& scene) { scene.lights.back().position.z = 0.06f; }
 
-/// Longitude by latitude, `down` rings of twice as many quads, with smooth normals.
+/// Makes a ball by longitude and latitude, with `down` rings of twice as many quads, and smooth normals.
 Mesh make_ball(Vec3 centre, float radius, uint32_t down) {
     const uint32_t around = 2 * down;
     const auto number = [](uint32_t i) { return static_cast<float>(i); };
@@ -66,7 +66,7 @@ Mesh make_ball(Vec3 centre, float radius, uint32_t down) {
     return ball;
 }
 
-/// A ball of `material` that stands where the block stood.
+/// Replaces a block by a ball of `material` at its position.
 void replace_block(Scene& scene, std::string_view block, Material material, uint32_t rings) {
     Instance& instance = scene.instances[instance_named(scene, block)];
     const Bounds3 bounds = bounds_of(scene, instance);

@@ -1,7 +1,7 @@
 #pragma once
 
 // The scenes that pictures of the thesis (lab/thesis_pictures.h) are made of: the built-in Cornell box, with another
-// lamp or a ball or two in it, and the built-in caustic.
+// emitter or a ball or two in it, and the built-in caustic.
 
 #include <cstdint>
 
@@ -12,10 +12,10 @@ namespace pertev {
 
 enum class ThesisScene : uint8_t {
     Box,         // cornell-box as it is
-    PointLight,  // a point light in the lamp's place
+    PointLight,  // a point light in place of the emitter
     MirrorBall,  // a mirror sphere in the short block's place
     PlasticBall, // a point light near the front, a sphere of glossy plastic of few triangles in the short block's place
-    TwoBalls,    // that point light, a mirror sphere there and one of glass in the tall block's place
+    TwoBalls,    // the point light, a mirror sphere, and one of glass in place of the tall block
     Caustic,     // caustic, with the camera of the transport report
 };
 
@@ -29,10 +29,10 @@ constexpr const auto& names_of_all(ThesisScene) { return kThesisSceneNames; }
 
 Scene make_thesis_scene(ThesisScene which);
 
-/// Its view in a picture of this width / height.
+/// Returns the scene's camera for a picture of this width / height.
 Camera camera_of(ThesisScene which, const Scene& scene, float aspect);
 
-/// Name on the command line with the camera's settings; empty if only this file has the scene.
+/// Returns the scene's name on the command line with the camera's settings; empty if only this file has the scene.
 const char* command_of(ThesisScene which);
 
 } // namespace pertev

@@ -13,8 +13,9 @@
 
 namespace pertev {
 
-/// Closest hit: the least (t, instance, primitive) of the candidates; t is the ray's t_max without one. Any hit: {0,
-/// 0, 0} if there is a candidate and {0, kNoHit, 0} if not, because traversals may find different ones first.
+/// The hit of a ray. Closest hit: the least (t, instance, primitive) of the candidates; t is the ray's t_max without
+/// one. Any hit: {0, 0, 0} if there is a candidate and {0, kNoHit, 0} if not, because traversals may find different
+/// ones first.
 struct RayHit {
     float t = 0;
     uint32_t instance = kNoHit;
@@ -27,7 +28,7 @@ struct RayHit {
 /// Device memory for the hits of a ray set.
 class HitsOnDevice {
 public:
-    /// Throws Error(OutOfMemory).
+    /// Allocates memory for `rays` hits. Throws Error(OutOfMemory).
     HitsOnDevice(Queue& queue, std::size_t rays) : records_(queue, rays, "hits"), instances_(queue, rays, "hits") {}
 
     /// View of the hits of ray number `first` and the rays after it.

@@ -13,7 +13,7 @@
 namespace pertev {
 namespace {
 
-/// A random triangle of the scene, in world space.
+/// Returns a random triangle of the scene, in world space.
 BvhTriangle some_triangle(const LabTriangles& triangles, uint32_t& state) {
     const auto below = [&](std::size_t count) {
         return std::min(static_cast<std::size_t>(draw(state) * static_cast<float>(count)), count - 1);

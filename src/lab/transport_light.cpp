@@ -19,7 +19,7 @@ bool has_diffuse_lobe(const Material& material) {
     return may_have && max_component(material.base_color) > 0;
 }
 
-/// Whether all materials are diffuse only. Emitters count as diffuse: their surfaces are diffuse and black.
+/// Returns whether all materials are diffuse only. Emitters count as diffuse: their surfaces are diffuse and black.
 bool is_all_diffuse(const Scene& scene) {
     return std::ranges::all_of(scene.instances, [&](const Instance& i) {
         const MaterialKind kind = scene.materials[i.material].kind;
@@ -27,7 +27,7 @@ bool is_all_diffuse(const Scene& scene) {
     });
 }
 
-/// Whether point, spot or directional lights shine on mirrors or clear glass.
+/// Returns whether point, spot or directional lights shine on mirrors or clear glass.
 bool has_caustics_of_points(const Scene& scene) {
     return std::ranges::any_of(scene.lights, [](const Light& l) { return max_component(l.intensity) > 0; }) &&
            std::ranges::any_of(scene.instances,

@@ -10,7 +10,7 @@
 namespace pertev {
 namespace {
 
-/// The position of `x` between `a` and `b` on a logarithmic scale: 0 at `a`, 1 at `b`.
+/// Returns the position of `x` between `a` and `b` on a logarithmic scale: 0 at `a`, 1 at `b`.
 double log_share(double x, double a, double b) {
     const float ends = log(static_cast<float>(b)) - log(static_cast<float>(a));
     if (!(ends > 0)) return 1;
@@ -22,7 +22,7 @@ double between(double a, double b, double share) {
     return a * static_cast<double>(exp(static_cast<float>(share) * log(static_cast<float>(b / a))));
 }
 
-/// The last solution that was ready by then.
+/// Returns the last solution that was ready after `seconds`; nothing if none was.
 std::optional<TransportFigures> solved_by(const Repetition& repetition, double seconds) {
     std::optional<TransportFigures> last;
     for (const TransportFigures& one : repetition) {
@@ -103,8 +103,8 @@ std::vector<TransportPoint> points_of(const TransportRow& row) {
 
 namespace {
 
-/// Samples at a time between two figures. Samples grow linearly with time; preparation before the first sample takes
-/// time too and belongs to the first figure.
+/// Returns the number of samples at a time between two figures. Samples grow linearly with time; preparation before the
+/// first sample takes time too and belongs to the first figure.
 double samples_at(const Repetition& repetition, double seconds) {
     const auto after = std::ranges::find_if(repetition, [&](const auto& f) { return f.seconds >= seconds; });
     if (after == repetition.begin()) return after->samples;

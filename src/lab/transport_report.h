@@ -26,7 +26,8 @@ struct TransportFigures {
     double made_seconds = 0; // the part of `seconds` spent once, before the first sample, on what all samples need
 };
 
-/// Sample counts increase; for solutions, patch counts do. It is shorter if it was interrupted.
+/// The pictures of a repetition, with increasing sample counts; for solutions, patch counts. It is shorter if it was
+/// interrupted.
 using Repetition = std::vector<TransportFigures>;
 
 /// All results of one integrator in a scene.
@@ -34,8 +35,9 @@ struct TransportRow {
     std::string name;
     std::string light;      // the light that it finds, in Heckbert's notation unless it is all light
     bool finds_all = false; // it is unbiased: its error consists only of noise
-    std::string refused;    // why it has no figures; empty if it has some or was not reached
-    /// Its light is solved and not sampled: each picture shows its own solution, which more samples do not improve.
+    std::string refused;    // reason why it has no figures; empty if it has some or was not reached
+    /// True if its light is solved and not sampled: each picture shows its own solution, which more samples do not
+    /// improve.
     bool is_solved = false;
     std::size_t bytes = 0;      // largest use of device memory that was observed, including the scene
     std::size_t host_bytes = 0; // largest use of host memory: measured for solvers, an upper bound for records
@@ -82,7 +84,7 @@ struct Estimate {
     std::optional<double> half_width;
 };
 
-/// Needs at least one value.
+/// Estimates the mean of at least one value.
 Estimate estimate_of(std::span<const double> values);
 /// The 97.5 % quantile of Student's t distribution with `degrees` degrees of freedom, at least 1.
 double student_t(uint32_t degrees);
@@ -98,9 +100,9 @@ struct TransportPoint {
 /// Returns a point for each number of samples that all repetitions have reached; empty without figures.
 std::vector<TransportPoint> points_of(const TransportRow& row);
 
-/// Interpolates each repetition's curve and averages. Interpolation is linear in the logarithms of the value and of
-/// the sampling time (values of 0 are interpolated linearly). Absent if `seconds` lies outside a repetition's figures
-/// or there are none. For solutions the last one that was ready is used.
+/// Returns the mean figures at a time, from the interpolated curve of each repetition. Interpolation is linear in the
+/// logarithms of the value and of the sampling time (values of 0 are interpolated linearly). Absent if `seconds` lies
+/// outside a repetition's figures or there are none. For solutions the last one that was ready is used.
 std::optional<TransportPoint> at_time(const TransportRow& row, double seconds);
 
 /// The longest time that all repetitions of all integrators with figures have reached; 0 if there is none. Solutions
@@ -113,7 +115,7 @@ std::optional<double> efficiency(const TransportPoint& point);
 /// Returns, for example, "path, 1024 samples, 12.3 s; its noise: relMSE 1e-05".
 std::string describe_reference(const TransportReference& reference);
 
-/// Whether anything was measured.
+/// Returns whether anything was measured.
 bool has_findings(const TransportScene& scene);
 bool has_findings(const TransportReport& report);
 

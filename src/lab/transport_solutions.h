@@ -16,12 +16,12 @@ namespace pertev {
 /// Samples per pixel in a solution's picture. They smooth its edges; the solution has no noise for samples to reduce.
 inline constexpr uint32_t kSolutionSamples = 16;
 
-/// Settings of solution `number`: patches of a 4th, 8th, 16th, ... of the scene's longest side, subdivided once where
-/// light changes.
+/// Returns the settings of solution `number`: patches of a 4th, 8th, 16th, ... of the scene's longest side, subdivided
+/// once where light changes.
 RadiositySettings solution_settings(const PreparedScene& prepared, uint32_t number, uint32_t seed);
 
-/// Whether solution `number` is possible: its patches and its memory stay within the laboratory's limits for one
-/// solution.
+/// Returns whether solution `number` is possible: its patches and its memory stay within the laboratory's limits for
+/// one solution.
 bool may_be_solved(const PreparedScene& prepared, uint32_t number);
 
 struct SolvedPicture {
@@ -31,8 +31,9 @@ struct SolvedPicture {
     uint64_t invalid_samples = 0;
 };
 
-/// Solves and renders `samples` samples per pixel. Both are timed, except for one warm-up sample, which all
-/// integrators render first. `progress` may throw. Throws what solve_radiosity and Session throw.
+/// Solves a scene's light and renders `samples` samples per pixel of the solution. Both are timed, except for one
+/// warm-up sample, which all integrators render first. `progress` may throw. Throws what solve_radiosity and Session
+/// throw.
 SolvedPicture solve_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,
                             uint32_t number, uint32_t samples, const SolveProgress& progress);
 

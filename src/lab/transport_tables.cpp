@@ -16,7 +16,7 @@ struct TableLine {
     std::optional<TransportPoint> point;
 };
 
-/// Rows with figures, the smallest relMSE first; rows without a point come last.
+/// Returns rows with figures, the smallest relMSE first; rows without a point come last.
 template <class PointOf>
 std::vector<TableLine> lines_of(const TransportScene& scene, const PointOf& point_of) {
     std::vector<TableLine> lines;
@@ -40,7 +40,8 @@ ResultCell value_at(const std::optional<TransportPoint>& point, const Value& val
     return point ? ResultCell(value(*point)) : ResultCell();
 }
 
-/// Errors with half widths of their 95 % intervals, and efficiency with its ratio to path's.
+/// Makes the fields of a point: errors with half widths of their 95 % intervals, and efficiency with its ratio to
+/// path's.
 Fields point_fields(const TableLine& line, const std::optional<double>& of_path) {
     const auto own = line.point ? efficiency(*line.point) : std::nullopt;
     const auto& p = line.point;
@@ -152,7 +153,7 @@ ResultTable repetitions_of(const TransportReport& report) {
     return table;
 }
 
-/// "cast: point, spot and ... lights alone", for example: a line for each integrator without figures.
+/// Returns a line for each integrator without figures, for example "cast: point, spot and ... lights alone".
 std::vector<std::string> rows_without_figures(const TransportScene& scene) {
     std::vector<std::string> lines;
     for (const TransportRow& row : scene.rows) {

@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-/// `head` names the machine and command.
+/// Makes the tables of a report. `head` names the machine and the command.
 Measurement measurement_of(const TransportReport& report, Measurement head = {});
 /// Returns text for a terminal: for each scene the reference, the table at equal time, integrators without figures and
 /// why, and notes.

@@ -13,7 +13,7 @@ namespace pertev {
 struct DoubleBounds3 {
     DoubleVec3 lo = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
 
-    /// Ignores a point that is not finite.
+    /// Extends the box to a point; one that is not finite is ignored.
     void extend(DoubleVec3 p) {
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return;
         lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};

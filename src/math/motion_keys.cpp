@@ -24,12 +24,12 @@ DoubleVec3 transformed(const Transform& m, DoubleVec3 p) {
 }
 
 double determinant(const Matrix& m) { return dot(m[0], cross(m[1], m[2])); }
-/// Rows of the inverse's transpose.
+/// Returns the transpose of the inverse.
 Matrix inverse_transposed(const Matrix& m) {
     const double inv = 1 / determinant(m);
     return {scaled(inv, cross(m[1], m[2])), scaled(inv, cross(m[2], m[0])), scaled(inv, cross(m[0], m[1]))};
 }
-/// a times the inverse of b.
+/// Returns a times the inverse of b.
 Matrix over(const Matrix& a, const Matrix& b) {
     const Matrix t = inverse_transposed(b); // row i of the product is the sum of a[i].k times column k of b's inverse
     Matrix product;
@@ -37,8 +37,8 @@ Matrix over(const Matrix& a, const Matrix& b) {
     return product;
 }
 
-/// The rotation nearest to `m`, where it turns nothing over.
-/// Source: Higham, "Computing the Polar Decomposition - with Applications", SIAM J. Sci. Stat. Comput. 7(4), 1986.
+/// Returns the rotation nearest to `m`; nothing if `m` mirrors or is singular. Source: Higham, "Computing the Polar
+/// Decomposition - with Applications", SIAM J. Sci. Stat. Comput. 7(4), 1986.
 std::optional<Matrix> nearest_rotation(Matrix m) {
     if (!(determinant(m) > 0)) return std::nullopt;
     for (int step = 0; step < 60; ++step) {
@@ -56,7 +56,7 @@ std::optional<Matrix> nearest_rotation(Matrix m) {
     return m;
 }
 
-/// The unit quaternion of a rotation, by the largest of its components.
+/// Returns the unit quaternion of a rotation, computed from its largest component.
 std::array<double, 4> quaternion_of(const Matrix& m) {
     const double x = m[0].x, y = m[1].y, z = m[2].z;
     const double four[4] = {1 + x - y - z, 1 - x + y - z, 1 - x - y + z, 1 + x + y + z}; // squares, four times
@@ -109,7 +109,8 @@ Motion motion_through(const PlacedBox& thing, std::span<const std::optional<Tran
     return motion;
 }
 
-/// Whether all corners of the box are at `time` where they should be, but for what no rigid motion does.
+/// Returns whether the fitted motion takes all corners of the box to their positions at `time`, apart from what no
+/// rigid motion can do.
 bool is_near(const PlacedBox& thing, const Motion& fitted, uint32_t segments, double time, const Transform& wanted) {
     if (fitted.keys.empty()) return wanted == thing.world_from_local;
     const RigidMotion now = motion_at(fitted.keys.data(), segments, fitted.pivot, static_cast<float>(time));
@@ -162,7 +163,7 @@ FittedMotions fit_motions(std::span<const PlacedBox> things, const TransformsAt&
         if (segments == kMaxMotionSegments) return fitted;
         bool is_good = std::ranges::all_of(looks, is_good_at);
         for (uint32_t k = 0; k < segments && is_good; ++k) {
-            // No even parts of a segment: what comes back in such parts would be seen at its ends alone.
+            // No even parts of a segment: what comes back in such parts would be visible only at its ends.
             for (const double part : {0.21, 0.5, 0.83}) is_good = is_good && is_good_at((k + part) / segments);
         }
         if (is_good) return fitted;

@@ -33,7 +33,7 @@ struct FittedMotions {
     std::vector<Motion> motions;
 };
 
-/// [object] PlacedBox::world_from_local at a time in [0, 1]; nothing: the same as at the previous key.
+/// Returns, per object, PlacedBox::world_from_local at a time in [0, 1]; nothing if it is that of the previous key.
 using TransformsAt = std::function<std::vector<std::optional<Transform>>(double time)>;
 
 /// Fits the rigid motions that move each object from its position at rest to its position at a time. Non-rigid

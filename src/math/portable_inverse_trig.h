@@ -29,7 +29,7 @@ HD inline float atan_tail(float x) {
 
 } // namespace portable
 
-/// In [-pi/2, pi/2]; NaN for |x| > 1. At most 2 ulp off.
+/// Arc sine in [-pi/2, pi/2], radians; NaN for |x| > 1. At most 2 ulp off.
 HD inline float asin(float x) {
     const float size = abs(x);
     if (!(size <= 1)) return kNaN;
@@ -39,7 +39,7 @@ HD inline float asin(float x) {
     return copysign(portable::kHalfPi - fma(2.0f, y, -low), x);
 }
 
-/// In [0, pi]; NaN for |x| > 1. At most 2 ulp off.
+/// Arc cosine in [0, pi], radians; NaN for |x| > 1. At most 2 ulp off.
 HD inline float acos(float x) {
     const float size = abs(x);
     if (!(size <= 1)) return kNaN;
@@ -49,7 +49,7 @@ HD inline float acos(float x) {
     return 2.0f * (portable::kHalfPi - (y + (tail - portable::kHalfPiLow)));
 }
 
-/// In [-pi/2, pi/2]. At most 2 ulp off.
+/// Arc tangent in [-pi/2, pi/2], radians. At most 2 ulp off.
 HD inline float atan(float x) {
     if (x != x) return kNaN;
     const float size = abs(x);

@@ -26,8 +26,9 @@ HD inline uint32_t two_over_pi_word(uint32_t k) {
     return words[k];
 }
 
-/// For 2^16 <= |x| < infinity. Of |x| 2/pi = m 2^s 2/pi, with m an integer of 24 bits, only the bits of 2/pi whose
-/// product with m 2^s is below 4 turn the quadrant; 96 of them leave at least 30 good bits in the worst case.
+/// Reduces an angle with 2^16 <= |x| < infinity to a quadrant and a rest. Only those bits of 2/pi whose product with m
+/// 2^s is below 4 affect the quadrant of |x| 2/pi = m 2^s 2/pi, with m an integer of 24 bits; 96 of them leave at least
+/// 30 good bits in the worst case.
 HD inline ReducedAngle reduce_large_angle(float x) {
     const uint32_t bits = bits_of(x) & 0x7fffffffu;
     const uint64_t m = (bits & 0x7fffffu) | 0x800000u;
@@ -49,7 +50,7 @@ HD inline ReducedAngle reduce_large_angle(float x) {
     return {high, static_cast<float>(angle - static_cast<double>(high)), turns};
 }
 
-/// For finite x; high + low is good to about 2^-45.
+/// Reduces a finite angle to a quadrant and a rest, whose high + low is good to about 2^-45.
 HD inline ReducedAngle reduce_angle(float x) {
     const bool large = (bits_of(x) & 0x7fffffffu) >= 0x47800000u; // 2^16
     if (large) return reduce_large_angle(x);

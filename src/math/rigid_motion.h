@@ -28,7 +28,7 @@ struct MotionKey {
 };
 static_assert(sizeof(MotionKey) == 32);
 
-/// A motion at one time: p maps to turn(p - pivot) + place.
+/// A motion at one time: p maps to turn(p - pivot) + position.
 struct RigidMotion {
     Vec3 row0 = {1, 0, 0}, row1 = {0, 1, 0}, row2 = {0, 0, 1}; // rows of the rotation
     Vec3 pivot = {0, 0, 0}, position = {0, 0, 0};
@@ -48,7 +48,7 @@ struct RigidMotion {
     }
 };
 
-/// `q` is the rotation, a quaternion with any length but 0.
+/// Makes a motion with the rotation `q`, a quaternion with any length but 0.
 HD inline RigidMotion rigid_motion(Vec4 q, Vec3 pivot, Vec3 position) {
     // Two divided by the squared length gives the rows of the unit quaternion.
     const float s = 2.0f / (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
@@ -92,7 +92,7 @@ struct MotionsView {
 
     HD bool is_there() const { return keys != nullptr; }
     HD uint32_t of(uint32_t instance) const { return is_there() ? of_instance[instance] : kNoMotion; }
-    /// `time` is in [0, 1], or kAtRest.
+    /// Returns motion number `motion` at `time`, which is in [0, 1], or kAtRest.
     HD RigidMotion at(uint32_t motion, float time) const {
         return MotionTrack{keys + std::size_t(motion) * (segments + 1), pivots[motion], segments}.at(time);
     }

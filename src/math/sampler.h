@@ -145,7 +145,8 @@ HD inline GroupKeys<Word> group_keys(SampleKeyOf<Word> key, std::type_identity_t
     return {reverse_bits(owen_scramble_reversed(reverse_bits(key.sample), keys.x)), keys};
 }
 
-/// Inlined, like sample_bits, so that `number` is a constant: a switch at run time costs 2 % of a render on the CPU.
+/// Component `number` of a group, scrambled. It is inlined, like sample_bits, so that `number` is a constant: a switch
+/// at run time costs 2 % of a render on the CPU.
 template <class Word>
 [[gnu::always_inline]] HD inline Word scrambled_component(const GroupKeys<Word>& group, uint32_t number) {
     const Word key = number % 2 == 0 ? group.keys.y : group.keys.z;

@@ -21,7 +21,7 @@ struct PolarPointOf {
 };
 using PolarPoint = PolarPointOf<float>;
 
-/// Uniform in the unit disk, in polar form: concentric squares map to concentric circles.
+/// A uniform point of the unit disk, in polar form: concentric squares map to concentric circles.
 template <class T = float>
 HD inline PolarPointOf<T> sample_disk_polar(Vec2Of<T> u) {
     const T x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
@@ -34,7 +34,7 @@ HD inline PolarPointOf<T> sample_disk_polar(Vec2Of<T> u) {
     return {abs(radius), sign * select(wide, cosine, sine), sign * select(wide, sine, cosine)};
 }
 
-/// Uniform in the unit disk; density 1/pi by area.
+/// A uniform point of the unit disk; density 1/pi by area.
 HD inline Vec2 sample_uniform_disk_concentric(Vec2 u) {
     const PolarPoint p = sample_disk_polar(u);
     return {p.radius * p.cosine, p.radius * p.sine};
@@ -59,19 +59,19 @@ HD inline Vec3 direction_at_height(float z, float turns) {
 HD inline Vec3 sample_uniform_sphere(Vec2 u) { return direction_at_height(1.0f - 2.0f * u.x, u.y); }
 HD inline constexpr float pdf_uniform_sphere() { return 0.25f * kInvPi; }
 
-/// Uniform over the hemisphere z > 0.
+/// A uniform direction of the hemisphere z > 0; density 1/(2 pi) by solid angle.
 HD inline Vec3 sample_uniform_hemisphere(Vec2 u) { return direction_at_height(u.x, u.y); }
 HD inline constexpr float pdf_uniform_hemisphere() { return 0.5f * kInvPi; }
 
-/// Uniform in the cone around +z with 1 - cos(half angle) = `one_minus_cos`, in (0, 2], a parameter with which narrow
-/// cones keep their precision.
+/// A uniform direction in the cone around +z with 1 - cos(half angle) = `one_minus_cos`, in (0, 2], a parameter with
+/// which narrow cones keep their precision.
 HD inline Vec3 sample_uniform_cone(Vec2 u, float one_minus_cos) {
     const float depth = u.x * one_minus_cos, radius = safe_sqrt(depth * (2.0f - depth));
     float sine, cosine;
     sin_cos_2pi(u.y, sine, cosine);
     return {radius * cosine, radius * sine, 1.0f - depth};
 }
-/// Density by solid angle inside the cone.
+/// The density of sample_uniform_cone() by solid angle inside the cone, 1/sr.
 HD inline float pdf_uniform_cone(float one_minus_cos) { return 0.5f * kInvPi / one_minus_cos; }
 
 /// Weights of the second and third vertex, uniform by area: both > 0, sum < 1 up to rounding. Density 1/area.
@@ -81,7 +81,7 @@ HD inline Vec2Of<T> sample_uniform_triangle(Vec2Of<T> u) {
     return {select(u.x < u.y, half, u.x - half), select(u.x < u.y, u.y - half, half)};
 }
 
-/// In (-1, 1), with density 1 - |x|.
+/// A number in (-1, 1) with density 1 - |x|.
 HD inline float sample_tent(float u) { return u < 0.5f ? sqrt(2.0f * u) - 1.0f : 1.0f - sqrt(2.0f - 2.0f * u); }
 HD inline float pdf_tent(float x) { return max(1.0f - abs(x), 0.0f); }
 

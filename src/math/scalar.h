@@ -25,7 +25,7 @@ template <class T>
 HD constexpr T max(T a, T b) {
     return a < b ? b : a;
 }
-/// Returns `lo` for NaN.
+/// Returns `x` limited to [lo, hi]; `lo` for NaN.
 template <class T>
 HD constexpr T clamp(T x, T lo, T hi) {
     return x > lo ? (x < hi ? x : hi) : lo;

@@ -53,7 +53,7 @@ HD inline float determinant(const Transform& m) { return dot(m.row0, cross(m.row
 Transform compose(const Transform& a, const Transform& b);
 /// Inverse, evaluated in double. Does not throw: a singular map gives values that are not finite.
 Transform inverse(const Transform& m);
-/// Whether floats cannot hold the inverse of `m`.
+/// Returns whether floats cannot hold the inverse of `m`.
 bool is_singular(const Transform& m);
 /// Product of the largest absolute row sums of the linear part and of its inverse (infinity-norm condition number).
 float condition_number(const Transform& m);

@@ -16,7 +16,7 @@
 
 namespace pertev {
 
-/// Sum of `count` terms from `first` on, where count is a power of two: the same tree without calls.
+/// Sum of `count` terms from `first` on, where count is a power of two. The tree is that of tree_sum_of, without calls.
 template <uint64_t count, class Term>
 inline auto tree_sum_of_block(uint64_t first, Term& term) -> std::decay_t<decltype(term(first))> {
     if constexpr (count == 1) {
@@ -40,8 +40,8 @@ auto tree_sum_of(uint64_t first, uint64_t count, Term& term) -> std::decay_t<dec
     return left + right;
 }
 
-/// term(0) + ... + term(count - 1), each asked for once and in this order; of none what its type's {} is. The type has
-/// a + b.
+/// Returns term(0) + ... + term(count - 1), where each term is evaluated once and in this order; a value-initialized
+/// term if count is 0. The type of a term has a + b.
 template <class Term>
 auto tree_sum(uint64_t count, Term&& term) -> std::decay_t<decltype(term(count))> {
     if (count == 0) return {};

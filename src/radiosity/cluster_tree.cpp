@@ -18,7 +18,7 @@ public:
         for (uint32_t i = 0; i < balls.size(); ++i) order_.push_back(i);
     }
 
-    /// Its cluster is pushed before those below it.
+    /// Makes the cluster of a range, before those below it, and returns its number.
     uint32_t make(uint32_t first, uint32_t count) {
         const auto number = static_cast<uint32_t>(clusters_.size());
         clusters_.push_back({.first = first, .count = count});
@@ -39,7 +39,7 @@ public:
     std::vector<Cluster> take() { return std::move(clusters_); }
 
 private:
-    /// Puts those of the left half first. Returns how many they are.
+    /// Moves the faces of the left half to the front. Returns their number.
     uint32_t part(uint32_t first, uint32_t count) {
         const auto begin = order_.begin() + first, end = begin + count;
         Bounds3 positions, normals;

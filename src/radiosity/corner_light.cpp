@@ -8,9 +8,9 @@
 namespace pertev {
 namespace {
 
-constexpr int kMostHanging = 8; // levels between the patches on either side of an edge
+constexpr int kMaxHanging = 8; // levels between the patches on either side of an edge
 
-/// Sets the area-weighted mean of the patches of all sheets of one surface that meet at a point.
+/// Sets the light of all sheets of one surface that meet at a point to the area-weighted mean of their patches.
 void show_means(std::span<CornerSheet> sheets) {
     for (CornerSheet& sheet : sheets) {
         double sum[3] = {}, areas = 0;
@@ -49,14 +49,14 @@ private:
         End middle = {0.5 * (a.u + b.u), 0.5 * (a.v + b.v), {}, 0.5f * (a.light + b.light)};
         middle.position = table_.position_of(patch, middle.u, middle.v);
         if (middle.position == a.position || middle.position == b.position)
-            return; // floats tell no finer corners apart
+            return; // floats do not distinguish finer corners
         bool any = false;
         for (CornerSheet& sheet : table_.at(middle.position)) {
             if (!is_same_surface(table_.normal_of(patch), sheet.normal)) continue;
             sheet.shown = middle.light;
             any = true;
         }
-        if (!any || depth >= kMostHanging) return;
+        if (!any || depth >= kMaxHanging) return;
         anchor(patch, a, middle, depth + 1);
         anchor(patch, middle, b, depth + 1);
     }

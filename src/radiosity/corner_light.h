@@ -15,9 +15,9 @@
 
 namespace pertev {
 
-/// `irradiance`: [patch of the tree]. Corners are merged if they have the same position and their patches' normals
-/// differ by at most about 30 degrees (radiosity/corner_table.h). Takes n log n time in the number of patches,
-/// whatever the scene's size.
+/// Computes the light at the corners of patches. `irradiance` is [patch of the tree]. Corners are merged if they have
+/// the same position and their patches' normals differ by at most about 30 degrees (radiosity/corner_table.h). Takes n
+/// log n time in the number of patches, whatever the scene's size.
 std::vector<PatchLight> light_corners(const SceneView& scene, const PatchTree& tree, std::span<const Rgb> irradiance);
 
 } // namespace pertev

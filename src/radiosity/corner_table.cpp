@@ -29,8 +29,9 @@ uint32_t direction_of(Vec3 normal) {
     return (face * kDirections + v) * kDirections + u;
 }
 
-/// A place on an edge has the same bits whichever triangle's edge it is: the third term is 0, a product depends on the
-/// vertex and its weight alone, and the sum of two does not depend on their order.
+/// Position between the corners of a triangle. On an edge its bits are the same for all triangles of the edge: the
+/// third term is 0, a product depends only on the vertex and its weight, and the sum of two does not depend on their
+/// order.
 Vec3 position_between(const Vec3 (&corner)[3], double u, double v) {
     const double w = 1 - u - v;
     const auto between = [&](float a, float b, float c) {
@@ -78,7 +79,7 @@ CornerTable::CornerTable(const SceneView& scene, const PatchTree& tree, std::spa
 
 std::vector<CornerTable::Corner> CornerTable::corners_by_bucket() {
     std::vector<Corner> corners(sheet_of_.size()), sorted(sheet_of_.size());
-    std::vector<uint32_t>& bucket = sheet_of_; // until it is known which sheet
+    std::vector<uint32_t>& bucket = sheet_of_; // until the sheets are known
     parallel_for(normals_.size(), 256, [&](uint64_t i) {
         for (uint32_t k = 0; k < 3; ++k) {
             const Vec2 at = tree_.patches[i].corners.at[k];
@@ -135,7 +136,7 @@ std::span<CornerSheet> CornerTable::at(Vec3 position) {
     return {range.begin(), range.end()};
 }
 
-std::size_t CornerTable::most_bytes(uint64_t patches) {
+std::size_t CornerTable::max_bytes(uint64_t patches) {
     return patches * (3 * (2 * sizeof(Corner) + sizeof(uint32_t) + 2 * sizeof(CornerSheet)) + sizeof(Vec3)) +
            patches * sizeof(uint32_t);
 }

@@ -25,7 +25,7 @@ struct CornerSheet {
 
 class CornerTable {
 public:
-    /// `scene` and `tree` outlive it.
+    /// Finds the corners of all patches. `scene` and `tree` outlive it.
     CornerTable(const SceneView& scene, const PatchTree& tree, std::span<const Rgb> irradiance);
 
     /// Sheet of corner `number` of a patch.
@@ -43,7 +43,7 @@ public:
     void for_each_position(const std::function<void(std::span<CornerSheet>)>& body);
 
     /// Maximum bytes for a number of patches.
-    static std::size_t most_bytes(uint64_t patches);
+    static std::size_t max_bytes(uint64_t patches);
 
 private:
     struct Corner {
@@ -63,7 +63,7 @@ private:
     std::vector<CornerSheet> sheets_;                  // by bucket, by position
 };
 
-/// Whether two patches or sheets with these normals share one light where they meet: within 30 degrees.
+/// Returns whether two patches or sheets with these normals share one light where they meet: within 30 degrees.
 inline bool is_same_surface(Vec3 a, Vec3 b) { return dot(a, b) > 0.866f; }
 
 } // namespace pertev

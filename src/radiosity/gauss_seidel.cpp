@@ -8,9 +8,9 @@ namespace pertev {
 namespace {
 
 double sum_of(Rgb c) { return static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b); }
-constexpr std::size_t kPatchesAtOnce = 1024; // between two looks at whether to go on
+constexpr std::size_t kPatchesAtOnce = 1024; // between two queries of whether to go on
 
-/// For one or many patches: the light that leaves, and its change, W.
+/// The light that leaves one or many patches, and its change, W.
 struct Sweep {
     double changed = 0, all = 0;
 };

@@ -43,8 +43,8 @@ struct HemicubeTriangle {
     double det;              // depth = det / sum of the edge functions
     uint32_t x0, x1, y0, y1; // pixels that it may cover
 
-    /// Barycentric weights of a pixel in the triangle. Returns false outside. `depth` is in metres along the face's
-    /// axis.
+    /// Computes the barycentric weights of a pixel in the triangle. Returns false outside. `depth` is in metres along
+    /// the face's axis.
     bool covers(double x, double y, double (&weights)[3], double& depth) const {
         double sum = 0;
         for (int i = 0; i < 3; ++i) {
@@ -59,8 +59,8 @@ struct HemicubeTriangle {
     }
 };
 
-/// Corners are in metres relative to the hemicube's middle. Returns false if no part of the triangle is visible on
-/// the face.
+/// Projects a triangle to a face. Corners are in metres relative to the hemicube's middle. Returns false if no part of
+/// the triangle is visible on the face.
 bool project_to_face(const HemicubePixels::Face& face, const Vec3 (&corners)[3], HemicubeTriangle& seen);
 
 /// Coordinate of a pixel's column or row on a face, at distance 1.

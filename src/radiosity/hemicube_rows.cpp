@@ -1,5 +1,5 @@
-// Rows of form factors by hemicubes (radiosity/hemicube.h). Lamps are patches like others; the environment and lights
-// that no triangle is are found by shadow rays.
+// Rows of form factors by hemicubes (radiosity/hemicube.h). Emitters are patches like others; the environment and
+// lights that no triangle is are found by shadow rays.
 
 #include <memory>
 
@@ -12,7 +12,7 @@ namespace {
 
 using PlacedCorners = HemicubeScene::PlacedCorners;
 
-constexpr uint64_t kWorkOfTriangle = 8, kWorkOfCheck = 1u << 17; // at whether to go on
+constexpr uint64_t kWorkOfTriangle = 8, kWorkOfCheck = 1u << 17; // work between two queries of the watch
 
 std::vector<PlacedCorners> all_triangles(const SceneView& scene) {
     std::vector<PlacedCorners> all;
@@ -95,7 +95,7 @@ private:
         }
     }
 
-    /// The nearest stays; of two at one depth the first.
+    /// Draws a triangle. A pixel keeps the nearest; of two at one depth, the first.
     void draw(const HemicubePixels::Face& face, const PlacedCorners& placed, const HemicubeTriangle& seen,
               SampleKey key) {
         const SceneView& view = scene_.scene.view();

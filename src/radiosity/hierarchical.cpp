@@ -16,9 +16,8 @@ constexpr uint32_t kMaxPasses = 24, kSweeps = 3;
 constexpr uint64_t kLinksAtOnce = 256; // whose rays are traced together
 constexpr float kRaysOfLimit = 8;      // rays of a link whose possible error equals the limit
 
-/// Thrown if there are too many links. That does not depend on the number of threads: the links of a round are
-/// counted, and their sum does not depend on the order.
-/// added up, and its sum does not depend on the order.
+/// The exception for too many links. It does not depend on the number of threads, because the links of a round are
+/// counted and their sum does not depend on the order.
 struct TooManyLinks {};
 
 class Refiner {
@@ -28,8 +27,8 @@ public:
         : scene_(scene), nodes_(nodes), watch_(watch), seed_(settings.seed), max_links_(max_links),
           limit_(settings.link_error * nodes.mean_direct()) {}
 
-    /// Divides links until each is as good as it has to be or waits for a patch to be divided: links of one size after
-    /// the other, so that many are at hand from the start. Where the watch is over links stay as they are.
+    /// Divides links until each is good enough or waits for a patch to be divided. Links of one size are divided after
+    /// the other, so that there are many from the start. Once the watch is over links do not change.
     void refine(std::vector<Link>& links) {
         divides_.assign(nodes_.tree().patches.size(), 0);
         for (uint32_t i = 0; i < divides_.size(); ++i) {
@@ -104,7 +103,7 @@ private:
         }
     }
 
-    /// `divided`: what can be divided of the link.
+    /// Number of rays for a link with at most `most` light, of which `divided` can be divided.
     uint32_t rays_for(float most, NodeCode divided) const {
         const bool is_last = divided == kNoPatch || is_patch(divided);
         const float largest = is_last ? kMaxRaysOfLink / kRaysOfLimit : 1.0f;
@@ -112,7 +111,7 @@ private:
         return max(1u, static_cast<uint32_t>(share * kRaysOfLimit));
     }
 
-    /// Whether light cannot go this way.
+    /// Returns whether light cannot go this way.
     bool faces_away(const Link& link) const {
         if (!is_cluster(link.receiver)) {
             const LinkedPatch& receiver = nodes_.shape(link.receiver);
@@ -125,7 +124,7 @@ private:
                                          : !is_before(source, nodes_.shape(link.receiver));
     }
 
-    /// Irradiance that a link could stand for, were all of its source seen.
+    /// Irradiance that a link could transport if all of its source were visible, W/m2.
     float max_light(const Link& link) const {
         const float sent = nodes_.max_sent(link.source);
         if (!(sent > 0)) return 0;
@@ -143,7 +142,7 @@ private:
         return min(most, power * kInvPi / square(nearest));
     }
 
-    /// The larger of those that can be divided; kNoPatch where neither can be.
+    /// The larger node of a link that can be divided; kNoPatch if neither can.
     NodeCode divided_of(const Link& link) const {
         const bool receiver = nodes_.can_divide(link.receiver), source = nodes_.can_divide(link.source);
         if (!receiver && !source) return kNoPatch;
@@ -154,7 +153,7 @@ private:
     /// Share of the maximum light that is probably visible; in the middle of a cluster there is always something
     /// near.
     float share(const Link& link) const { return is_even(link) || link.rays == 0 ? 1.0f : link.visible(); }
-    /// The least that it could turn out to be.
+    /// Lower bound of share().
     float min_share(const Link& link) const { return is_even(link) ? 1.0f : 1.0f / (kRaysOfLimit + 2); }
     bool is_even(const Link& link) const {
         const bool any_cluster = is_cluster(link.receiver) || is_cluster(link.source);
@@ -231,7 +230,7 @@ std::size_t max_hierarchical_bytes(uint64_t patches, uint64_t triangles) {
     const uint64_t most = nodes < 100000 ? nodes * nodes : kMaxLinks;
     const std::size_t links = 3 * std::min(most, kMaxLinks) * sizeof(Link);
     return std::max(links, LinkNodes::max_first_bytes(std::min(patches, 2 * triangles))) +
-           LinkNodes::most_bytes(patches, patches);
+           LinkNodes::max_bytes(patches, patches);
 }
 
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,

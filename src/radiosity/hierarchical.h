@@ -29,10 +29,11 @@ struct HierarchicalSolution {
     float link_error = 0;       // the link error that was used: the requested one, or a multiple of it
 };
 
-/// `coarse` has whole triangles. They are divided until no edge is longer than `patch_size` (metres), but only where
-/// the oracle requests it. Once `watch` is over the solution ends in its present state. If there would be more than
-/// `max_links`, everything restarts with twice the link error, repeatedly if needed; the bytes equal those of
-/// requesting that error directly. Throws Error(OverLimit) if no error up to kLargestLinkError has so few.
+/// Solves with links between patches and clusters. `coarse` has whole triangles. They are divided until no edge is
+/// longer than `patch_size` (metres), but only where the oracle requests it. Once `watch` is over the solution ends in
+/// its present state. If there would be more than `max_links`, everything restarts with twice the link error,
+/// repeatedly if needed; the bytes equal those of requesting that error directly. Throws Error(OverLimit) if no error
+/// up to kLargestLinkError has so few.
 HierarchicalSolution solve_hierarchically(const SolvedScene& scene, PatchTree coarse, float patch_size,
                                           const RadiositySettings& settings, WorkWatch& watch,
                                           uint64_t max_links = kMaxLinks);

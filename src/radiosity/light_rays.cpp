@@ -13,8 +13,8 @@ struct QueuedLight {
     Ray ray;
     TriangleId target;
     Rgb irradiance;               // irradiance of lights that are no patches
-    PatchCode emitter = kNoPatch; // else the patch,
-    float factor = 0;             // and its form factor
+    PatchCode emitter = kNoPatch; // otherwise the emitter's patch
+    float factor = 0;             // form factor of that patch
     uint32_t key = 0;
 };
 

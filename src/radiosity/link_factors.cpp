@@ -9,7 +9,7 @@ namespace {
 constexpr uint32_t kDraws = 4; // samples of a pair of points, for each ray between points that face each other
 constexpr float kFar = 8;      // distance, in radii of a source, from which on its middle represents it
 
-/// From a point to a patch, which may face it or not.
+/// Form factor from a point to a patch, which may face it or not.
 float form_factor_at(const PatchPoint& point, const LinkedPatch& source) {
     const Vec3 way = source.ball.centre - point.position;
     if (!(dot(source.normal, source.corner[0] - point.position) < 0)) return 0;
@@ -44,7 +44,7 @@ void LinkFactors::queue(const Link& link, uint32_t rays) {
     queued_.push_back(queued);
 }
 
-/// The mean, over places on the receiver, of the form factor from there where the source is seen.
+/// Queues rays for the mean, over points of the receiver, of the form factor to the visible part of the source.
 void LinkFactors::queue_patches(const Link& link, uint32_t rays, uint32_t key, QueuedLink& queued) {
     const Patch &receiver = nodes_.patch(link.receiver), &source = nodes_.patch(link.source);
     const LinkedPatch& shape = nodes_.shape(link.source);
@@ -59,7 +59,7 @@ void LinkFactors::queue_patches(const Link& link, uint32_t rays, uint32_t key, Q
         if (!(factor > 0)) continue;
         if (test_visibility(receiver, start, source, point_on_patch(scene_.view(), source, on_source), factor))
             continue;
-        queued.known += factor; // the place drawn lies below the horizon
+        queued.known += factor; // the drawn point lies below the horizon
         ++queued.seen;
     }
 }
@@ -68,8 +68,8 @@ PatchCode LinkFactors::triangle_of(NodeCode code, double u) const {
     return is_cluster(code) ? nodes_.triangle_at(nodes_.cluster(code), u) : code;
 }
 
-/// Between triangles by their areas, at places that face each other: what share of the light gets through; and where
-/// there is no direction between the two, how much of it arrives.
+/// Queues rays between triangles, drawn by their areas, at points that face each other. They find the share of light
+/// that is not blocked or, if there is no direction between the two clusters, the share that arrives.
 void LinkFactors::queue_clusters(const Link& link, uint32_t rays, uint32_t key, QueuedLink& queued) {
     const Ball &here = nodes_.ball(link.receiver), &there = nodes_.ball(link.source);
     const bool is_even = balls_meet(here, there);
@@ -111,7 +111,7 @@ void LinkFactors::queue_clusters(const Link& link, uint32_t rays, uint32_t key, 
     }
 }
 
-/// False where the two do not face each other.
+/// Queues a visibility ray between two points. Returns false if they do not face each other.
 bool LinkFactors::test_visibility(const Patch& from, const PatchPoint& start, const Patch& to, const PatchPoint& target,
                                   float weight) {
     const Vec3 way = target.position - start.position;

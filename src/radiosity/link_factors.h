@@ -14,7 +14,7 @@ namespace pertev {
 
 class LinkFactors {
 public:
-    /// Both arguments outlive it.
+    /// Makes the factors of links; `scene` and `nodes` outlive it.
     LinkFactors(const SolvedScene& scene, const LinkNodes& nodes, uint32_t seed)
         : scene_(scene), nodes_(nodes), seed_(seed) {}
 

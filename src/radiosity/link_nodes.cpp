@@ -21,7 +21,8 @@ struct Lit {
 
 Lit operator+(Lit a, Lit b) { return {a.light + b.light, a.area + b.area}; }
 
-/// How light a triangle side is: the power of 4 that is not above light / mean, from -6 to 1.
+/// Level of a triangle side's light: the exponent of the greatest power of 4 that is not above light / mean, from -6 to
+/// 1.
 int light_level(float light, double mean) {
     const double power = 0.5 * std::logb(static_cast<double>(light) / mean);
     return to_int(static_cast<float>(std::floor(power)), -6, 1);
@@ -195,7 +196,8 @@ void LinkNodes::receive(NodeCode receiver, std::span<const Link> links) {
     (is_patch(receiver) ? gathered_[number_of(receiver)] : quad_gathered_[receiver]) = received;
 }
 
-/// Down: what a quad gathers, all its parts receive. Up: it sends the mean of what they do.
+/// Passes light down and up a tree of parts: all parts of a quad receive what it gathers, and it sends the mean of what
+/// they send.
 LinkNodes::Pushed LinkNodes::push(PatchCode code, Rgb above) {
     if (is_patch(code)) {
         const uint32_t i = number_of(code);
@@ -243,10 +245,10 @@ void LinkNodes::sort(std::vector<Link>& links) const {
     links = std::move(sorted);
 }
 
-void LinkNodes::divide(std::span<const uint8_t> wishes) {
-    became_.assign(wishes.size(), kNoPatch);
-    for (uint32_t i = 0; i < wishes.size(); ++i) {
-        if (wishes[i] == 0 || tree_.patches.size() + 3 > kMaxPatches) continue;
+void LinkNodes::divide(std::span<const uint8_t> requested) {
+    became_.assign(requested.size(), kNoPatch);
+    for (uint32_t i = 0; i < requested.size(); ++i) {
+        if (requested[i] == 0 || tree_.patches.size() + 3 > kMaxPatches) continue;
         const auto quad = static_cast<uint32_t>(tree_.quads.size());
         quad_shapes_.push_back(patch_shapes_[i]);
         quad_patches_.push_back(tree_.patches[i]);
@@ -293,7 +295,7 @@ void LinkNodes::add_patches() {
     stale_.clear();
 }
 
-/// Finds the direct light of a patch that may be divided, per quarter, to see whether it should be. Returns false,
+/// Finds the direct light of a patch that may be divided, per quarter, to decide whether it should be. Returns false,
 /// with the patch unchanged, if the watch was over meanwhile, because rows are then incomplete.
 bool LinkNodes::find_direct(uint32_t number, RowMaker& of_whole, RowMaker& of_quarter) {
     const Patch& patch = tree_.patches[number];
@@ -329,9 +331,9 @@ std::size_t LinkNodes::max_first_bytes(uint64_t faces) {
     return faces * (sizeof(std::vector<FormFactor>) + kOfAllocation + 4 * (kDirectRays + 16) * sizeof(FormFactor));
 }
 
-std::size_t LinkNodes::bytes() const { return most_bytes(tree_.patches.size(), clusters_.faces.size()); }
+std::size_t LinkNodes::bytes() const { return max_bytes(tree_.patches.size(), clusters_.faces.size()); }
 
-std::size_t LinkNodes::most_bytes(uint64_t patches, uint64_t faces) {
+std::size_t LinkNodes::max_bytes(uint64_t patches, uint64_t faces) {
     const uint64_t quads = patches / 3 + 1, clusters = 2 * faces;
     return (patches + quads) * (sizeof(LinkedPatch) + sizeof(Patch) + 5 * sizeof(Rgb) + 2 * sizeof(uint32_t)) +
            clusters * (sizeof(Cluster) + 2 * sizeof(SentLight) + 2 * sizeof(Rgb) + sizeof(uint32_t)) +

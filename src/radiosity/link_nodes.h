@@ -25,14 +25,14 @@ class RowMaker;
 
 class LinkNodes {
 public:
-    /// `coarse` has whole triangles. Patches with edges shorter than `patch_size` (metres) are not divided. `scene`
-    /// and `watch` outlive it.
+    /// Makes the nodes. `coarse` has whole triangles. Patches with edges shorter than `patch_size` (metres) are not
+    /// divided. `scene` and `watch` outlive it.
     LinkNodes(const SolvedScene& scene, PatchTree coarse, float patch_size, const RadiositySettings& settings,
               WorkWatch& watch);
 
-    /// The whole scene; for a single triangle side its patch.
+    /// Code of the whole scene; for a single triangle side, of its patch.
     NodeCode root() const { return code_of_cluster(0); }
-    /// The cluster, or its triangle if it has only one.
+    /// Code of a cluster, or of its triangle if it has only one.
     NodeCode code_of_cluster(uint32_t cluster) const;
     const Cluster& cluster(NodeCode code) const { return clusters_.clusters[cluster_of(code)]; }
     const Ball& ball(NodeCode code) const { return is_cluster(code) ? cluster(code).ball : shape(code).ball; }
@@ -46,15 +46,15 @@ public:
     const PatchTree& tree() const { return tree_; }
     /// The triangle of a cluster at the fraction `u`, in [0, 1), of its area.
     PatchCode triangle_at(const Cluster& cluster, double u) const;
-    /// Area; half of it belongs to backs.
+    /// Area of a node, m2; half of a cluster's belongs to backs.
     float area(NodeCode code) const;
 
-    /// Reflected light that leaves it, W/m2; for a cluster the maximum of its triangles.
+    /// Reflected light that leaves a node, W/m2; for a cluster the maximum of its triangles.
     Rgb sent(PatchCode code) const { return is_patch(code) ? patch_sent_[number_of(code)] : quad_sent_[code]; }
     float max_sent(NodeCode code) const {
         return is_cluster(code) ? max_sent_[cluster_of(code)] : luminance(sent(code));
     }
-    /// Sum of A B max(cosine, 0) towards `direction` (unit), W; and without the cosine.
+    /// Sum of A B max(cosine, 0) towards `direction` (unit), W.
     Rgb power_towards(NodeCode code, Vec3 direction) const;
     Rgb power(NodeCode code) const;
 
@@ -63,22 +63,21 @@ public:
     bool can_divide(NodeCode code) const {
         return is_cluster(code) || !is_patch(code) || shape(code).longest > patch_size_;
     }
-    /// Whether direct light varies over the patch by more than `limit`, W/m2.
+    /// Returns whether direct light varies over the patch by more than `limit`, W/m2.
     bool direct_changes(uint32_t patch, float limit) const { return direct_spread_[patch] > limit; }
 
     /// Gathers over all links, which are sorted by receiver, and passes light down and up. Returns the share of the
     /// light that has changed.
     double sweep(std::span<const Link> links);
 
-    /// Share of the patches whose direct light was not found at the beginning because the watch was over: they are
-    /// black.
+    /// Share of the patches that are black because the watch was over before their direct light was found.
     double without_direct() const { return without_direct_; }
 
     /// Sorts links by receiver; the order of those of one receiver is stable.
     void sort(std::vector<Link>& links) const;
 
     /// Divides the patches that are marked, [patches].
-    void divide(std::span<const uint8_t> wishes);
+    void divide(std::span<const uint8_t> requested);
     /// Updates a link from before the last divide().
     Link after_division(Link link) const {
         link.receiver = now(link.receiver);
@@ -91,7 +90,7 @@ public:
     PatchTree take_tree() { return std::move(tree_); }
     std::size_t bytes() const;
     /// Maximum bytes for these numbers of patches and triangle sides.
-    static std::size_t most_bytes(uint64_t patches, uint64_t faces);
+    static std::size_t max_bytes(uint64_t patches, uint64_t faces);
     /// Additional maximum bytes during construction, before there are links.
     static std::size_t max_first_bytes(uint64_t faces);
 

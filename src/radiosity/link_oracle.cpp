@@ -21,7 +21,7 @@ bool is_before(const LinkedPatch& patch, const Ball& ball) {
 }
 
 bool is_before(const LinkedPatch& patch, const LinkedPatch& other) {
-    const float least = 1e-5f * (patch.ball.radius + other.ball.radius); // else they lie in one plane
+    const float least = 1e-5f * (patch.ball.radius + other.ball.radius); // otherwise they lie in one plane
     for (const Vec3& corner : other.corner) {
         if (dot(patch.normal, corner - patch.ball.centre) > least) return true;
     }
@@ -31,7 +31,7 @@ bool is_before(const LinkedPatch& patch, const LinkedPatch& other) {
 bool balls_meet(const Ball& a, const Ball& b) { return !(length(a.centre - b.centre) > a.radius + b.radius); }
 
 float max_form_factor(const Ball& receiver, const Ball& source, float area) {
-    const float nearest = length(source.centre - receiver.centre) - receiver.radius; // to its middle
+    const float nearest = length(source.centre - receiver.centre) - receiver.radius; // distance to its middle
     if (!(nearest > source.radius)) return 1;
     const float of_ball = square(source.radius / nearest); // upper bound for a sphere that is faced directly
     const float gap = nearest - source.radius;

@@ -17,11 +17,11 @@ struct LinkedPatch {
 
 LinkedPatch linked_patch(const SceneView& scene, const Patch& patch);
 
-/// Whether any part of a sphere, or of a patch, is in front of `patch`.
+/// Returns whether any part of a sphere, or of a patch, is in front of `patch`.
 bool is_before(const LinkedPatch& patch, const Ball& ball);
 bool is_before(const LinkedPatch& patch, const LinkedPatch& other);
 
-/// Whether they overlap, so that there is no direction from one to the other.
+/// Returns whether two spheres overlap, so that there is no direction from one to the other.
 bool balls_meet(const Ball& a, const Ball& b);
 
 /// Upper bound of the form factor from any point in `receiver` to a source with this sphere and area.

@@ -19,9 +19,9 @@ inline constexpr uint32_t kMaxRaysOfLink = 16;
 
 struct Link {
     NodeCode receiver, source;
-    /// If source and receiver are patches: the form factor from the receiver to the source. Otherwise, with V the
-    /// visible share of the source, V / (pi distance^2), times the cosine at a receiving patch. If they overlap: the
-    /// factor of the source's power.
+    /// The form factor from the receiver to the source if both are patches. Otherwise it is V / (pi distance^2), with V
+    /// the visible share of the source, times the cosine at a receiving patch. If they overlap, it is the factor of the
+    /// source's power.
     float factor = 0;
     uint16_t rays = 0; // rays traced for it; 0: unknown so far
     uint16_t seen = 0; // rays that reached the source

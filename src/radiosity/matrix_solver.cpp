@@ -12,7 +12,7 @@
 namespace pertev {
 namespace {
 
-/// Radiosities of channel `k`; empty where it was to end.
+/// Returns the radiosities of channel `k`; empty if the elimination was interrupted.
 std::vector<double> eliminate(const RadiositySystem& system, int k, const KeepSolving& keep_going) {
     const std::size_t n = system.patches.size();
     std::vector<double> matrix(n * n, 0.0), b(n);
@@ -45,8 +45,8 @@ std::vector<double> eliminate(const RadiositySystem& system, int k, const KeepSo
     return b;
 }
 
-/// Direct light of emitters and other lights, without reflections: the solution as far as it is known before the
-/// elimination is complete.
+/// Returns direct light of emitters and other lights, without reflections: the solution as far as it is known before
+/// the elimination is complete.
 SolvedSystem solve_direct_light(const RadiositySystem& system) {
     std::vector<Rgb> exitance;
     for (const SystemPatch& patch : system.patches) exitance.push_back(patch.exitance);

@@ -20,8 +20,8 @@ inline constexpr PatchCode kIsPatch = 0x80000000u, kNoPatch = 0xffffffffu;
 HD inline constexpr bool is_patch(PatchCode code) { return code >= kIsPatch && code != kNoPatch; }
 HD inline constexpr uint32_t number_of(PatchCode code) { return code & ~kIsPatch; }
 
-/// Children at the corners, then the middle one, whose corners are the middles of the opposite edges. A child quad
-/// has a greater number than its parent.
+/// A divided patch: its children at the corners, then the middle one, whose corners are the middles of the opposite
+/// edges. A child quad has a greater number than its parent.
 struct PatchQuad {
     PatchCode child[4];
 };
@@ -75,7 +75,7 @@ struct PatchCorners {
             return {{bc, ca, ab}};
         }
     }
-    /// `b`: weights of the second and third corner of the patch.
+    /// Position on the triangle at `b`, the weights of the second and third corner of the patch.
     HD Vec2 uv_at(Vec2 b) const { return at[0] + (b.x * (at[1] - at[0]) + b.y * (at[2] - at[0])); }
     HD Vec2 middle() const { return uv_at({1.0f / 3, 1.0f / 3}); }
 };

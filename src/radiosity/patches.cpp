@@ -19,7 +19,7 @@ Vec3 front_of(const SceneView& scene, uint32_t instance, const WorldTriangle& tr
     return front_normal(placed, scene.meshes[placed.mesh], triangle);
 }
 
-/// How often a triangle is divided so that no edge is longer than `size`.
+/// Number of times that a triangle is divided so that no edge is longer than `size`.
 uint32_t levels_of(const WorldTriangle& triangle, float size) {
     const float longest = max(length(triangle.ab), max(length(triangle.ac), length(triangle.ac - triangle.ab)));
     uint32_t levels = 0;
@@ -55,7 +55,7 @@ struct DividedScene {
     WorkWatch* watch; // null: nobody looks
 };
 
-/// Divides `patch` `levels` times. Returns its code; kNoPatch where there is nothing on it to solve for.
+/// Divides `patch` `levels` times. Returns its code; kNoPatch if it has nothing to solve for.
 PatchCode divide(const DividedScene& divided, PatchTree& tree, Patch patch, uint32_t levels) {
     if (levels == 0) {
         if (divided.watch != nullptr && divided.watch->is_over()) {
@@ -78,14 +78,14 @@ PatchCode divide(const DividedScene& divided, PatchTree& tree, Patch patch, uint
     return quad;
 }
 
-/// A material that could reflect diffusely or give light.
+/// Returns whether a material could reflect diffusely or emit.
 bool may_count(const MaterialParameters& material) {
     if (material.kind == MaterialKind::Unlit) return false;
     const bool emits = material.emission.r > 0 || material.emission.g > 0 || material.emission.b > 0;
     return emits || material.kind == MaterialKind::Diffuse || material.kind == MaterialKind::MetallicRoughness;
 }
 
-/// Instances that may have patches, by what is known before any of their triangles is looked at.
+/// Calls body for each triangle of the instances that may have patches, judged without their triangles.
 template <class Body>
 void for_each_triangle(const SceneView& scene, const Body& body) {
     for (uint32_t instance = 0; instance < scene.instance_count; ++instance) {

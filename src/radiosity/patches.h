@@ -39,7 +39,7 @@ struct PatchTree {
     void split(const SceneView& scene, uint32_t number);
 };
 
-/// The triangle of a patch, with a point on it.
+/// Triangle of a patch, with the point at `uv` on it.
 WorldTriangle world_triangle(const SceneView& scene, const Patch& patch, Vec2 uv);
 /// Unit normal of the patch's side.
 Vec3 normal_of(const SceneView& scene, const Patch& patch, const WorldTriangle& triangle);
@@ -53,11 +53,12 @@ inline uint32_t face_of(const SceneView& scene, uint32_t instance, uint32_t prim
 /// Maximum number of patches that make_patches makes: both sides of each triangle, whatever their material.
 uint64_t count_patches(const SceneView& scene, float patch_size);
 
-/// Throws Error(OverLimit) for more than kMaxPatches.
+/// Checks a number of patches. Throws Error(OverLimit) for more than kMaxPatches.
 void check_patch_count(uint64_t patches, float patch_size);
 
-/// `scene` is in host memory and numbers its triangles. Throws Error(OverLimit) for more than kMaxPatches;
-/// Error(BadInput) if none reflects, because there is nothing to solve; Error(Interrupted) if `watch` is over.
+/// Divides a scene into patches. `scene` is in host memory and numbers its triangles. Throws Error(OverLimit) for more
+/// than kMaxPatches; Error(BadInput) if none reflects, because there is nothing to solve; Error(Interrupted) if `watch`
+/// is over.
 PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watch = nullptr);
 
 } // namespace pertev

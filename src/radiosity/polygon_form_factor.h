@@ -11,8 +11,8 @@
 
 namespace pertev {
 
-/// `corner` is in metres from the point. `normal` is the receiver's, unit. Counts the part in front of the receiver,
-/// whichever side of the triangle it sees.
+/// Form factor from a point to a triangle. `corner` is in metres from the point; `normal` is the receiver's, unit. The
+/// part in front of the receiver counts, whichever side of the triangle faces it.
 inline float triangle_form_factor(const Vec3 (&corner)[3], Vec3 normal) {
     Vec3 above[4]; // clipped by the receiver's plane
     int count = 0;

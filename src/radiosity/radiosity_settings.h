@@ -8,13 +8,13 @@
 
 namespace pertev {
 
-/// How form factors are computed.
+/// Method to compute form factors.
 enum class FormFactors : uint8_t {
     Rays,     // rays through the scene: radiosity/ray_rows.cpp
     Hemicube, // projection on half a cube: radiosity/hemicube.h
 };
 
-/// How the system of linear equations is solved. All solvers have one solution.
+/// Solver of the system of linear equations. All solvers have one solution.
 enum class RadiositySolver : uint8_t {
     Southwell,    // progressive refinement: the patch with most unsent light sends next
     GaussSeidel,  // each patch gathers in turn

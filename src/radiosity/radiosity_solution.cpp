@@ -14,7 +14,7 @@
 namespace pertev {
 namespace {
 
-/// The last letter is the version.
+/// The first bytes of a file; the last letter is the version.
 constexpr char kMagic[16] = {'p', 'e', 'r', 't', 'e', 'v', ' ', 'r', 'a', 'd', 'i', 'o', 's', 'i', 't', '3'};
 constexpr int kVersion = 3;
 constexpr int kFirstWithLight = 2, kFirstWithExtent = 3;
@@ -30,7 +30,7 @@ struct Header {
 };
 static_assert(sizeof(Header) == 96 && sizeof(SolvedLight) == 32 && sizeof(SolvedExtent) == 8);
 
-/// Returns 0 if it is no such file, or of a later version.
+/// Returns the version of a file; 0 if it is no solution, or of a later version.
 int version_of(const Header& header) {
     constexpr std::size_t kName = sizeof kMagic - 1;
     if (std::memcmp(header.magic, kMagic, kName) != 0) return 0;
@@ -46,7 +46,7 @@ Hash128 content_hash(const RadiositySolution& solution) {
     hasher.add(std::as_bytes(std::span(solution.roots)));
     hasher.add(std::as_bytes(std::span(solution.quads)));
     hasher.add(std::as_bytes(std::span(solution.patches)));
-    if (solution.extent != SolvedExtent{}) { // so that whole ones have the hash that they have had from the start
+    if (solution.extent != SolvedExtent{}) { // complete ones keep their hash from before there were others
         hasher.add_value(static_cast<uint32_t>(solution.extent.part));
         hasher.add(std::as_bytes(std::span(&solution.extent.left, 1)));
     }
@@ -57,14 +57,14 @@ Hash128 content_hash(const RadiositySolution& solution) {
     throw Error(ErrorCode::BadInput, FileLocation{path.string()}, why);
 }
 
-/// Copies the next of `bytes` and leaves the rest.
+/// Copies the first of `bytes` to `to` and removes them.
 template <class T>
 void take(std::span<const std::byte>& bytes, std::span<T> to) {
     if (!to.empty()) std::memcpy(to.data(), bytes.data(), to.size_bytes());
     bytes = bytes.subspan(to.size_bytes());
 }
 
-/// Whether looking up ends, at a patch that is there.
+/// Returns whether every lookup ends, at a patch that exists.
 bool is_sound(const RadiositySolution& solution) {
     const auto is_code = [&](PatchCode code, std::size_t min_quad) {
         if (code == kNoPatch) return true;
@@ -134,7 +134,7 @@ Hash128 geometry_hash(const Scene& scene) {
 
 namespace {
 
-/// Throws Error(BadInput) where it is not of `scene` as it is.
+/// Throws Error(BadInput) if the solution is not one of `scene` in its present state.
 void check_scene(const std::filesystem::path& path, const RadiositySolution& solution, const Scene& scene) {
     uint64_t triangles = 0;
     for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
@@ -201,8 +201,8 @@ RadiositySolution read_any_solution(const std::filesystem::path& path) {
     if (version == 0) {
         refuse_file(path, "no radiosity solution (pertev solve radiosity makes one)");
     }
-    constexpr uint64_t kMost = uint64_t(1) << 40; // so that no sum below passes 64 bits
-    const bool has_sizes = std::max({header.text, header.roots, header.quads, header.patches}) < kMost;
+    constexpr uint64_t kMaxCount = uint64_t(1) << 40; // so that no sum below passes 64 bits
+    const bool has_sizes = std::max({header.text, header.roots, header.quads, header.patches}) < kMaxCount;
     const bool has_light = version >= kFirstWithLight, has_extent = version >= kFirstWithExtent;
     const uint64_t before = (has_light ? sizeof(SolvedLight) : 0) + (has_extent ? sizeof(SolvedExtent) : 0);
     const uint64_t size = !has_sizes ? 0

@@ -17,7 +17,7 @@
 
 namespace pertev {
 
-/// How complete a solution is.
+/// Degree to which a solution is complete.
 enum class SolvedPart : uint32_t {
     All,
     SomeDirectLight, // direct light of some patches; no reflected light
@@ -28,8 +28,8 @@ enum class SolvedPart : uint32_t {
 
 struct SolvedExtent {
     SolvedPart part = SolvedPart::All;
-    /// Missing part in [0, 1], 0 for All and SomeDivided: share of the patches without direct light, or of the light
-    /// that surfaces still have to reflect, or that the last step changed.
+    /// Missing part in [0, 1], 0 for All and SomeDivided: the share of patches without direct light, or of the light
+    /// that surfaces have not yet reflected, or that the last step changed.
     float left = 0;
 
     bool operator==(const SolvedExtent&) const = default;
@@ -53,17 +53,17 @@ struct RadiositySolution {
                patches.size() * sizeof(PatchLight);
     }
     RadiosityView view() const { return {{roots.data(), quads.data()}, patches.data(), ambient}; }
-    /// Hash of all its bytes.
+    /// Hash of all bytes of the solution.
     Hash128 hash() const;
 };
 
 /// Hash of the vertices, triangles, materials' numbers and transform of every instance.
 Hash128 geometry_hash(const Scene& scene);
 
-/// Throws Error(FileWrite).
+/// Writes a solution atomically. Throws Error(FileWrite).
 void write_solution(const std::filesystem::path& path, const RadiositySolution& solution);
 
-/// Whether the file begins like a solution.
+/// Returns whether the file begins like a solution.
 bool is_solution(const std::filesystem::path& path);
 
 /// Reads a solution of any scene. Throws Error(BadInput) with the reason if the file does not exist, or is no

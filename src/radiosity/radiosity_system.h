@@ -37,7 +37,7 @@ struct RadiositySystem {
         for (const std::vector<FormFactor>& row : rows) count += row.size();
         return count;
     }
-    /// Bytes of host memory.
+    /// Size of the system in host memory, bytes.
     std::size_t bytes() const {
         return factor_count() * sizeof(FormFactor) +
                patches.size() * (sizeof(SystemPatch) + sizeof(Rgb) + sizeof(std::vector<FormFactor>));
@@ -47,11 +47,11 @@ struct RadiositySystem {
 struct SolvedSystem {
     std::vector<Rgb> irradiance; // [patches] W/m2
     /// Irradiance of every patch, in addition to its own, from unsent light that is distributed evenly (Cohen et al.
-    /// 1988, section 4). 0 if all has been sent.
+    /// 1988, section 4). It is 0 if all has been sent.
     Rgb ambient;
     uint64_t steps = 0; // sweeps over all patches, or sending patches
     double left = 0;    // share of the light that is unsent, or that the last sweep changed
-    /// For Southwell: [patches] the part of each patch's radiosity, W/m2, that no patch has received yet. The ambient
+    /// [patches] the part of each patch's radiosity, W/m2, that no patch has received yet, by Southwell. The ambient
     /// light represents it and its reflections. Empty if all has been sent.
     std::vector<Rgb> unsent;
     bool reached_limit = false; // stopped by kMaxSweeps, with more left than the tolerance
@@ -68,17 +68,19 @@ inline double channel(Rgb c, int k) { return static_cast<double>(k == 0 ? c.r : 
 /// Then the system has no solution.
 void check_light_ends(const RadiositySystem& system);
 
-/// Called often, with the share of the light that is left; false ends the solution in its present state.
+/// A function that is called often, with the share of the light that is left; false ends the solution in its present
+/// state.
 using KeepSolving = std::function<bool(double left)>;
 
-/// `tolerance` is the share of the light at which it ends. `steps` is the maximum number of sending patches; 0:
-/// unlimited.
+/// Solves by sending light from one patch at a time. `tolerance` is the share of unsent light at which it ends. `steps`
+/// is the maximum number of sending patches; 0: unlimited.
 SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance, uint64_t steps,
                                 const KeepSolving& keep_going = {});
 SolvedSystem solve_by_gauss_seidel(const RadiositySystem& system, double tolerance, const KeepSolving& keep_going = {});
-/// Throws Error(OverLimit) for more than kMaxMatrixPatches.
+/// Checks the size of a matrix. Throws Error(OverLimit) for more than kMaxMatrixPatches.
 void check_matrix_size(std::size_t patches);
-/// Throws as check_matrix_size(). If the elimination is interrupted, the solution is direct light only, with 0 steps.
+/// Solves by Gaussian elimination. Throws as check_matrix_size(). If the elimination is interrupted, the solution is
+/// direct light only, with 0 steps.
 SolvedSystem solve_by_matrix(const RadiositySystem& system, const KeepSolving& keep_going = {});
 
 } // namespace pertev

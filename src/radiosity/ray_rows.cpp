@@ -1,6 +1,6 @@
 // Form factors by rays: they leave places all over the patch, by the cosine of their angle to its normal, so that the
-// share of them that arrives at a patch is its form factor, whatever stands between. What lamps and the sky send is
-// found by rays to points of lights as well, and weighed (Veach 1997, section 9.2): a lamp that few rays of the
+// share of them that arrives at a patch is its form factor, whatever stands between. What emitters and the sky send is
+// found by rays to points of lights as well, and weighed (Veach 1997, section 9.2): an emitter that few rays of the
 // hemisphere meet would be noise.
 //
 // Source: Malley, "A Shading Method for Computer Generated Images", 1988: directions by the cosine are points of a disk
@@ -71,7 +71,7 @@ private:
             scene_.scene.trees(), count, RayOrder::Scattered, [&](uint32_t i) { return sent_[i]; }, accept_of, hits_);
     }
 
-    /// Returns how much of ray i met something other than a lamp.
+    /// Adds ray i to the row. Returns the part of it, in [0, 1], that met something other than an emitter.
     double add(uint32_t i, float each, FormFactorRow& row) const {
         const SceneView& view = scene_.scene.view();
         const LightSetView& lights = view.lights;
@@ -101,8 +101,8 @@ private:
         return 0;
     }
 
-    /// All form factors of a patch, the sky's and that of where light ends are 1 together. What lamps cover is known
-    /// better than the rest, which takes what they leave.
+    /// Scales a row so that all form factors of a patch, with those of the sky and of surfaces that absorb all light,
+    /// add up to 1. The sum of emitters is known better than that of the rest, which is scaled to what they leave.
     void close(double emitters, double others, FormFactorRow& row) const {
         const double of_emitters = others > 0 && emitters <= 1 ? 1 : 1 / emitters;
         const double of_others = others > 0 ? std::max(0.0, 1 - emitters) / others : 0;

@@ -47,7 +47,7 @@ struct HemicubeScene {
 };
 
 std::unique_ptr<RowMaker> make_ray_rows(const RowScene& scene, const RadiositySettings& settings);
-/// `hemicube` outlives it.
+/// Makes a row maker by hemicubes; `hemicube` outlives it.
 std::unique_ptr<RowMaker> make_hemicube_rows(const RowScene& scene, const RadiositySettings& settings,
                                              const HemicubeScene& hemicube);
 
@@ -57,7 +57,7 @@ std::size_t max_hemicube_bytes(uint32_t resolution);
 /// Makes row makers according to the settings.
 class RowMakers {
 public:
-    /// All arguments outlive it.
+    /// Takes references to all arguments, which outlive it.
     RowMakers(const SolvedScene& scene, const PatchTree& sources, const RadiositySettings& settings,
               WorkWatch* watch = nullptr);
     std::unique_ptr<RowMaker> for_thread() const;

@@ -32,7 +32,7 @@ std::size_t tree_bytes(uint64_t patches, uint64_t triangles) {
     return patches * sizeof(Patch) + (patches / 3 + 1) * sizeof(PatchQuad) + 2 * triangles * sizeof(PatchCode);
 }
 
-/// Form factors that a row is made of, before those of one patch are added.
+/// Number of form factors that a row is made of, before those of one patch are added.
 uint64_t found_factors(const RadiositySettings& s) {
     const uint64_t of_lights = std::max(s.rays / 4, kMinPatchRays);
     return s.form_factors == FormFactors::Rays ? s.rays + of_lights : 3 * uint64_t(s.hemicube) * s.hemicube;
@@ -71,8 +71,8 @@ Parts solving_rows(const RadiositySettings& s, const Counts& counts, uint64_t th
     return parts;
 }
 
-/// While patches are divided, or when they have been and the corners' light is found. Lists that grow are twice there
-/// for a moment.
+/// Memory while patches are divided, and afterwards while the corners' light is found. Lists that grow exist twice for
+/// a moment.
 Parts showing(const RadiositySettings& s, const Counts& counts, uint64_t threads) {
     Parts parts = s.subdivisions > 0 ? making_rows(s, counts, threads) : Parts{};
     parts.push_back(
@@ -80,8 +80,8 @@ Parts showing(const RadiositySettings& s, const Counts& counts, uint64_t threads
     parts.push_back(
         {"patches that are shown", 2 * (tree_bytes(counts.shown, counts.triangles) + counts.shown * sizeof(Rgb)) +
                                        2 * counts.shown * sizeof(uint32_t)});
-    parts.push_back({"corners", CornerTable::most_bytes(counts.shown) + WeldedVertices::most_bytes(counts.vertices)});
-    parts.push_back({"solution", 2 * counts.shown * sizeof(PatchLight)}); // and as a file
+    parts.push_back({"corners", CornerTable::max_bytes(counts.shown) + WeldedVertices::max_bytes(counts.vertices)});
+    parts.push_back({"solution", 2 * counts.shown * sizeof(PatchLight)}); // twice: in memory and as a file
     return parts;
 }
 
@@ -95,7 +95,7 @@ SolveMemory predict_memory(const PreparedScene& prepared, const RadiositySetting
     const uint64_t all = count_patches(view, patch_size);
     memory.patches = all;
     if (settings.solver == RadiositySolver::Hierarchical) {
-        memory.patches = std::min<uint64_t>(memory.patches, kMaxPatches); // it divides what it has to
+        memory.patches = std::min<uint64_t>(memory.patches, kMaxPatches); // fewer patches are divided
     } else {
         check_patch_count(memory.patches, patch_size);
     }

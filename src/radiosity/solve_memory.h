@@ -25,10 +25,10 @@ struct SolveMemory {
     std::size_t by_rows = 0; // instead of links: `bytes` of RadiositySolver::GaussSeidel; 0: no links, or too many rows
 };
 
-/// For solve_radiosity with `threads` threads. Throws as SolvedScene and check_patch_count.
+/// Predicts the memory of solve_radiosity with `threads` threads. Throws as SolvedScene and check_patch_count.
 SolveMemory predict_memory(const PreparedScene& prepared, const RadiositySettings& settings, int threads);
 
-/// Throws Error(OutOfMemory), with the largest parts and how to reduce them, if it exceeds `limit`.
+/// Throws Error(OutOfMemory), with the largest parts and how to reduce them, if the memory exceeds `limit` bytes.
 void check_memory(const SolveMemory& memory, const RadiositySettings& settings, std::size_t limit);
 
 } // namespace pertev

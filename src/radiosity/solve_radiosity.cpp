@@ -16,7 +16,7 @@
 namespace pertev {
 namespace {
 
-constexpr uint64_t kRowsOfThread = 4; // at least, one after the other
+constexpr uint64_t kRowsOfThread = 4; // minimum number per thread, one after the other
 
 [[noreturn]] void interrupt() {
     throw Error(
@@ -24,8 +24,8 @@ constexpr uint64_t kRowsOfThread = 4; // at least, one after the other
         "interrupted while form factors were made; nothing is written, because no light is solved before all are done");
 }
 
-/// Makes `count` rows, each given to take(k, row), from any thread. False where the watch was over before all were
-/// made.
+/// Makes `count` rows and calls take(k, row) for each, from any thread. Returns false if the watch was over before all
+/// were made.
 template <class PatchOf, class Take>
 bool make_rows(const RowMakers& makers, WorkWatch& watch, uint64_t count, const PatchOf& patch_of, const Take& take) {
     parallel_for_ranges(count, kRowsOfThread, [&](uint64_t begin, uint64_t end) {
@@ -86,7 +86,7 @@ SolvedSystem solve(const RadiositySystem& system, const RadiositySettings& setti
     return solve_by_matrix(system, keep_going);
 }
 
-/// Whether light changes over a patch by more than the share `contrast` of all that it shows.
+/// Returns whether light changes over a patch by more than the share `contrast` of all that it shows.
 bool changes(const PatchLight& light, Rgb ambient, float contrast) {
     float least = kInfinity, most = 0;
     for (const Rgb& corner : light.corner) {
@@ -96,16 +96,16 @@ bool changes(const PatchLight& light, Rgb ambient, float contrast) {
     return most - least > contrast * luminance(light.mean + ambient) && most > least;
 }
 
-/// Divides patches where light changes over them, and has the parts gather from `sources`.
+/// Divides patches where light changes over them, and gathers the light of the parts from `sources`.
 class Divider {
 public:
-    /// `sent`: by the sources so far, W/m2.
+    /// Takes the light `sent` by the sources so far, W/m2.
     Divider(const SolvedScene& scene, const PatchTree& sources, const RadiositySettings& settings,
             const std::vector<Rgb>& sent, Rgb ambient, WorkWatch& watch)
         : scene_(scene), makers_(scene, sources, settings, &watch), settings_(settings), sent_(sent), ambient_(ambient),
           watch_(watch) {}
 
-    /// True while there may be more to divide.
+    /// Divides patches once. Returns true while there may be more to divide.
     bool divide(PatchTree& tree, std::vector<Rgb>& irradiance, uint32_t level) {
         const auto share = [&](uint32_t levels) { return static_cast<double>(levels) / settings_.subdivisions; };
         watch_.begin("dividing patches", 0, share(level - 1), share(level - 1));
@@ -123,7 +123,7 @@ public:
     }
 
 private:
-    /// Returns the parts, whose light is to be found; until then they have that of the whole.
+    /// Splits patches and returns the parts, whose light is to be found; until then they have that of the whole.
     std::vector<uint32_t> split(PatchTree& tree, std::vector<Rgb>& irradiance) {
         std::vector<uint32_t> wholes;
         {
@@ -175,11 +175,11 @@ struct SolvedPatches {
     std::vector<Rgb> unsent; // SolvedSystem's
     Rgb ambient;
 
-    /// `all` less a part of it, which rounding may have made larger.
+    /// Returns `all` minus a part of it, at least 0, because rounding may have made the part larger.
     static Rgb left_without(Rgb all, Rgb part) {
         return {max(all.r - part.r, 0.0f), max(all.g - part.g, 0.0f), max(all.b - part.b, 0.0f)};
     }
-    /// Light that each has sent so far, W/m2.
+    /// Light that each patch has sent so far, W/m2.
     std::vector<Rgb> sent() const {
         std::vector<Rgb> all;
         all.reserve(irradiance.size());
@@ -192,7 +192,8 @@ struct SolvedPatches {
     }
 };
 
-/// Progress of a solution whose remaining light falls from 1 to `tolerance` by a constant factor per step.
+/// Returns the progress, in [0, 1], of a solution whose remaining light falls from 1 to `tolerance` by a constant
+/// factor per step.
 double share_done(double left, double tolerance) {
     if (!(left > 0 && tolerance > 0 && tolerance < 1)) return 1;
     const auto halvings = [](double x) { return static_cast<double>(log2(static_cast<float>(x))); };
@@ -244,7 +245,7 @@ SolvedPatches solve_links(const SolvedScene& scene, float patch_size, const Radi
     return {std::move(solution.tree), std::move(solution.irradiance), {}, {}};
 }
 
-/// Whether rows were solved to the end, whatever was asked for meanwhile.
+/// Returns whether rows were solved to the end, regardless of interrupts.
 bool is_whole(const SolveStats& stats, const RadiositySettings& settings) {
     return settings.solver != RadiositySolver::Hierarchical && stats.steps > 0 &&
            stats.left <= static_cast<double>(settings.tolerance);

@@ -15,12 +15,12 @@ struct Receiver {
     float factor; // from the receiver to the sender
 };
 
-/// For each patch, those that receive light from it, by ascending number.
+/// The patches that receive light from each patch, by ascending number.
 class Receivers {
 public:
     explicit Receivers(const RadiositySystem& system) : starts_(system.patches.size() + 1) {}
 
-    /// Returns false if it must stop.
+    /// Finds the receivers. Returns false if the solution must end.
     bool find(const RadiositySystem& system, const KeepSolving& keep_going) {
         const auto goes_on = [&](std::size_t i) { return i % 1024 != 0 || !keep_going || keep_going(1); };
         all_.resize(system.factor_count());
@@ -47,29 +47,30 @@ private:
     std::vector<Receiver> all_;
 };
 
-/// The patch with most unsent light; the first of several. A tree of winners, so that a change costs its height.
-class MostUnsent {
+/// Finds the patch with most unsent light, the first of several, by a tree of maxima, so that a change costs its
+/// height.
+class LargestUnsent {
 public:
-    explicit MostUnsent(std::size_t count) : leaves_(std::bit_ceil(count)), most_(2 * leaves_, 0.0) {}
+    explicit LargestUnsent(std::size_t count) : leaves_(std::bit_ceil(count)), largest_(2 * leaves_, 0.0) {}
 
     void set(std::size_t patch, double light) {
         std::size_t at = leaves_ + patch;
-        most_[at] = light;
+        largest_[at] = light;
         for (at /= 2; at > 0; at /= 2) {
-            const double larger = std::max(most_[2 * at], most_[2 * at + 1]);
-            if (most_[at] == larger) return; // nothing changes above
-            most_[at] = larger;
+            const double larger = std::max(largest_[2 * at], largest_[2 * at + 1]);
+            if (largest_[at] == larger) return; // nothing changes above
+            largest_[at] = larger;
         }
     }
     std::size_t first() const {
         std::size_t at = 1;
-        while (at < leaves_) at = most_[2 * at] >= most_[2 * at + 1] ? 2 * at : 2 * at + 1;
+        while (at < leaves_) at = largest_[2 * at] >= largest_[2 * at + 1] ? 2 * at : 2 * at + 1;
         return at - leaves_;
     }
 
 private:
     std::size_t leaves_;
-    std::vector<double> most_;
+    std::vector<double> largest_;
 };
 
 constexpr double kMinAbsorbed = 1e-6;
@@ -95,9 +96,9 @@ Spread operator+(const Spread& a, const Spread& b) {
     return sum;
 }
 
-/// Irradiance if unsent light were distributed evenly, with all of its reflections. A patch whose hemisphere is
-/// covered by others with the share s sends them s of its light, and receives s of the distributed light; patches
-/// that face nothing take no part.
+/// Returns the irradiance if unsent light were distributed evenly, with all of its reflections. A patch whose
+/// hemisphere is covered by others with the share s sends them s of its light, and receives s of the distributed light;
+/// patches that face nothing take no part.
 Rgb ambient_of(const RadiositySystem& system, const std::vector<Rgb>& unsent) {
     const Spread spread = tree_sum(unsent.size(), [&](uint64_t i) -> Spread {
         const SystemPatch& patch = system.patches[i];
@@ -129,7 +130,7 @@ SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance,
     SolvedSystem solved;
     solved.irradiance = system.direct;
     std::vector<Rgb> unsent(count);
-    MostUnsent most(count);
+    LargestUnsent most(count);
     for (std::size_t i = 0; i < count; ++i) {
         const SystemPatch& patch = system.patches[i];
         unsent[i] = patch.exitance + patch.reflectance * system.direct[i];
@@ -143,7 +144,7 @@ SolvedSystem solve_by_southwell(const RadiositySystem& system, double tolerance,
     count_left();
     Receivers receivers(system);
     const uint64_t max_steps = steps > 0 ? steps : kMaxSweeps * count;
-    uint64_t work = 0; // since the last look at whether to go on
+    uint64_t work = 0; // since the watch was last queried
     bool goes_on = receivers.find(system, keep_going);
     while (goes_on && solved.left > tolerance && solved.steps < max_steps) {
         const std::size_t sender = most.first();

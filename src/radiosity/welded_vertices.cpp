@@ -25,12 +25,12 @@ int32_t cell_of(double coordinate, int level) {
     return static_cast<int32_t>(std::floor(std::ldexp(coordinate, kCellLevel - level)));
 }
 
-/// Places of their own, by the cells of a grid that is as fine as their coordinates are.
+/// Distinct positions, found by the cells of a grid that is as fine as their coordinates.
 class WeldedPositions {
 public:
     explicit WeldedPositions(std::size_t most) : heads_(std::bit_ceil(most + 1), kNone) {}
 
-    /// The first one that is as good as here; else `here`, which is kept.
+    /// Returns the first position that is equal to `here` up to kWeld; otherwise `here`, which is added.
     Vec3 find_or_keep(Vec3 here) {
         const float largest = max_component(abs(here));
         const float near = WeldedVertices::kWeld * largest;

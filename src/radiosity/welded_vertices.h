@@ -12,16 +12,16 @@ namespace pertev {
 
 class WeldedVertices {
 public:
-    /// Two vertices are merged if no coordinate differs by more than kWeld of the largest coordinate, whatever the
-    /// size of the scene; each takes the position of the first.
+    /// Merges the vertices of a scene. Two vertices are merged if no coordinate differs by more than kWeld of the
+    /// largest coordinate, whatever the size of the scene; each takes the position of the first.
     explicit WeldedVertices(const SceneView& scene);
 
-    /// Writes the corners, in metres.
+    /// Writes the corners of a triangle, in metres.
     void corners(uint32_t instance, uint32_t primitive, Vec3 (&at)[3]) const;
 
     static constexpr float kWeld = 0x1p-22f; // four roundings of floats
     /// Maximum bytes for a number of vertices.
-    static std::size_t most_bytes(uint64_t vertices) { return vertices * (2 * sizeof(Vec3) + 4 * sizeof(uint32_t)); }
+    static std::size_t max_bytes(uint64_t vertices) { return vertices * (2 * sizeof(Vec3) + 4 * sizeof(uint32_t)); }
 
 private:
     const SceneView& scene_;

@@ -12,8 +12,8 @@
 
 namespace pertev {
 
-/// Gets the current work and its progress in [0, 1]. Called from any thread, never concurrently. Returning false ends
-/// the work.
+/// A function that gets the current work and its progress in [0, 1]. It is called from any thread, never concurrently.
+/// Returning false ends the work.
 using SolveProgress = std::function<bool(const char* what, double share)>;
 
 class WorkWatch {
@@ -30,7 +30,7 @@ public:
     void done(uint64_t pieces = 1) { done_.fetch_add(pieces, std::memory_order_relaxed); }
     void set_share(double share) { share_.store(share, std::memory_order_relaxed); }
 
-    /// Whether the work must end; once true it stays so. Reports if the last report is kInterval ago.
+    /// Returns whether the work must end; once true it stays true. Reports if the last report is kInterval ago.
     bool is_over();
 
     static constexpr std::chrono::milliseconds kInterval{50};

@@ -89,7 +89,7 @@ HD inline Vec3 unproject_point(const CameraView& camera, Vec2 pixel, float depth
     return {scale * at.x, scale * at.y, -depth};
 }
 
-/// Whether project_point is valid at `depth`: in front of the camera, or for an orthographic camera.
+/// Returns whether project_point is valid at `depth`: in front of the camera, or for an orthographic camera.
 HD inline bool is_projected(const CameraView& camera, float depth) {
     return depth > 0 || has_parallel_rays(camera.projection);
 }

@@ -58,8 +58,8 @@ struct FilmPart {
 
 class Film {
 public:
-    /// `aovs` are AovBits. `light_layers` are the names of the light layers, of three channels each, that follow them
-    /// (LightPathView). The film starts at zero.
+    /// Makes a film that starts at zero. `aovs` are AovBits. `light_layers` are the names of the light layers, of three
+    /// channels each, that follow them (LightPathView).
     Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, std::vector<std::string> light_layers = {});
 
     static std::size_t predicted_bytes(uint32_t width, uint32_t height, uint32_t aovs,
@@ -94,15 +94,15 @@ public:
     /// consecutive samples of the same rows, or consecutive rows of the same samples.
     void add(const Film& other);
 
-    /// Mean of all samples: RGB, or RGBA (colour times coverage, coverage) if `transparent`.
+    /// Returns the mean of all samples: RGB, or RGBA (colour times coverage, coverage) if `transparent`.
     Image picture(bool transparent) const;
     /// Computes the bytes of tone_map_image(picture(transparent), kind, exposure_stops) on the device and starts
     /// their copy to the host.
     void display(ToneMap kind, float exposure_stops, bool transparent);
     /// The picture from the last display().
     Rgba8Image displayed() const;
-    /// Layers in this order: requested auxiliary layers, light layers (RGB), layers of added targets. Normals, depths
-    /// and positions are means over the samples that hit something.
+    /// Returns the layers in this order: requested auxiliary layers, light layers (RGB), layers of added targets.
+    /// Normals, depths and positions are means over the samples that hit something.
     std::vector<FilmLayer> layers() const;
     /// Ids of sample 0, row by row; empty without kAovIds.
     std::vector<PixelIds> ids() const;

@@ -90,7 +90,7 @@ HD constexpr uint32_t film_channel_count(uint32_t aovs) {
     return film_channels::sums_before(aovs, film_channels::kGroups);
 }
 
-/// The group of one bit.
+/// Returns the group of one bit.
 const AovGroup& aov_group(AovBits aov);
 std::vector<std::string> channel_names(const AovGroup& group);
 

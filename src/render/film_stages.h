@@ -12,7 +12,7 @@
 
 namespace pertev {
 
-/// One call per sum.
+/// The stage that adds sums, with one call per sum.
 struct AddSums {
     const FixedSum* from;
     FixedSum* to;
@@ -20,7 +20,7 @@ struct AddSums {
     HD void operator()(uint32_t i) const { to[i] = to[i] + from[i]; }
 };
 
-/// One call per count.
+/// The stage that adds counts, with one call per count.
 struct AddCounts {
     const uint64_t* from;
     uint64_t* to;
@@ -28,7 +28,8 @@ struct AddCounts {
     HD void operator()(uint32_t i) const { to[i] += from[i]; }
 };
 
-/// One call per pixel. Ids belong to sample 0: a film without it holds kNoHit, as if nothing was hit.
+/// The stage that adds the ids of each pixel. Ids belong to sample 0: a film without it holds kNoHit, as if nothing was
+/// hit.
 struct AddIds {
     const PixelIds* from;
     PixelIds* to;
@@ -38,7 +39,7 @@ struct AddIds {
     }
 };
 
-/// Takes a pixel of `from` if `to` has had no sample there since it was cleared.
+/// The stage that takes each pixel of `from` if `to` has had no sample there since it was cleared.
 struct AddFrames {
     static constexpr uint32_t kNoSample = 0xffffffffu; // bits of w of the light
 
@@ -52,7 +53,7 @@ struct AddFrames {
     }
 };
 
-/// One call per pixel: computes the means of some consecutive channels.
+/// The stage that computes the means of some consecutive channels of each pixel.
 struct ResolveFilm {
     FilmView film;
     uint32_t first, channels; // channels of the film
@@ -68,7 +69,7 @@ struct ResolveFilm {
     }
 };
 
-/// One call per pixel: computes the bytes that a display shows.
+/// The stage that computes the bytes of each pixel for a display.
 struct DisplayFilm {
     FilmView film;
     uint64_t samples; // per pixel, > 0

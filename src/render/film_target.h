@@ -52,8 +52,8 @@ public:
     virtual void set_bytes(std::span<const std::byte> bytes) = 0;
 };
 
-/// A target of `count` elements, each with all bytes `kEmpty` at first. The stage `Add{from, to}` adds another film's
-/// elements.
+/// A target that is an array of elements, each with all bytes `kEmpty` at first. The stage `Add{from, to}` adds another
+/// film's elements.
 template <class T, class Add, unsigned char kEmpty>
 class ElementTarget : public FilmTarget {
 public:

@@ -30,7 +30,7 @@ struct FilmView {
     NoisyFrameView frame; // if present, samples go to it, and there are no sums, ids or auxiliary channels
     PixelWindow window;   // the window that sums and ids cover
 
-    /// Whether it takes sums of every pixel of the picture, which is all that most integrators can fill.
+    /// Returns whether it takes sums of every pixel of the picture, which is all that most integrators can fill.
     bool is_whole_picture() const { return !frame.is_there() && window.picture_width == 0; }
 
     HD FixedSum* pixel(uint32_t index) const { return at_slot(window.slot_of(index)); }

@@ -11,16 +11,17 @@ namespace pertev {
 
 class NoisyFrame : public FilmTarget {
 public:
-    /// `splits_light` means that the scene has surfaces with lobes other than diffuse ones.
+    /// Makes a frame. `splits_light` means that the scene has surfaces with lobes other than diffuse ones.
     NoisyFrame(Queue& queue, uint32_t width, uint32_t height, bool splits_light);
-    /// Uses another owner's memory: arrays(splits_light) elements per pixel from `numbers` on.
+    /// Makes a frame in another owner's memory: arrays(splits_light) elements per pixel from `numbers` on.
     NoisyFrame(Queue& queue, uint32_t width, uint32_t height, bool splits_light, Float4* numbers);
     static constexpr std::size_t arrays(bool splits_light) { return splits_light ? 7 : 6; }
     /// Sets the arrays in which samples leave their first bounce for ReSTIR from now on.
     void leave(const FirstBounceView& first_bounce) { view_.first_bounce = first_bounce; }
 
     const char* name() const override { return "noisy frame"; }
-    /// Needed only for parts of a frame; in a whole frame the next sample overwrites each pixel.
+    /// Clears the frame, which is necessary only for parts of a frame; in a whole frame the next sample overwrites each
+    /// pixel.
     void clear() override;
     void show(FilmView& view) const override;
     bool is_like(const FilmTarget& other) const override;

@@ -55,8 +55,6 @@ struct NoisyFrameView : GBufferView {
     Float4* diffuse = nullptr;  // rgb, the part of `light` that the first surface scatters by diffuse lobes. Null:
                                 // all of `light` but `emission`, in scenes without other lobes
     Float4* emission = nullptr; // rgb, the part of `light` that the camera ray hits directly; Gloss::transmittance
-    Float4* gloss = nullptr;    // rgb, approximate reflectance of the other lobes; metres from the first surface to
-                                // the path's next hit, kFarAway without one
     FirstBounceView first_bounce;
 
     HD bool is_there() const { return light != nullptr; }

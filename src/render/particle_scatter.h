@@ -18,13 +18,13 @@ namespace pertev {
 
 namespace particle {
 
-/// The direction for which the BSDF is evaluated: wi lowered. Pure delta lobes keep theirs, as Surface::sample does.
+/// The direction for which the BSDF is evaluated: wi lowered, or unchanged for pure delta lobes, as in Surface::sample.
 HD inline RaisedDirection lowered(const Surface& surface, Vec3 wi_local) {
     if (!(surface.tilt > 0) || surface.bsdf.has_delta_only()) return {wi_local, 1.0f};
     return lower_direction(wi_local, surface.tilt);
 }
-/// Whether a surface has delta lobes beside others that use the lowered direction; then half of the samples are drawn
-/// for each.
+/// Returns whether a surface has delta lobes beside others that use the lowered direction; then half of the samples are
+/// drawn for each.
 HD inline bool is_split(const Surface& surface, const RaisedDirection& from) {
     return from.slope < 1 && surface.bsdf.has_delta() && !surface.bsdf.has_delta_only();
 }
@@ -37,7 +37,6 @@ HD inline float factor(const Surface& surface, Vec3 wo, Vec3 wi, Vec3 wo_local, 
 
 /// Square of the refractive index beyond a surface for a particle from `wi`, where it is `here`. Power is the same on
 /// both sides; radiance over n^2 (bsdf_sample.h) is arriving power divided by that square.
-/// `here`. Power is the same on both sides, radiance over n^2 (bsdf_sample.h) is power that arrives, over that square.
 HD inline float squared_index_beyond(const Surface& surface, Vec3 wi, float here) {
     const float squared = square(surface.bsdf.base.dielectric.ior);
     return surface.frame.to_local(wi).z > 0 ? here * squared : here / squared;
@@ -61,9 +60,9 @@ HD inline BsdfValue evaluate_adjoint(const Surface& surface, Vec3 wi, Vec3 wo, L
             particle::is_split(surface, from) ? 0.5f * value.pdf : value.pdf};
 }
 
-/// Samples where a particle from `wi` (unit, world space) goes: the direction is the sample's `wi`, and its weight
-/// multiplies the particle's power. pdf 0 means absorption. With a bent normal the weight is unbounded as wo nears
-/// its horizon.
+/// Samples the direction in which a particle from `wi` (unit, world space) is scattered: it is the sample's `wi`, and
+/// its weight multiplies the particle's power. pdf 0 means absorption. With a bent normal the weight is unbounded as wo
+/// nears its horizon.
 HD inline BsdfSample sample_adjoint(const Surface& surface, Vec3 wi, float u_lobe, Vec2 u) {
     const Vec3 wi_local = surface.frame.to_local(wi);
     RaisedDirection from = particle::lowered(surface, wi_local);

@@ -5,7 +5,7 @@
 namespace pertev {
 namespace {
 
-/// Filter value at x in [-1, 1], in units of the radius; not normalised.
+/// Returns the filter's value at x in [-1, 1], in units of the radius; not normalised.
 float filter_value(PixelFilter filter, float x) {
     if (filter == PixelFilter::Gaussian) return exp(-4.5f * x * x);
     const float phase = kPi * (x + 1.0f);

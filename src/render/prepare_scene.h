@@ -23,7 +23,7 @@ struct PrepareOptions {
                                          // trees are
     std::optional<BvhBuilder> builder;   // builder of the trees; by default that of `tracers` or of the default
                                          // tracers
-    /// Accepts a cached tree of a better TreeBuild than the requested one.
+    /// True to accept a cached tree of a better TreeBuild than the requested one.
     bool may_be_better = false;
     bool keep_coordinates = false;             // keeps the scene's coordinates, for rays that are given in them
     std::optional<Vec3> centre;                // origin of the translated world, in place of the scene's own

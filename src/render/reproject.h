@@ -44,8 +44,8 @@ HD inline Vec3 point_at(const InstanceView* instances, const MeshView* meshes, F
     return transform_point(instance.world_from_local, local);
 }
 
-/// Reprojects `pixel`, whose sample hit the surface at `place`. The sample lies somewhere in the pixel; the centre is
-/// assumed to move with it.
+/// Reprojects the pixel with this `centre`, whose sample has `hit` (GBufferView::hit). The sample lies somewhere in the
+/// pixel; the centre is assumed to move with it.
 HD inline Reprojection reproject_surface(const FrameCameras& cameras, const SceneView& scene,
                                          const PreviousScene& before, Vec2 centre, Float4 hit) {
     const Vec3 point = point_at(scene.instances, scene.meshes, hit);
@@ -56,11 +56,11 @@ HD inline Reprojection reproject_surface(const FrameCameras& cameras, const Scen
     return {centre + (then.pixel - now.pixel), then.depth};
 }
 
-/// Minimum cosine of two normals of what may be the same surface.
+/// Minimum cosine of two normals that may belong to the same surface.
 inline constexpr float kSeenAlike = 0.5f;
 HD inline bool is_depth_alike(float seen, float depth) { return abs(seen - depth) <= 0.05f * depth; }
 
-/// Whether a pixel with this normal and depth (GBufferView::normal) shows approximately the surface at `depth`
+/// Returns whether a pixel with this normal and depth (GBufferView::normal) shows approximately the surface at `depth`
 /// with this normal; otherwise it is disoccluded.
 HD inline bool is_seen_alike(Float4 seen, float depth, Vec3 normal) {
     return is_depth_alike(seen.w, depth) && dot(vec3_of(seen), normal) > kSeenAlike;

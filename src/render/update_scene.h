@@ -25,7 +25,7 @@ namespace pertev {
 PreparedScene update_scene(const PreparedScene& before, const Scene& scene, const SceneUpdate& update,
                            Messages& messages, std::shared_ptr<const MotionKeys> motions = nullptr);
 
-/// Whether update_scene has anything to do. For pure vertex motion only PreparedScene::poses change.
+/// Returns whether update_scene has anything to do. For pure vertex motion only PreparedScene::poses change.
 bool changes_prepared(const SceneUpdate& update);
 
 /// The parts (ScenePart) that Session::update_scene must then upload. They include lights unless only poses changed,

@@ -31,11 +31,11 @@ struct alignas(16) BounceReservoir {
 };
 static_assert(sizeof(BounceReservoir) == 48);
 
-/// A reservoir's point as seen from a surface.
+/// A reservoir's point relative to a surface that reuses it.
 struct Reconnection {
     Vec3 wi;       // unit, towards it
     float measure; // solid angle per barycentric measure
-    float side;    // which side is seen, in the sense of BounceReservoir::side
+    float side;    // visible side, in the sense of BounceReservoir::side
     bool is_there;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// First stage of direct light: initial candidates. RIS picks one of several sample points on lights and the light
+// First stage of direct light: initial candidates. RIS selects one of several sample points on lights and the light
 // that the path's first bounce hit.
 //
 // Source: Bitterli et al. 2020, section 3 and algorithm 3, with candidates of light sampling and one of BSDF sampling
@@ -28,7 +28,7 @@ struct SampleInitialCandidates {
         if (surface.is_unlit || surface.bsdf.has_delta_only()) return;
         reservoir.count = 1;
         const SampleKey key = here.key(pixel);
-        RisSelection pick = {sample_1d(here.sampler, key, kGroupPickCandidate)};
+        RisSelection selection = {sample_1d(here.sampler, key, kGroupSelectCandidate)};
         const float drawn = static_cast<float>(candidates);
         for (uint32_t k = 0; k < candidates; ++k) {
             const SampleKey candidate = {key.pixel, key.sample * candidates + k, key.seed};
@@ -39,7 +39,7 @@ struct SampleInitialCandidates {
             }
             const BsdfValue value = surface.evaluate(wo, light.wi);
             const float density = drawn * light.pdf + (light.is_delta ? 0.0f : value.pdf);
-            if (pick.takes(luminance(value.f * light.radiance) / density)) {
+            if (selection.takes(luminance(value.f * light.radiance) / density)) {
                 reservoir.point = point_of(light);
                 reservoir.source = 1; // visibility unknown
             }
@@ -49,13 +49,13 @@ struct SampleInitialCandidates {
         const EmitterPoint point = met[pixel];
         if (find_light(scene.lights, point, surface.light_context(wo), light, measure)) {
             const BsdfValue value = surface.evaluate(wo, light.wi);
-            if (pick.takes(luminance(value.f * light.radiance) / (drawn * light.pdf + value.pdf))) {
+            if (selection.takes(luminance(value.f * light.radiance) / (drawn * light.pdf + value.pdf))) {
                 reservoir.point = point;
                 reservoir.source = 0;
             }
         }
         const float target = luminance(light_scattered(scene, surface, wo, reservoir));
-        reservoir.weight = target > 0 ? pick.sum / target : 0.0f;
+        reservoir.weight = target > 0 ? selection.sum / target : 0.0f;
     }
 };
 

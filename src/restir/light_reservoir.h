@@ -27,7 +27,7 @@ HD inline Rgb light_scattered(const SceneView& scene, const Surface& surface, Ve
 }
 
 /// Makes the shadow ray from a surface's triangle to the reservoir's point, which ends before `target`. Returns false
-/// if nothing can arrive. `coin` belongs to the surface's pixel.
+/// if nothing can arrive. `coin` is the key of blended surfaces for the surface's pixel.
 HD inline bool make_visibility_ray(const SceneView& scene, const LightReservoir& reservoir, const WorldTriangle& from,
                                    uint32_t coin, Ray& ray, TriangleId& target) {
     LightSample light;
@@ -43,7 +43,7 @@ HD inline bool make_visibility_ray(const SceneView& scene, const LightReservoir&
 /// Random-number groups of ReSTIR for a pixel's sample, far behind those of paths (integrators/path/path_state.h).
 enum RestirGroup : uint32_t {
     kGroupCandidates = 1u << 24, // candidate k of sample s uses point s * candidates + k of the group
-    kGroupPickCandidate,
+    kGroupSelectCandidate,
     kGroupNeighbours, // three groups
     kGroupReuse = kGroupNeighbours + 3,
 };

@@ -17,13 +17,13 @@ struct PixelSurfaces {
 
     HD bool is_there(uint32_t pixel) const { return bits_of(g_buffer.hit[pixel].x) != kNoHit; }
     HD SampleKey key(uint32_t pixel) const { return {pixel, sample, seed}; }
-    /// Coin of blended surfaces between the pixel's surface and what it sees, equal to that of its path's next ray.
+    /// Key of blended surfaces for rays from the pixel's surface, equal to that of its path's next ray.
     HD uint32_t coin(uint32_t pixel) const { return coin_key(key(pixel), 1, false); }
     HD Hit hit(uint32_t pixel) const {
         const Float4 p = g_buffer.hit[pixel];
         return {0, p.z, p.w, bits_of(p.x), bits_of(p.y)};
     }
-    /// Direction of the camera ray, unit.
+    /// Direction of the pixel's camera ray, unit.
     HD Vec3 direction(uint32_t pixel) const { return camera.ray(pixel, sampler, key(pixel)).direction; }
     HD WorldTriangle triangle(const SceneView& scene, uint32_t pixel) const {
         const Hit at = hit(pixel);

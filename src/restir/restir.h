@@ -21,7 +21,7 @@
 
 namespace pertev {
 
-/// Determines the random numbers of a frame's samples.
+/// The numbers that determine the random numbers of a frame's samples.
 struct SampleNumbers {
     SamplerKind sampler;
     uint32_t sample, seed;
@@ -29,10 +29,10 @@ struct SampleNumbers {
 
 class Restir {
 public:
-    /// `queue` outlives it.
+    /// Allocates memory for frames of this size; `queue` outlives it.
     Restir(Queue& queue, uint32_t width, uint32_t height, RestirLight light);
 
-    /// Discards the history, because the next frame shows something else.
+    /// Discards the history, because the next frame is unrelated to it.
     void cut() { has_history_ = false; }
     /// Arrays in which the samples of a frame leave their first bounce.
     FirstBounceView first_bounce() const;
@@ -44,7 +44,7 @@ public:
 
     /// Number of rays that the last add() traced. Waits for it.
     uint64_t rays() const;
-    /// The light that it was made for.
+    /// The light that is drawn from reservoirs.
     RestirLight light() const { return light_; }
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }

@@ -7,7 +7,7 @@
 
 namespace pertev {
 
-/// The light that is drawn from shared reservoirs instead of by each path for itself.
+/// The light that is drawn from shared reservoirs instead of separately by each path.
 enum class RestirLight : uint8_t {
     Off,
     Direct,  // "di": direct light at the first surface

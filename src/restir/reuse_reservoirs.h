@@ -4,10 +4,10 @@
 // again in the same frame. It works for any reservoir with the functions of light_reservoir.h and bounce_reservoir.h:
 // light_scattered and make_visibility_ray.
 //
-// Item i, the reservoir of pixel i, is picked by share(i, item i) target(own pixel, item i) weight i, with
+// Item i, the reservoir of pixel i, is selected by share(i, item i) target(own pixel, item i) weight i, with
 //   share(j, x) = count j target(j, x) / sum over all k of count k target(k, x)
 // This is the generalised balance heuristic over target functions without visibility (Lin et al., "Generalized
-// Resampled Importance Sampling", SIGGRAPH 2022, section 5.1). Each pixel sees its own item, so of the picked item's
+// Resampled Importance Sampling", SIGGRAPH 2022, section 5.1). Each pixel sees its own item, so of the selected item's
 // shares only those of pixels that see it count: QueueVisibilityRays and CountVisible test them, one pixel after the
 // other, and the weight is divided by their sum. Thus no light is lost or counted twice, whatever the occlusion, at one
 // ray per neighbour.
@@ -21,7 +21,7 @@ namespace pertev {
 /// Number of pixels whose reservoirs are combined; the pixel itself is entry 0.
 inline constexpr uint32_t kMaxEntries = kMaxNeighbours + 1;
 
-/// Shares of the picked item, by entry.
+/// Shares of the selected item, by entry.
 struct alignas(16) Shares {
     float of[kMaxEntries] = {};
 };
@@ -71,33 +71,34 @@ private:
                 targets[j][i] = luminance(light_scattered(scene, surface, -direction, entries[i]));
             }
         }
-        RisSelection pick = {sample_1d(here.sampler, here.key(pixel), group)};
+        RisSelection selection = {sample_1d(here.sampler, here.key(pixel), group)};
         result = {};
-        float picked_sum = 0, all = 0;
+        float selected_sum = 0, all = 0;
         for (uint32_t i = 0; i < count; ++i) {
             all += entries[i].count;
             float sum = 0;
             for (uint32_t j = 0; j < count; ++j) sum += entries[j].count * targets[j][i];
             const float share = entries[i].count * targets[i][i] / sum;
-            if (!(sum > 0) || !pick.takes(share * targets[0][i] * entries[i].weight)) continue;
+            if (!(sum > 0) || !selection.takes(share * targets[0][i] * entries[i].weight)) continue;
             result = entries[i];
             result.source = i;
-            picked_sum = sum;
+            selected_sum = sum;
         }
         result.count = all;
         result.weight = 0;
-        if (!(pick.sum > 0)) return;
-        const uint32_t picked = result.source;
-        result.weight = pick.sum / targets[0][picked];
+        if (!(selection.sum > 0)) return;
+        const uint32_t selected = result.source;
+        result.weight = selection.sum / targets[0][selected];
         if (!is_finite(result.weight)) result.weight = 0;
         for (uint32_t j = 0; j < kMaxEntries; ++j) {
-            result_shares.of[j] = j < count ? entries[j].count * targets[j][picked] / picked_sum : 0.0f;
+            result_shares.of[j] = j < count ? entries[j].count * targets[j][selected] / selected_sum : 0.0f;
         }
-        result.seen = result_shares.of[picked];
+        result.seen = result_shares.of[selected];
     }
 };
 
-/// Makes a shadow ray to the picked item from the pixel of entry `entry`, if its visibility is unknown.
+/// The stage that makes a shadow ray to the selected item from the pixel of entry `entry`, if its visibility is
+/// unknown.
 template <class Reservoir>
 struct QueueVisibilityRays {
     SceneView scene;
@@ -126,7 +127,7 @@ struct QueueVisibilityRays {
     }
 };
 
-/// Evaluates the traced shadow rays.
+/// The stage that evaluates the traced shadow rays.
 template <class Reservoir>
 struct CountVisible {
     VisibilityRaysView rays;
@@ -144,7 +145,7 @@ struct CountVisible {
     }
 };
 
-/// Divides the weight by the shares of all entries that could have kept the item.
+/// The stage that divides the weight by the shares of all entries that could have selected the item.
 template <class Reservoir>
 struct FinishReuse {
     Reservoir* reservoirs;

@@ -18,7 +18,7 @@ namespace pertev {
 /// math/sampling.h.
 enum class Projection : uint8_t { Perspective, Orthographic, Cosine };
 
-/// Whether all rays are parallel, so that apparent size does not depend on distance.
+/// Returns whether all rays are parallel, so that apparent size does not depend on distance.
 HD constexpr bool has_parallel_rays(Projection projection) {
     switch (projection) {
     case Projection::Perspective:
@@ -30,7 +30,7 @@ HD constexpr bool has_parallel_rays(Projection projection) {
     return true;
 }
 
-/// Whether it measures light and shows no picture.
+/// Returns whether it measures light and shows no picture.
 HD constexpr bool is_light_meter(Projection projection) {
     switch (projection) {
     case Projection::Perspective:

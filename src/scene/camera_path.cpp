@@ -7,13 +7,13 @@ namespace {
 
 constexpr float kMinFovDeg = 0.01f, kMaxFovDeg = 179; // limits of `fov`
 
-/// One component of the keys over time.
+/// A spline through one component of the keys over time.
 template <class Number>
 class Spline {
 public:
     Spline(const std::vector<CameraKey>& keys, const Number& number) : keys_(keys), number_(number) {}
 
-    /// Value between key `before` and the next.
+    /// Returns the value at a time between key `before` and the next.
     double at(std::size_t before, double time_s) const {
         const double seconds = time(before + 1) - time(before), t = (time_s - time(before)) / seconds;
         const double t2 = t * t, t3 = t2 * t;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxNamed = 10;
 
-/// The greatest value of a texture's channel; at most 1.
+/// Returns the largest value of a texture's channel; at most 1.
 float greatest_texel(const Scene& scene, const TextureRef& ref, std::size_t channel) {
     if (!ref.has_image()) return 1;
     const TextureImage& image = scene.images[static_cast<std::size_t>(ref.image)];

@@ -52,8 +52,8 @@ struct MaterialParameters {
     TextureRef normal_texture; // tangent space, x right, y up in texture space (OpenGL convention), linear
 
     bool is_emissive() const { return max_component(emission) > 0; }
-    /// Whether it is sampled as an emitter. An unlit one is not: rays from the camera or a surface that hit it return
-    /// its colour.
+    /// Returns whether it is sampled as an emitter. An unlit one is not: rays from the camera or a surface that hit it
+    /// return its colour.
     bool is_emitter() const { return is_emissive() && kind != MaterialKind::Unlit; }
 };
 

@@ -44,7 +44,7 @@ struct MeshPose {
                             // renderer deforms them
 };
 
-/// Whether both are equal to the bit, including the flag.
+/// Returns whether two poses are equal to the bit, including the flag.
 bool same_pose(const MeshPose& a, const MeshPose& b);
 
 } // namespace pertev

@@ -58,16 +58,16 @@ bool has_name(const Names& names, std::string_view pattern) {
 }
 
 std::string some_names(const std::vector<Names>& things) {
-    constexpr std::size_t kMost = 8;
+    constexpr std::size_t kMaxShown = 8;
     std::set<std::string_view> names;
     for (const Names& of_one : things) names.insert(of_one.begin(), of_one.end());
     names.erase("");
     std::vector<std::string> shown;
     for (const std::string_view name : names) {
-        if (shown.size() < kMost) shown.push_back(fmt::format("'{}'", name));
+        if (shown.size() < kMaxShown) shown.push_back(fmt::format("'{}'", name));
     }
     if (shown.empty()) return "none has a name";
-    return fmt::format("there are {}{}", fmt::join(shown, ", "), names.size() > kMost ? ", ..." : "");
+    return fmt::format("there are {}{}", fmt::join(shown, ", "), names.size() > kMaxShown ? ", ..." : "");
 }
 
 } // namespace pertev

@@ -21,7 +21,7 @@ Names names_of(const Scene& scene, const Instance& instance);
 /// Names of a point, spot or directional light: its own and those of its ancestor nodes.
 Names names_of(const Scene& scene, const Light& light);
 
-/// Whether `pattern` matches all of `name`: * matches any letters, ? one letter, and \ quotes the next letter.
+/// Returns whether `pattern` matches all of `name`: * matches any letters, ? one letter, and \ quotes the next letter.
 bool matches_name(std::string_view pattern, std::string_view name);
 bool has_name(const Names& names, std::string_view pattern);
 

@@ -6,7 +6,7 @@ namespace pertev {
 
 namespace {
 
-/// Scale, then rotation by a unit quaternion.
+/// Returns the transform that scales, then rotates by a unit quaternion.
 DoubleTransform turned_and_scaled(double x, double y, double z, double w, DoubleVec3 scale) {
     return {{(1 - 2 * (y * y + z * z)) * scale.x, 2 * (x * y - z * w) * scale.y, 2 * (x * z + y * w) * scale.z},
             {2 * (x * y + z * w) * scale.x, (1 - 2 * (x * x + z * z)) * scale.y, 2 * (y * z - x * w) * scale.z},

@@ -23,8 +23,8 @@ Bounds3 bounds_of(std::span<const Vec3> positions, std::span<const uint32_t> ind
 }
 
 DoubleBounds3 double_box_of(const Bounds3& box) {
-    constexpr float kMostFloat = std::numeric_limits<float>::max();
-    const auto inside = [](float x) { return static_cast<double>(clamp(x, -kMostFloat, kMostFloat)); };
+    constexpr float kMaxFloat = std::numeric_limits<float>::max();
+    const auto inside = [](float x) { return static_cast<double>(clamp(x, -kMaxFloat, kMaxFloat)); };
     if (box.is_empty()) return {};
     return {{inside(box.lo.x), inside(box.lo.y), inside(box.lo.z)},
             {inside(box.hi.x), inside(box.hi.y), inside(box.hi.z)}};

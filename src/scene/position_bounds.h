@@ -15,8 +15,8 @@ Bounds3 bounds_of(std::span<const Vec3> positions, std::span<const uint32_t> ind
 
 /// Stride of the corners of a file that are sampled first.
 inline constexpr std::size_t kCornersApart = 61;
-/// Whether origin_for() (scene/scene_origin.h) returns 0 for every box that contains the points of `sample`: the
-/// middle of such a box is at most 1.5 of its sides from any of these.
+/// Returns whether origin_for() (scene/scene_origin.h) returns 0 for every box that contains the points of `sample`:
+/// the middle of such a box is at most 1.5 of its sides from any of these.
 inline bool surely_stays(const Bounds3& sample) {
     return !sample.is_empty() && 62 * max_component(sample.size()) >= sample.max_abs();
 }

@@ -37,8 +37,8 @@ struct Instance {
                                // node's and this
     bool is_hidden = false;    // its transform is singular, for example by a scale of 0: it does not exist, and
                                // world_from_local is undefined
-    /// Rays hit it, but ids, layers and alpha treat it as background, and bounds_of() ignores it: a generated ground.
-    /// Only the last instance may be one.
+    /// True for a generated ground: rays hit it, but ids, layers and alpha treat it as background, and bounds_of()
+    /// ignores it. Only the last instance may be one.
     bool is_background = false;
 };
 
@@ -84,10 +84,10 @@ inline bool is_skewed(const Transform& world_from_local) {
     return !(condition_number(world_from_local) <= kMaxCondition);
 }
 
-/// Whether a transform reverses the winding of triangles.
+/// Returns whether a transform reverses the winding of triangles.
 inline bool is_mirroring(const Transform& world_from_local) { return determinant(world_from_local) < 0; }
 
-/// Whether all of `local` lies within kMaxCoordinate after the transform.
+/// Returns whether all of `local` lies within kMaxCoordinate after the transform.
 bool lies_near(const Transform& world_from_local, const Bounds3& local);
 
 /// World-space box of all instances that are neither hidden nor background.

@@ -15,7 +15,7 @@ namespace pertev {
 
 class AdaptiveExposure {
 public:
-    /// 1 - exp(-1 / 16).
+    /// Share of the way to the target per frame: 1 - exp(-1 / 16).
     static constexpr float kShare = 0.0605869f;
 
     /// Sets the exposure from which it continues.

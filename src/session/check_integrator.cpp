@@ -23,7 +23,7 @@ auto is_unlit_in(const Scene& scene) {
     return [&](const Instance& instance) { return scene.materials[instance.material].kind == MaterialKind::Unlit; };
 }
 bool is_all_unlit(const Scene& scene) { return std::ranges::all_of(scene.instances, is_unlit_in(scene)); }
-/// Whether the scene has unlit surfaces. Paths carry their colour on, though they are no lights.
+/// Returns whether the scene has unlit surfaces. Paths carry their colour on, though they are no lights.
 bool has_unlit(const Scene& scene) { return std::ranges::any_of(scene.instances, is_unlit_in(scene)); }
 bool gives_light(const Environment& environment) {
     const Rgb scale = environment.scale;
@@ -48,7 +48,7 @@ void refuse(bool is_wrong, const char* setting, std::string_view value, std::str
     if (is_wrong) throw Error(ErrorCode::BadInput, setting, std::string(value), std::move(why));
 }
 
-/// Whether there are surfaces to be lit but no lights that the integrator supports.
+/// Returns whether there are surfaces to be lit but no lights that the integrator supports.
 bool lacks_lights(const RenderSettings& settings, const Scene& scene) {
     const bool wants_lights = needs_punctual_lights(settings.integrator) && !settings.ambient;
     return wants_lights && settings.path.max_depth > 0 && !has_punctual_light(scene) && !is_all_unlit(scene);
@@ -86,9 +86,9 @@ void check_integrator(const RenderSettings& settings) {
            "illuminance",
            fmt::format("only `integrator=path`, direct, indirect and hybrid without denoising find it, not {}{}", name,
                        is_denoised ? ", denoised" : ""));
-    if (settings.path.max_depth > most_depth(settings.integrator)) {
+    if (settings.path.max_depth > max_depth(settings.integrator)) {
         throw Error(ErrorCode::OverLimit, "max_depth", fmt::format("{}", settings.path.max_depth),
-                    fmt::format("the limit with `integrator={}` is {}", name, most_depth(settings.integrator)));
+                    fmt::format("the limit with `integrator={}` is {}", name, max_depth(settings.integrator)));
     }
     const PhotonMapSettings& photons = *settings.photon_map;
     if (settings.integrator == IntegratorKind::PhotonMap && !photons_fit(photons.photons, settings.path.max_depth)) {

@@ -19,8 +19,8 @@ void check_shutter(const RenderSettings& settings);
 /// Checks that the integrator supports this camera. Throws Error(BadInput).
 void check_camera(const RenderSettings& settings, const Camera& camera);
 
-/// Why nothing would be lit, because the integrator supports none of the lights (though mirrors may show emitters),
-/// or because no photon leaves a light. Nothing if something may be lit.
+/// Returns why nothing would be lit, because the integrator supports none of the lights (though mirrors may show
+/// emitters), or because no photon leaves a light. Nothing if something may be lit.
 std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scene);
 
 /// Throws Error(BadInput) with the reason of why_dark. A note says what whitted leaves out, and a warning says if

@@ -16,32 +16,32 @@ namespace pertev {
 
 class DeviceScene {
 public:
-    /// `queue` outlives it. There is no scene before the first set().
+    /// Makes an object without a scene, which the first set() gives; `queue` outlives it.
     explicit DeviceScene(Queue& queue) : queue_(queue) {}
     DeviceScene(const DeviceScene&) = delete;
     DeviceScene& operator=(const DeviceScene&) = delete;
 
-    /// Uploads `scene`, which may go away afterwards, and takes the tracer that `settings` ask for. The tracer before
-    /// is freed first, so that two do not need to fit. There is no scene after this throws. Throws Error(OutOfMemory,
-    /// OverLimit, DeviceFault).
+    /// Uploads `scene`, which need not outlive the call, and makes the tracer that `settings` request. The previous
+    /// tracer is freed first, so that two need not fit into memory. If this throws, there is no scene. Throws
+    /// Error(OutOfMemory, OverLimit, DeviceFault).
     void set(const PreparedScene& scene, const RenderSettings& settings);
-    /// Takes `parts` (ScenePart) of `scene`, which is the same scene after a change. Throws as set().
+    /// Uploads `parts` (ScenePart) of `scene`, which is the same scene after a change. Throws as set().
     void update(const PreparedScene& scene, uint32_t parts, const RenderSettings& settings);
-    /// Takes the tracer that `settings` ask for. Returns false if it is there already, or if there is no scene. Throws
-    /// as set(); if it throws, there is no tracer until the next call.
+    /// Makes the tracer that `settings` request. Returns false if it exists already, or if there is no scene. Throws as
+    /// set(); if it throws, there is no tracer until the next call.
     bool set_tracer(const RenderSettings& settings);
 
-    /// Remembers the places of instances and vertices as they are now, for before(). Throws Error(OutOfMemory).
+    /// Stores the present positions of instances and vertices for before(). Throws Error(OutOfMemory).
     void keep_instances();
-    /// Returns the places that the last keep_instances() has remembered.
+    /// Returns the positions that the last keep_instances() stored.
     PreviousScene before() const { return {instances_before_.data(), scene_->meshes_before()}; }
 
     bool is_there() const { return scene_.has_value(); }
-    /// A scene and a tracer must be there.
+    /// Returns the view of the scene; there must be a scene and a tracer.
     const SceneView& view() const;
     SceneTracer& tracer() { return tracer_.value(); }
     Queue& queue() const { return queue_; }
-    /// Seconds that the last set() or update() took.
+    /// Duration of the last set() or update(), seconds.
     double upload_seconds() const { return upload_seconds_; }
 
 private:

@@ -59,7 +59,7 @@ void FilmRender::restart() {
     forget_samples();
 }
 
-/// The film itself is cleared at its next use.
+/// Resets the number of samples. The film itself is cleared at its next use.
 void FilmRender::forget_samples() {
     stats_ = {};
     film_is_old_ = true;

@@ -17,14 +17,14 @@ class FilmRender {
 public:
     using KeepGoing = std::function<bool(const RenderProgress&)>;
 
-    /// `pictures` outlives it. Its scene needs to be there before the first call of render().
+    /// Makes a film; `pictures` outlives it. The scene must exist before the first render().
     FilmRender(PictureRenderer& pictures, const Camera& camera, const RenderSettings& settings);
 
     /// Restarts the film if the picture differs. Returns whether the camera differs, or whether the settings give
     /// another picture.
     bool set_camera(const Camera& camera);
     bool set_settings(const RenderSettings& settings);
-    /// Begins the film anew. The second one is for a scene that has changed.
+    /// Restarts the film; the second function is for a scene that has changed.
     void restart();
     void restart_for_scene();
 
@@ -49,7 +49,8 @@ public:
     /// Returns the picture after the post steps; none if the settings request no step, or without samples.
     std::optional<Image> denoised();
     std::vector<FilmLayer> layers() { return film().layers(); }
-    /// Reads two numbers from the device. The share of hidden backs is computed once per scene, camera and size.
+    /// Returns statistics, for which it reads two numbers from the device. The share of hidden backs is computed once
+    /// per scene, camera and size.
     RenderStats stats();
 
     const Camera& camera() const { return camera_; }

@@ -36,15 +36,15 @@ struct FrameRange {
     double turn_before(uint32_t frame) const { return turntable == 0 ? 0 : turn_of(frame % turntable + turntable - 1); }
 };
 
-/// Whether `pattern` names a file for each frame, that is, contains a '#'.
+/// Returns whether `pattern` names a file for each frame, that is, contains a '#'.
 bool names_frames(const std::string& pattern);
 /// Name of a frame's file: the frame's number, zero-padded, replaces each run of '#'. All '#' must be in the file's
 /// name, not in its folder's.
 std::string frame_file(const std::string& pattern, uint32_t frame);
 
-/// Returns how long the shutter is open; none if that was not given. Throws Error(BadInput).
+/// Returns the times of the shutter; none if they were not given. Throws Error(BadInput).
 std::optional<Shutter> shutter(const PictureOptions& options);
-/// Returns the frames that are asked for; none for a single picture. Throws Error(BadInput).
+/// Returns the requested frames; none for a single picture. Throws Error(BadInput).
 std::optional<FrameRange> frame_range(const PictureOptions& options);
 
 } // namespace pertev

@@ -136,7 +136,8 @@ TemporalGradientsView FrameSequence::measure_gradients(const RenderSettings& of_
     return temporal_gradients_->compare();
 }
 
-/// Leaves that picture for the next frame if `goes_on`, because motion usually continues.
+/// Renders a small picture of the scene for the gradients of the next frame if `goes_on`, because motion usually
+/// continues.
 void FrameSequence::keep_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on) {
     light_before_.reset();
     if (!goes_on) return;

@@ -17,7 +17,7 @@ namespace pertev {
 
 class FrameSequence {
 public:
-    /// `pictures` outlives it.
+    /// Makes an empty sequence; `pictures` outlives it.
     explicit FrameSequence(PictureRenderer& pictures) : pictures_(pictures), sharing_timer_(pictures.queue()) {}
 
     /// Discards the history.
@@ -41,7 +41,8 @@ public:
     /// are of sample 0, as in any picture. It has no times and shares.
     RenderResult result(const Camera& camera, const RenderSettings& settings);
     RayCounts rays() const { return restir_ ? rays_ + RayCounts{0, 0, restir_->rays()} : rays_; }
-    /// Seconds of its rays by kind, without those of ReSTIR; all 0 unless the settings request them (time_kinds).
+    /// Seconds of the frame's rays by kind, without those of ReSTIR; all 0 unless the settings request them
+    /// (time_kinds).
     const SceneTracer::Seconds& kind_seconds() const { return kind_seconds_; }
     /// Seconds that ReSTIR took; 0 without it.
     double sharing_seconds() const { return restir_ ? sharing_timer_.seconds() : 0; }
@@ -49,7 +50,7 @@ public:
     /// Makes the present scene, seen by `camera`, the reference of motion(). Reconstruction restarts. Throws
     /// Error(OutOfMemory).
     void keep_as_before(const Camera& camera);
-    /// Returns by how many pixels, to the right and up, each pixel has moved since keep_as_before(); 0 after a cut
+    /// Returns the motion of each pixel since keep_as_before(), in pixels to the right and up; 0 after a cut
     /// (denoise/motion_vectors.h). Throws Error(OutOfMemory, DeviceFault).
     Image motion(const Camera& camera, const RenderSettings& settings);
 
@@ -72,7 +73,7 @@ private:
     std::optional<Camera> camera_before_; // camera of keep_as_before()
     bool scene_has_changed_ = false;      // since the last frame
     std::optional<TemporalGradients> temporal_gradients_;
-    /// The frame whose scene is in temporal_gradients_.
+    /// The frame whose scene temporal_gradients_ shows.
     struct LightBefore {
         Camera camera;
         uint32_t number = 0;

@@ -24,13 +24,14 @@ std::unique_ptr<Queue> take_machine(const MachineOptions& options, Messages& mes
 /// no driver, a named GPU is refused at once; everything else is known later.
 class ComingMachine {
 public:
-    /// Throws as choose_device. `messages` outlives it.
+    /// Starts to take the machine; `messages` outlives it. Throws as choose_device.
     ComingMachine(const MachineOptions& options, Messages& messages);
 
     /// Waits until the device is known. Throws Error(BadInput) if a named GPU cannot be used.
     bool is_cuda();
-    /// Whether the device may be a GPU, without waiting for a driver: true if that is not known yet but a driver's
-    /// library exists. Data made for a GPU may then turn out to be unused, and a named GPU may still be refused.
+    /// Returns whether the device may be a GPU, without waiting for a driver: true if that is not known yet but a
+    /// driver's library exists. Data made for a GPU may then turn out to be unused, and a named GPU may still be
+    /// refused.
     bool may_be_cuda();
     /// Waits for the queue; must be called once. Throws Error(BadInput, DeviceFault).
     std::unique_ptr<Queue> take();

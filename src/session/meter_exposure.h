@@ -31,9 +31,9 @@ float meter_exposure(const RenderSettings& settings, ToneMap tone_map,
 /// The meter for a scene on a device. It uploads nothing, and keeps its small film.
 class Meter {
 public:
-    /// `pictures` outlives it.
+    /// Makes a meter; `pictures` outlives it.
     explicit Meter(PictureRenderer& pictures) : pictures_(pictures) {}
-    /// Returns meter_exposure() for what `camera` sees. Throws Error(OutOfMemory, DeviceFault).
+    /// Returns meter_exposure() for the view of `camera`. Throws Error(OutOfMemory, DeviceFault).
     float stops(const Camera& camera, const RenderSettings& settings, ToneMap tone_map);
 
 private:

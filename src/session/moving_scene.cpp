@@ -28,17 +28,17 @@ void add_moving(const std::shared_ptr<const MotionKeys>& now, const std::shared_
     update.moved_instances.erase(copies.begin(), copies.end());
 }
 
-/// Shares of the open shutter's time at which an animation has a key, the first ones if there are many, and the
-/// midpoints between them.
+/// Returns the shares of the open shutter's time at which an animation has a key, the first ones if there are many, and
+/// the midpoints between them.
 std::vector<double> keys_within(const Scene& scene, double time_s, const Shutter& shutter) {
-    constexpr std::size_t kMost = 64;
+    constexpr std::size_t kMaxShares = 64;
     const double open_s = shutter.time_at(time_s, 0), length_s = shutter.close_s - shutter.open_s;
     std::set<double> shares;
     for (const Animation& animation : scene.animations) {
         for (const AnimationChannel& channel : animation.channels) {
             for (const float key_s : channel.times) {
                 const double share = (static_cast<double>(key_s) - open_s) / length_s;
-                if (share > 0 && share < 1 && shares.size() < kMost) shares.insert(share);
+                if (share > 0 && share < 1 && shares.size() < kMaxShares) shares.insert(share);
             }
         }
     }

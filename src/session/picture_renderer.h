@@ -22,7 +22,7 @@ bool is_film_of(const Film& film, const RenderSettings& settings);
 
 class PictureRenderer {
 public:
-    /// `scene` outlives it.
+    /// Makes a renderer of `scene`, which outlives it.
     explicit PictureRenderer(DeviceScene& scene) : scene_(scene), filter_(scene.queue()) {}
 
     DeviceScene& scene() { return scene_; }

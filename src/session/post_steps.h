@@ -14,7 +14,7 @@ namespace pertev {
 
 class PostSteps {
 public:
-    /// `pictures` outlives it.
+    /// Makes an object without steps; `pictures` outlives it.
     explicit PostSteps(PictureRenderer& pictures) : pictures_(pictures) {}
 
     /// Begins a picture: creates the steps that `settings` request, and passes them the visible surfaces. Throws

@@ -52,9 +52,9 @@ public:
     /// set_scene.
     void update_scene(const PreparedScene& scene, uint32_t parts);
     void set_camera(const Camera& camera);
-    /// Throws what check_integrator does, and Error(BadInput) without any effect if the device has no such tracer;
-    /// Error(OutOfMemory, OverLimit) if another tracer's structure cannot be made: set_settings must then succeed
-    /// before anything is rendered.
+    /// Changes the settings. Throws what check_integrator does, and Error(BadInput) without any effect if the device
+    /// has no such tracer; Error(OutOfMemory, OverLimit) if another tracer's structure cannot be made: set_settings
+    /// must then succeed before anything is rendered.
     void set_settings(const RenderSettings& settings);
     /// Discards everything that was rendered before (for a camera that jumps, or a measurement that restarts).
     void cut();

@@ -15,11 +15,11 @@ public:
 
     /// Collects warnings and notices. Names of settings are in backquotes in their texts (base/phrase_settings.h).
     Messages& messages() { return messages_; }
-    /// Called when something long begins, so that the messages so far can be shown.
+    /// Called when long work begins, so that the messages so far can be shown.
     virtual void report_messages() {}
-    /// `work`, such as "building trees", begins.
+    /// Called when `work`, such as "building trees", begins.
     virtual void set_work(const std::string& work) { static_cast<void>(work); }
-    /// `share` in [0, 1] of the current work is done; `detail` says more.
+    /// Called when `share` in [0, 1] of the current work is done; `detail` is more text about it.
     virtual void progress(double share, const std::string& detail) {
         static_cast<void>(share);
         static_cast<void>(detail);

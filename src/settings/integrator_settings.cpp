@@ -26,7 +26,7 @@ constexpr uint32_t kRaster = bits_of({IntegratorKind::Raster}), kReyes = bits_of
                    kPhotons = bits_of({IntegratorKind::PhotonMap}),
                    kRecords = bits_of({IntegratorKind::IrradianceCache}),
                    kRadiosity = bits_of({IntegratorKind::Radiosity});
-constexpr double kMostFloat = std::numeric_limits<float>::max();
+constexpr double kMaxRadius = std::numeric_limits<float>::max();
 
 } // namespace
 
@@ -38,29 +38,30 @@ std::vector<Setting> integrator_settings() {
             Of{bits_of({IntegratorKind::Cast, IntegratorKind::Whitted, IntegratorKind::Raster, IntegratorKind::Reyes})},
             Recorded::WhereUsed),
         row("shading", "Raster", "NAME", FIELD(render.display.edit().shading),
-            "Where light is evaluated: once per triangle, at its vertices, or in every pixel.", Of{kRaster},
-            Recorded::WhereUsed),
+            "The points at which light is evaluated: once per triangle, at its vertices, or in every pixel.",
+            Of{kRaster}, Recorded::WhereUsed),
         row("wireframe", "Raster", "", FIELD(render.display.edit().is_wireframe),
             "The picture shows only the triangles' edges.", Of{kRaster}, Excludes{"shading"}, Recorded::WhereUsed),
         row("shading_rate", "Reyes", "PIXELS", FIELD(render.shading_rate),
             "The longest edge of a micropolygon in the picture.", Range{kMinShadingRate, kMaxShadingRate},
             Unit{"pixels"}, Of{kReyes}, Recorded::WhereUsed),
         row("displacement", "Reyes", "MATERIAL=FILE,SCALE[,MIDDLE]", FIELD(displacement),
-            "A height map displaces surfaces of this material along their normals by SCALE (height - MIDDLE) in the "
-            "mesh's own unit; MIDDLE defaults to 0. It may be given again.",
+            "A height map that displaces surfaces of this material along their normals by SCALE (height - MIDDLE) in "
+            "the mesh's own unit; MIDDLE defaults to 0. It may be given again.",
             Of{kReyes}),
 
         row("photons", "Photons", "N", FIELD(render.photon_map.edit().photons),
-            "Photons from the lights per sample; as many again are aimed at mirrors and glass.", Range{1, kMaxPhotons},
-            Of{kPhotons}, Recorded::WhereUsed),
+            "The number of photons from the lights per sample; as many again are aimed at mirrors and glass.",
+            Range{1, kMaxPhotons}, Of{kPhotons}, Recorded::WhereUsed),
         row("gather", "Photons", "NAME", FIELD(render.photon_map.edit().gather),
-            "Final gathering, or a direct estimate from the global photon map.", Of{kPhotons}, Recorded::WhereUsed),
+            "The estimate of indirect light: by final gathering, or directly from the global photon map.", Of{kPhotons},
+            Recorded::WhereUsed),
         row("radius", "Photons", "METRES", FIELD(render.photon_map.edit().radius),
             "The search radius of the first sample; it shrinks from sample to sample.",
-            Range{kMinPhotonRadius, kMostFloat}, Unit{"m"}, Otherwise{"a hundredth of the scene"}, Of{kPhotons},
+            Range{kMinPhotonRadius, kMaxRadius}, Unit{"m"}, Otherwise{"a hundredth of the scene"}, Of{kPhotons},
             Recorded::WhereUsed),
         row("caustic_radius", "Photons", "METRES", FIELD(render.photon_map.edit().caustic_radius),
-            "The search radius of the caustic map in the first sample.", Range{kMinPhotonRadius, kMostFloat}, Unit{"m"},
+            "The search radius of the caustic map in the first sample.", Range{kMinPhotonRadius, kMaxRadius}, Unit{"m"},
             Otherwise{"a quarter of the radius"}, Of{kPhotons}, Recorded::WhereUsed),
         row("nearest", "Photons", "N", FIELD(render.photon_map.edit().nearest),
             "The number of nearest photons within the radius that an estimate uses.", Range{2, kMaxNearestPhotons},
@@ -79,13 +80,13 @@ std::vector<Setting> integrator_settings() {
         row("patch_size", "Radiosity", "METRES", FIELD(radiosity.solving.patch_size), "The longest edge of a patch.",
             Above{0, kMaxCoordinate}, Unit{"m"}, Otherwise{"a 16th of the scene's longest side"}, Excludes{"solution"}),
         row("subdivisions", "Radiosity", "N", FIELD(radiosity.solving.subdivisions),
-            "How often a patch may be subdivided where light changes over it.", Range{0, kMaxSubdivisions},
-            Excludes{"solution"}),
+            "The number of times that a patch may be subdivided where light changes over it.",
+            Range{0, kMaxSubdivisions}, Excludes{"solution"}),
         row("contrast", "Radiosity", "X", FIELD(radiosity.solving.contrast),
             "The relative change of light at which a patch is subdivided.", Above{0},
             Excludes{"solution subdivisions=0"}),
         row("form_factors", "Radiosity", "NAME", FIELD(radiosity.solving.form_factors),
-            "Form factors by rays or by hemicubes, which the solver hierarchical does not support.",
+            "The method for form factors: rays, or hemicubes, which the solver hierarchical does not support.",
             Excludes{"solution"}),
         row("patch_rays", "Radiosity", "N", FIELD(radiosity.solving.rays),
             "The number of rays for a patch's form factors.", Range{kMinPatchRays, kMaxPatchRays},
@@ -158,7 +159,7 @@ std::vector<Setting> frame_settings() {
         row.needs = "real_time";
     }
     rows.insert(rows.begin(), row("real_time", "Frames", "", FIELD(real_time),
-                                  "Renders frames the way pertev view does in motion: one sample per pixel each, "
+                                  "Frames are rendered as pertev view does in motion: one sample per pixel each, "
                                   "reconstructed with earlier frames. The settings below apply only to such frames.",
                                   Needs{"frames turntable"},
                                   Excludes{"denoise=svgf transparent shutter lpe false_color=illuminance aov=motion"}));

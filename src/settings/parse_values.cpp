@@ -43,7 +43,7 @@ DoubleVec3 parse_doubles(const std::string& what, const std::string& text) {
                             kMaxFloat));
 }
 
-/// Whether there is a digit other than 0 before the exponent.
+/// Returns whether there is a digit other than 0 before the exponent.
 bool has_digits(const std::string& number) { return number.find_first_of("123456789") < number.find_first_of("eE"); }
 
 } // namespace

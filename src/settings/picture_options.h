@@ -52,7 +52,7 @@ struct MachineOptions {
     uint32_t threads = 0; // 0: all
 };
 
-/// How radiosity is solved, and how it is shown.
+/// Settings of solving radiosity, and of showing it.
 struct RadiosityOptions {
     RadiositySettings solving;
     std::string solution; // a file
@@ -60,7 +60,7 @@ struct RadiosityOptions {
     double max_memory = 0; // MiB; applies to pictures by any integrator
 };
 
-/// How real-time frames are made.
+/// Settings of real-time frames.
 struct ReconstructionOptions {
     ReconstructionSettings settings;
     RestirSettings sharing;

@@ -10,7 +10,7 @@ namespace {
 
 #define FIELD PERTEV_SETTING_FIELD
 
-/// The integrator's name sets two fields.
+/// Returns the field of the integrator's name, which sets two fields.
 SettingField integrator_field(PictureOptions& options) {
     return NamedField{
         &options.render, [](const void* f) { return integrator_name(*static_cast<const RenderSettings*>(f)); },
@@ -25,8 +25,8 @@ std::vector<Setting> picture_settings() {
                        kMachines = kLooking | kMeasure | kLab | kBench | kBenchBuild | kBenchRays;
     constexpr uint32_t kTracing = kShown | kBench | kBenchRays;
     return {
-        row("size", "Picture", "WIDTHxHEIGHT", FIELD(size), "Width and height of the picture in pixels.",
-            Otherwise{"1280x720, or the shape that the scene's camera asks for"}, On{kLooking}, Mark::Common),
+        row("size", "Picture", "WIDTHxHEIGHT", FIELD(size), "The width and height of the picture in pixels.",
+            Otherwise{"1280x720, or the shape of the scene's camera"}, On{kLooking}, Mark::Common),
         row("tone_map", "Picture", "NAME", FIELD(tone_map), "The tone mapping of PNG and JPEG output.",
             Otherwise{"agx"}, On{kShown}, Mark::Common),
         row("exposure", "Picture", "STOPS|auto", FIELD(exposure),
@@ -44,8 +44,8 @@ std::vector<Setting> picture_settings() {
         row("aov", "Picture", "NAME,...", FIELD(aovs), "Additional layers of EXR output.", Choices{aov_names()},
             Mark::Common),
         row("false_color", "Picture", "NAME", FIELD(false_color),
-            "PNG and JPEG show values in false colours with a scale: luminance in cd/m2, or illuminance of visible "
-            "surfaces in lx. For illuminance, EXR and HDR hold irradiance in W/m2.",
+            "The quantity that PNG and JPEG show in false colours with a scale: luminance in cd/m2, or illuminance of "
+            "visible surfaces in lx. For illuminance, EXR and HDR hold irradiance in W/m2.",
             Choices{{"luminance", "illuminance"}}, Excludes{"exposure tone_map f_number transparent"}),
         row("false_color_range", "Picture", "A,B", FIELD(false_color_range), "The ends of the false-color scale.",
             Otherwise{"the picture's own range"}, Needs{"false_color"}),
@@ -53,8 +53,9 @@ std::vector<Setting> picture_settings() {
             "An EXR layer with the light of paths that match an expression, written from the light to the eye: LD+E, "
             "caustics LS+DE, or L<'lamp'>.*E. It may be given again (docs/transport.md)."),
 
-        row("spp", "Quality", "N", FIELD(render.samples), "Samples per pixel; four times as many halve the noise.",
-            Range{1, kMaxSamplesPerPixel}, On{kShown | kMeasure | kBenchNoise}, Mark::Common),
+        row("spp", "Quality", "N", FIELD(render.samples),
+            "The number of samples per pixel; four times as many halve the noise.", Range{1, kMaxSamplesPerPixel},
+            On{kShown | kMeasure | kBenchNoise}, Mark::Common),
         row("integrator", "Quality", "NAME", integrator_field, "The light transport algorithm (docs/transport.md).",
             More{"path finds all light; direct and indirect are its parts straight from lamps and sky and by way of "
                  "other surfaces. hybrid is path with rasterised primary visibility. cast, whitted and distributed are "
@@ -80,11 +81,11 @@ std::vector<Setting> picture_settings() {
             Otherwise{"off"}, On{kShown},
             Of{1u << uint32_t(IntegratorKind::Path) | 1u << uint32_t(IntegratorKind::Hybrid)}, Recorded::Always),
         row("time_limit", "Quality", "SECONDS", FIELD(render.time_limit_s),
-            "The render stops after this time, at the end of a sample. irradiance_cache makes records first and may "
-            "stop before its first sample.",
+            "The time after which the render stops, at the end of a sample. irradiance_cache makes records first and "
+            "may stop before its first sample.",
             Above{0}, Unit{"s"}, Otherwise{"none"}, Excludes{"frames turntable"}, Mark::NotKept, Mark::Common),
         row("denoise", "Quality", "NAME", FIELD(render.denoise),
-            "svgf denoises a picture with few samples. It is biased; EXR output also has the picture before denoising "
+            "The denoiser of pictures with few samples. It is biased; EXR output also has the picture before denoising "
             "as the layer noisy.",
             Recorded::Changed, Mark::Common),
 
@@ -119,7 +120,7 @@ std::vector<Setting> picture_settings() {
             "pertev render device memory as well.",
             Above{0}, Unit{"MiB"}, Otherwise{"all there is"}, On{kLooking | kSolve}, Mark::NotKept),
         row("strict", "Machine", "", FIELD(strict),
-            "Errors instead of warnings: the verb fails before rendering if a part of the scene is left out or a file "
+            "Warnings are errors: the verb fails before rendering if a part of the scene is left out or a file "
             "of settings has an unknown entry, and after writing if a sample is not finite.",
             On{kScenes | kLab}, Mark::NotKept, Mark::Common),
     };

@@ -15,7 +15,7 @@
 
 namespace pertev {
 
-/// Whether a denoised picture is computed in addition to the mean of the samples.
+/// Choice of a denoised picture in addition to the mean of the samples.
 enum class Denoise : uint8_t {
     None,
     Svgf, // denoise/picture_denoiser.h
@@ -48,28 +48,28 @@ struct RenderSettings : IntegratorSettings {
 /// Returns the names of the requested layers of light paths.
 std::vector<std::string> light_layers_of(const RenderSettings& settings);
 
-/// Filter radius in pixels: the requested one, or the filter's default.
+/// Returns the filter radius in pixels: the requested one, or the filter's default.
 inline float filter_radius_of(const RenderSettings& settings) {
     return settings.filter_radius > 0 ? settings.filter_radius : default_filter_radius(settings.filter);
 }
 
-/// The requested tracers, or the device's default. `deforms` means that the scene has meshes whose vertices move; a
-/// GPU then has one tree of compressed nodes for all rays, which it refits and builds itself.
+/// Returns the requested tracers, or the device's default. `deforms` means that the scene has meshes whose vertices
+/// move; a GPU then has one tree of compressed nodes for all rays, which it refits and builds itself.
 TracerChoice tracers_of(const RenderSettings& settings, bool on_cuda, bool deforms = false);
 
-/// Options for preparing a scene for a session with these settings: trees and structures of its tracers.
+/// Returns the options for preparing a scene for a session with these settings: trees and structures of its tracers.
 PrepareOptions prepare_options(const RenderSettings& settings, bool on_cuda);
 
 /// Sets the size of a picture without a given one: 1280x720, or a height of 720 with the aspect ratio of `own`, a
 /// camera of the scene; null if there is none.
 void set_default_size(RenderSettings& settings, const Camera* own);
 
-/// Settings for real-time frames: paths may end from their second vertex on, where those of pictures may from the
-/// third, and more of them do (Roulette::NearCubeRoot), which takes fewer rays for the same mean light. Also limits
-/// scatterings to `frame_depth`, which loses light.
+/// Returns the settings for real-time frames: paths may end from their second vertex on, where those of pictures may
+/// from the third, and more of them do (Roulette::NearCubeRoot), which takes fewer rays for the same mean light. Also
+/// limits scatterings to `frame_depth`, which loses light.
 RenderSettings settings_of_frames(RenderSettings settings);
 
-/// Whether both give the same picture for the same scene, camera and number of samples.
+/// Returns whether `a` and `b` give the same picture for the same scene, camera and number of samples.
 bool same_picture(const RenderSettings& a, const RenderSettings& b);
 
 struct RenderProgress {
@@ -101,7 +101,7 @@ struct RenderResult : RenderStats {
     std::vector<PixelIds> ids; // empty unless requested
 };
 
-/// A requested layer of `result`.
+/// Returns a requested layer of `result` by its name.
 const Image& layer_named(const RenderResult& result, std::string_view name);
 
 } // namespace pertev

@@ -17,11 +17,11 @@ std::vector<Setting> scene_settings() {
             "A folder outside the scene's own that it may read from as well. It may be given again.",
             On{kScenes | kLab | kInfo}, Mark::NotKept),
         row("up_axis", "File", "x|y|z", FIELD(scene.up_axis),
-            "This axis of an .obj or .ply file points up. All other settings are for a scene with y up.",
+            "The axis of an .obj or .ply file that points up. All other settings are for a scene with y up.",
             Otherwise{"y"}, On{kScenes | kLab | kInfo}, Mark::OpensScene),
         row("unit", "File", "UNIT|M", FIELD(scene.unit),
-            "An .obj or .ply file is in this unit: m, cm, mm, km, in, ft or a number of metres. All other settings are "
-            "for a scene in metres.",
+            "The unit of an .obj or .ply file: m, cm, mm, km, in, ft or a number of metres. All other settings are for "
+            "a scene in metres.",
             Otherwise{"m"}, On{kScenes | kLab | kInfo}, Mark::OpensScene),
 
         row("camera", "Camera", "NAME|N", FIELD(scene.camera.camera),
@@ -83,22 +83,22 @@ std::vector<Setting> scene_settings() {
             Range{-1e9, 1e9}, Unit{"s"}, Otherwise{"the rest pose; pertev view plays the animation"},
             On{kRender | kView | kBenchSequence | kMeasure | kSolve}, Excludes{"frames"}, Mark::Common),
         row("shutter", "Motion", "[OPEN,]SECONDS", FIELD(shutter),
-            "Motion blur: the shutter is open for this time after the time of the picture or frame, or from OPEN to "
-            "CLOSE relative to it (path, direct, indirect, distributed, whitted, cast).",
+            "The times at which the shutter opens, 0 by default, and closes, relative to the time of the picture or "
+            "frame. Motion between them is blurred (path, direct, indirect, distributed, whitted, cast).",
             Unit{"s"}, Needs{"time frames"}, Mark::Name),
         row("camera_path", "Motion", "FILE", FIELD(camera_path),
             "A JSON file of keys (time, eye, target, up, fov) that the camera follows.",
             On{kRender | kView | kBenchSequence}, Mark::Name, Mark::OpensScene),
         row("turntable", "Motion", "N", FIELD(turntable),
-            "The camera orbits its target once in N pictures; in pertev view, in N / 24 s.", Range{1, 1e9},
-            On{kRender | kView | kBenchSequence}, Excludes{"camera_path"}),
+            "The number of pictures in which the camera orbits its target once; pertev view takes N / 24 s.",
+            Range{1, 1e9}, On{kRender | kView | kBenchSequence}, Excludes{"camera_path"}),
         row("frames", "Motion", "A-B", FIELD(frames),
             "The first and last frame to render. A run of # in an output's name becomes the frame's number: -o "
             "frame-####.png.",
             On{kRender | kBenchSequence}, Mark::Common),
-        row("fps", "Motion", "F", FIELD(fps), "Frames per second; frame k is at k / F seconds.", Above{0, 1e6},
-            Unit{"1/s"}, Otherwise{"24"}, On{kRender | kBenchSequence}, Needs{"frames"}),
-        row("continue", "Motion", "", FIELD(goes_on), "Resumes an interrupted sequence: complete frames are kept.",
+        row("fps", "Motion", "F", FIELD(fps), "The number of frames per second; frame k is at k / F seconds.",
+            Above{0, 1e6}, Unit{"1/s"}, Otherwise{"24"}, On{kRender | kBenchSequence}, Needs{"frames"}),
+        row("continue", "Motion", "", FIELD(goes_on), "An interrupted sequence continues: complete frames are kept.",
             Needs{"frames turntable"}, Mark::NotKept),
     };
 }

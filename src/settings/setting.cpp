@@ -15,13 +15,13 @@ struct Overloaded : Cases... {
     using Cases::operator()...;
 };
 
-/// The field in default options, whose kind does not depend on the options.
+/// Returns the field in default options, because its kind does not depend on the options.
 SettingField some_field(const Setting& setting) {
     static PictureOptions any;
     return setting.field(any);
 }
 
-/// The field, which must not be written.
+/// Returns the field, which must not be written.
 SettingField field_in(const PictureOptions& options, const Setting& setting) {
     return setting.field(const_cast<PictureOptions&>(options));
 }
@@ -32,13 +32,13 @@ constexpr bool is_field_of = std::is_same_v<Field, Value*> || std::is_same_v<Fie
 template <class Field>
 constexpr bool is_number = is_field_of<Field, float> || is_field_of<Field, double>;
 
-double most_of(const Setting& setting) {
+double max_of(const Setting& setting) {
     return setting.high > 0 ? setting.high : double(std::numeric_limits<float>::max());
 }
 
 std::string why_no_number_for(const Setting& setting, const std::string& text) {
-    return setting.above ? why_not_above(text, setting.low, most_of(setting))
-                         : why_no_number(text, setting.low, most_of(setting));
+    return setting.above ? why_not_above(text, setting.low, max_of(setting))
+                         : why_no_number(text, setting.low, max_of(setting));
 }
 
 std::string text_of(bool value) { return value ? "true" : "false"; }
@@ -54,7 +54,7 @@ std::string text_of(Number number) {
     return fmt::format("{}", number);
 }
 
-/// The parsers of values know no setting: their reasons begin with the text.
+/// Makes an error about a setting from the reason of a parser, which knows no setting and begins with the text.
 Error about(const Setting& setting, const std::string& text, ErrorCode code, std::string_view why) {
     for (const std::string& start : {text + " is ", text + ": "}) {
         if (why.starts_with(start)) why.remove_prefix(start.size());

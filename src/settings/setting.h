@@ -81,7 +81,7 @@ enum SettingVerbs : uint32_t {
     kBenchRays = 2048,
 };
 
-/// How a picture's file records a setting under its name.
+/// Form in which a picture's file records a setting under its name.
 enum class Recorded : uint8_t {
     No,        // nothing, or something else (session/writing/picture_metadata.h)
     Always,    // its value
@@ -114,17 +114,17 @@ struct Setting {
 };
 
 bool is_switch(const Setting& setting);
-/// Whether it accepts any number of values.
+/// Returns whether the setting accepts any number of values.
 bool is_list(const Setting& setting);
 /// Returns all possible values; empty if they are not listed.
 std::vector<std::string> choices_of(const Setting& setting);
-/// Whether that integrator has it.
+/// Returns whether the integrator has the setting.
 bool has_setting(IntegratorKind integrator, const Setting& setting);
 
 /// Returns why the text is no value, according to its range, its choices and its kind; empty if it is one.
 std::string why_no_value(const Setting& setting, const std::string& text);
 
-/// Sets the field, a list to all texts, and notes in `options.given` who did. Throws Error(BadInput), or
+/// Sets the field, a list to all texts, and records the source in `options.given`. Throws Error(BadInput), or
 /// Error(OverLimit) for a value that is too large for every scene, with the setting and the wrong text.
 void set_value(PictureOptions& options, const Setting& setting, std::span<const std::string> texts,
                SettingOrigin origin = SettingOrigin::Caller);

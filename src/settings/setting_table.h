@@ -10,7 +10,7 @@
 namespace pertev {
 
 const std::vector<Setting>& all_settings();
-/// Returns null if no setting has this name or had it in an earlier version.
+/// Returns the setting with this name, now or in an earlier version; null if there is none.
 const Setting* find_setting(std::string_view name);
 
 // The parts of the table.

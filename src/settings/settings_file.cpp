@@ -18,7 +18,7 @@ constexpr uint64_t kVersion = 1;
 
 using gltf::JsonValue;
 
-/// Whether the value can be given again, which a value that means "not given" cannot.
+/// Returns whether the value can be given again, which a value that means "not given" cannot.
 bool is_written(const PictureOptions& options, const Setting& setting) {
     const bool is_recorded = setting.recorded != Recorded::No && has_setting(options.render.integrator, setting);
     if (!setting.is_kept || !(is_recorded || options.is_given(setting.name))) return false;

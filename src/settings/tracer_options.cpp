@@ -37,8 +37,8 @@ std::string list_of() {
     return fmt::format("one of {}", fmt::join(names_of<Kind>(), ", "));
 }
 
-/// A structure with only one traversal implies that traversal, without the switches of the default traversal, and
-/// vice versa.
+/// Completes a combination: a structure with only one traversal implies that traversal, without the switches of the
+/// default traversal, and vice versa.
 void complete(Combination& c, bool structure_named, bool traversal_named) {
     if (structure_named && !traversal_named) {
         if (const auto traversal = only_traversal_of(c.structure))

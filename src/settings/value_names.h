@@ -30,7 +30,7 @@ inline constexpr ValueName<PixelFilter> kPixelFilters[] = {{PixelFilter::Box, "b
 inline constexpr ValueName<RestirLight> kRestirLights[] = {
     {RestirLight::Off, "off"}, {RestirLight::Direct, "di"}, {RestirLight::Indirect, "gi"}};
 inline constexpr ValueName<Denoise> kDenoisers[] = {{Denoise::None, "none"}, {Denoise::Svgf, "svgf"}};
-/// A camera that measures irradiance (Projection::Cosine) cannot be selected.
+/// Names of projections. A camera that measures irradiance (Projection::Cosine) cannot be selected.
 inline constexpr ValueName<Projection> kProjections[] = {{Projection::Perspective, "perspective"},
                                                          {Projection::Orthographic, "orthographic"}};
 
@@ -43,7 +43,7 @@ constexpr const auto& names_of_all(Projection) { return kProjections; }
 
 /// Returns the integrator's name; for the path integrator the name of the part of the light that it renders.
 std::string_view integrator_name(const RenderSettings& settings);
-/// Returns false and does nothing if there is no such integrator.
+/// Sets the integrator by its name. Returns false and does nothing if there is none.
 bool set_integrator(RenderSettings& settings, std::string_view name);
 std::vector<std::string> integrator_names();
 

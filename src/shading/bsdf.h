@@ -172,7 +172,7 @@ struct Bsdf {
     bool is_stacked = false;
 
     Bsdf() = default;
-    /// The lobe is constructed in place, because a copy would wait for its own stores.
+    /// Makes a BSDF of one lobe, which is constructed in place, because a copy would wait for its own stores.
     HD explicit Bsdf(const DiffuseLobe& lobe) : base(lobe) {}
 
     /// Adds the reflection on the base, the innermost layer.
@@ -206,7 +206,7 @@ struct Bsdf {
     HD Rgb diffuse_share(Vec3 wo, Vec3 wi) const {
         return is_diffuse() ? Rgb{1, 1, 1} : diffuse_share_of_lobes(*this, wo, wi);
     }
-    /// Whether sample() uses u_lobe.
+    /// Returns whether sample() uses u_lobe.
     HD bool draws_lobe() const { return !is_diffuse() && (layer_count != 0 || base.kind != LobeKind::None); }
 
     /// Light from all delta lobes to wo: the expected values of what sample() draws of them.
@@ -221,17 +221,17 @@ struct Bsdf {
     /// Gloss of all non-diffuse lobes, seen at `cos_o` >= 0.
     HD Gloss gloss(float cos_o) const { return is_diffuse() ? Gloss{} : gloss_of_lobes(*this, cos_o); }
 
-    /// Whether any lobe has this class.
+    /// Returns whether any lobe has this class.
     HD bool has(LobeClass lobe_class) const {
         if (base.kind != LobeKind::None && base.lobe_class() == lobe_class) return true;
         for (int i = 0; i < layer_count; ++i)
             if (layers[i].lobe_class() == lobe_class) return true;
         return false;
     }
-    /// Whether light may be transmitted from behind.
+    /// Returns whether light may be transmitted from behind.
     HD bool lets_through() const { return base.kind == LobeKind::Dielectric; }
     HD bool has_delta() const { return has(LobeClass::Specular); }
-    /// Whether eval() is black for every pair of directions, so that light sampling is useless.
+    /// Returns whether eval() is black for every pair of directions, so that light sampling is useless.
     HD bool has_delta_only() const {
         if (is_stacked && !has_delta_layers_only(*this)) return false;
         if (!is_stacked && layer_count == 1 && !layers[0].schlick.is_smooth()) return false;
@@ -239,7 +239,7 @@ struct Bsdf {
     }
 
 private:
-    /// The fast path of most surfaces.
+    /// Returns whether the BSDF is a single diffuse lobe, which most surfaces have and a fast path handles.
     HD bool is_diffuse() const { return base.kind == LobeKind::Diffuse && layer_count == 0; }
 
     HD void stack(const Lobe& layer) {
@@ -358,22 +358,24 @@ private:
 HD inline float alpha_from_roughness(float roughness) { return square(clamp(roughness, 0.0f, 1.0f)); }
 
 HD inline Bsdf make_absorber() { return {}; }
-/// `albedo` in [0, 1].
+/// Makes a diffuse BSDF with `albedo` in [0, 1].
 HD inline Bsdf make_diffuse(Rgb albedo) { return Bsdf(DiffuseLobe{albedo, 1}); }
-/// Complex index eta + i k, both >= 0; roughness in [0, 1].
+/// Makes a conductor with the complex index eta + i k, both >= 0; roughness in [0, 1].
 HD inline Bsdf make_conductor(Rgb eta, Rgb k, float roughness) {
     Bsdf bsdf;
     bsdf.base = ConductorLobe{eta, k, alpha_from_roughness(roughness)};
     return bsdf;
 }
-/// `ior` > 0, inside over outside; for a rough surface it is clamped to [1.1, 3] (or its inverse). `tint` in [0, 1].
+/// Makes a dielectric. `ior` > 0 is the index inside over that outside; for a rough surface it is clamped to [1.1, 3]
+/// (or its inverse). `tint` is in [0, 1].
 HD inline Bsdf make_dielectric(float ior, float roughness, Rgb tint) {
     const float alpha = alpha_from_roughness(roughness);
     Bsdf bsdf;
     bsdf.base = DielectricLobe{tint, alpha, DielectricLobe::usable_ior(ior, alpha)};
     return bsdf;
 }
-/// `base_color`, `metallic` and `roughness` in [0, 1]; `ior` >= 1 is that of the coat.
+/// Makes glTF's metallic-roughness BSDF: `base_color`, `metallic` and `roughness` in [0, 1]; `ior` >= 1 is that of the
+/// coat.
 HD inline Bsdf make_metallic_roughness(Rgb base_color, float metallic, float roughness, float ior) {
     const float metal = clamp(metallic, 0.0f, 1.0f);
     Bsdf bsdf;

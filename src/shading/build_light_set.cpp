@@ -109,7 +109,7 @@ void add_triangles(const Scene& scene, Vec3 centre, LightSetData& data) {
 
 Vec3 middle_of(const EmissiveTriangle& triangle) { return triangle.a + (triangle.ab + triangle.ac) / 3.0f; }
 
-/// The line along which points lie, if they do.
+/// A line along which points lie, and whether they do.
 struct Row {
     Vec3 middle, along; // `along` is not unit
     bool is_straight = false;

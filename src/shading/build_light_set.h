@@ -28,7 +28,7 @@ struct LightSetData {
     std::vector<double> source_powers;                  // W; emitters, point and spot lights, then the far ones
     uint32_t near_count = 0;                            // number of near sources
 
-    /// Whether there are both near and far lights.
+    /// Returns whether there are both near and far lights.
     bool has_both_kinds() const;
     std::size_t count() const {
         return choice.starts.empty() ? 0 : triangles.size() + punctual.size() + (environment ? 1 : 0);

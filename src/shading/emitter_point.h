@@ -40,9 +40,9 @@ HD inline EmitterPoint point_of(const LightSample& sample) {
     return environment_point(sample.wi);
 }
 
-/// Light that arrives at `context` from `place`, as sample_light returns it, except for the pdf of punctual lights,
-/// which is 1. `measure` is the ratio of the point's solid angle to its own measure. Returns false if nothing
-/// arrives; occlusion and alpha are up to the caller.
+/// Light that arrives at `context` from `point`, as sample_light returns it, except for the pdf of punctual lights,
+/// which is 1. `measure` is the ratio of the point's solid angle to its own measure. Returns false if nothing arrives;
+/// occlusion and alpha are up to the caller.
 HD inline bool find_light(const LightSetView& view, const EmitterPoint& point, const LightContext& context,
                           LightSample& sample, float& measure) {
     measure = 1;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kLargestHalf = 65504.0f;
 
-/// sin^2(x) for x in [0, pi / 2], by its series, so that the bits do not depend on the C library.
+/// Returns sin^2(x) for x in [0, pi / 2], by its series, so that the bits do not depend on the C library.
 double sin_squared(double x) {
     double term = x, sum = x;
     for (int k = 1; k <= 12; ++k) {
@@ -23,7 +23,7 @@ double sin_squared(double x) {
     return sum * sum;
 }
 
-/// Image times scale, made finite and >= 0; one white pixel without an image.
+/// Returns the image times its scale, made finite and >= 0; one white pixel if there is no image.
 std::vector<Rgb> clean_pixels(const Environment& environment, Messages& messages) {
     const Image& image = environment.image;
     const bool is_empty = image.pixels.empty();

@@ -151,7 +151,7 @@ struct EnvironmentHit {
     float pdf;    // density of sample_environment, 1/sr; 0 if black or not requested
 };
 
-/// `direction` leads away from the surface and has any length but 0.
+/// Finds the light from `direction`, which leads away from the surface and has any length but 0.
 HD inline EnvironmentHit find_environment(const EnvironmentView& view, Vec3 direction, bool wants_pdf) {
     const bool is_drawn = wants_pdf && view.rows.starts != nullptr;
     if (view.is_constant) return {view.constant, is_drawn ? 0.25f * kInvPi : 0.0f};

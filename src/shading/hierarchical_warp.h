@@ -14,7 +14,8 @@ namespace pertev {
 
 class HierarchicalWarp {
 public:
-    /// Brightness is the mean of linear red, green and blue, with negative values as 0. `linear_from_srgb` [256].
+    /// Builds the averages of an image's brightness, the mean of linear red, green and blue, with negative values as 0.
+    /// `linear_from_srgb` is [256].
     HierarchicalWarp(const TextureImageView& image, bool is_srgb, const float* linear_from_srgb);
 
     /// Approximate mean over the triangle with these texture coordinates (before ref's transform). It is 0 only if no

@@ -47,7 +47,7 @@ struct EmissiveTriangle {
     uint32_t primitive = 0, material = 0; // like `instance`, ids in the scene
     float pmf = 0;                        // probability that sample_light selects it
 
-    /// Whether it emits against `wi`, a direction towards it. `normal` is cross(ab, ac).
+    /// Returns whether it emits against `wi`, a direction towards it. `normal` is cross(ab, ac).
     HD bool emits_against(Vec3 wi, Vec3 normal) const {
         return is_two_sided != 0 || (dot(normal, wi) < 0) == (is_mirrored == 0);
     }
@@ -182,12 +182,12 @@ HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3
     return pmf > 0;
 }
 
-/// Motion of emitters for sample_light: all are at rest.
+/// Positions of emitters for sample_light, all at rest.
 struct EmittersAtRest {};
 
 /// Selects a light by its power by `u` and returns the result of the function of `to` for its kind. Each function
 /// gets the probability of the light, and the rest of `u`. Returns false if there are no lights.
-///   triangle(light, place, pmf)   place: weights of its second and third vertex
+///   triangle(light, point, pmf)   point: weights of its second and third vertex
 ///   punctual(number, pmf)         number: in LightSetView::punctual
 ///   environment(pmf, rest)
 template <class ToKind>
@@ -309,7 +309,8 @@ HD inline EnvironmentHit find_environment(const LightSetView& view, const LightC
     return hit;
 }
 
-/// Only the density of that light; 0 without an environment.
+/// Density with which sample_light samples the environment's direction `wi` for `context`, 1/sr; 0 without an
+/// environment.
 HD inline float pdf_environment(const LightSetView& view, const LightContext& context, Vec3 wi) {
     return find_environment(view, context, wi, true).pdf;
 }

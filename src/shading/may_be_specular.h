@@ -8,7 +8,7 @@
 
 namespace pertev {
 
-/// Whether some point of a surface with this material may have a delta lobe.
+/// Returns whether some point of a surface with this material may have a delta lobe.
 HD inline bool may_be_specular(const MaterialParameters& material) {
     switch (material.kind) {
     case MaterialKind::Diffuse:

@@ -55,7 +55,8 @@ struct PunctualArrival {
     Rgb irradiance;     // W/m2, on a surface that faces it
 };
 
-/// Returns false if nothing arrives: outside a cone or the range, or if the receiver is the light.
+/// Finds the light that arrives at `from_point`. Returns false if nothing arrives: outside a cone or the range, or if
+/// the point is the light's position.
 HD inline bool find_punctual_light(const PunctualLight& light, Vec3 from_point, PunctualArrival& arrival) {
     switch (light.kind) {
     case LightKind::Point:

@@ -28,7 +28,7 @@ inline ShadingVariant variant_of(std::span<const MaterialParameters> materials) 
 }
 
 HD constexpr bool has_textures(ShadingVariant variant) { return variant != ShadingVariant::PlainDiffuse; }
-/// Whether a slot of a material has a texture; constant if the variant has none.
+/// Returns whether a slot of a material has a texture; constant if the variant has none.
 template <ShadingVariant kVariant>
 HD inline bool has_texture(const TextureRef& slot) {
     return has_textures(kVariant) && slot.has_image();

@@ -22,15 +22,15 @@
 
 namespace pertev {
 
-/// Directions are raised up to this many times the tilt above the shading horizon: wide enough that the value there
-/// rises at most 2.3 times as fast as before and is nowhere more than 11 % higher, narrow enough that fine meshes
-/// keep their reflections.
+/// Height above the shading horizon, in multiples of the tilt, up to which directions are raised: wide enough that the
+/// value there rises at most 2.3 times as fast as before and is nowhere more than 11 % higher, narrow enough that fine
+/// meshes keep their reflections.
 inline constexpr float kTerminatorReach = 6.0f;
-/// Greater tilts (over 19.5 degrees) are corrected by only this much, because lobes would become narrow, and from
-/// kHopelessTilt (49 degrees) on not at all: a cube with smooth corners is not meant as a sphere. Light that then
-/// still lies behind the triangle is lost.
+/// Limits of the tilt. Greater ones than kLargestTilt (19.5 degrees) are corrected by only that much, because lobes
+/// would become narrow, and from kHopelessTilt (49 degrees) on not at all: a cube with smooth corners is not meant as a
+/// sphere. Light that then still lies behind the triangle is lost.
 inline constexpr float kLargestTilt = 1.0f / 3.0f, kHopelessTilt = 0.75f;
-/// Smaller tilts (below 0.06 degrees) are ignored, because flat meshes may have normals.
+/// The least tilt that is corrected, 0.06 degrees; smaller ones are ignored, because flat meshes may have normals.
 inline constexpr float kMinTilt = 1e-3f;
 
 /// Sine of the angle between two unit vectors, from the cross product, because the cosine is imprecise for small

@@ -8,11 +8,10 @@
 //
 // Besides the common interface (trace/traverse_scene.h), such a traversal has
 //   State(State::Slot[State::kSlots])                  the state of a ray, initially done; is_done(), stop()
-//   start(tree, ray, visitor, place)                   puts the ray at the root
-//   turn(tree, ray, instance, place, visitor, counter, lanes, working)    advances it; returns true if the visitor
-//   ended
-//                                                      the traversal. `lanes` make this turn together, `working` of
-//                                                      them have an active ray; the turn does nothing for the others
+//   start(tree, ray, visitor, state)                   puts the ray at the root
+//   turn(tree, ray, instance, state, visitor, counter, lanes, working)    advances it; returns true if the visitor
+//                                                      ended the traversal. `lanes` make this turn together, `working`
+//                                                      of them have an active ray; the turn does nothing for the others
 //
 // Source: Aila, Laine, Karras, "Understanding the Efficiency of Ray Traversal on GPUs - Kepler and Fermi Addendum",
 // 2012.
@@ -32,7 +31,7 @@
 
 namespace pertev {
 
-/// The visitor of one kind of search, made for each ray, and the result. `accept` outlives it.
+/// One kind of search: the visitor, made for each ray, and the result. `accept` outlives it.
 template <bool kAny, class Accept>
 struct RaySearch;
 

@@ -29,7 +29,7 @@ struct PacketBoxes { // RayBoxes of eight rays
     __m256 t_min;
 };
 
-/// `make_boxes(ray)` returns a ray's RayBoxes. Rays outside `active` are ignored.
+/// Makes the boxes of a packet; `make_boxes(ray)` returns a ray's RayBoxes. Rays outside `active` are ignored.
 template <class MakeBoxes>
 PacketBoxes make_packet_boxes(const RayPacket& rays, unsigned active, const MakeBoxes& make_boxes) {
     alignas(32) float inv[3][kPacketRays] = {}, lo[3][kPacketRays] = {}, hi[3][kPacketRays] = {};
@@ -54,7 +54,7 @@ PacketBoxes make_packet_boxes(const RayPacket& rays, unsigned active, const Make
     return packet;
 }
 
-/// enters_child (ray_boxes.h) for eight rays, with the same operations in the same order.
+/// Computes enters_child (ray_boxes.h) for eight rays, with the same operations in the same order.
 inline unsigned packet_enters_child(const PacketBoxes& r, const BvhNode& node, int k, __m256 t_limit, __m256& entry) {
     const auto plane = [&r](float p, const __m256(&shift)[3], int axis) {
         return _mm256_fmadd_ps(_mm256_set1_ps(p), r.inv[axis], shift[axis]);

@@ -12,7 +12,8 @@
 
 namespace pertev {
 
-/// `Scene` is SceneTrees or SingleTree of the structure that is traversed.
+/// State of a traversal of a scene between two turns. `Scene` is SceneTrees or SingleTree of the structure that is
+/// traversed.
 template <class Traversal, class Scene>
 struct SceneTraversalState;
 
@@ -28,7 +29,7 @@ struct SceneTraversalState<Traversal, SingleTree<typename Traversal::Tree>> {
     HD void start(const Scene& scene, const Ray& ray, const Visitor& visitor) {
         Traversal::start(scene.baked, ray, visitor, state);
     }
-    /// All of `lanes` must call it together; it does nothing for those that are done.
+    /// Takes one turn. All of `lanes` must call it together; it does nothing for those that are done.
     template <class Visitor, class Counter>
     HD void turn(const Scene& scene, const Ray& ray, Visitor& visitor, const Counter& counter, LaneMask lanes,
                  int working) {
@@ -57,7 +58,7 @@ struct SceneTraversalState<Traversal, SceneTrees<typename Traversal::Tree>> {
         top = {scene.tlas_root};
         Traversal::start(tree, local, visitor, state);
     }
-    /// All of `lanes` must call it together; it does nothing for those that are done.
+    /// Takes one turn. All of `lanes` must call it together; it does nothing for those that are done.
     template <class Visitor, class Counter>
     HD void turn(const Scene& scene, const Ray& ray, Visitor& visitor, const Counter& counter, LaneMask lanes,
                  int working) {

@@ -15,8 +15,8 @@
 
 namespace pertev {
 
-/// Plain pointers of host or device. `Tree` is the view of the structure over triangles; the tree over instances is
-/// always binary.
+/// The trees of a scene, as plain pointers of host or device. `Tree` is the view of the structure over triangles; the
+/// tree over instances is always binary.
 template <class Tree>
 struct SceneTrees {
     Tree baked; // world space; triangles carry their instance

@@ -10,7 +10,7 @@
 
 namespace pertev {
 
-/// Every triangle counts.
+/// Acceptance of every candidate.
 struct AcceptAll {
     HD bool operator()(uint32_t, uint32_t, float, float) const { return true; }
 };
@@ -32,9 +32,10 @@ struct ClosestVisitor {
     }
 };
 
-/// Returns true and sets `hit` if there is a candidate; otherwise returns false and sets hit.instance to kNoHit.
-/// `accept(instance, primitive, u, v)` is a pure function: a traversal may call it in any order, for any subset of
-/// candidates that determines the result. `scene` is SceneTrees or SingleTree of the traversal's structure.
+/// Finds the closest hit. Returns true and sets `hit` if there is a candidate; otherwise returns false and sets
+/// hit.instance to kNoHit. `accept(instance, primitive, u, v)` is a pure function: a traversal may call it in any
+/// order, for any subset of candidates that determines the result. `scene` is SceneTrees or SingleTree of the
+/// traversal's structure.
 template <class Traversal = PlainTraversal, class Scene, class Accept, class Counter = NoTraversalCounter>
 HD inline bool trace_closest(const Scene& scene, const Ray& ray, const Accept& accept, Hit& hit,
                              const Counter& counter = {}) {

@@ -35,7 +35,7 @@ struct BinaryTrees {
 /// Builds all parts. Throws Error(OverLimit), std::bad_alloc.
 BinaryTrees build_binary_trees(const SceneTriangles& triangles, BvhBuilder builder);
 
-/// How a part's triangles differ from the previous version of the scene.
+/// Difference of a part's triangles from the previous version of the scene.
 enum class PartChange {
     None,
     Deformed, // with other vertex positions

@@ -48,7 +48,7 @@ TreeLayout layout_of(const Combination& combination);
 
 struct StructureFigures {
     std::string name;                  // "sbvh", "sbvh wide4": the builder and the layout
-    std::string failed;                // why there is no structure; empty if there is one
+    std::string failed;                // reason why there is no structure; empty if there is one
     double build_s = 0;                // seconds from triangles to the finished layout, conversion included
     uint64_t nodes = 0, triangles = 0; // triangles in leaves, so duplicates count
     std::size_t bytes = 0;             // bytes of nodes, triangles and the layout's other arrays

@@ -9,7 +9,7 @@ namespace {
 
 bool is_kd(StructureKind kind) { return kind == StructureKind::KdMedian || kind == StructureKind::KdSah; }
 
-/// Whether the traversal can visit the nearer child first.
+/// Returns whether the traversal can visit the nearer child first.
 bool has_order(TraversalKind traversal) {
     return traversal != TraversalKind::BruteForce && traversal != TraversalKind::SkipLinks;
 }

@@ -49,7 +49,7 @@ enum class TraversalKind {
     Octree,
 };
 
-/// How rays are distributed to threads. The CPU has only the first.
+/// Distribution of rays to threads. The CPU has only the first.
 enum class Distribution {
     OneAThread,
     Persistent,   // enough warps to fill the GPU, each fetching rays from a pool
@@ -108,9 +108,9 @@ struct Combination {
 /// The builder of a binary hierarchy; nothing for kd-trees and octrees.
 std::optional<BvhBuilder> builder_of(StructureKind kind);
 
-/// "on", "nodes" (at nodes alone) or "off".
+/// Name of the setting of RTA: "on", "nodes" (only at nodes) or "off".
 const char* name_of_rta(const TraversalOptions& options);
-/// `options` with RTA set as `name` says; nothing if the name is unknown.
+/// Returns `options` with RTA set by `name`; nothing if the name is unknown.
 std::optional<TraversalOptions> rta_named(const std::string& name, TraversalOptions options);
 /// The full name, for example "sbvh while-while rta near persistent".
 std::string name_of(const Combination& combination);
@@ -118,9 +118,9 @@ std::string name_of(const Combination& combination);
 /// The only traversal for structures of this kind; nothing if there are several.
 std::optional<TraversalKind> only_traversal_of(StructureKind structure);
 
-/// Why the traversal cannot handle structures of this kind; nothing if it can.
+/// Returns why the traversal cannot handle structures of this kind; nothing if it can.
 std::optional<std::string> why_not(StructureKind structure, TraversalKind traversal);
-/// Why the combination is invalid on this kind of device; nothing if it is valid.
+/// Returns why the combination is invalid on this kind of device; nothing if it is valid.
 std::optional<std::string> why_not(const Combination& combination, bool on_cuda);
 
 } // namespace pertev

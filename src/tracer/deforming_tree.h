@@ -16,7 +16,7 @@
 
 namespace pertev {
 
-/// Whether trees of this layout are refitted on the device. Others are rebuilt on the host when vertices move.
+/// Returns whether trees of this layout are refitted on the device. Others are rebuilt on the host when vertices move.
 bool can_deform(TreeLayout layout, bool on_cuda);
 
 /// Copies the mesh's current triangles to the host.

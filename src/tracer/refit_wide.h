@@ -18,7 +18,7 @@ HD inline void take_corners(const DeformedMesh& mesh, BvhTriangle& triangle) {
     triangle.c = mesh.positions[v[2]];
 }
 
-/// One call per triangle, in the mesh's order.
+/// The stage that lists the triangles of a mesh, in its order.
 struct ListTriangles {
     DeformedMesh mesh;
     BvhTriangle* triangles;
@@ -31,7 +31,7 @@ struct ListTriangles {
     }
 };
 
-/// One call per node: counts its inner children and stores their links to it.
+/// The stage that counts the inner children of each node and stores their links to it.
 struct LinkWideParents {
     const WideBvhNode<8>* nodes;
     uint32_t *parents, *children;
@@ -48,7 +48,7 @@ struct LinkWideParents {
     }
 };
 
-/// One call per node.
+/// The stage that refits the boxes, with one call per node.
 struct RefitWide {
     DeformedMesh mesh;
     WideBvhNode<8>* nodes;

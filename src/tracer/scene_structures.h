@@ -22,7 +22,7 @@ Tlas tlas_over(std::span<const PlacedBvh> placed, const std::map<uint32_t, Bound
 
 class SceneStructures {
 public:
-    /// `trees` are those of `builder`. Trees of other builders are made from their triangles.
+    /// Takes the trees of `builder`. Trees of other builders are made from their triangles.
     SceneStructures(BvhBuilder builder, BinaryTrees trees, Tlas tlas);
 
     /// Returns the scene after a change. `trees` are the original ones, updated. Every other structure that has been

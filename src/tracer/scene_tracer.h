@@ -20,8 +20,8 @@ namespace pertev {
 
 class SceneTracer {
 public:
-    /// `queue` outlives the tracer. Throws Error(BadInput) as check_choice does, Error(OutOfMemory),
-    /// Error(OverLimit).
+    /// Makes the tracers of a choice. `queue` outlives them. Throws Error(BadInput) as check_choice does,
+    /// Error(OutOfMemory), Error(OverLimit).
     SceneTracer(Queue& queue, SceneStructures& structures, const TracerChoice& choice);
 
     /// Switches to the structures of a changed or another scene. Tree memory is reused if it is large enough, and
@@ -29,7 +29,8 @@ public:
     /// afterwards.
     void set_structures(SceneStructures& structures);
 
-    /// Whether the trees of meshes whose vertices move are refitted on the device, for the layouts of all ray kinds.
+    /// Returns whether the trees of meshes whose vertices move are refitted on the device, for the layouts of all ray
+    /// kinds.
     bool can_deform() const;
     /// Refits the trees of these meshes and rebuilds the top level; can_deform() must hold. `placed` lists what the
     /// top level contains, with the bounds of the other trees. Throws Error(OverLimit) as tlas_over,
@@ -44,7 +45,7 @@ public:
     /// Tracer::find_hits. Throws Error(DeviceFault).
     void find_hits(RayKind kind, const RayQueueView& rays, WorkCount count, const HitQueueView& hits,
                    uint32_t* pool = nullptr);
-    /// Finds whether shadow rays hit anything.
+    /// Finds whether shadow rays hit anything, under the contract of find_hits().
     void find_occlusions(const RayQueueView& rays, WorkCount count, const HitQueueView& hits, uint32_t* pool = nullptr);
 
     /// The trees that a ray loop on the host may traverse directly (device_scene/find_hits.h). Null unless rays of

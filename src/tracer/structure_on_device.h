@@ -15,13 +15,13 @@
 
 namespace pertev {
 
-/// On the CPU it refers to the host's structure; on a GPU it is a copy in one allocation.
+/// A structure as a device traverses it: on the CPU a reference to the host's, on a GPU a copy in one allocation.
 class StructureOnDevice {
 public:
-    /// `queue` outlives it. Throws Error(OutOfMemory).
+    /// Copies the structure to the device of `queue`, which outlives this, if needed. Throws Error(OutOfMemory).
     StructureOnDevice(Queue& queue, std::shared_ptr<const BuiltStructure> structure)
         : StructureOnDevice(queue, std::move(structure), queue.is_cuda()) {}
-    /// `is_copied` makes a copy even where the device uses host memory, for tests.
+    /// Makes a copy even if the device uses host memory, by `is_copied`, for tests.
     StructureOnDevice(Queue& queue, std::shared_ptr<const BuiltStructure> structure, bool is_copied);
 
     /// Replaces the structure by another one of the same layout. The allocation is reused if it is large enough, and
@@ -34,7 +34,7 @@ public:
     /// was already seen is skipped. The layout must satisfy can_deform. Returns the bounds of each mesh. Throws
     /// Error(OutOfMemory, DeviceFault).
     std::vector<Bounds3> deform(std::span<const DeformedMesh> meshes);
-    /// After deform(): uses the trees of exactly these meshes, and this top level over all instances, in place of the
+    /// Uses, after deform(), the trees of exactly these meshes, and this top level over all instances, in place of the
     /// structure's own until the next update with another structure.
     void place(std::span<const DeformedMesh> meshes, const Tlas& tlas);
 

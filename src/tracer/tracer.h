@@ -18,7 +18,7 @@ namespace pertev {
 
 class Tracer {
 public:
-    /// `structure` has the layout of the combination (layout_of), and why_no_tracer accepts the combination. `queue`
+    /// Makes a tracer of a combination that why_no_tracer accepts. `structure` has its layout (layout_of). `queue`
     /// outlives the tracer.
     Tracer(Queue& queue, const Combination& combination, std::shared_ptr<const StructureOnDevice> structure);
     /// Copies the structure to the queue's device for this tracer only. Throws Error(OutOfMemory).
@@ -32,7 +32,7 @@ public:
     void find_hits(const TraceQuery& query, WorkCount count, const HitQueueView& hits, uint32_t* pool = nullptr) const {
         trace(*closest_, query, count, hits, pool);
     }
-    /// Finds whether the rays hit anything.
+    /// Finds whether the rays hit anything, under the contract of find_hits().
     void find_occlusions(const TraceQuery& query, WorkCount count, const HitQueueView& hits,
                          uint32_t* pool = nullptr) const {
         trace(*any_, query, count, hits, pool);

@@ -9,7 +9,7 @@
 namespace pertev {
 
 enum class RayKind : uint8_t { Camera, Bounce, Shadow };
-/// Names on the command line.
+/// Names of ray kinds on the command line.
 inline constexpr ValueName<RayKind> kRayKinds[] = {
     {RayKind::Camera, "camera"}, {RayKind::Bounce, "bounce"}, {RayKind::Shadow, "shadow"}};
 constexpr const auto& names_of_all(RayKind) { return kRayKinds; }
@@ -32,7 +32,7 @@ enum class TreeBuild : uint8_t {
     Balanced, // pays off within the first picture
     Best,     // pays off over many pictures
 };
-/// Names on the command line, from the fastest build to the best tree.
+/// Names of build efforts on the command line, from the fastest build to the best tree.
 inline constexpr ValueName<TreeBuild> kTreeBuilds[] = {
     {TreeBuild::Fast, "fast"}, {TreeBuild::Balanced, "balanced"}, {TreeBuild::Best, "best"}};
 constexpr const auto& names_of_all(TreeBuild) { return kTreeBuilds; }
@@ -48,11 +48,12 @@ TracerChoice default_tracers(bool on_cuda, TreeBuild build = kDefaultBuild);
 /// the choice has no binary tree.
 BvhBuilder builder_of(const TracerChoice& choice);
 
-/// Whether a ray loop on the host may traverse the chosen structure directly (device_scene/find_hits.h): one
+/// Returns whether a ray loop on the host may traverse the chosen structure directly (device_scene/find_hits.h): one
 /// structure for all kinds, eight boxes at a time, every switch on.
 bool can_traverse_on_host(const TracerChoice& choice, bool on_cuda);
 
-/// Throws Error(BadInput) if a chosen tracer is invalid there, was not compiled, or uses tests that leak.
+/// Throws Error(BadInput) if a chosen tracer is invalid on this kind of device, was not compiled, or uses tests that
+/// leak.
 void check_choice(const TracerChoice& choice, bool on_cuda);
 
 } // namespace pertev

@@ -42,11 +42,11 @@ struct TraversalKernel {
     KernelLimits (*limits)(bool has_instances) = nullptr;
 };
 
-/// Why rays cannot be traced by this combination on this kind of device: it is invalid, or no kernel was compiled.
-/// Nothing if they can.
+/// Returns why rays cannot be traced by this combination on this kind of device: it is invalid, or no kernel was
+/// compiled. Nothing if they can.
 std::optional<std::string> why_no_tracer(const Combination& combination, bool on_cuda);
 
-/// Returns null if the combination is invalid or no kernel was compiled for it.
+/// Returns the kernel of a combination; null if the combination is invalid or no kernel was compiled for it.
 const TraversalKernel* find_kernel(const Combination& combination, bool any_hit, bool on_cuda);
 
 } // namespace pertev

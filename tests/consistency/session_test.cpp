@@ -180,7 +180,7 @@ TEST_CASE("a session that updates parts of a scene renders the changed scene and
     session.render(settings.samples);
     Scene after = world.scenes[0];
     Messages messages;
-    const auto check_change = [&](uint32_t parts, uint64_t most_bytes) {
+    const auto check_change = [&](uint32_t parts, uint64_t max_bytes) {
         const PreparedScene prepared = prepare_scene(after, {}, messages);
         const Hash128 fresh = hash_of(render_picture(cpu, prepared, world.cameras[0], settings));
         CHECK(fresh != hash_of(session.result()));
@@ -188,7 +188,7 @@ TEST_CASE("a session that updates parts of a scene renders the changed scene and
         session.update_scene(prepared, parts);
         CHECK(session.history().samples == 0);
         session.render(settings.samples);
-        CHECK(queue.uploaded_bytes() - uploaded <= most_bytes);
+        CHECK(queue.uploaded_bytes() - uploaded <= max_bytes);
         CHECK(hash_of(session.result()) == fresh);
     };
     for (Material& material : after.materials) material.base_color = 0.5f * material.base_color;

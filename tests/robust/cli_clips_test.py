@@ -88,11 +88,11 @@ class Clips(CliTest):
                 self.refuse(2, "render", scene, "-o", "x.png", *TINY, "--animation", words, says=[scene, "has no animations"])
         self.refuse(2, "render", "m.gltf", "-o", "x.png", "--animation", "", says=["--animation"])
 
-    def test_what_plays_is_said_where_it_was_not_chosen(self):
+    def test_a_notice_names_the_animation_that_plays_by_default(self):
         def said(*arguments, scene="m.gltf"):
             return self.succeed("render", scene, "-o", "x.png", *TINY, *arguments).stderr
 
-        self.assertIn("the file has 7 animations and plays the first, go; --animation (NAME, N or all)", said("--time", "1"))
+        self.assertRegex(said("--time", "1"), "7 animations.* go; --animation ")
         self.assertIn("2 (twin), 3 (twin), 4, 1, dim", said("--time", "1"))
         for text in [said("--time", "1", "--animation", "rise"), said("--time", "1", scene="alone-0.gltf")]:
             self.assertNotIn("--animation", text)
@@ -179,9 +179,9 @@ class FileScenes(CliTest):
             self.assertEqual(self.hash_of("second.gltf", "--file-scene", words), alone[number], words)
             self.assertEqual(self.info("one.exr")["pertev.file_scene"], told)
 
-    def test_which_is_shown_is_said_and_what_is_not_there_refused(self):
+    def test_a_notice_names_the_scene_that_is_shown_and_an_unknown_one_is_refused(self):
         shown = self.succeed("render", "second.gltf", "-o", "x.png", *TINY).stderr
-        self.assertIn("the file has 3 scenes and shows two; --file-scene (NAME or N) shows another of one, two, 2", shown)
+        self.assertRegex(shown, "3 scenes.*--file-scene .* one, two, 2")
         self.assertNotIn("--file-scene", self.succeed("render", "m.gltf", "-o", "x.png", *TINY, "--file-scene", "0").stderr)
         self.refuse(2, "render", "m.gltf", "-o", "y.png", "--file-scene", "three", says=["m.gltf", 'no scene "three"', "one", "two"])
         self.refuse(2, "render", "cornell-box", "-o", "y.png", "--file-scene", "three", says=["cornell-box", 'no scene "three"'])

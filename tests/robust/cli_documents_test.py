@@ -119,7 +119,7 @@ class Commands(CliTest):
                 found += 1
         self.assertGreater(found, 80)
 
-    def test_a_flag_that_is_gone_is_noticed(self):
+    def test_an_unknown_flag_of_a_document_is_noticed(self):
         self.assertNotIn("--no-such-flag", self.flags_of("view"))
         self.assertIn("--restir", self.flags_of("view"))
         self.assertEqual(self.run_pertev(*made_small(shlex.split("render cornell-box -o a.png --no-such-flag"))).status, 2)

@@ -70,10 +70,8 @@ class FacesTest(CliTest):
         self.assertEqual(len(shares), 1)
 
     def test_flags_of_faces_that_a_scene_makes_useless_are_warnings(self):
-        self.assertIn("warning: --two-sided-lights: no surface of the scene emits light",
-                      self.said("sheet.gltf", "--two-sided-lights"))
-        self.assertIn("warning: --show-back-faces: no surface of the scene has a hidden back",
-                      self.said("lamp.obj", "--show-back-faces"))
+        self.assertIn("warning: --two-sided-lights: ", self.said("sheet.gltf", "--two-sided-lights"))
+        self.assertIn("warning: --show-back-faces: ", self.said("lamp.obj", "--show-back-faces"))
 
 
 if __name__ == "__main__":

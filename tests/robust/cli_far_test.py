@@ -63,7 +63,7 @@ class Far(CliTest):
         self.see("near.obj", 0, 0, "near.exr")
         self.assertNotIn("pertev.position_origin", self.info("near.exr"))
 
-    def test_a_made_up_view_can_be_said_by_its_notice(self):
+    def test_the_flags_in_a_made_up_view_s_notice_reproduce_it(self):
         outcome = self.succeed("render", "far.obj", "-o", "a.exr", "--size", "16x16", "--spp", "1", "--device", "cpu")
         flags = outcome.stderr.split("(--eye ")[1].split(")")[0].split(" --target ")
         eye, target = ([float(x) for x in flag.split(",")] for flag in flags)

@@ -126,7 +126,7 @@ class FirstView(CliTest):
                      if on["id.instance"][y][x] == BACKGROUND)
         self.assertGreater(darker, 20)
 
-    def test_a_ground_is_made_up_only_where_camera_and_light_are(self):
+    def test_a_ground_is_made_up_only_if_camera_and_light_are(self):
         write(self.path("body.gltf"), gltf([(box(0.5, (0, 0, 0)), GREY)]))
         write(self.path("seen.gltf"), gltf([(box(0.5, (0, 0, 0)), GREY)], cameras=[(0, 0, 3)]))
         for scene, more, has_ground in (("body.gltf", [], True), ("body.gltf", ["--environment", "1,1,1"], False),

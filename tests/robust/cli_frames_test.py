@@ -65,7 +65,7 @@ class MovingPictures(CliTest):
         self.assertEqual(info["pertev.time"], 1)
         self.assertEqual(info["pertev.eye"], [0, 0.5, 4])
 
-    def test_what_moves_is_said_where_it_is_not_shown_and_the_other_way_round(self):
+    def test_notices_report_motion_without_a_time_and_a_time_without_motion(self):
         said = self.succeed("render", "m.gltf", "-o", "x.png", *TINY)
         self.assertIn("--time S shows it at a time of its 1 animation (0 to 2 s)", said.stderr)
         said = self.succeed("render", "cornell-box", "-o", "x.png", *TINY, "--time", "1")
@@ -128,19 +128,19 @@ class MovingPictures(CliTest):
         self.assertEqual(info["pertev.shutter"], [-0.25, 0.1])
         self.frames("--frames", "0-1", "--fps", "2", "--shutter", "0.1")
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-1", "--fps", "2", "--continue",
-                    "--shutter", "0.2", says=["the existing frames were made with", '--shutter "0,0.1"'])
+                    "--shutter", "0.2", says=['--shutter "0,0.1"'])
         self.frames("--frames", "0-1", "--fps", "2", "--shutter", "0,0.1", "--continue")
 
-    def test_a_shutter_that_cannot_be_is_refused(self):
+    def test_an_invalid_shutter_is_refused(self):
         def refuse(*arguments, says):
             self.refuse(2, "render", "m.gltf", "-o", "x.png", *TINY, *arguments, says=says)
-        refuse("--shutter", "0.1", says=["--shutter: needs --time or --frames"])
+        refuse("--shutter", "0.1", says=["--shutter: ", "--time", "--frames"])
         for text in ("", "a", "1,2,3", "1,", ",1", "nan", "inf", "1e30"):
             refuse("--time", "1", "--shutter=" + text, says=["--shutter"])
-        refuse("--time", "1", "--shutter", "1e400", says=["--shutter 1e400: OPEN and CLOSE must be within 1e+06 s of the picture's time"])
+        refuse("--time", "1", "--shutter", "1e400", says=["--shutter 1e400: "])
         self.assertEqual(self.hash_at("--time", "1", "--shutter", "1e-400"), self.hash_at("--time", "1", "--shutter", "0"))
-        refuse("--time", "1", "--shutter=1e-400,-1", says=["--shutter 1e-400,-1: it closes before it opens"])
-        refuse("--time", "1", "--shutter", "0.2,0.1", says=["--shutter 0.2,0.1: it closes before it opens"])
+        refuse("--time", "1", "--shutter=1e-400,-1", says=["--shutter 1e-400,-1: "])
+        refuse("--time", "1", "--shutter", "0.2,0.1", says=["--shutter 0.2,0.1: "])
         refuse("--time", "1", "--shutter", "0.1", "--turntable", "9", says=["--frames"])
         for integrator in ("hybrid", "raster", "light", "bidirectional"):
             refuse("--time", "1", "--shutter", "0.1", "--integrator", integrator, says=["--shutter", integrator])
@@ -155,7 +155,7 @@ class MovingPictures(CliTest):
                      "2", "--exposure", stops)
         self.assertEqual(self.read("one.png"), self.read("f-2.png"))
 
-    def test_what_is_whole_is_kept_and_the_rest_rendered_again(self):
+    def test_complete_frames_are_kept_and_the_others_rendered_again(self):
         self.frames("--frames", "0-3", "--fps", "2")
         files = ["f-000.png", "f-001.png", "f-002.png", "f-003.png"]
         whole = [self.read(name) for name in files]
@@ -176,13 +176,13 @@ class MovingPictures(CliTest):
         for flags, named in ((["--exposure", "0", "--efficacy", "200"], "--efficacy"),
                              (["--false-color", "luminance", "--false-color-range", "1,10"], "--exposure")):
             self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY[:TINY.index("--exposure")], *flags, "--frames", "0-4",
-                        "--fps", "2", "--continue", says=["the existing frames were made with", f'{named} "'])
+                        "--fps", "2", "--continue", says=[f'{named} "'])
         write(self.path("m.gltf"), moving_gltf() + " ")
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--continue",
                     says=["hash of the scene's file"])
         write(self.path("f-###.json"), "{")
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--continue",
-                    says=["f-###.json: not valid JSON"])
+                    says=["f-###.json: "])
 
     def test_ctrl_c_ends_after_a_whole_frame_and_continuing_gives_the_same_bytes(self):
         arguments = ["render", "m.gltf", "-o", "f-##.png", "--size", "64x64", "--spp", "64", "--device", "cpu",
@@ -195,7 +195,7 @@ class MovingPictures(CliTest):
         program.send_signal(signal.SIGINT)
         said = program.communicate(timeout=300)[1].decode()
         self.assertEqual(program.returncode, 75, said)
-        self.assertIn("interrupted: the same command with --continue resumes", said)
+        self.assertIn("--continue", said)
         there = [name for name in self.files() if name.endswith(".png")]
         self.assertEqual(there, [f"f-{k:02}.png" for k in range(len(there))])
         self.assertLess(len(there), 40)
@@ -227,7 +227,7 @@ class MovingPictures(CliTest):
         self.assertEqual([event["written"] for event in outcome.events("output")], [True, False])
         self.assertEqual((end["written"], self.files()), (0, ["g-0.png", "m.gltf"]))
 
-    def test_frames_count_whose_record_finds_no_room(self):
+    def test_frames_count_even_if_their_record_cannot_be_written(self):
         names = ["-o", "f-##.png", *TINY]
         self.frames("--frames", "0-0", "--fps", "20", output="f-##.png")
         limit = os.path.getsize(self.path("f-##.json")) + 500  # some frames' hashes
@@ -266,7 +266,7 @@ class MovingPictures(CliTest):
                  for word in [f"--{name}={as_flag(told['pertev.' + name])}"]]
         self.assertEqual(self.hash_at(*words), frames[2]["hash"])
 
-    def test_a_path_that_is_wrong_says_where(self):
+    def test_an_invalid_camera_path_is_refused_with_the_location(self):
         def refuse(text, *says):
             write(self.path("path.json"), text)
             self.refuse(2, "render", "m.gltf", "-o", "x.png", *TINY, "--camera-path", "path.json",
@@ -294,7 +294,7 @@ class MovingPictures(CliTest):
         self.assertNotEqual(slow[1]["hash"], slow[0]["hash"])
         self.assertEqual(slow[8]["hash"], frames[1]["hash"])
 
-    def test_what_does_not_fit_is_refused(self):
+    def test_incompatible_flags_of_frames_are_refused(self):
         for line, flag in [("--frames 3-2", "--frames 3-2"), ("--frames x", "--frames x"), ("--fps 3", "--fps"),
                            ("--continue", "--continue"), ("--frames 0-1 --time 1", "--time"),
                            ("--frames 0-1 --time-limit 1", "--time-limit"),

@@ -73,7 +73,7 @@ class Integrators(CliTest):
         self.assertEqual((program.returncode, last["code"], last["interrupted"]), (75, "interrupted", True))
         self.assertEqual((last["text"], stderr), ("interrupted before there was anything to keep", b""))
 
-    def test_what_ends_irradiance_caching_among_its_records_leaves_nothing_and_says_so(self):
+    def test_an_interrupt_while_records_are_made_leaves_nothing_and_is_reported(self):
         long = ["render", "cornell-box", "-o", "x.exr", "--size", "320x240", "--spp", "4", "--device", DEVICE, "--integrator",
                 "irradiance_cache", "--accuracy", "0.02", "--hemisphere-rays", "4096"]  # hours of records
         for flags in [[], ["--json"]]:

@@ -49,7 +49,7 @@ class Errors(CliTest):
         self.fail_in_json(3, "render", "--json", "cornell-box", "-o", "x.png", "--size", "70000x70000")
         self.fail_in_json(6, "render", "cornell-box", "-o", "nowhere/x.png", "--json", "-q")
 
-    def test_what_is_said_stands_in_parts_with_settings_by_their_names_and_in_a_text_with_flags(self):
+    def test_messages_have_parts_with_names_of_settings_and_a_text_with_flags(self):
         last = self.fail_in_json(3, *"render cornell-box -o x.png --integrator whitted --max-depth 256 --json".split())
         self.assertEqual((last["setting"], last["value"], last["settings"]), ("max_depth", "256", {"integrator": "whitted"}))
         self.assertTrue(last["text"].startswith("--max-depth 256: "), last)
@@ -80,7 +80,7 @@ class Errors(CliTest):
         self.assertEqual(outcome.status, 2, outcome)
         return outcome
 
-    def test_an_error_that_the_standard_output_does_not_take_is_said_on_the_other(self):
+    def test_an_error_goes_to_stderr_if_stdout_cannot_be_written(self):
         with open("/dev/full", "w", encoding="utf-8") as full:
             outcome = self.run_pertev("info", "nowhere.obj", "--json", stdout=full)
         self.assertEqual(outcome.status, 6, outcome)

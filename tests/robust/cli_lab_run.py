@@ -84,7 +84,7 @@ class LabTest(CliTest):
                 self.assertTrue(any(text in of["refused"] for text in allowed_refusals), of)
                 self.assertEqual(of["runs"], [])
                 continue
-            # Some walks are for closest hits alone.
+            # Some traversals are for closest hits alone.
             wanted = {known["name"] for known in report["sets"]}
             self.assertLessEqual({run["set"] for run in of["runs"]}, wanted, of)
             self.assertLessEqual(wanted - {run["set"] for run in of["runs"]}, {"shadow"}, of)

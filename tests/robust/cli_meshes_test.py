@@ -81,7 +81,7 @@ class Meshes(CliTest):
         write_png(self.path("plain.Png"), (0, 255, 0))
         self.assertIn("2 files match", self.said("a.obj"))
 
-    def test_colours_of_bytes_and_textures_of_ply(self):
+    def test_ply_files_have_colours_in_bytes_and_textures(self):
         write(self.path("bytes.obj"), SQUARE.format(" 255 128 0") + "f 1 2 3 4\n")
         self.assert_near(self.mean("bytes.obj"), (1, 0.216, 0))
         write_png(self.path("red.png"), (255, 0, 0))

@@ -40,25 +40,25 @@ class Photometry(CliTest):
         self.assertAlmostEqual(exposure("--f-number", "4", "--shutter-time", "0.01", "--iso", "800"), stops + 3, places=4)
         self.assertAlmostEqual(exposure("--f-number", "4", "--shutter-time", "0.02"), stops + 1, places=4)
 
-    def test_what_does_not_go_together_is_refused(self):
+    def test_invalid_values_and_incompatible_flags_are_refused(self):
         def refuse(*flags, says, output="x.png"):
             self.refuse(2, "render", "cornell-box", "-o", output, *flags, says=says)
 
         refuse("--lamp", "light=800", says=["--lamp light=800", "units are W, lm, cd, lx and nits"])
-        refuse("--lamp", "sun=800lm", says=["there is no lamp of the scene with this name; there are 'light'"])
+        refuse("--lamp", "sun=800lm", says=["--lamp sun=800lm: ", "'light'"])
         refuse("--false-color", "luminance", "--exposure", "1", says=["--false-color"])
-        refuse("--false-color", "luminance", output="x.exr", says=["PNG and JPEG"])
+        refuse("--false-color", "luminance", output="x.exr", says=["--false-color"])
         refuse("--false-color-range", "1,10", says=["--false-color-range"])
-        refuse("--false-color", "luminance", "--false-color-range", "10,1", says=["0 < A < B"])
+        refuse("--false-color", "luminance", "--false-color-range", "10,1", says=["--false-color-range 10,1: "])
         refuse("--false-color", "illuminance", "--denoise", "svgf", says=["denoised"])
         refuse("--false-color", "illuminance", "--integrator", "whitted", "--ambient", "0", says=["not whitted"])
         refuse("--false-color", "luminance", "--turntable", "2", output="x-#.png", says=["--false-color-range"])
-        refuse("--f-number", "4", says=["--f-number: needs --shutter-time"])
-        refuse("--f-number", "4", "--iso", "400", says=["--f-number: needs --shutter-time"])
-        refuse("--shutter-time", "1", says=["--shutter-time: needs --f-number"])
-        refuse("--iso", "400", says=["--iso: needs --f-number"])
+        refuse("--f-number", "4", says=["--f-number: ", "--shutter-time"])
+        refuse("--f-number", "4", "--iso", "400", says=["--f-number: ", "--shutter-time"])
+        refuse("--shutter-time", "1", says=["--shutter-time: ", "--f-number"])
+        refuse("--iso", "400", says=["--iso: ", "--f-number"])
         refuse("--f-number", "4", "--shutter-time", "1", "--exposure", "0", says=["--exposure"])
-        refuse("--f-number", "4", "--shutter-time", "1", output="x.exr", says=["PNG and JPEG"])
+        refuse("--f-number", "4", "--shutter-time", "1", output="x.exr", says=["--f-number"])
 
 
 if __name__ == "__main__":

@@ -83,7 +83,7 @@ class HowPicturesAreShown(CliTest):
         self.assertEqual(self.info("x.exr")["hash"], beside)
         self.assertNotIn("pertev.exposure", self.info("x.exr"))
 
-    def test_hardly_a_pixel_of_a_surface_is_burnt_and_the_box_is_neither_dark_nor_pale(self):
+    def test_few_pixels_burn_out_and_the_box_is_neither_dark_nor_pale(self):
         self.show(size="64x64", spp=64)
         pixels = read_png(self.path("x.png"))
         self.render("--max-depth", 0, size="64x64", spp=64, output="lamp.exr")

@@ -76,7 +76,7 @@ class RaysOnTheRecord(CliTest):
         self.assertEqual([(of["rays"], of["hit_share"]) for of in up], [(1000, 0)] + [(0, 0)] * 4)
         self.assertEqual([of["rays_per_second"] is None for of in up], [False] + [True] * 4)
 
-    def test_a_set_without_rays_is_said_to_be_empty(self):
+    def test_a_set_without_rays_is_reported_as_empty(self):
         write(self.path("floor.obj"), FLOOR)
         text = self.succeed("bench", "rays", "--device", "cpu", "--runs", "1", "--scene", "floor.obj", "--count", "1000",
                             "--eye", "0,1,0.01", "--target", "0,9,0", "--check").stdout

@@ -68,7 +68,7 @@ class RealTime(CliTest):
         single = self.succeed("render", "m.gltf", "-o", "x.png", *SMALL, "--spp", "1", "--time", "0", "--json")
         self.assertEqual(single.events("exposure")[0]["stops"], stops)
 
-    def test_what_is_there_is_kept_and_rendered_again_for_the_history_of_the_rest(self):
+    def test_existing_frames_are_kept_and_rendered_again_for_the_history_of_missing_ones(self):
         motion = ["--fps", "4", "--restir", "gi"]
         self.render("whole", "--frames", "0-5", *motion)
         expected = self.pictures("whole")
@@ -89,9 +89,9 @@ class RealTime(CliTest):
         self.assertEqual((end["written"], end["kept"], end["rendered_again"]), (0, 6, 0))
         os.remove(self.path("parts/f-05.png"))
         said = self.succeed("render", "m.gltf", "-o", "parts/f-##.png", *LINE, "--frames", "0-5", "--continue", *motion)
-        self.assertIn("renders frames 0 to 4 again for the history of those after them", said.stderr)
+        self.assertIn("frames 0 to 4", said.stderr)
 
-    def test_frames_that_have_become_others_are_refused(self):
+    def test_frames_with_another_hash_than_recorded_are_refused(self):
         motion = ["--fps", "4", "--frames", "0-3"]
         self.render("x", *motion)
         os.remove(self.path("x/f-03.png"))
@@ -99,7 +99,7 @@ class RealTime(CliTest):
         self.assertEqual([entry["frame"] for entry in record["pictures"]], [0, 1, 2, 3])
         record["pictures"][2]["hash"] = "0" * 32
         write(self.path("x/f-##.json"), json.dumps(record))
-        self.refuse_to_render("x", *motion, "--continue", says=["x/f-##.json: frame 2 is now a different picture", "0" * 32])
+        self.refuse_to_render("x", *motion, "--continue", says=["x/f-##.json: ", "frame 2", "0" * 32])
         self.assertFalse(os.path.exists(self.path("x/f-03.png")))
 
     def test_other_settings_of_the_reconstruction_are_refused(self):
@@ -125,7 +125,7 @@ class RealTime(CliTest):
         program.send_signal(signal.SIGINT)
         said = program.communicate(timeout=300)[1].decode()
         self.assertEqual(program.returncode, 75, said)
-        self.assertIn("interrupted: the same command with --continue resumes", said)
+        self.assertIn("--continue", said)
         there = self.pictures("x")
         self.assertEqual(list(there), [f"f-{k:02}.png" for k in range(len(there))])
         self.assertLess(len(there), 30)
@@ -149,7 +149,7 @@ class RealTime(CliTest):
         self.succeed("render", "m.gltf", "-o", "x.exr", *SMALL, "--spp", "1")
         self.assertNotIn("pertev.reconstruction", self.info("x.exr"))
 
-    def test_what_frames_cannot_be_is_refused(self):
+    def test_settings_that_real_time_frames_lack_are_refused(self):
         motion = "--frames 0-1 --real-time"
         for line, says in [("--real-time", "--frames or --turntable"), ("--real-time --time 1", "--frames"),
                            (f"{motion} --spp 4", "--spp 4: a frame of --real-time has one sample"),
@@ -165,7 +165,7 @@ class RealTime(CliTest):
                             says=[says])
         for name in ("cast", "whitted", "distributed", "raster", "light", "bidirectional"):
             self.refuse(2, "render", "m.gltf", "-o", "f-#.png", *LINE, "--frames", "0-1", "--integrator", name,
-                        says=["--real-time: works with --integrator path", f"not with {name}"])
+                        says=["--real-time: ", "--integrator path", name])
         self.assertEqual(self.render("one", "--frames", "0-0", "--spp", "1").events("frame")[0]["samples"], 1)
 
 

@@ -62,14 +62,14 @@ class SettingsFiles(CliTest):
         self.settings_of("a.exr")
         self.succeed("render", "cornell-box", "-o", "f-#.exr", "--settings", "s.json", "--frames", "0-0")
 
-    def test_what_is_no_setting_is_left_out_and_strict_refuses_it(self):
+    def test_an_unknown_setting_is_left_out_and_strict_refuses_it(self):
         write(self.path("s.json"), '{"version": 1, "settings": {"sppp": 3}, "scene": {"name": "x", "hash": "0"}}')
         outcome = self.succeed("render", "cornell-box", "-o", "a.exr", "--settings", "s.json", *SMALL)
         self.assertIn("/settings/sppp", outcome.stderr)
         self.assertIn("a different scene", outcome.stderr)
         self.refuse(2, "render", "cornell-box", "-o", "b.exr", "--settings", "s.json", "--strict", *SMALL, says=["sppp"])
 
-    def test_a_file_that_is_none_is_refused(self):
+    def test_an_invalid_file_is_refused(self):
         for text in ["", "[]", '{"version": 2, "settings": {}}', '{"version": 1, "settings": {"spp": "x"}}',
                      '{"version": 1, "settings": {"photons": 5}}']:
             write(self.path("s.json"), text)

@@ -329,7 +329,7 @@ class WhatIsRendered(CliTest):
         said = self.succeed("render", "one.obj", "-o", "x.png", "--size", "8x8", "--spp", "1").stderr
         self.assertIn("one.obj: 1 triangle, 1 instance, 1 light; ", said)
 
-    def test_a_camera_without_a_name_is_told_by_its_number(self):
+    def test_a_camera_without_a_name_is_listed_by_its_number(self):
         cameras = json.loads(gltf_with_cameras())
         del cameras["cameras"][1]["name"]
         write(self.path("two.gltf"), json.dumps(cameras))
@@ -438,7 +438,7 @@ class WhatIsRendered(CliTest):
             for row in layers["depth.Z"]:
                 self.assertTrue(all(abs(depth - height) < 1e-4 for depth in row))
 
-    def test_an_orthographic_view_has_parallel_rays_and_the_height_asked_for(self):
+    def test_an_orthographic_view_has_parallel_rays_and_the_requested_height(self):
         write(self.path("floor.obj"), FLOOR)
         view = ["--eye", "0,3,0", "--target", "0,0,0", "--projection", "orthographic", "--filter", "box"]
         self.render(*view, "--view-height", "1.6", "--aov", "position", scene="floor.obj", output="x.exr", size="20x20",
@@ -471,7 +471,7 @@ class WhatIsCompared(CliTest):
         self.assertGreater(min(other[key] for key in ["rel_mse", "mse", "flip", "hdr_flip"]), 0)
         self.assertIn("the same to the last bit", self.succeed("compare", "a.exr", "a.exr").stdout)
 
-    def test_pictures_that_differ_in_alpha_alone_are_said_to(self):
+    def test_pictures_that_differ_only_in_alpha_are_reported_so(self):
         self.render(output="a.exr")
         self.render("--transparent", output="b.exr")
         for blocks in [[], ["--blocks", "4"]]:

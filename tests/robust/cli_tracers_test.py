@@ -22,7 +22,7 @@ class HowRaysAreTraced(CliTest):
             with self.subTest(line=line):
                 self.assertEqual(self.hash_of(*line.split()), wanted)
 
-    def test_what_cannot_be_says_why(self):
+    def test_an_impossible_combination_is_refused_with_the_reason(self):
         for line, why in [("--structure kd-sah --traversal if-if", "needs the traversal kd"),
                           ("--structure octree --traversal wide8", "needs the traversal octree"),
                           ("--traversal skip-links --order off", "this traversal has no order of children"),

@@ -105,7 +105,7 @@ class Page(unittest.TestCase):
             for (code, sign), was, at in zip(signs.items(), before["eye"], after["eye"]):
                 self.assertGreater(sign * (at - was), 0.002, code)
 
-    def test_what_is_held_with_ctrl_is_the_browser_s(self):
+    def test_keys_with_ctrl_belong_to_the_browser(self):
         page = self.browser
         depth = page.value("document.querySelector('#setting-max_depth').value")
         for code in ["KeyS", "KeyD", "KeyT", "KeyH", "Digit7"]:
@@ -216,7 +216,7 @@ class Page(unittest.TestCase):
         touch("touchEnd")
         self.browser.until("document.querySelector('#picked').innerText.includes('floor')")
 
-    def test_keys_of_settings(self):
+    def test_keys_change_settings(self):
         page = self.browser
         exposure = page.value("Number(document.querySelector('#setting-exposure').value)")
         page.key("BracketRight", "]")
@@ -316,7 +316,7 @@ class Page(unittest.TestCase):
             time.sleep(0.1)
         page.until("document.querySelectorAll('#keys .key').length == 0")
 
-    def test_panel_help_and_flags(self):
+    def test_the_panel_shows_help_and_flags(self):
         page = self.browser
         page.key("Tab", "Tab")
         page.until("document.querySelector('#panel').hidden")

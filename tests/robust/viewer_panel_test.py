@@ -95,7 +95,7 @@ class Panel(unittest.TestCase):
 
 
 class TwoWindows(unittest.TestCase):
-    def test_a_drag_that_does_nothing_is_explained_and_who_steers_sees_the_wish_and_hands_over(self):
+    def test_a_drag_without_effect_is_explained_and_the_steering_client_sees_the_request_and_hands_over(self):
         with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as first, Chromium() as second:
             window(first, 1280, 720)
             first.until(READY)
@@ -118,7 +118,7 @@ class TwoWindows(unittest.TestCase):
 
 
 class Ended(unittest.TestCase):
-    def test_a_viewer_that_has_ended_is_not_waited_for_and_no_promise_is_made(self):
+    def test_a_page_does_not_wait_for_a_viewer_that_has_ended(self):
         with Viewer(spp=1) as viewer, BROWSER.visit(viewer.address) as page:
             page.until(READY)
             self.assertEqual(viewer.end()[0], 0)

@@ -68,7 +68,7 @@ class Access(WithViewer):
         self.assertNotRegex(page, r"<script(?![^>]* src=)", "no script stands in the page itself")
         self.assertNotRegex(page, r"\son\w+=|style=|https?://")
 
-    def test_without_cookie_or_with_a_wrong_one_nothing_comes(self):
+    def test_requests_without_the_right_cookie_get_nothing(self):
         wrong = self.viewer.let_in()[:-1] + "x"
         for target in ["/", "/main.js", "/save?format=png", "/socket", "/nothing", "/?token=", "/?token=00",
                        f"/main.js?token={self.viewer.token}", f"/?token={self.viewer.token}&token={self.viewer.token}"]:
@@ -224,9 +224,9 @@ class Pictures(CliTest):
             state = client.done(lambda s: s["values"]["integrator"] == "distributed")
             self.assertEqual(state["hash"], self.rendered("--integrator", "distributed", spp=state["spp"])[0])
             client.set("layer", "motion")
-            self.assertIn("which distributed does not make", client.text("notice")["text"])
+            self.assertIn("distributed", client.text("notice")["text"])
             client.set("integrator", "whitted")
-            self.assertIn("this scene has only lamps", client.text("notice")["text"])
+            self.assertIn("lamps", client.text("notice")["text"])
             client.set("integrator", "path")
             for name, value, flag in [("max_depth", 1, "--max-depth"), ("integrator", "direct", "--integrator"),
                                       ("spp", 7, "--spp")]:

@@ -64,7 +64,7 @@ class Times(CliTest):
                 self.assertEqual(state["clock"]["end"], end)
                 self.assertEqual(state["hash"], self.rendered("--time", "0.5", "--animation", alone, *flags[2:], scene="clips.gltf"))
 
-    def test_a_time_that_is_gone_to_is_shown_whatever_was_before(self):
+    def test_a_requested_time_is_shown_whatever_was_shown_before(self):
         with self.view("--time", "0.75") as viewer, Client(viewer) as client:
             begins = client.done()
             self.assertFalse(begins["clock"]["on"])
@@ -82,7 +82,7 @@ class Times(CliTest):
             info = self.info("saved.exr")
             self.assertEqual((info["pertev.time"], info["hash"]), (2, state["hash"]))
 
-    def test_with_radiosity_the_scene_stands_and_time_moves_the_camera_alone(self):
+    def test_with_radiosity_time_moves_only_the_camera(self):
         scene = json.loads(moving_gltf())
         scene["materials"] = [{"pbrMetallicRoughness": {"metallicFactor": 0}}]
         scene["meshes"][0]["primitives"][0]["material"] = 0

@@ -61,13 +61,13 @@ Image mean_of_frames(Session& session, const ReconstructionSettings& settings, c
     return mean;
 }
 
-/// How far a mean is from another, as shares of the other's light. Lamps that are seen are left out: a few pixels of
-/// them would be all that is measured.
+/// The deviation of a mean from another, as shares of the other's light. Visible emitters are left out, because a few
+/// of their pixels would dominate.
 struct Bias {
     double whole = 0;         // deviation of the picture's mean; below 0: darker
     double of_block = 0;      // greatest size, of a sixteenth of the picture that has at least a tenth of the mean
     double of_pixels = 0;     // mean of the sizes of the pixels' differences
-    double with_emitters = 0; // like `whole`, with lamps
+    double with_emitters = 0; // like `whole`, with emitters
 };
 
 Bias bias_of(const Image& mean, const Image& expected) {

@@ -31,7 +31,7 @@ double relative_variance_of(const std::function<double(SampleKey)>& draw) {
     return squares / (sum * sum) - 1;
 }
 
-/// How many times less variance the estimate of the irradiance at the origin, facing +y, has with strata.
+/// Returns how many times less variance the estimate of the irradiance at the origin, facing +y, has with strata.
 double gain(const LightSetView& view) {
     const auto variance = [&](SamplerKind kind) {
         return relative_variance_of([&](SampleKey key) {

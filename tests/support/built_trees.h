@@ -10,7 +10,7 @@
 
 namespace pertev::test {
 
-/// All bytes, empty arrays too.
+/// Returns all bytes of a tree, empty arrays included.
 template <class T>
 bool are_same(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);

@@ -15,7 +15,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
-/// Most triangles in a leaf.
+/// Maximum number of triangles in a leaf.
 inline int largest_leaf(const Bvh& bvh) {
     int largest = 0, run = 0;
     for (const BvhTriangle& t : bvh.triangles) {

@@ -15,7 +15,7 @@
 
 namespace pertev::test {
 
-/// The mixed scene's, with a lens.
+/// The camera of the mixed scene, with a lens.
 inline Camera camera_with_lens() {
     Camera camera = mixed_scene_camera();
     camera.aperture_radius = 0.05f;
@@ -49,9 +49,9 @@ inline void check_same(const CheckedPicture& a, const CheckedPicture& b) {
     CHECK(a.rays.shadow == b.rays.shadow);
 }
 
-/// Renders by 1 and 5 threads, in other passes, by all stages with few samples in flight and with all, and with
-/// --device cuda on the GPU: the same bytes and rays. Another seed gives another picture. Returns what the CPU's loop
-/// gives.
+/// Checks that renders by 1 and 5 threads, in other passes, by all stages with few samples in flight and with all, and
+/// with --device cuda on the GPU have the same bytes and rays, and that another seed gives another picture. Returns the
+/// result of the CPU's loop.
 inline CheckedPicture check_one_picture(const Scene& scene, RenderSettings settings) {
     Queue queue = Queue::make_cpu();
     const CheckedPicture reference = checked_picture(queue, scene, settings);
@@ -74,9 +74,8 @@ inline CheckedPicture check_one_picture(const Scene& scene, RenderSettings setti
     return reference;
 }
 
-/// The settings given to a session: rendered in vain where that is heard, ended after its first pass (what Ctrl-C
-/// does), by the time after another and gone on with, it has the picture of a fresh one. Of passes of one sample, two
-/// samples or more.
+/// Checks that a session has the picture of a fresh one after it was abandoned, interrupted after its first pass (as by
+/// Ctrl-C), ended by the time limit after another and resumed, with passes of one sample, two samples or more.
 inline void check_goes_on(Session& session, Queue& queue, const Scene& scene, const RenderSettings& settings,
                           const Camera& camera = camera_with_lens()) {
     std::atomic<bool> is_abandoned = true;
@@ -96,8 +95,8 @@ inline void check_goes_on(Session& session, Queue& queue, const Scene& scene, co
     session.abandon_when(nullptr);
 }
 
-/// A picture takes the memory that is said beforehand. `sorts`: on a GPU, for which CUB says what it takes on the
-/// device alone. `on_host`: bytes that are said on the CPU and that no queue gives.
+/// Checks that a picture takes the predicted memory. `sorts` means that it sorts on a GPU, where only CUB on the device
+/// knows how much it takes. `on_host` are predicted bytes on the CPU that no queue allocates.
 inline void check_predicted_bytes(const PreparedScene& prepared, const RenderSettings& settings, bool sorts = false,
                                   std::size_t on_host = 0) {
     Queue queue = requested_queue();

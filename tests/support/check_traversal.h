@@ -12,7 +12,7 @@
 
 namespace pertev::test {
 
-/// A pure function of the primitive and the place on it, as an alpha cut-out is.
+/// Acceptance by a pure function of the primitive and the position on it, like an alpha cut-out.
 struct AcceptSome {
     HD bool operator()(uint32_t instance, uint32_t primitive, float u, float) const {
         return (primitive * 2654435761u + instance) % 3 != 0 || u > 0.5f;
@@ -46,7 +46,7 @@ void check_traversal(const SceneTrees<typename Traversal::Tree>& scene, const st
     CHECK(wrong == 0);
 }
 
-/// The scene that is one tree over baked triangles.
+/// A scene that is one tree over baked triangles.
 template <class Tree>
 SceneTrees<Tree> scene_of(const Tree& tree) {
     SceneTrees<Tree> scene;

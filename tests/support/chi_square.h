@@ -24,7 +24,7 @@ struct ChiSquareResult {
     double integral = 0;    // integral of the density over the whole grid
     std::string worst_cell; // where observed and expected differ the most, for the failure's message
 
-    /// False where the difference is significant at level 0.01 for the worst of `tests` tests (Sidak).
+    /// Returns false if the difference is significant at level 0.01 for the worst of `tests` tests (Sidak).
     bool passes(int tests) const;
     std::string describe() const;
 };
@@ -32,8 +32,8 @@ struct ChiSquareResult {
 /// Upper regularised incomplete gamma function Q(a, x), a > 0, x >= 0.
 double upper_gamma(double a, double x);
 
-/// Chi-square over counted cells; `expected` counts, of the same total up to rounding. Cells are pooled from the rarest
-/// until each has 5 expected. A cell that expects nothing and has a sample makes p_value 0.
+/// Computes chi-square over counted cells; `expected` counts have the same total up to rounding. Cells are pooled from
+/// the rarest until each has 5 expected. A cell that expects nothing and has a sample makes p_value 0.
 ChiSquareResult chi_square(std::span<const double> observed, std::span<const double> expected);
 
 struct ChiSquareSettings {
@@ -43,13 +43,13 @@ struct ChiSquareSettings {
     int min_quarterings = 2;        // the least of a cell, so that no narrow peak is stepped over
 };
 
-/// Directions. `sample(lobe, u)` gives a unit vector or nothing (the sample failed), for independent uniform lobe in
-/// (0, 1) and u in (0, 1)^2; `pdf(w)` its density by solid angle, over the whole sphere about the z axis.
+/// Tests directions. `sample(lobe, u)` returns a unit vector or nothing (the sample failed), for independent uniform
+/// lobe in (0, 1) and u in (0, 1)^2; `pdf(w)` its density by solid angle, over the whole sphere about the z axis.
 ChiSquareResult chi_square_of_directions(const std::function<std::optional<Vec3>(float lobe, Vec2 u)>& sample,
                                          const std::function<double(Vec3)>& pdf,
                                          const ChiSquareSettings& settings = {});
 
-/// Points of the rectangle [lo, hi]; a point outside counts as failed.
+/// Tests points of the rectangle [lo, hi]; a point outside counts as failed.
 ChiSquareResult chi_square_of_points(const std::function<Vec2(Vec2 u)>& sample, const std::function<double(Vec2)>& pdf,
                                      Vec2 lo, Vec2 hi, const ChiSquareSettings& settings = {});
 

@@ -32,7 +32,7 @@ PictureEstimate estimate_picture(Queue& queue, const PreparedScene& prepared, co
 /// Two-sided p-value of the largest deviation of all, Sidak corrected; of two means by Welch's test.
 double p_value(const PictureEstimate& a, const PictureEstimate& b);
 
-/// Brighter in those pixels whose means are off by more than `least_error`, as those of the background are not.
+/// The picture, brighter in the pixels whose means have an error above `min_error`, which excludes the background.
 PictureEstimate brightened(PictureEstimate estimate, double factor, double min_error);
 
 } // namespace pertev::test

@@ -13,19 +13,19 @@ constexpr double kFullTurn = 6.283185307179586;
 /// The circle of directions of one height z in the chart's polar coordinates, a the angle from the axis, y the turn:
 ///     height = normal.z cos(a) + across(y) sin(a),   across(y) = tangent.z cos(2 pi y) + bitangent.z sin(2 pi y).
 struct HeightCircle {
-    double along, most_across, turn_of_most; // normal.z; the largest across and its y, in radians
-    double height, width;                    // width of the chart
+    double along, max_across, turn_of_max; // normal.z; the largest across and its y, in radians
+    double height, width;                  // width of the chart
 
     HeightCircle(const DirectionChart& chart, double h)
         : along(static_cast<double>(chart.frame.normal.z)), height(h), width(chart.width) {
         const double x = static_cast<double>(chart.frame.tangent.z), y = static_cast<double>(chart.frame.bitangent.z);
-        most_across = std::hypot(x, y);
-        turn_of_most = std::atan2(y, x);
+        max_across = std::hypot(x, y);
+        turn_of_max = std::atan2(y, x);
     }
 
     /// Appends the two x at which the circle crosses the line y, moved into [x0, x1]; x1 for one that is missing.
     void add_crossings(double y, double x0, double x1, std::vector<double>& xs) const {
-        const double across = most_across * std::cos(kFullTurn * y - turn_of_most), r = std::hypot(along, across);
+        const double across = max_across * std::cos(kFullTurn * y - turn_of_max), r = std::hypot(along, across);
         const double middle = std::atan2(across, along), half = std::fabs(height) < r ? std::acos(height / r) : 0;
         for (const double angle : {middle - half, middle + half}) {
             const double wrapped = std::remainder(angle, kFullTurn);
@@ -55,9 +55,9 @@ struct HeightCircle {
 
 private:
     void add_turns_of_across(double across, std::vector<double>& ys) const {
-        if (!(std::fabs(across) < most_across)) return;
-        const double half = std::acos(across / most_across);
-        for (const double angle : {turn_of_most - half, turn_of_most + half}) {
+        if (!(std::fabs(across) < max_across)) return;
+        const double half = std::acos(across / max_across);
+        for (const double angle : {turn_of_max - half, turn_of_max + half}) {
             const double y = angle / kFullTurn;
             ys.push_back(y - std::floor(y));
         }

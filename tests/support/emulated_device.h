@@ -50,7 +50,7 @@ inline uint32_t __shfl_sync(uint32_t mask, uint32_t value, int source, CodeLocat
     return lane::shuffle(mask, value, source, at);
 }
 inline void __syncwarp(uint32_t mask = 0xffffffffu, CodeLocation at = CodeLocation::current()) { lane::sync(mask, at); }
-/// In place of the assembler of trace/warps/warp_vote.h.
+/// Replacement of the assembler in trace/warps/warp_vote.h.
 inline uint32_t emulated_lanes_before() { return (1u << (threadIdx.x & 31u)) - 1; }
 
 template <class T>
@@ -68,8 +68,8 @@ inline int __clzll(long long x) { return x == 0 ? 64 : __builtin_clzll(static_ca
 inline uint32_t __funnelshift_l(uint32_t low, uint32_t high, uint32_t shift) {
     return static_cast<uint32_t>((uint64_t(high) << 32 | low) << (shift & 31) >> 32);
 }
-/// Byte k of the result: that one of the eight of y and x which digit k of the selector names; a digit's bit 3 asks for
-/// its sign instead.
+/// Permutes bytes: byte k of the result is the one of the eight of y and x that digit k of the selector names, or its
+/// sign if bit 3 of the digit is set.
 inline uint32_t __byte_perm(uint32_t x, uint32_t y, uint32_t selector) {
     const uint64_t bytes = uint64_t(y) << 32 | x;
     uint32_t result = 0;

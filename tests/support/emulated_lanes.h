@@ -13,7 +13,7 @@ namespace pertev::test {
 
 enum class MeetingKind : uint8_t { ActiveMask, Ballot, All, MatchAny, Shuffle, Sync };
 
-/// Where a lane waits, and with what.
+/// The point at which a lane waits, and its argument.
 struct Meeting {
     MeetingKind kind;
     uint32_t mask;  // mask that the lane passed
@@ -47,7 +47,7 @@ void for_each_lane(uint32_t mask, const Do& what) {
     for (; mask != 0; mask &= mask - 1) what(static_cast<unsigned>(__builtin_ctz(mask)));
 }
 
-/// Return addresses, from that of the call a lane waits in to the one that the lane began with.
+/// Return addresses, from that of the call in which a lane waits to that with which it began.
 template <class Do>
 void for_each_call(const EmulatedLane& lane, const Do& what) {
     const void *above = lane.fiber.stack, *end = lane.fiber.stack + lane.fiber.stack_bytes - 2 * sizeof(void*);
@@ -59,7 +59,7 @@ void for_each_call(const EmulatedLane& lane, const Do& what) {
     }
 }
 
-/// Which lanes wait where, with which masks, and what those do that they wait for.
+/// Describes the waiting lanes with their calls and masks, and the lanes for which they wait.
 std::string describe(const EmulatedWarp& warp);
 
 } // namespace pertev::test

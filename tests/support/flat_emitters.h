@@ -32,7 +32,7 @@ inline double disc_factor(double radius, double height, double off) {
     return 0.5 * (1 - (a + h - r) / std::sqrt((a + h + r) * (a + h + r) - 4 * a * r));
 }
 
-/// About the y axis, its front down.
+/// A disc around the y axis that faces down.
 inline Mesh disc(float height, float radius) {
     constexpr uint32_t kCorners = 256;
     Mesh mesh;

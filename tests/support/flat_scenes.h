@@ -6,7 +6,7 @@
 
 namespace pertev::test {
 
-/// The sheet centre + s x + t y for s, t in [-1, 1]; its front is where cross(x, y) points.
+/// The sheet centre + s x + t y for s, t in [-1, 1], with its front in the direction of cross(x, y).
 inline Mesh sheet(Vec3 centre, Vec3 x, Vec3 y) {
     Mesh mesh;
     mesh.positions = {centre - x - y, centre + x - y, centre + x + y, centre - x + y};
@@ -25,7 +25,7 @@ inline void add(Scene& scene, Mesh mesh, const Material& material) {
 inline Mesh floor_at(float height, float half) { return sheet({0, height, 0}, {0, 0, half}, {half, 0, 0}); }
 
 inline Material white(float albedo = 1) { return {{.base_color = grey(albedo)}, "white"}; }
-/// Reflects all light as a perfect mirror.
+/// A perfect mirror.
 inline Material mirror() {
     return {{.kind = MaterialKind::MetallicRoughness, .base_color = {1, 1, 1}, .metallic = 1, .roughness = 0},
             "mirror"};
@@ -52,7 +52,7 @@ inline Scene floor_under_spot() {
     return scene;
 }
 
-/// Looks straight down from `eye` without perspective; the picture's right is +x, its lower edge +z.
+/// A camera that looks straight down from `eye` without perspective; the picture's right is +x, its lower edge +z.
 inline Camera camera_down(Vec3 eye, float height) {
     Camera camera;
     camera.projection = Projection::Orthographic;

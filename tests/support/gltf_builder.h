@@ -16,7 +16,7 @@
 
 namespace pertev::test {
 
-/// RFC 4648 section 4, with padding.
+/// Encodes base64 (RFC 4648, section 4) with padding.
 std::string base64(std::span<const std::byte> bytes);
 
 class GltfBuilder {
@@ -70,10 +70,11 @@ private:
 /// Writes "model.gltf" into a new folder and reads it.
 Scene read_gltf_text(const std::string& json, Messages& messages, bool geometry_only = false);
 Scene read_gltf_text(const std::string& json);
-/// The fault of a document, from "model.gltf" on: the message of the Error that reading throws, or the first warning
-/// of something left out, without the words that say what. "" if there is neither. Other exceptions are passed on.
+/// Returns the fault of a document, from "model.gltf" on: the message of the Error that reading throws, or the first
+/// warning of something left out, without the part that names it; "" if there is neither. Other exceptions are passed
+/// on.
 std::string gltf_fault(const std::string& json);
-/// Whether a warning holds all of `parts`.
+/// Returns whether a warning holds all of `parts`.
 bool has_warning(const Messages& messages, const std::vector<std::string>& parts);
 
 } // namespace pertev::test

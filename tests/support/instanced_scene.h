@@ -20,7 +20,7 @@ struct InstancedScene {
     Tlas top;
     std::vector<Ray> rays;
 
-    /// Over views of the meshes' trees, of whatever kind; they must outlive it. `baked` may be empty.
+    /// Makes a scene over views of the meshes' trees, which must outlive it, of any kind. `baked` may be empty.
     template <class Tree>
     SceneTrees<Tree> scene(const std::vector<Tree>& views, const Tree& baked_view = {}) const {
         return {baked_view, top.nodes.data(), top.instances.data(), views.data(), top.root, top.reach, top.growth};

@@ -11,7 +11,7 @@
 
 namespace pertev::test {
 
-/// Everything that there is on a device; brute force only where a scene is small.
+/// All combinations on a device; brute force only for a small scene.
 inline LabSettings all_combinations(bool is_cuda, bool brute_force) {
     LabSettings settings;
     settings.structures.assign(kValuesOf<StructureKind>.begin(), kValuesOf<StructureKind>.end());

@@ -13,7 +13,8 @@ namespace pertev::test {
 
 inline double as_double(float x) { return static_cast<double>(x); }
 
-/// Linear on purpose: the tests' textures then mean the same with and without is_srgb.
+/// Linear values of encoded bytes. They are linear on purpose: textures of the tests then mean the same with and
+/// without is_srgb.
 inline std::array<float, 256> make_linear_table() {
     std::array<float, 256> table{};
     for (std::size_t i = 0; i < 256; ++i) table[i] = static_cast<float>(i) * (1.0f / 255.0f);
@@ -21,7 +22,7 @@ inline std::array<float, 256> make_linear_table() {
 }
 inline const std::array<float, 256> kTable = make_linear_table();
 
-/// A scene's light set and all that its view points to.
+/// A scene's light set and everything that its view points to.
 struct Lights {
     LightSetData data;
     std::vector<TextureImageView> images;

@@ -12,7 +12,7 @@
 namespace pertev::test {
 
 using pertev::kBinaryTracer;
-/// On a CPU eight boxes at a time, which pictures are made with there.
+/// The combination that pictures use: on a CPU eight boxes at a time.
 inline constexpr Combination kSimdTracer = {.structure = StructureKind::Binned, .traversal = TraversalKind::Wide8Simd};
 
 inline Tracer make_tracer(Queue& queue, const PreparedScene& prepared, const Combination& combination = kBinaryTracer) {

@@ -26,13 +26,13 @@ struct TriangleMesh {
 TriangleMesh make_sphere(int subdivisions, Vec3 centre_m, float radius_m);
 /// Bumpy closed torus of 2 * segments * sides triangles of very uneven sizes.
 TriangleMesh make_torus(int segments, int sides);
-/// The vertices and faces of an OBJ file, nothing else of it; polygons become fans.
+/// Reads only the vertices and faces of an OBJ file; polygons become fans.
 TriangleMesh read_obj_geometry(const std::filesystem::path& path);
 
 /// Triangles for builders; primitive ids in the mesh's order.
 std::vector<BvhTriangle> triangles_of(const TriangleMesh& mesh, uint32_t instance = 0);
 
-/// Tests every triangle: the result rule of docs/conventions.md, word by word. Takes over a better hit into `best`.
+/// Tests every triangle by the result rule of docs/conventions.md, and stores a better hit in `best`.
 template <class Accept>
 void trace_by_brute_force(std::span<const BvhTriangle> triangles, const Ray& ray, uint32_t instance,
                           const Accept& accept, Hit& best) {

@@ -8,17 +8,17 @@
 
 namespace pertev::test {
 
-/// --device cuda was given: two-backend tests run on the GPU too.
+/// Returns whether --device cuda was given, so that two-backend tests run on the GPU too.
 bool cuda_requested();
 
-/// `count` in CI; `long_count` with --long (or PERTEV_LONG_TESTS=1).
+/// Returns `count` in CI, and `long_count` with --long (or PERTEV_LONG_TESTS=1).
 uint64_t effort(uint64_t count, uint64_t long_count);
 
-/// A file under the folder that PERTEV_SCENES names. Nothing, after a line that says the test is skipped, where the
-/// variable is not set or the file is not there.
+/// Returns a file below the folder that PERTEV_SCENES names; nothing, with a line that says that the test is skipped,
+/// if the variable is not set or there is no such file.
 std::optional<std::filesystem::path> test_scene(const std::filesystem::path& relative);
 
-/// Whether test_scene() found nothing so far.
+/// Returns whether test_scene() found nothing so far.
 bool scene_was_missing();
 
 /// A new empty folder, removed at exit.

@@ -61,7 +61,7 @@ HD inline float portable_second_argument(uint32_t input) {
     return float_of((h & 0x80ffffffu) + 0x3f000000u); // +-[0.5, 2^1.99]
 }
 
-/// Whether reciprocal_of_normal accepts x; for other inputs its value counts as 0.
+/// Returns whether reciprocal_of_normal accepts x; for other inputs its value counts as 0.
 HD inline bool has_reciprocal(float x) { return abs(x) >= 0x1p-126f && abs(x) < 0x1p126f; }
 
 /// Bits of function(input as a float). sin_cos_2pi takes the input as a fraction of 2^32; what it gives is in
@@ -112,7 +112,7 @@ HD inline uint32_t portable_math_value(int function, uint32_t input) {
     return 0;
 }
 
-/// Running sum that depends on every value and on the order of no two: add it up over any split of the inputs.
+/// A sum that depends on every value but not on their order, so that it may be added up over any split of the inputs.
 HD inline uint64_t portable_math_term(uint32_t input, uint32_t value) {
     uint64_t h = (static_cast<uint64_t>(input) << 32 | value) * 0x9e3779b97f4a7c15u;
     h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9u;

@@ -23,9 +23,9 @@ public:
         const uint32_t w = ((state_ >> ((state_ >> 28) + 4)) ^ state_) * 277803737u;
         return (w >> 22) ^ w;
     }
-    /// In (0, 1).
+    /// A number in (0, 1).
     float unit() { return (static_cast<float>(bits() >> 9) + 0.5f) * 0x1p-23f; }
-    /// In (0, 1)^2.
+    /// A point of (0, 1)^2.
     Vec2 pair() {
         const float x = unit();
         return {x, unit()};
@@ -36,7 +36,7 @@ public:
         const float x = within(lo, hi), y = within(lo, hi);
         return {x, y, within(lo, hi)};
     }
-    /// Uniform on the unit sphere.
+    /// A uniform point of the unit sphere.
     Vec3 direction() {
         const float z = within(-1, 1), phi = kTwoPi * unit(), r = std::sqrt(max(0.0f, 1 - z * z));
         return {r * std::cos(phi), r * std::sin(phi), z};

@@ -24,20 +24,20 @@ Camera mixed_scene_camera();
 Scene make_furnace_scene(float albedo);
 
 Queue make_cuda_queue(); // for tests under cuda_requested()
-/// The GPU's with --device cuda, else the CPU's.
+/// Makes the queue of the GPU with --device cuda, otherwise of the CPU.
 Queue requested_queue();
 
-/// Renders with the scene's trees built afresh.
+/// Renders a scene, for which it builds the trees.
 RenderResult render(Queue& queue, const Scene& scene, const Camera& camera, const RenderSettings& settings,
                     const PrepareOptions& prepare = {});
 
-/// Mean of all its numbers.
+/// Mean of all numbers of a picture.
 double mean_of(const Image& picture);
 
 /// Settings of a small picture with layers, for comparing scenes before and after a change.
 RenderSettings layered_settings();
 
-/// All that a render shows: its picture, its layers and its ids.
+/// Everything that a render shows: its picture, its layers and its ids.
 void add_picture(Hasher& hasher, const RenderResult& result);
 Hash128 render_hash(const RenderResult& result);
 

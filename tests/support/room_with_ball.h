@@ -8,7 +8,7 @@
 
 namespace pertev::test {
 
-/// A lamp stands under the ceiling; or there is none, and the mixed scene's sky lights the room.
+/// A room with an emitter under the ceiling or, without one, with the sky of the mixed scene.
 inline Scene room_with_ball(const Material& ball_material, const Material& floor, bool has_sky) {
     Scene scene;
     const Material red = {{.base_color = {0.7f, 0.2f, 0.2f}}, "red"};
@@ -30,7 +30,7 @@ inline Scene room_with_ball(const Material& ball_material, const Material& floor
     return scene;
 }
 
-/// It sees all of the room.
+/// A camera that sees all of the room.
 inline Camera room_camera() {
     Camera camera;
     camera.world_from_camera = look_at({0.4f, 1.1f, 3.6f}, {0, 0.9f, 0}, {0, 1, 0});

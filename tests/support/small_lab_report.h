@@ -14,16 +14,16 @@ inline constexpr TraversalOptions kFastTests = {.tests = TestKind::Fast};
 
 /// Figures of structure 0, with its own name.
 CombinationFigures figures(const Combination& c, std::vector<RunFigures> runs);
-/// Every run took so long.
+/// Figures of a set whose runs all take `seconds`.
 RunFigures timed(uint32_t set, double seconds);
 
-/// A CPU's: primary, shadow and diffuse1; the default combination with everything (speeds 4, 4 and 4 Mrays/s), and one
-/// refused before any structure was built.
+/// A report of a CPU with the sets primary, shadow and diffuse1, and two combinations: the default one with all figures
+/// (4 Mrays/s in each set), and one that was refused before any structure was built.
 LabReport small_report();
 
 bool has(const std::string& text, const std::string& part);
 std::size_t count(const std::string& text, const std::string& part);
-/// The first line with `part` in it; fails the test where there is none.
+/// Returns the first line that contains `part`; fails the test if there is none.
 std::string line_with(const std::string& text, const std::string& part);
 
 } // namespace pertev::test

@@ -10,7 +10,7 @@
 
 namespace pertev::test {
 
-/// At most `max_depth` levels, 4 triangles a leaf where these suffice.
+/// A tree with at most `max_depth` levels, and with 4 triangles per leaf if the levels suffice.
 Bvh build_split_bvh(const std::vector<BvhTriangle>& triangles, int max_depth);
 
 } // namespace pertev::test

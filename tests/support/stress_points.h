@@ -49,7 +49,7 @@ inline std::vector<StressPoints> stress_points(uint32_t count) {
     return sets;
 }
 
-/// Places near and far, and at points, on lattice planes.
+/// Positions near and far, at points, and on lattice planes.
 inline std::vector<Vec3> query_points(const StressPoints& set, uint32_t count) {
     std::vector<Vec3> places;
     Random random(8);
@@ -66,7 +66,7 @@ inline std::vector<Vec3> query_points(const StressPoints& set, uint32_t count) {
     return places;
 }
 
-/// All within the radius, nearest first, of equally far ones those of lower index first.
+/// Returns all points within the radius, sorted by distance and then by index.
 inline std::vector<NearPoint> within_by_brute_force(const std::vector<Vec3>& points, Vec3 at, float radius) {
     std::vector<NearPoint> found;
     for (uint32_t i = 0; i < points.size(); ++i) {
@@ -81,7 +81,7 @@ inline std::vector<NearPoint> within_by_brute_force(const std::vector<Vec3>& poi
 
 inline const float kRadii[] = {0, 1e-6f, 0.1f, 0.25f, 0.5f, 1, 4, -1, kInfinity}; // times the extent
 
-/// Holds both searches of a tree over `set` to brute force.
+/// Checks both searches of a tree over `set` against brute force.
 template <class View>
 std::string find_wrong_search(const View& view, const StressPoints& set, uint32_t places) {
     const auto n = static_cast<uint32_t>(set.points.size());

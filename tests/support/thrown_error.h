@@ -22,17 +22,22 @@ std::optional<Error> thrown_error(const Body& body) {
     return std::nullopt;
 }
 
-/// Whether it has this code and is about this setting, with this value unless that is empty.
+/// Returns whether the error has this code and is about this setting, with this value unless that is empty.
 inline bool is_about(const std::optional<Error>& error, ErrorCode code, std::string_view setting,
                      std::string_view value = {}) {
     return error && error->code() == code && error->setting() == setting && (value.empty() || error->value() == value);
+}
+
+/// Returns whether the error has this code and is about this place of a file.
+inline bool is_at(const std::optional<Error>& error, ErrorCode code, const FileLocation& place) {
+    return error && error->code() == code && error->location() == place;
 }
 
 inline bool says(const std::optional<Error>& error, const std::string& text) {
     return error && std::string(error->what()).find(text) != std::string::npos;
 }
 
-/// Text of the BadInput that `body` throws; "no error" if it throws nothing. Another code fails the test.
+/// Returns the text of the BadInput that `body` throws; "no error" if it throws nothing. Another code fails the test.
 template <class Body>
 std::string bad_input_message(const Body& body) {
     const std::optional<Error> error = thrown_error(body);

@@ -39,10 +39,10 @@ struct TraversalLaunch {
     void (*run)(Queue&, const TraversalTrees&, const TraversalBatch&);        // one tree
     void (*run_scene)(Queue&, const TraversalScenes&, const TraversalBatch&); // null: not for scenes
 };
-/// On a CPU one ray a thread alone.
+/// Returns the launches of all traversals on a device; on a CPU only with one ray per thread.
 std::vector<TraversalLaunch> traversal_launches(bool on_cuda);
 
-/// Closest hits by while-while with all switches on, counted; each way of handing out rays that the device has.
+/// A launch that counts the lanes of closest-hit searches by while-while with all switches on.
 using LaneLaunch = void (*)(Queue&, const BvhView&, const TraversalBatch&, LaneCounts*);
 std::vector<LaneLaunch> lane_launches(bool on_cuda);
 

@@ -9,7 +9,7 @@
 
 namespace pertev::test {
 
-/// Returns `path`. Not flushed to the disk, as write_file_atomically does: thousands of these are written.
+/// Writes a file and returns `path`. It is not flushed to the disk, because tests write thousands of files.
 inline std::filesystem::path write_text(const std::filesystem::path& path, const std::string& text) {
     std::ofstream file(path, std::ios::binary);
     if (!(file << text).flush()) throw std::runtime_error("a test's input could not be written: " + path.string());

@@ -160,12 +160,12 @@ TEST_CASE("an invalid cached tree causes a warning, and the render continues") {
     const fs::path file = folder / (bvh_cache_key(triangles, {}).hex() + ".bvh");
     Messages messages;
 
-    SUBCASE("a folder in the file's place") {
+    SUBCASE("a folder is where the file should be") {
         fs::create_directories(file);
         CHECK(same_bytes(load_or_build_bvh(triangles, kBinnedAlone, {}, folder, messages).nodes, built.nodes));
         CHECK(messages.all().size() == 2); // not read, not written
     }
-    SUBCASE("a file in the folder's place") {
+    SUBCASE("a file is where the folder should be") {
         write_bytes(folder / "taken", {});
         CHECK(
             same_bytes(load_or_build_bvh(triangles, kBinnedAlone, {}, folder / "taken", messages).nodes, built.nodes));
@@ -180,7 +180,7 @@ TEST_CASE("an invalid cached tree causes a warning, and the render continues") {
         CHECK(load_cached_bvh(bvh_cache_key(triangles, {}), folder, triangles, messages));
         CHECK(messages.all().size() == 1);
     }
-    SUBCASE("no folder at all") {
+    SUBCASE("no folder is given") {
         CHECK(same_bytes(load_or_build_bvh(triangles, kBinnedAlone, {}, std::nullopt, messages).nodes, built.nodes));
         CHECK(messages.all().empty());
     }

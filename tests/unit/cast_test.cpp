@@ -25,7 +25,7 @@ RenderSettings centre_settings(IntegratorKind integrator = IntegratorKind::Cast)
     return settings;
 }
 
-/// Where on the floor y = 0 the middle of a pixel lies.
+/// Returns where on the floor y = 0 the middle of a pixel lies.
 Vec3 floor_point(uint32_t x, uint32_t y) {
     const float pixel = kView / kSide;
     return {(static_cast<float>(x) + 0.5f) * pixel - kView / 2, 0, (static_cast<float>(y) + 0.5f) * pixel - kView / 2};

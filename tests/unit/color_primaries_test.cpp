@@ -151,7 +151,7 @@ TEST_CASE("the line PRIMARIES of a Radiance HDR works like an EXR's chromaticiti
     }
 }
 
-TEST_CASE("degenerate chromaticities, and those of another type, are left out with a warning") {
+TEST_CASE("chromaticities that are degenerate or of another type are left out with a warning") {
     const std::vector<std::byte> plain = encode_exr(kPicture);
     for (const auto& bytes : {with_chromaticities(plain, {}), with_chromaticities(plain, kAcesCg, "string")}) {
         Messages messages;

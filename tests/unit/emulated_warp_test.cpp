@@ -33,7 +33,7 @@ std::set<std::string> headlines(const Kernel& kernel) {
     return faults;
 }
 
-/// Whether each run's fault holds all of these words.
+/// Returns whether each run's fault holds all of these words.
 template <class Kernel>
 bool says(const Kernel& kernel, const std::vector<std::string>& words) {
     for (uint32_t seed = 0; seed < seeds(); ++seed) {

@@ -63,7 +63,8 @@ DoubleVec3 point_at(const Vec3 (&corners)[3], double u, double v) {
     return a + (u * (to_double(corners[1]) - a) + v * (to_double(corners[2]) - a));
 }
 
-/// Whether it is no sliver and large beside its error: neither cuts short how far a point is kept off its edges.
+/// Returns whether it is no sliver and large beside its error: neither cuts short how far a point is kept off its
+/// edges.
 bool has_room(const WorldTriangle& placed) {
     const double size = static_cast<double>(max_component(max(abs(placed.ab), abs(placed.ac))));
     const double width = length(cross(to_double(placed.ab), to_double(placed.ac))) / size;

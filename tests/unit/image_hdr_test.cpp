@@ -33,8 +33,8 @@ std::vector<float> reds(const Image& image) {
     return result;
 }
 
-std::string message_of(const std::string& text) {
-    return test::bad_input_message([&] { decode(text); });
+bool is_refused_hdr(const std::string& text) {
+    return test::is_at(test::thrown_error([&] { decode(text); }), ErrorCode::BadInput, {"sky.hdr"});
 }
 
 } // namespace
@@ -89,17 +89,18 @@ TEST_CASE("values are divided by every EXPOSURE line and by COLORCORR") {
     CHECK(image.pixels == std::vector<float>{8, 4, 16});
 }
 
-TEST_CASE("a damaged Radiance file is an error that describes the fault") {
-    CHECK(message_of(header("-Y 1 +Z 1") + "abcd").find("-Y 512 +X 1024") != std::string::npos);
-    CHECK(message_of(header("-Y 1 -Y 1") + "abcd").find("-Y 512 +X 1024") != std::string::npos);
-    CHECK(message_of(header("-Y 0 +X 4")).find("at least 1") != std::string::npos);
-    CHECK(message_of(header("-Y 1 +X 2") + "abcd").find("truncated") != std::string::npos);
-    CHECK(message_of(header("-Y 1 +X 8") + pixel(2, 2, 0, 9)).find("9 pixels") != std::string::npos);
-    CHECK(message_of(header("-Y 1 +X 8") + pixel(2, 2, 0, 8) + "\x89\x01").find("beyond") != std::string::npos);
-    CHECK(message_of(header("-Y 1 +X 4") + pixel(1, 1, 1, 4)).find("before the first") != std::string::npos);
-    CHECK(message_of("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\nabcd").find("xyze") != std::string::npos);
-    CHECK(message_of("#?RADIANCE\n\n-Y 1 +X 1\nabcd").find("FORMAT") != std::string::npos);
-    CHECK(message_of(header("-Y 1 +X 1", "EXPOSURE=0\n") + "abcd").find("over 0") != std::string::npos);
+TEST_CASE("a damaged Radiance file is an error that names the file") {
+    CHECK_FALSE(is_refused_hdr(header("-Y 1 +X 1") + "abcd"));
+    CHECK(is_refused_hdr(header("-Y 1 +Z 1") + "abcd"));
+    CHECK(is_refused_hdr(header("-Y 1 -Y 1") + "abcd"));
+    CHECK(is_refused_hdr(header("-Y 0 +X 4")));
+    CHECK(is_refused_hdr(header("-Y 1 +X 2") + "abcd"));                         // truncated
+    CHECK(is_refused_hdr(header("-Y 1 +X 8") + pixel(2, 2, 0, 9)));              // a row of 9 pixels
+    CHECK(is_refused_hdr(header("-Y 1 +X 8") + pixel(2, 2, 0, 8) + "\x89\x01")); // a run beyond the row
+    CHECK(is_refused_hdr(header("-Y 1 +X 4") + pixel(1, 1, 1, 4)));              // a repetition before the first pixel
+    CHECK(is_refused_hdr("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\nabcd"));
+    CHECK(is_refused_hdr("#?RADIANCE\n\n-Y 1 +X 1\nabcd"));
+    CHECK(is_refused_hdr(header("-Y 1 +X 1", "EXPOSURE=0\n") + "abcd"));
 }
 
 TEST_CASE("a written HDR reads back within half a unit of its shared exponent") {

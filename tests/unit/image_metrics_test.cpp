@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "image/metrics.h"
+#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 
@@ -63,13 +64,10 @@ TEST_CASE("alpha is not compared") {
 }
 
 TEST_CASE("pictures of different sizes are an error that names both") {
-    try {
-        relative_error(filled(4, 3, 0), filled(3, 4, 0));
-        FAIL("no error");
-    } catch (const Error& error) {
-        CHECK(error.code() == ErrorCode::BadInput);
-        CHECK(std::string(error.what()).find("4 x 3 and 3 x 4") != std::string::npos);
-    }
+    const auto error = test::thrown_error([] { relative_error(filled(4, 3, 0), filled(3, 4, 0)); });
+    REQUIRE(error);
+    CHECK(error->code() == ErrorCode::BadInput);
+    CHECK(test::says(error, "4 x 3 and 3 x 4"));
 }
 
 TEST_CASE("the variance of pictures is the unbiased variance of each channel over its squared mean") {
@@ -133,11 +131,8 @@ TEST_CASE("a pixel with a value that is not finite in any picture varies most") 
 TEST_CASE("the variance of pictures of different sizes is an error that names both") {
     VarianceOfPictures variance;
     variance.add(filled(4, 3, 0));
-    try {
-        variance.add(filled(3, 4, 0)); // an equal number of pixels
-        FAIL("no error");
-    } catch (const Error& error) {
-        CHECK(error.code() == ErrorCode::BadInput);
-        CHECK(std::string(error.what()).find("3 x 4 and 4 x 3") != std::string::npos);
-    }
+    const auto error = test::thrown_error([&] { variance.add(filled(3, 4, 0)); }); // an equal number of pixels
+    REQUIRE(error);
+    CHECK(error->code() == ErrorCode::BadInput);
+    CHECK(test::says(error, "3 x 4 and 4 x 3"));
 }

@@ -21,7 +21,7 @@ namespace {
 
 constexpr uint32_t kRounds = 2000;
 
-/// Whether both have the same bits, or are NaN, whose bits say nothing.
+/// Returns whether both have the same bits, or are NaN, whose bits say nothing.
 bool is_same(float a, float b) { return bits_of(a) == bits_of(b) || (a != a && b != b); }
 bool is_same(Vec3 a, Vec3 b) { return is_same(a.x, b.x) && is_same(a.y, b.y) && is_same(a.z, b.z); }
 

@@ -33,7 +33,8 @@ LightPathAutomaton automaton_of(const std::vector<std::string>& texts) {
     return make_automaton(expressions, {{tag}, {tag}});
 }
 
-/// Where a path stands whose scatterings are `word`, from the light to the eye; small letters are transmissions.
+/// Returns where a path stands whose scatterings are `word`, from the light to the eye; small letters are
+/// transmissions.
 uint16_t state_after(const LightPathAutomaton& automaton, const std::string& word) {
     uint16_t state = automaton.start;
     for (auto letter = word.rbegin(); letter != word.rend(); ++letter) {
@@ -57,7 +58,7 @@ std::regex as_regex(const std::string& text) {
         std::regex_replace(std::regex_replace(text, std::regex("\\."), "[DGS]"), std::regex("\\[\\^S\\]"), "[DG]"));
 }
 
-/// Whether making an automaton of `texts` ends with OverLimit and a message that says `says`.
+/// Returns whether making an automaton of `texts` ends with OverLimit and a message that says `says`.
 bool is_over(const std::vector<std::string>& texts, const std::string& says) {
     const auto error = test::thrown_error([&] { automaton_of(texts); });
     if (error) INFO(error->what());
@@ -80,7 +81,7 @@ std::string lpe_refusal(const std::string& text) {
     return test::bad_input_message([&] { parse_light_path(text); });
 }
 
-/// Where the caret stands: the letter in the last line but its two blanks.
+/// Returns where the caret stands: the letter in the last line but its two blanks.
 std::size_t lpe_caret(const std::string& message) { return message.size() - message.rfind("\n  ") - 4; }
 
 } // namespace

@@ -96,15 +96,17 @@ TEST_CASE("a light's names are its own and its parent nodes', and the environmen
 }
 
 TEST_CASE("an unknown name is refused at its character, with a list of names") {
-    const auto message = [](const char* text) {
-        return test::bad_input_message([&] { put_layers({"a=LE", text}, make_named_scene()); });
+    const auto fault = [](const char* text) {
+        return test::thrown_error([&] { put_layers({"a=LE", text}, make_named_scene()); });
     };
-    CHECK(message("b=LD<'wal'>E").find("`lpe=b`: character 5: there is no object, mesh, material or node") == 0);
-    CHECK(message("b=LD<'wal'>E").find("\n      ^") != std::string::npos);
-    CHECK(message("b=LD<'wall' 'x*'>E").find("character 12") != std::string::npos);
-    CHECK(message("b=L<'wall'>E").find("there is no light of the scene with this name; there are 'bulb', 'disc'") !=
-          std::string::npos); // a wall gives no light
-    CHECK(message("a=LDE").find("two expressions have this name") != std::string::npos);
+    for (const char* text : {"b=LD<'wal'>E", "b=LD<'wall' 'x*'>E", "b=L<'wall'>E"}) { // a wall gives no light
+        CHECK(test::is_about(fault(text), ErrorCode::BadInput, "lpe", "b"));
+    }
+    CHECK(test::says(fault("b=LD<'wal'>E"), "character 5"));
+    CHECK(test::says(fault("b=LD<'wal'>E"), "\n      ^"));
+    CHECK(test::says(fault("b=LD<'wall' 'x*'>E"), "character 12"));
+    CHECK(test::says(fault("b=L<'wall'>E"), "'bulb', 'disc'"));
+    CHECK(test::is_about(fault("a=LDE"), ErrorCode::BadInput, "lpe", "a"));
 }
 
 TEST_CASE("a render takes any number of layers") {

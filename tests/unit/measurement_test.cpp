@@ -51,6 +51,8 @@ TEST_CASE("tables become CSV and aligned text") {
     ResultTable signs = {"signs", "Signs"};
     signs.add({{"a", "longer name", "x"}, {"b", "y", "±1%"}}); // ± is one character of two bytes
     CHECK(text_of(signs) == "longer name    y\nx            ±1%\n");
+    const Fields fields = {{"a", "±", "x"}, {"b", "wide", "y", "s"}, {"c", "", "z"}};
+    CHECK(text_of(fields) == "±     x\nwide  y s\n");
     CHECK(two_rows().at(0, "seconds") == 0.25);
 }
 

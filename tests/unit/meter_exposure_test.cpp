@@ -60,7 +60,7 @@ RenderSettings metered_settings() {
     return settings;
 }
 
-/// How the pixels come out that show surfaces, no lamp and no sky.
+/// Tones of the pixels that show surfaces, not emitters or sky.
 struct Shown {
     double mean = 0, burnt = 0; // mean of [0, 1]; burnt: share of all pixels
 };

@@ -75,7 +75,7 @@ TEST_CASE("an instance may move if an animation changes its node or an ancestor"
         animate(scene, 2, AnimatedPart::Scale);
         CHECK(may_move(scene) == Moves{false, false, true, true});
     }
-    SUBCASE("what is on no node stays") {
+    SUBCASE("objects without a node do not move") {
         scene.instances[0].node = kNoNode;
         animate(scene, 0, AnimatedPart::Scale);
         CHECK(may_move(scene) == Moves{false, false, false, false});

@@ -84,17 +84,17 @@ TEST_CASE("a crowded bucket keeps the requested number of photons, chosen unifor
     std::vector<Vec3> points;
     for (int i = 0; i < 700; ++i) points.push_back(random.point(0, 1));
     for (int i = 0; i < 40; ++i) points.push_back(random.point(0, 1) + Vec3{30, 0, 0});
-    constexpr uint32_t kMost = 48, kPasses = 4000;
+    constexpr uint32_t kMaxNear = 48, kPasses = 4000;
     constexpr float kRadius = 0.4f;
     std::vector<uint32_t> stayed(points.size());
     for (uint32_t pass = 0; pass < kPasses; ++pass) {
-        const GridOfPoints grid(points, kRadius, 40, kMost, pass);
+        const GridOfPoints grid(points, kRadius, 40, kMaxNear, pass);
         std::vector<uint32_t> found;
         for (const float x : {0.0f, 0.6f, 1.2f, 30.0f, 30.6f, 31.2f}) {
             for (const float y : {0.0f, 0.6f, 1.2f}) {
                 for (const float z : {0.0f, 0.6f, 1.2f}) {
                     visit_buckets(grid.view, {x, y, z}, [&](uint32_t begin, uint32_t end) {
-                        CHECK(end - begin <= kMost);
+                        CHECK(end - begin <= kMaxNear);
                         for (uint32_t i = begin; i < end; ++i) found.push_back(bits_of(grid.points[i].w));
                     });
                 }
@@ -113,17 +113,17 @@ TEST_CASE("a crowded bucket keeps the requested number of photons, chosen unifor
         CHECK(found == those_that_stay);
         CHECK(power == doctest::Approx(740).epsilon(1e-5));
     }
-    const GridOfPoints all(points, kRadius, 40), some(points, kRadius, 40, kMost);
+    const GridOfPoints all(points, kRadius, 40), some(points, kRadius, 40, kMaxNear);
     uint32_t thinned = 0;
     for (uint32_t i = 0; i < points.size(); ++i) {
         const Float4 p = all.positions[i];
         const uint32_t bucket = all.view.cells.bucket_of({p.x, p.y, p.z});
         const uint32_t n = all.starts[bucket + 1] - all.starts[bucket];
-        const double chance = n > kMost ? static_cast<double>(kMost) / n : 1;
-        thinned += n > kMost ? 1 : 0;
+        const double chance = n > kMaxNear ? static_cast<double>(kMaxNear) / n : 1;
+        thinned += n > kMaxNear ? 1 : 0;
         CHECK(stayed[i] == doctest::Approx(kPasses * chance).epsilon(5 / std::sqrt(kPasses * chance)));
-        if (n <= kMost) CHECK(stayed[i] == kPasses);
-        if (n <= kMost) CHECK(some.powers[i].x == 1);
+        if (n <= kMaxNear) CHECK(stayed[i] == kPasses);
+        if (n <= kMaxNear) CHECK(some.powers[i].x == 1);
     }
     CHECK(thinned > 500);
     CHECK(thinned < points.size());

@@ -68,7 +68,7 @@ TEST_CASE("each light of a scene counts in its predicted memory") {
 }
 
 TEST_CASE("queues of paths use nearly all of their memory limit, whatever else a path stores") {
-    constexpr std::size_t kMost = PathIntegrator::kMaxQueueBytes;
+    constexpr std::size_t kMaxBytes = PathIntegrator::kMaxQueueBytes;
     for (uint32_t bits = 0; bits < 16; ++bits) {
         CAPTURE(bits);
         const PathParts parts = {.has_times = (bits & 1) != 0,
@@ -88,10 +88,10 @@ TEST_CASE("queues of paths use nearly all of their memory limit, whatever else a
                               .records_bounce = parts.records_bounce});
                 return queue.peak_bytes();
             };
-            CHECK(bytes(1 << 16, 1 << 16, 1u << 31) <= kMost);
-            CHECK(bytes(1 << 16, 1 << 16, 1u << 31) >= kMost - 100'000);
-            CHECK(bytes(3840, 2160, RenderSettings{}.batch) <= kMost);
-            CHECK(bytes(3840, 2160, RenderSettings{}.batch) >= kMost - 3'000'000);
+            CHECK(bytes(1 << 16, 1 << 16, 1u << 31) <= kMaxBytes);
+            CHECK(bytes(1 << 16, 1 << 16, 1u << 31) >= kMaxBytes - 100'000);
+            CHECK(bytes(3840, 2160, RenderSettings{}.batch) <= kMaxBytes);
+            CHECK(bytes(3840, 2160, RenderSettings{}.batch) >= kMaxBytes - 3'000'000);
             CHECK(bytes(64, 1, 1000) == bytes(1000, 1, 64)); // the fewer of the two
             CHECK(bytes(64, 1, 1000) < 64 * 400);
         }
@@ -112,7 +112,7 @@ TEST_CASE("every integrator predicts its memory for an impossibly large picture 
         CHECK(value_named<IntegratorKind>(integrator.name) == integrator.value);
         RenderSettings settings;
         settings.integrator = integrator.value;
-        settings.path.max_depth = std::min(settings.path.max_depth, integrator.most_depth);
+        settings.path.max_depth = std::min(settings.path.max_depth, integrator.max_depth);
         CHECK(predicted_bytes(settings, huge, true) > 100'000'000);
         WorkSize small = huge;
         small.width = small.height = 8;

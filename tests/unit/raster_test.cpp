@@ -34,7 +34,7 @@ Pinhole pinhole(const Camera& camera, uint32_t width, uint32_t height) {
     return make_pinhole(make_camera_rays(camera, {PixelFilter::Box, 0.5f, nullptr}, width, height, {0, 0, 0}));
 }
 
-/// How often each pixel's sample is drawn by triangles of `mesh`.
+/// Returns how often each pixel's sample is drawn by triangles of `mesh`.
 std::vector<int> times_drawn(const Mesh& mesh, const Pinhole& camera, SamplePosition position) {
     std::vector<int> times(camera.width * camera.height);
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {

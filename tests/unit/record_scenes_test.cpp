@@ -28,7 +28,7 @@ Mesh ball(int subdivisions) {
     return mesh;
 }
 
-/// How often each edge is used; `first` triangles are looked at.
+/// Returns how often each edge is used; `first` triangles are looked at.
 std::map<std::pair<uint32_t, uint32_t>, int> edges_of(const Mesh& mesh, uint32_t first) {
     std::map<std::pair<uint32_t, uint32_t>, int> edges;
     for (uint32_t i = 0; i < 3 * first; ++i) {

@@ -42,7 +42,7 @@ std::string square_obj(double x, double y, const std::string& before = "") {
            "f -4 -3 -2 -1\n";
 }
 
-/// How far place `p` of the scene is from (x, y, z) in the coordinates of its file, metres.
+/// Returns how far place `p` of the scene is from (x, y, z) in the coordinates of its file, metres.
 double off(const Scene& scene, Vec3 p, DoubleVec3 wanted) {
     const DoubleVec3 d = in_file(scene, p) - wanted;
     return std::sqrt(dot(d, d));

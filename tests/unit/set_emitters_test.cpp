@@ -60,11 +60,8 @@ double flux_of(const Light& light, double efficacy) {
     return 4 * kEmitterPi * sum / kRings * efficacy;
 }
 
-std::string emitter_refusal(const std::string& text) {
-    return test::bad_input_message([&] {
-        Scene scene = emitter_scene();
-        set_emitter(scene, text);
-    });
+bool refuses_emitter(Scene& scene, const std::string& text) {
+    return test::is_about(test::thrown_error([&] { set_emitter(scene, text); }), ErrorCode::BadInput, "lamp", text);
 }
 
 } // namespace
@@ -121,20 +118,20 @@ TEST_CASE("each surface gets the full amount, whatever its size, and a shared ma
 }
 
 TEST_CASE("invalid settings of an emitter are refused") {
-    CHECK(emitter_refusal("sun=800lm").find("directional light, which needs lx") != std::string::npos);
-    CHECK(emitter_refusal("bulb=800lx").find("point light, which needs W, lm or cd") != std::string::npos);
-    CHECK(emitter_refusal("small=8lx").find("lx are for directional lights") != std::string::npos);
-    CHECK(emitter_refusal("blub=800lm").find("there is no lamp of the scene with this name; there are 'bulb'") !=
-          std::string::npos);
-    for (const char* text :
-         {"bulb", "=8lm", "bulb=8", "bulb=lm", "bulb=-8lm", "bulb=8lmx", "bulb=nanlm", "bulb=1e300W"}) {
-        CHECK(emitter_refusal(text).find("expected NAME=800lm") != std::string::npos);
-    }
     Scene scene = emitter_scene();
+    for (const char* text : {"sun=800lm", "bulb=800lx", "small=8lx", "blub=800lm", "bulb", "=8lm", "bulb=8", "bulb=lm",
+                             "bulb=-8lm", "bulb=8lmx", "bulb=nanlm", "bulb=1e300W"}) {
+        CAPTURE(text);
+        CHECK(refuses_emitter(scene, text));
+    }
+    Scene fine = scene;
+    set_emitter(fine, "small=8cd");
     scene.meshes[0].positions[0].y = 1; // bent
-    CHECK(test::bad_input_message([&] { set_emitter(scene, "small=8cd"); }).find("not flat") != std::string::npos);
+    CHECK(refuses_emitter(scene, "small=8cd"));
+    fine = scene;
+    set_emitter(fine, "small=8lm");
     scene.materials[0].alpha_mode = AlphaMode::Mask;
-    CHECK(test::bad_input_message([&] { set_emitter(scene, "small=8lm"); }).find("has holes") != std::string::npos);
+    CHECK(refuses_emitter(scene, "small=8lm"));
     const Rgb before = scene.materials[0].emission;
     scene.instances[0].is_hidden = scene.instances[1].is_hidden = true; // nothing there to have a size
     set_emitter(scene, "glow=8lm");
@@ -144,8 +141,7 @@ TEST_CASE("invalid settings of an emitter are refused") {
     scene.images.resize(1);
     scene.images[0].rgba8 = {.width = 1, .height = 1, .pixels = {0, 0, 0, 255}};
     scene.materials[0].emission_texture.image = 0;
-    CHECK(test::bad_input_message([&] { set_emitter(scene, "small=8lm"); }).find("completely black") !=
-          std::string::npos);
+    CHECK(refuses_emitter(scene, "small=8lm"));
 }
 
 TEST_CASE("the flux of a textured emitter equals the path tracer's") {

@@ -165,12 +165,12 @@ TEST_CASE("settings survive writing to JSON and reading back") {
         CHECK(old.is_given("no_history_clamping"));
         CHECK(settings_json(old, "").find("\"no_history_clamping\":true") != std::string::npos);
     }
-    SUBCASE("another scene is told") {
+    SUBCASE("another scene is reported") {
         read.scene.scene = "many-lights";
         read_settings(file, kRender, {}, read, messages);
         CHECK(messages.all().size() == 1);
     }
-    SUBCASE("what is no setting is left out with a warning, and a value that is none is refused") {
+    SUBCASE("an unknown setting is left out with a warning, and an invalid value is refused") {
         test::write_text(file, R"({"version":1,"settings":{"spp":5,"sppp":4,"device":"cpu"},"more":0})");
         read_settings(file, kRender, {}, read, messages);
         CHECK(messages.left_out().size() == 3);

@@ -51,7 +51,7 @@ struct Change {
     const char* what;
     void (*change)(Scene&);
     SceneUpdate update;
-    double most_of_all; // largest fraction of the structure's bytes that is copied
+    double max_copied; // largest fraction of the structure's bytes that is copied
     bool takes_memory;
 };
 
@@ -104,9 +104,9 @@ TEST_CASE("a structure on a device updates only what has changed and gives the h
             const AnyTrees* trees = &placed->trees();
             placed->update(prepared.structures->get(c));
             const uint64_t copied = queue.uploaded_bytes() - uploaded;
-            CHECK(copied <= step.most_of_all * static_cast<double>(placed->built().device_bytes()));
+            CHECK(copied <= step.max_copied * static_cast<double>(placed->built().device_bytes()));
             CHECK((queue.allocation_count() > allocations) == step.takes_memory);
-            if (step.most_of_all < 1) CHECK(copied < 65536);
+            if (step.max_copied < 1) CHECK(copied < 65536);
             CHECK(&placed->trees() == trees);
             const auto fresh = std::make_shared<const StructureOnDevice>(queue, prepared.structures->get(c));
             const std::vector<RayHit> hits = hits_of(queue, c, placed, rays);

@@ -9,7 +9,7 @@
  * @typedef {"open" | "trying" | "lost" | "ended" | "refused"} LinkState */
 
 const kHeaderBytes = 32;
-const kSilentTries = 3, kMostTries = 12; // about 2 s, and half a minute
+const kSilentTries = 3, kMaxTries = 12; // about 2 s, and half a minute
 const kGoingAway = 1001; // the code with which a viewer ends
 
 /** @param {ArrayBuffer} message @returns {Header | null} */
@@ -74,7 +74,7 @@ export class Link {
     if (code === kGoingAway && reason) return this.events.onState("ended", reason);
     if (reason) return this.events.onState("refused", reason);
     this.tries += 1;
-    if (this.tries > kMostTries) return this.events.onState("lost", "");
+    if (this.tries > kMaxTries) return this.events.onState("lost", "");
     if (this.tries > kSilentTries) this.events.onState("trying", "");
     setTimeout(() => this.open(), Math.min(3000, 200 * 1.6 ** this.tries));
   }

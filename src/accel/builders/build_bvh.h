@@ -13,9 +13,10 @@ namespace pertev {
 /// |coordinate| <= kMaxCoordinate. The result does not depend on the number of threads.
 Bvh build_bvh(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 
-/// First half of build_bvh; the cache stores its result.
+/// Builds the tree alone, the first half of build_bvh; the cache stores its result.
 BuiltTree build_triangle_tree(const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings);
-/// Second half of build_bvh. tree.order lists the position of each triangle, more than once if it is split.
+/// Orders the triangles by the tree, the second half of build_bvh. tree.order lists the position of each triangle, more
+/// than once if it is split.
 Bvh make_bvh(BuiltTree tree, const std::vector<BvhTriangle>& triangles);
 
 /// Box of each triangle, with its position as id. No coordinate is -0.

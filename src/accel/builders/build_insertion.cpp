@@ -21,7 +21,7 @@ uint32_t scramble_bits(uint32_t x) { // Wellons, "lowbias32", 2018: a bijection
     return x ^ (x >> 16);
 }
 
-/// Permutation of positions that depends only on their number.
+/// Returns a permutation of [0, count) that depends only on `count`.
 std::vector<uint32_t> scramble(uint32_t count) {
     std::vector<uint64_t> keys(count);
     for (uint32_t i = 0; i < count; ++i) keys[i] = static_cast<uint64_t>(scramble_bits(i)) << 32 | i;

@@ -45,7 +45,8 @@ struct ObjectCut {
     Bounds3 left, right;
     int axis = -1, bin = 0; // references in bins below go left; axis -1: no split is possible
 
-    /// If all boxes are equal, costs differ only by rounding, and following that would give a chain.
+    /// Returns whether the cut costs less than none, by more than rounding. If all boxes are equal, costs differ only
+    /// by rounding, and following that would give a chain.
     bool gains() const { return cost < uncut * (1 - 0x1p-20f); }
 };
 
@@ -146,7 +147,8 @@ private:
         halves[0].right.assign(middle, all.end());
     }
 
-    /// A triangle that the plane cuts goes to both sides, or to one if that costs less ("reference unsplitting").
+    /// Distributes triangles to both sides. One that the plane cuts goes to both, or to one if that costs less
+    /// ("reference unsplitting").
     void cut_triangles(std::span<const BuildReference> references, const SpatialCut& cut, Halves& halves) const {
         const float left = cut.left.half_area(), right = cut.right.half_area();
         const auto nl = static_cast<float>(cut.left_size), nr = static_cast<float>(cut.right_size);

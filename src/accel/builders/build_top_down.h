@@ -35,7 +35,8 @@ private:
     static constexpr uint32_t kParallelSubtree = 1u << 12; // from this many references on, both halves are built in
                                                            // parallel
 
-    /// Fills nodes [slot, slot + 2 (end - begin) - 1), so that threads need no common counter.
+    /// Builds the subtree over positions [begin, end) in nodes [slot, slot + 2 (end - begin) - 1), so that threads need
+    /// no common counter.
     void build_range(uint32_t begin, uint32_t end, uint32_t slot, int depth) {
         const uint32_t size = end - begin;
         if (size == 1) {

@@ -25,7 +25,7 @@ enum class BvhBuilder {
     Reinsertion,        // Binned, then optimized by reinsertion of subtrees
     SpatialReinsertion, // SpatialSplits, then optimized by reinsertion
 };
-/// Names on the command line.
+/// Names of builders on the command line.
 inline constexpr ValueName<BvhBuilder> kBvhBuilders[] = {{BvhBuilder::Binned, "binned"},
                                                          {BvhBuilder::Sweep, "sweep"},
                                                          {BvhBuilder::Median, "median"},
@@ -38,8 +38,8 @@ inline constexpr ValueName<BvhBuilder> kBvhBuilders[] = {{BvhBuilder::Binned, "b
                                                          {BvhBuilder::SpatialReinsertion, "sbvh-reinsertion"}};
 constexpr const auto& names_of_all(BvhBuilder) { return kBvhBuilders; }
 
-/// Whether the builder splits triangles. Its trees may hold a triangle more than once, in boxes that hold only a part
-/// of it; they are checked by find_split_fault, all others by find_fault.
+/// Returns whether the builder splits triangles. Its trees may hold a triangle more than once, in boxes that hold only
+/// a part of it; they are checked by find_split_fault, all others by find_fault.
 bool cuts_triangles(BvhBuilder builder);
 
 Bvh build_bvh(BvhBuilder builder, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});

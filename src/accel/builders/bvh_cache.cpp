@@ -118,8 +118,8 @@ BuiltTree read_tree(const fs::path& path, const Hash128& key, std::size_t triang
     return tree;
 }
 
-/// Whether the file is a leftover of write_file_atomically from a killed process: ".NAME.bvh.XXXXXX", old enough that
-/// no process still writes it.
+/// Returns whether the file is a leftover of write_file_atomically from a killed process: ".NAME.bvh.XXXXXX", old
+/// enough that no process still writes it.
 bool is_abandoned(const fs::directory_entry& entry) {
     std::error_code error;
     const bool is_temporary = entry.path().stem().extension() == ".bvh" && entry.path().filename().string()[0] == '.';
@@ -154,7 +154,7 @@ void remove_oldest(const fs::path& folder, uint64_t max_bytes) {
     }
 }
 
-/// Builds a tree in the form that files hold: positions of triangles by leaf.
+/// Builds a tree in the form of the files, which hold positions of triangles by leaf.
 BuiltTree build_by_position(BvhBuilder builder, const std::vector<BvhTriangle>& triangles,
                             const BvhBuildSettings& settings) {
     if (builder == BvhBuilder::Binned) return build_triangle_tree(triangles, settings);

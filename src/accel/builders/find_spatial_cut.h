@@ -22,8 +22,8 @@ struct SpatialCut {
     uint64_t left_size = 0, right_size = 0;
 };
 
-/// `chunks` hold references, by position, to parts of `triangles` that lie in `box`; they are processed in parallel.
-/// At most `allowance` of them are split.
+/// Finds the cheapest spatial cut of a set. `chunks` hold its references, by position, to parts of `triangles` that lie
+/// in `box`; they are processed in parallel. A cut that splits more than `allowance` of them is not considered.
 SpatialCut find_spatial_cut(std::span<const std::span<const BuildReference>> chunks,
                             const std::vector<BvhTriangle>& triangles, const Bounds3& box, uint64_t allowance);
 

@@ -18,8 +18,8 @@ public:
     uint32_t parent(uint32_t index) const { return parent_[index]; } // kNoLink for the root and for unlinked nodes
     BinaryTree take() { return std::move(tree_); }
 
-    /// Inserts the unlinked node `index` beside `target`: the free node `parent` takes the target's position and both
-    /// become its children.
+    /// Inserts the node `index`, which has no parent, beside `target`: the free node `parent` takes the target's
+    /// position and both become its children.
     void insert(uint32_t index, uint32_t target, uint32_t parent);
 
 private:

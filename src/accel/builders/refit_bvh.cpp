@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint64_t kRefitGrain = 1 << 12;
 
-/// Position of each instance's first triangle.
+/// Returns the position of each instance's first triangle.
 std::unordered_map<uint32_t, std::size_t> firsts_of(const std::vector<BvhTriangle>& triangles) {
     std::unordered_map<uint32_t, std::size_t> firsts;
     for (std::size_t i = 0; i < triangles.size(); ++i) {

@@ -16,13 +16,13 @@
 
 namespace pertev {
 
-/// Why trees of this builder cannot be refitted; nothing if they can.
+/// Returns why trees of this builder cannot be refitted; nothing if they can.
 std::optional<std::string> why_no_refit(BvhBuilder builder);
 
-/// `triangles` are those that the tree was built over, in the same order, each instance's primitives from 0 up, with
-/// other vertices: finite, |coordinate| <= kMaxCoordinate. A triangle that the tree holds several times gets its
-/// whole box each time, which is correct but slow. The result does not depend on the number of threads. Throws
-/// Error(BadInput) if the triangles are others.
+/// Updates the boxes of a tree whose triangles have moved. `triangles` are those that the tree was built over, in the
+/// same order, each instance's primitives from 0 up, with other vertices: finite, |coordinate| <= kMaxCoordinate. A
+/// triangle that the tree holds several times gets its whole box each time, which is correct but slow. The result does
+/// not depend on the number of threads. Throws Error(BadInput) if the triangles are others.
 Bvh refit_bvh(const Bvh& bvh, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});
 
 } // namespace pertev

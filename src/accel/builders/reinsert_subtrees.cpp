@@ -48,8 +48,8 @@ public:
         return sum;
     }
 
-    /// Tries to move about this fraction of the nodes, those with the largest boxes, because they have the most to
-    /// gain. Nodes whose move is blocked by moves with a higher gain are tried again as long as enough of them
+    /// Tries to move about the fraction `part` of the nodes, those with the largest boxes, because they have the most
+    /// to gain. Nodes whose move is blocked by moves with a higher gain are tried again as long as enough of them
     /// succeed.
     void pass(float part) {
         std::vector<uint32_t> nodes = largest_nodes(part);
@@ -110,7 +110,7 @@ private:
 
     void refit_node(uint32_t at) { nodes_[at] = make_inner(tree_, nodes_[at].child[0], nodes_[at].child[1]); }
 
-    /// `changed` lists all nodes whose children changed, and kNoLink.
+    /// Updates boxes from the nodes whose children changed upwards. `changed` lists these nodes, and kNoLink.
     void refit(const std::vector<uint32_t>& changed) {
         if (changed.size() > nodes_.size() / kFewChanges) {
             return visit_upwards(tree_, [&](uint32_t at) {
@@ -213,8 +213,8 @@ private:
         if (parent_[move.target] != kNoLink) body(parent_[move.target]);
     }
 
-    /// Whether the move has the highest gain among moves that change the same links and among moves of an ancestor of
-    /// its target. Without the second condition a could move below b while b moves below a.
+    /// Returns whether the move has the highest gain among moves that change the same links and among moves of an
+    /// ancestor of its target. Without the second condition a could move below b while b moves below a.
     bool is_made(const Move& move) const {
         const uint64_t key = key_of(move);
         bool is_first = true;

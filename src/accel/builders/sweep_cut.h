@@ -13,7 +13,8 @@ struct SweepCut {
     float uncut = 0;        // cost without a split, in the same unit
     uint32_t left = 0;      // number of boxes before the split
 
-    /// If all boxes are equal, costs differ only by rounding, and following that would give a chain.
+    /// Returns whether the cut costs less than none, by more than rounding. If all boxes are equal, costs differ only
+    /// by rounding, and following that would give a chain.
     bool gains() const { return cost < uncut * (1 - 0x1p-20f); }
 };
 

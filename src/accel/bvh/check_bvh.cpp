@@ -116,7 +116,7 @@ auto identity_of(const BvhTriangle& t) {
     return std::tuple(t.instance, t.primitive, t.a.x, t.a.y, t.a.z, t.b.x, t.b.y, t.b.z, t.c.x, t.c.y, t.c.z);
 }
 
-/// Whether the point with barycentric weights (i, k, n - i - k) / n lies in one of the pieces' boxes.
+/// Returns whether the point with barycentric weights (i, k, n - i - k) / n lies in one of the pieces' boxes.
 bool covers(std::span<const Piece> pieces, const BvhTriangle& t, int i, int k, int n, double slack) {
     const double wa = static_cast<double>(i) / n, wb = static_cast<double>(k) / n,
                  wc = static_cast<double>(n - i - k) / n;

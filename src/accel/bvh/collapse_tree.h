@@ -34,9 +34,9 @@ public:
     /// `width` is the number of children per node, in [2, kMaxWidth].
     CollapsedTree(const Bvh& bvh, const CollapseSettings& settings, int width);
 
-    /// subtrees()[0] is the whole tree; empty if there are no triangles.
+    /// All subtrees, of which the first is the whole tree; empty if there are no triangles.
     const std::vector<Subtree>& subtrees() const { return subtrees_; }
-    /// Whether this child of a wide node becomes a leaf; otherwise it becomes a wide node.
+    /// Returns whether this child of a wide node becomes a leaf; otherwise it becomes a wide node.
     bool is_leaf(uint32_t subtree) const { return plans_[subtree].splits[0] == kLeaf; }
     /// Writes the children of a subtree's wide node in the binary tree's order and returns their number.
     int children_of(uint32_t subtree, uint32_t (&children)[kMaxWidth]) const;
@@ -45,8 +45,8 @@ public:
 
 private:
     static constexpr uint8_t kLeaf = 1, kFewer = 0;
-    /// splits[i] for i roots is the left child's share of them, or kFewer if i - 1 roots are as good. splits[width]
-    /// applies to the children of a node; splits[0] is kLeaf for a leaf.
+    /// The choices for a subtree. splits[i] for i roots is the left child's share of them, or kFewer if i - 1 roots are
+    /// as good. splits[width] applies to the children of a node; splits[0] is kLeaf for a leaf.
     struct Plan {
         uint8_t splits[kMaxWidth + 1] = {};
     };

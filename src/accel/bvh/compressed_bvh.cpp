@@ -231,7 +231,8 @@ private:
         return {};
     }
 
-    /// Tests in double, which suffices to detect a box in the wrong place.
+    /// Returns whether a decoded box may overlap `box`, in double, which suffices to detect a box in the wrong
+    /// position.
     static bool may_meet(const CompressedBvhNode& node, int slot, const Bounds3& box) {
         for (int axis = 0; axis < 3; ++axis) {
             const double step = static_cast<double>(quantum(node, axis));

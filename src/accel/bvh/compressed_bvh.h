@@ -23,8 +23,8 @@ namespace pertev {
 
 inline constexpr int kCompressedLeaf = 3; // maximum number of triangles per leaf
 
-/// With leaves of two, rays in Sponza test 6 % fewer triangles and 1 % more nodes than with three, and are 1 to 2 %
-/// faster; there is no difference in the bunny.
+/// Default settings. With leaves of two, rays in Sponza test 6 % fewer triangles and 1 % more nodes than with three,
+/// and are 1 to 2 % faster; there is no difference in the bunny.
 inline constexpr CollapseSettings kCompressedCollapse = {.max_leaf = 2};
 
 // From 2^-80 on, the quantum divided by a ray's direction is a normal float. At 2^34, 255 quanta span [-2^40, 2^40].
@@ -89,7 +89,7 @@ std::optional<std::string> find_fault(const CompressedBvh& bvh, bool clipped = f
 /// Sets the grid for `slots`, of which at least one is not empty, and quantizes them outwards.
 void set_boxes(CompressedBvhNode& node, const Bounds3 (&slots)[8]);
 
-/// Whether the decoded box of a slot holds a box, in exact arithmetic.
+/// Returns whether the decoded box of a slot holds a box, in exact arithmetic.
 bool holds(const CompressedBvhNode& node, int slot, const Bounds3& box);
 
 /// Assigns up to 8 children to slots with the least sum of distances along the slots' octants. Slots of kNoLink stay

@@ -53,9 +53,8 @@ struct Tlas {
 /// |M^-1| (2 |o| + 2 R), and the triangle test's own 6 u |M^-1| (|o| + |T| + R). Back in the world that is at most 15
 /// u K (|o| + |T| + R) <= 30 u K (|o| + R). Boxes grow by 32 u K (|o| + R) here: growth = 2 K, e = 2^-20 (|o| + R). A
 /// moving instance has the box of all its positions. Its ray is first moved back (RigidMotion), with an error of at
-/// most 16 u (|o| + |pivot| + |place|) and as much in t times the rotated direction: growth is 16 more, and R
+/// most 16 u (|o| + |pivot| + |position|) and as much in t times the rotated direction: growth is 16 more, and R
 /// includes pivots and positions.
-/// and R holds pivot and places.
 Tlas build_tlas(std::span<const PlacedBvh> instances);
 
 } // namespace pertev

@@ -41,7 +41,7 @@ struct WoopBvhView : BvhView {
     const WoopTriangle* transforms = nullptr;
 };
 
-/// Adds the transforms. The result does not depend on the number of threads.
+/// Makes a WoopBvh of a tree by adding the transforms. The result does not depend on the number of threads.
 WoopBvh make_woop_bvh(const Bvh& bvh);
 
 WoopBvhView view_of(const WoopBvh& bvh);

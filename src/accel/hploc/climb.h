@@ -20,9 +20,9 @@
 
 namespace pertev::hploc {
 
-inline constexpr uint32_t kKept = 16;        // maximum number of clusters that a radix node leaves to its parent
-inline constexpr uint32_t kMost = 2 * kKept; // maximum number of clusters before merging
-inline constexpr uint32_t kSearchRadius = 8; // neighbours searched on either side
+inline constexpr uint32_t kKept = 16;               // maximum number of clusters that a radix node leaves to its parent
+inline constexpr uint32_t kMaxClusters = 2 * kKept; // maximum number of clusters before merging
+inline constexpr uint32_t kSearchRadius = 8;        // neighbours searched on either side
 
 struct Climb {
     ClusterTree tree;
@@ -43,7 +43,7 @@ struct LeafRange {
     HD uint32_t size() const { return last - first + 1; }
 };
 
-/// Whether the gap after leaf i is deeper in the radix tree than the gap after leaf k.
+/// Returns whether the gap after leaf i is deeper in the radix tree than the gap after leaf k.
 HD inline bool is_deeper(const uint64_t* codes, uint32_t i, uint32_t k) {
     if (codes == nullptr) return (i ^ (i + 1)) < (k ^ (k + 1));
     const uint64_t of_i = codes[i] ^ codes[i + 1], of_k = codes[k] ^ codes[k + 1];
@@ -78,7 +78,7 @@ HD inline bool go_up(const Climb& climb, LeafRange& range) {
     return true;
 }
 
-/// Whether the node's clusters must be merged; otherwise its clusters are its leaves.
+/// Returns whether the node's clusters must be merged; otherwise its clusters are its leaves.
 HD inline bool needs_joining(const Climb& climb, const LeafRange& range) {
     return range.size() > climb.kept() || range.size() == climb.tree.count;
 }
@@ -101,8 +101,8 @@ HD inline Cluster cluster_left(const Climb& climb, uint32_t first, uint32_t end,
 
 /// Merges the clusters of a node in one thread.
 HD inline void join_range(const Climb& climb, const LeafRange& range) {
-    Cluster clusters[kMost];
-    Bounds3 boxes[kMost];
+    Cluster clusters[kMaxClusters];
+    Bounds3 boxes[kMaxClusters];
     uint32_t count = 0;
     const auto take = [&](uint32_t first, uint32_t end) {
         const uint32_t most = end - first < climb.kept() ? end - first : climb.kept();
@@ -117,7 +117,7 @@ HD inline void join_range(const Climb& climb, const LeafRange& range) {
     take(range.middle, range.last + 1);
     const uint32_t leave = clusters_to_leave(climb, range);
     while (count > leave) {
-        uint64_t best[kMost];
+        uint64_t best[kMaxClusters];
         for (uint32_t i = 0; i < count; ++i) best[i] = ~uint64_t(0);
         for (uint32_t i = 0; i < count; ++i) {
             for (uint32_t k = i + 1; k < count && k <= i + kSearchRadius; ++k) {
@@ -150,7 +150,7 @@ HD inline void join_range(const Climb& climb, const LeafRange& range) {
     if (range.size() == climb.tree.count) *climb.root = clusters[0].node;
 }
 
-/// One call per leaf: climbs while it is the second to arrive.
+/// The stage that builds the tree. The call for a leaf climbs while it is the second to arrive at a node.
 struct ClimbFromLeaves {
     Climb climb;
 

@@ -41,7 +41,7 @@ struct alignas(32) CollapsePlan {
     HD uint32_t left_roots(uint32_t roots) const { return splits >> (3 * roots) & 7u; }
 };
 
-/// The sizes that these plans lead to.
+/// The sizes of the trees that a CollapsePlan gives.
 struct alignas(32) CollapseSize {
     uint32_t nodes[kMaxWidth - 1]; // [j - 1]: wide nodes of the subtree with at most j roots
     uint32_t triangles;

@@ -122,7 +122,7 @@ struct MakeCodes {
     }
 };
 
-/// One call per leaf; leaf i is triangle order[i].
+/// The stage that makes the leaves, one per call; leaf i is triangle order[i].
 struct StoreLeaves {
     const BvhTriangle* triangles;
     const uint32_t* order;

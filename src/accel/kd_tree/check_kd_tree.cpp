@@ -65,7 +65,7 @@ private:
         return std::nullopt;
     }
 
-    /// Whether the leaf at `p` lists the triangle; on a plane, whether one of the adjacent leaves does.
+    /// Returns whether the leaf at `p` lists the triangle; on a plane, whether one of the adjacent leaves does.
     bool is_listed(uint32_t id, const TrianglePoint& p) const {
         const double slack = clip_slack(tree_.bounds.max_abs());
         std::vector<uint32_t> pending = {0};

@@ -35,7 +35,7 @@ struct PointKdTree {
     std::vector<PointKdNode> nodes;
 };
 
-/// Plain pointers of host or device.
+/// Arrays of a PointKdTree for searches, as plain pointers of host or device.
 struct PointKdTreeView {
     const PointKdNode* nodes = nullptr;
     uint32_t count = 0;

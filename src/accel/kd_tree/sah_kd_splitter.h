@@ -27,7 +27,7 @@ public:
 
     SahKdSplitter(const std::vector<BvhTriangle>& triangles, const KdTreeSettings& settings, float max_abs);
 
-    /// The root with all triangles. The caller sets cell, levels and budget.
+    /// Makes the root with all triangles. The caller sets cell, levels and budget.
     Node make_root() const;
     std::optional<KdPlane> split(const Node& node, Node& below, Node& above) const;
     static std::vector<uint32_t> triangles_of(const Node& node);

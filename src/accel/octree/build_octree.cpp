@@ -161,7 +161,7 @@ private:
     const double slack_;
 };
 
-/// Least power of two that is not less than x; x > 0 and normal.
+/// Returns the least power of two that is not less than x; x > 0 and normal.
 float power_of_two_above(float x) {
     const float below = float_of(bits_of(x) & 0x7f800000u);
     return below < x ? 2 * below : below;

@@ -26,7 +26,7 @@ Octree build_octree(const std::vector<BvhTriangle>& triangles, const OctreeSetti
 /// Expected cost of a ray that hits the bounds; only the part of a cell within the bounds counts.
 float octree_sah_cost(const Octree& tree, float node_cost, float triangle_cost);
 
-/// The cell's box.
+/// Returns the box of a cell in a tree whose root has its lower corner at `corner`.
 Bounds3 bounds_of(const OctreeCell& cell, Vec3 corner);
 
 } // namespace pertev

@@ -12,7 +12,7 @@
 namespace pertev {
 namespace {
 
-/// Whether the eight children of a cell meet at its centre and have half its size, to the bit.
+/// Returns whether the eight children of a cell meet at its centre and have half its size, to the bit.
 bool is_exact(const OctreeCell& cell, Vec3 corner) {
     const Bounds3 box = bounds_of(cell, corner);
     const Bounds3 low = bounds_of(cell.child(0), corner), high = bounds_of(cell.child(7), corner);
@@ -87,7 +87,7 @@ private:
         return std::nullopt;
     }
 
-    /// Whether the leaf at `p` lists the triangle; on a plane, whether one of the adjacent leaves does.
+    /// Returns whether the leaf at `p` lists the triangle; on a plane, whether one of the adjacent leaves does.
     bool is_listed(uint32_t id, const TrianglePoint& p) const {
         const double slack = clip_slack(tree_.bounds.max_abs());
         std::vector<Pending> pending = {{0, 0, root()}};

@@ -15,7 +15,8 @@ public:
     PointOctreeBuilder(std::span<const Sphere> spheres, uint32_t max_leaf, PointOctree& tree)
         : spheres_(spheres), max_leaf_(max_leaf), tree_(tree) {}
 
-    /// Builds from `ids`, which ascend and lie in the cube of `side` at `corner`. `spare` has the same size.
+    /// Builds the subtree over `ids`, which ascend and lie in the cube of `side` at `corner`. `spare` has the size of
+    /// `ids`.
     void build(std::span<uint32_t> ids, std::span<uint32_t> spare, Vec3 corner, float side, int levels) {
         for (; ids.size() > max_leaf_ && levels > 0; --levels) {
             const float half = 0.5f * side;

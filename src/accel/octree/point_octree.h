@@ -43,7 +43,7 @@ struct PointOctree {
     std::vector<uint32_t> indices;      // [spheres] index in the builder's input; ascending within a node
 };
 
-/// Plain pointers of host or device.
+/// Arrays of a PointOctree for searches, as plain pointers of host or device.
 struct PointOctreeView {
     const PointOctreeNode* nodes = nullptr;
     const Sphere* spheres = nullptr;

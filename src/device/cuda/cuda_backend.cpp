@@ -53,7 +53,7 @@ private:
 
 class CudaBackend;
 
-/// Pinned memory, and an event after the work that writes it.
+/// A copy to the host by pinned memory and an event after the work that writes it.
 class CudaHostCopy final : public HostCopy {
 public:
     /// Device `index` must be the current one. `backend` outlives it.
@@ -180,7 +180,7 @@ public:
 private:
     struct Stream {
         cudaStream_t stream = nullptr;
-        cudaEvent_t reached = nullptr; // for which another stream waits
+        cudaEvent_t reached = nullptr; // another stream waits for it
     };
 
     static Stream make_stream() {

@@ -36,7 +36,7 @@ public:
     PinnedStaging(const PinnedStaging&) = delete;
     PinnedStaging& operator=(const PinnedStaging&) = delete;
 
-    /// False if the system has no memory to pin; then nothing else may be called.
+    /// Returns false if the system has no memory to pin; then nothing else may be called.
     bool is_there() const { return is_there_; }
 
     /// Returns when all of `host` has been read, possibly before it has arrived.

@@ -5,7 +5,7 @@
 
 namespace pertev {
 
-/// Whether this binary holds code for the current CUDA device.
+/// Returns whether this binary holds code for the current CUDA device.
 bool has_code_for_current_device();
 
 } // namespace pertev

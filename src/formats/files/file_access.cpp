@@ -22,7 +22,7 @@ fs::path canonical_folder(const fs::path& folder, const char* setting) {
     return canonical;
 }
 
-/// By whole components: /scenes/a does not contain /scenes/ab.
+/// Returns whether `path` is `root` or below it. Whole components are compared: /scenes/a does not contain /scenes/ab.
 bool is_within(const fs::path& path, const fs::path& root) {
     return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
 }
@@ -78,14 +78,15 @@ fs::path FileAccess::resolve(const FileLocation& from, const std::string& refere
     return path;
 }
 
-/// For example, a name longer than the system allows has no path, so there is no such file.
+/// Finds the canonical path of a name and whether it is readable. A name without a path, such as one longer than the
+/// system allows, is no file.
 FileAccess::Located FileAccess::locate(const fs::path& name) const {
     std::error_code ec;
     const fs::path path = fs::weakly_canonical(name, ec);
     return {.is_there = !ec && fs::exists(path, ec), .is_allowed = is_allowed(path), .path = path};
 }
 
-/// The file whose path ends like `name`. Nothing after a warning where several fit.
+/// Returns the file whose path ends like `name`; nothing, with a warning, if several do.
 std::optional<fs::path> FileAccess::find_end_of(const fs::path& name, const FileLocation& from,
                                                 Messages& messages) const {
     const std::vector<std::string> components = components_below(name);

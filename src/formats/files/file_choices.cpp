@@ -26,8 +26,8 @@ constexpr Kind kClip = {"animation", true}, kFileScene = {"scene", false};
 
 bool is_name(const Kind& kind, const std::string& text) { return !text.empty() && !(kind.has_all && text == kAll); }
 
-/// Returns of each whether its number alone stands for it: no name, or one that others have too, or one that is the
-/// number of another such.
+/// Returns for each item whether only its number identifies it: it has no name, a name that others have too, or the
+/// number of another such item as its name.
 std::vector<bool> are_numbered(const Kind& kind, std::span<const std::string> names) {
     std::map<std::string_view, std::size_t> counts;
     for (const std::string& name : names) ++counts[name];
@@ -44,7 +44,7 @@ std::vector<bool> are_numbered(const Kind& kind, std::span<const std::string> na
     return numbered;
 }
 
-/// The choices that stand for each.
+/// Returns the choice that selects each item: its name, or its number if the name is ambiguous.
 std::vector<std::string> choices_of(const Kind& kind, std::span<const std::string> names) {
     const std::vector<bool> numbered = are_numbered(kind, names);
     std::vector<std::string> choices;
@@ -60,13 +60,13 @@ std::vector<std::string> list_of(const Kind& kind, std::span<const std::string> 
     return list;
 }
 
-/// Text of an item for messages.
+/// Returns a list of the items for messages, one per line.
 std::string text_of(const Kind& kind, std::span<const std::string> names) {
-    constexpr std::size_t kMost = 20;
+    constexpr std::size_t kMaxShown = 20;
     std::string text;
     const std::vector<std::string> list = list_of(kind, names);
-    for (std::size_t i = 0; i < std::min(list.size(), kMost); ++i) text += "\n  " + shortened(list[i]);
-    if (names.size() > kMost) text += fmt::format("\n  and {} more (pertev info)", names.size() - kMost);
+    for (std::size_t i = 0; i < std::min(list.size(), kMaxShown); ++i) text += "\n  " + shortened(list[i]);
+    if (names.size() > kMaxShown) text += fmt::format("\n  and {} more (pertev info)", names.size() - kMaxShown);
     return text;
 }
 

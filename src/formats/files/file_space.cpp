@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::pair<std::string_view, double> kUnits[] = {{"m", 1},     {"cm", 0.01},   {"mm", 0.001},
                                                           {"km", 1000}, {"in", 0.0254}, {"ft", 0.3048}};
-constexpr double kLeastUnit = 1e-12, kMostUnit = 1e12;
+constexpr double kMinUnit = 1e-12, kMaxUnit = 1e12;
 
-/// Metres, y up, from the file's coordinates.
+/// Returns the transform from the file's coordinates to metres with y up.
 Transform metres_from(const FileSpace& space) {
     const auto unit = static_cast<float>(space.unit_m);
     switch (space.up_axis) {
@@ -53,7 +53,7 @@ std::optional<double> parse_unit(std::string_view text) {
         if (text == name) return metres;
     }
     const std::optional<double> number = parse_whole_float<double>(text);
-    if (!number || !(*number >= kLeastUnit && *number <= kMostUnit)) return std::nullopt;
+    if (!number || !(*number >= kMinUnit && *number <= kMaxUnit)) return std::nullopt;
     return number;
 }
 

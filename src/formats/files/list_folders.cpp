@@ -10,7 +10,7 @@ namespace pertev {
 namespace {
 
 constexpr std::size_t kMaxEntries = 20000; // total for all folders
-constexpr std::size_t kMostLevels = 16;
+constexpr std::size_t kMaxLevels = 16;
 constexpr std::size_t kMaxNamed = 20;
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
@@ -32,9 +32,9 @@ std::size_t component_count(const fs::path& path) {
     return static_cast<std::size_t>(std::distance(path.begin(), path.end()));
 }
 
-/// How well a file fits a name; the greatest is the best.
+/// The degree to which a file fits a name; the greatest is the best.
 struct Fit {
-    std::size_t components = 0; // at the end, that are those of the name
+    std::size_t components = 0; // number of last components that are those of the name
     bool is_direct = false;     // they are all there is below the folder
     bool is_same_case = false;  // same case in all of them
     auto operator<=>(const Fit&) const = default;
@@ -86,7 +86,7 @@ void FolderListing::list_level(std::vector<fs::path>& level, std::size_t folder_
 void FolderListing::list() {
     for (const fs::path& folder : folders_) {
         std::vector<fs::path> level = {folder};
-        for (std::size_t i = 0; i < kMostLevels && !level.empty(); ++i) list_level(level, component_count(folder));
+        for (std::size_t i = 0; i < kMaxLevels && !level.empty(); ++i) list_level(level, component_count(folder));
     }
     std::ranges::sort(files_, {}, &File::path); // folders may lie in one another, and have no order of their own
     const auto same = [](const File& a, const File& b) { return a.path == b.path; };

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kMissingNamed = 20;
 
-/// 4 linear channels, as TextureImage wants them.
+/// Converts an image to the 4 linear channels of a TextureImage.
 Image to_rgba(const Image& image) {
     if (image.channels == 4) return image;
     const std::size_t pixels = std::size_t(image.width) * image.height;
@@ -41,7 +41,7 @@ Image to_rgba(const Image& image) {
     return rgba;
 }
 
-/// How an image is used: values as stored, or colours that are still sRGB-encoded. Colours are converted to Rec. 709.
+/// The uses of an image: values as stored, or colours that are still sRGB-encoded. Colours are converted to Rec. 709.
 struct Uses {
     bool as_srgb = false, as_data = false, as_color = false;
 };
@@ -58,8 +58,8 @@ std::vector<Uses> uses_of(const Scene& scene, std::size_t images) {
     return uses;
 }
 
-/// A picture of 16 bits a channel: TextureImage has it in float, decoded to linear; one that is read both ways is kept
-/// as stored, in 8 bits.
+/// Stores a picture with 16 bits per channel in `to`: as floats, decoded to linear, or as 8-bit values if it is used
+/// both as values and as colours.
 void put_png16(const Image& image, Uses use, TextureImage& to) {
     Image rgba = to_rgba(image);
     const std::size_t count = rgba.pixels.size();
@@ -76,7 +76,7 @@ void put_png16(const Image& image, Uses use, TextureImage& to) {
     to.rgba_float = std::move(rgba);
 }
 
-/// Bytes of the picture as a TextureImage.
+/// Returns the number of bytes of a picture as a TextureImage.
 uint64_t texture_bytes(const ImageHeader& header) {
     return uint64_t(header.width) * header.height * 4 * (header.is_float ? sizeof(float) : 1);
 }
@@ -94,7 +94,7 @@ TextureImage texture_of(std::variant<Rgba8Image, Image> image, bool is_png, Uses
     return to;
 }
 
-/// The glTF extension of a kind of picture that this program does not decode; empty for another.
+/// Returns the glTF extension of a picture's format if this program does not decode it; empty for any other.
 std::string_view extension_of(std::span<const std::byte> picture) {
     const std::string_view bytes(reinterpret_cast<const char*>(picture.data()),
                                  std::min<std::size_t>(picture.size(), 12));
@@ -146,7 +146,7 @@ void TextureLoader::check_budget(uint64_t limit) const {
     }
 }
 
-/// Decodes it, unless it and all pictures seen before, which take `all_bytes`, would take more than `limit`.
+/// Decodes a picture, unless it and all pictures before it, which take `all_bytes`, would take more than `limit` bytes.
 void TextureLoader::read(Source& source, uint64_t limit, std::atomic<uint64_t>& all_bytes) const {
     const bool is_embedded = source.path.empty();
     std::vector<std::byte> file;

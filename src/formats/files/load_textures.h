@@ -45,8 +45,8 @@ public:
     /// messages.
     int32_t add_bytes(std::string name, std::span<const std::byte> bytes);
 
-    /// Decodes everything added so far, so that load_into finds it done. It may run concurrently with work that does
-    /// not use the loader, and reports nothing yet.
+    /// Decodes everything added so far, so that load_into need not. It may run concurrently with work that does not use
+    /// the loader, and reports nothing yet.
     void decode();
 
     /// Moves all decoded images into scene.images (empty before). Broken images are left out, each with a warning,
@@ -68,7 +68,7 @@ private:
         std::optional<std::variant<Rgba8Image, Image>> image; // after decoding
         std::optional<ColorMatrix> color_matrix;              // to Rec. 709, if its colours have other primaries
         bool is_png = false;
-        std::optional<Remark> fault; // why it cannot be decoded
+        std::optional<Remark> fault; // reason why it cannot be decoded
         Messages messages = {};
     };
     void decode_within(uint64_t limit);

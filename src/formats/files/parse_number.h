@@ -13,7 +13,7 @@
 
 namespace pertev {
 
-/// Whether the absolute value of a nonzero number is below 1, from the position of its first nonzero digit.
+/// Returns whether the absolute value of a nonzero number is below 1, from the position of its first nonzero digit.
 inline bool is_under_one(std::string_view number) {
     const std::size_t end = std::min(number.find_first_of("eE"), number.size());
     const std::string_view digits = number.substr(0, end);

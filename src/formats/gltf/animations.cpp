@@ -75,7 +75,7 @@ Target node_target(const Document& document, const JsonValue& json, uint32_t nod
     return {part, {node}, {}, false};
 }
 
-/// The number in a JSON pointer "/before/NUMBER/after" if it is an index below `count`.
+/// Returns the number in a JSON pointer "/before/NUMBER/after" if it is an index below `count`.
 std::optional<uint32_t> index_in(std::string_view pointer, std::string_view before, std::string_view after,
                                  std::size_t count) {
     if (!pointer.starts_with(before) || !pointer.ends_with(after) || pointer.size() < before.size() + after.size()) {
@@ -103,7 +103,7 @@ std::optional<uint32_t> node_of_pointer(const Document& document, std::string_vi
     return index_in(pointer, "/nodes/", fmt::format("/{}", path), document.table("nodes").size());
 }
 
-/// Nothing for a property that is not animated here.
+/// Returns the target of a JSON pointer; nothing for a property whose animation is not supported.
 std::optional<Target> pointed_at(const Document& document, const JsonValue& json, const Scene& scene) {
     const std::string_view pointer = json.to_string();
     for (const std::string_view path : kNodePaths) {
@@ -143,7 +143,7 @@ std::optional<Target> pointed_at(const Document& document, const JsonValue& json
     return std::nullopt;
 }
 
-/// Nothing, after a message, for what cannot be animated here.
+/// Returns the target of a channel; nothing, with a message, for a property whose animation is not supported.
 std::optional<Target> read_target(const Document& document, const JsonValue& target, const Scene& scene,
                                   Messages& messages) {
     if (const auto extension = target.extension("KHR_animation_pointer")) {
@@ -168,7 +168,7 @@ std::optional<Target> read_target(const Document& document, const JsonValue& tar
     return node_target(document, target, index, part_of(target.at("path")), scene);
 }
 
-/// The keys, without a target.
+/// Reads the keys of a channel, without its target.
 AnimationChannel read_keys(const Document& document, Buffers& buffers, const JsonValue& reference,
                            const std::vector<JsonValue>& samplers, const Target& target, const Scene& scene) {
     AnimationChannel channel;
@@ -211,7 +211,7 @@ AnimationChannel read_keys(const Document& document, Buffers& buffers, const Jso
     return channel;
 }
 
-/// None, after a warning, where the member is no array.
+/// Returns the elements of a member; none, with a warning, if the member is not an array.
 std::vector<JsonValue> elements_or_none(const JsonValue& object, std::string_view key, Messages& messages) {
     std::vector<JsonValue> elements;
     read_or_leave_out(fmt::format("{}/{}", object.pointer(), key), messages,
@@ -236,7 +236,7 @@ std::set<uint32_t> nodes_with_animated_weights(const Document& document, std::sp
             nodes.insert(document.index_into("nodes", *node));
         }
     };
-    Messages unreported; // read_animations tells what cannot be read
+    Messages unreported; // read_animations reports what cannot be read
     auto clip = clips.begin();
     for (const JsonValue& animation : animations_of(document, unreported)) {
         if (!(clip++)->plays) continue;

@@ -34,7 +34,7 @@ uint32_t read_u32(std::span<const std::byte> bytes, std::size_t at) {
     return value;
 }
 
-/// Bytes up to the end of the object that a text begins with; all where it does not end.
+/// Returns the number of bytes of the object that `text` begins with; all bytes if the object does not end.
 std::size_t json_size(std::string_view text) {
     std::size_t depth = 0;
     bool is_in_string = false;
@@ -60,7 +60,7 @@ std::string_view text_of(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// "2.0", also where the version is a number.
+/// Returns the version as text, such as "2.0", even if it is a number in the file.
 std::string version_text(const JsonValue& value) {
     const std::string json = value.to_json();
     return json.starts_with('"') ? std::string(value.to_string()) : json;
@@ -92,7 +92,7 @@ void Document::read_table(std::string_view name, const JsonValue& holder, Messag
     read_member(holder, name, messages, [&](const JsonValue& member) { table = member.elements(); });
 }
 
-/// Where the container ends: the header's length, where the file has it.
+/// Returns the end of the container, in bytes: the header's length, or the file's size if that length is impossible.
 std::size_t Document::glb_end(Messages& messages) const {
     const uint32_t length = read_u32(bytes_, 8);
     if (length >= kHeaderBytes && length <= bytes_.size()) return length;
@@ -102,8 +102,8 @@ std::size_t Document::glb_end(Messages& messages) const {
     return bytes_.size();
 }
 
-/// Where the chunk of JSON that begins at byte `begin` ends, and where the next begins. Some exporters count the
-/// padding wrongly; then the text itself says where it ends, and the binary chunk follows.
+/// Returns the end of the chunk of JSON that begins at byte `begin`, and the start of the next. Some exporters count
+/// the padding wrongly; then the text itself determines its end, and the binary chunk follows.
 Document::ChunkEnd Document::json_chunk_end(std::size_t begin, std::size_t size, Messages& messages) const {
     const std::span<const std::byte> glb(bytes_);
     const auto begins_binary = [&](std::size_t at) {
@@ -126,7 +126,7 @@ Document::ChunkEnd Document::json_chunk_end(std::size_t begin, std::size_t size,
     return {end, next};
 }
 
-/// Where the binary chunk ends: before another chunk, else with the file.
+/// Returns the end of the binary chunk, in bytes: the start of another chunk, or the end of the file.
 std::size_t Document::binary_chunk_end(std::size_t begin, std::size_t size, Messages& messages) const {
     const std::span<const std::byte> glb(bytes_);
     const std::size_t declared = begin + std::min(size, glb.size() - begin), left = glb.size() - declared;

@@ -8,7 +8,7 @@
 
 namespace pertev::gltf {
 
-/// Whether an extension needs no message: it is read, or it changes no picture, or its users report it.
+/// Returns whether an extension needs no message: it is read, or it changes no picture, or its users report it.
 bool is_known_extension(std::string_view name);
 
 /// A command that writes `file` without this extension, as a clause that begins with a semicolon; empty if none is

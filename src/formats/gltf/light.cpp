@@ -17,7 +17,7 @@ void set_cone(float inner, float outer, Light& light) {
     light.cos_outer = min(cos(outer), light.cos_inner - kSharpestEdge);
 }
 
-/// Angles out of range are brought into it: the lamp is there with the cone that comes nearest.
+/// Reads the angles of a spot light. Those out of range are clamped, so that the light has the nearest valid cone.
 void read_cone(const JsonValue& spot, Light& light, Messages& messages) {
     constexpr float widest = kPi / 2;
     const float requested_inner = spot.float_or("innerConeAngle", 0),
@@ -37,7 +37,7 @@ void read_cone(const JsonValue& spot, Light& light, Messages& messages) {
     set_cone(inner, outer, light);
 }
 
-/// Returns the number, or 0 with a warning where it is negative.
+/// Returns the number, or 0 with a warning if it is negative.
 float not_negative(const JsonValue& number, Messages& messages) {
     const float value = number.to_float();
     if (value < 0) messages.warn({number.location(), fmt::format("{}; expected at least 0, which is used", value)});

@@ -48,7 +48,7 @@ uint32_t Materials::add(Material material) {
     return static_cast<uint32_t>(scene_.materials.size() - 1);
 }
 
-/// Where a member of `source` cannot be read, it alone is left out.
+/// Runs `read`. If a member of `source` cannot be read, only that member is left out.
 template <class Read>
 void Materials::attempt_at(const JsonValue& source, const Read& read) const {
     read_or_leave_out(fmt::format("this property of {}", source.pointer()), messages_, read);

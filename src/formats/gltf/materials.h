@@ -19,7 +19,7 @@ namespace pertev::gltf {
 
 class Materials {
 public:
-    /// A null `textures` leaves all materials out: every surface is then the same grey.
+    /// Reads materials on demand. A null `textures` leaves all materials out: every surface is then the same grey.
     Materials(const Document& document, Textures* textures, Scene& scene, Messages& messages)
         : document_(document), textures_(textures), scene_(scene), messages_(messages),
           by_index_(document.table("materials").size()) {}

@@ -67,7 +67,7 @@ std::vector<Meshes::Part> Meshes::read_parts(uint32_t index) {
     return parts;
 }
 
-/// One that cannot be read leaves the default material.
+/// Returns the index of a primitive's material; that of the default material if it cannot be read.
 uint32_t Meshes::material_of(const JsonValue& primitive) {
     std::optional<uint32_t> material;
     read_or_leave_out(fmt::format("the material of {}", primitive.pointer()), messages_,
@@ -101,7 +101,7 @@ std::optional<uint32_t> Meshes::mesh_of(const JsonValue& primitive, uint32_t nod
         if (!read->targets.empty() || scene_.nodes[node].skin != kNoSkin) {
             add_shape(primitive, node, std::move(read->targets));
         }
-    } catch (const Error&) { // its caller says so
+    } catch (const Error&) { // the caller reports it
         scene_.meshes.resize(meshes);
         scene_.shapes.resize(shapes);
         throw;

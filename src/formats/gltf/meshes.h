@@ -23,7 +23,7 @@ public:
         uint32_t material; // index into scene.materials
     };
 
-    /// `scene` has its nodes, skins and clips.
+    /// Reads meshes on demand for a scene that has its nodes, skins and clips.
     Meshes(const Document& document, Buffers& buffers, const NodeGraph& nodes, Materials& materials, Scene& scene,
            bool geometry_only, Messages& messages);
 

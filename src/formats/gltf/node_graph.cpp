@@ -11,7 +11,7 @@
 namespace pertev::gltf {
 namespace {
 
-/// A member that cannot be read is left out alone.
+/// Reads the pose of a node. If a member cannot be read, only that member is left out.
 std::variant<NodePose, DoubleTransform> pose_of(const JsonValue& node, Messages& messages) {
     std::optional<std::array<double, 16>> m; // by columns
     const auto attempt = [&](const char* key, const auto& read) { read_member(node, key, messages, read); };
@@ -65,7 +65,8 @@ void NodeGraph::read_children(const Document& document, Messages& messages) {
     }
 }
 
-/// Where a node is its own ancestor, the link to its parent goes. What is then below no root of the scene is not shown.
+/// Removes the link from a node to its parent if the node is its own ancestor. Nodes that are then below no root of the
+/// scene are not shown.
 void NodeGraph::cut_cycles(const Document& document, Messages& messages) {
     enum class State : uint8_t { Unseen, OnThisPath, Seen };
     std::vector<State> states(nodes_.size(), State::Unseen);

@@ -16,8 +16,8 @@ namespace pertev::gltf {
 
 class NodeGraph {
 public:
-    /// Cycles are cut, and of two parents the first counts, each with a warning. `shown` is the index of the
-    /// document's scene that is shown; without scenes all nodes are shown.
+    /// Reads the nodes. Cycles are cut, and if a node has two parents the first counts, each with a warning. `shown` is
+    /// the index of the document's scene that is shown; without scenes all nodes are shown.
     NodeGraph(const Document& document, uint32_t shown, Messages& messages);
 
     /// The scene's nodes, each before its children, in the order of the file.

@@ -7,7 +7,7 @@
 namespace pertev::gltf {
 namespace {
 
-/// Morph targets of each mesh: the most that a primitive of it has (the format wants the same of all).
+/// Returns the number of morph targets of each mesh: the maximum over its primitives, which should all have the same.
 std::vector<std::size_t> count_targets(const Document& document) {
     std::vector<std::size_t> counts;
     for (const JsonValue& mesh : document.table("meshes")) {
@@ -16,14 +16,14 @@ std::vector<std::size_t> count_targets(const Document& document) {
             for (const JsonValue& primitive : mesh.elements_of("primitives")) {
                 if (const auto targets = primitive.find("targets")) most = std::max(most, targets->elements().size());
             }
-        } catch (const Error&) { // meshes.cpp tells it of parts that are shown
+        } catch (const Error&) { // meshes.cpp reports it for parts that are shown
         }
         counts.push_back(most);
     }
     return counts;
 }
 
-/// The weights at rest of the morph targets: the node's own, else its mesh's, by target.
+/// Returns the weights of the morph targets at rest: the node's own, otherwise its mesh's.
 std::vector<float> read_weights(const JsonValue& node, const JsonValue& mesh, Messages& messages) {
     const std::optional<JsonValue> own = node.find("weights"), source = own ? own : mesh.find("weights");
     std::vector<float> weights;
@@ -67,7 +67,7 @@ void read_node_shapes(const Document& document, Buffers& buffers, Scene& scene, 
     for (std::size_t i = 0; i < sources.size(); ++i) {
         try {
             read(i);
-        } catch (const Error& error) { // place_nodes tells it of nodes that are shown
+        } catch (const Error& error) { // place_nodes reports it for nodes that are shown
             if (error.code() != ErrorCode::BadInput) throw;
         }
     }

@@ -153,7 +153,7 @@ void place_nodes(const Document& document, Buffers& buffers, const NodeGraph& no
     scene.no_instances = describe_nothing(document, nodes);
     const std::vector<std::string> left_out = messages.left_out();
     if (left_out.empty()) return;
-    // The first that was left out here, where meshes are read, tells why; else the first of all.
+    // The first part that was left out here, where meshes are read, has the reason; otherwise the first of all.
     const std::size_t first = before < left_out.size() ? before : 0;
     scene.no_instances += fmt::format("; left out: {}", left_out[first]);
 }

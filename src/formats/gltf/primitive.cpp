@@ -30,7 +30,7 @@ public:
     AttributeReader(const PrimitiveRequest& request, const JsonValue& attributes)
         : request_(request), attributes_(attributes) {}
 
-    /// The accessor of an attribute, with as many elements as there are vertices (0: any number).
+    /// Returns the accessor of an attribute with one element per vertex; `vertices` may be 0 for any number.
     std::optional<Accessor> find(std::string_view name, uint64_t vertices,
                                  std::initializer_list<ElementType> types) const {
         const std::optional<JsonValue> reference = attributes_.find(name);
@@ -115,7 +115,7 @@ std::vector<uint32_t> read_corners(const PrimitiveRequest& request, std::size_t 
     return accessor.read_integers();
 }
 
-/// Leaves out the triangles with a corner that is no vertex.
+/// Leaves out triangles with a corner whose index is out of range.
 void drop_triangles_past(std::size_t vertices, const JsonValue& primitive, std::vector<uint32_t>& indices,
                          Messages& messages) {
     const auto is_past = [&](uint32_t index) { return index >= vertices; };
@@ -134,7 +134,7 @@ void drop_triangles_past(std::size_t vertices, const JsonValue& primitive, std::
                                     dropped == 1 ? "the triangle" : fmt::format("the {} triangles", dropped))});
 }
 
-/// Whether the vertices are in a Draco stream alone.
+/// Returns whether the vertices exist only in a Draco stream.
 bool is_compressed_alone(const PrimitiveRequest& request, const JsonValue& position) {
     if (!request.primitive.extension("KHR_draco_mesh_compression")) return false;
     const JsonValue& accessor = request.document.item("accessors", position);

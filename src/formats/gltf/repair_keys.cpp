@@ -8,7 +8,7 @@
 namespace pertev::gltf {
 namespace {
 
-/// The keys that count, by their numbers, of keys in the order of their times.
+/// Returns the numbers of the keys that remain when repeated times are removed, in the order of their times.
 std::vector<std::size_t> without_repeats(const std::vector<std::size_t>& order, const AnimationChannel& channel) {
     const auto time = [&](std::size_t i) { return channel.times[order[i]]; };
     std::vector<std::size_t> kept;

@@ -21,7 +21,7 @@ float brightness(Rgb c) { return sqrt(0.299f * c.r * c.r + 0.587f * c.g * c.g + 
 
 float min_component(Rgb c) { return min(c.r, min(c.g, c.b)); }
 
-/// The metallic value that preserves both brightnesses.
+/// Returns the metallic value that preserves both brightnesses.
 float solve_metallic(float diffuse, float specular, float one_minus_specular) {
     if (specular < kDielectric) return 0;
     const float b = diffuse * one_minus_specular / (1 - kDielectric) + specular - 2 * kDielectric;
@@ -30,7 +30,7 @@ float solve_metallic(float diffuse, float specular, float one_minus_specular) {
     return clamp((root - b) / (2 * kDielectric), 0.0f, 1.0f);
 }
 
-/// Base colour and metal by the published conversion, for an index of refraction of 1.5.
+/// Returns base colour and metallic value by the published conversion, for an index of refraction of 1.5.
 std::pair<Rgb, float> convert(Rgb diffuse, Rgb specular) {
     constexpr float least = 1e-6f;
     const float one_minus_specular = 1 - max_component(specular);
@@ -51,7 +51,7 @@ struct Texel {
     float alpha = 1;
 };
 
-/// The texels of a picture, or white where there is none, by places in [0, 1).
+/// The texels of a picture by position in [0, 1); white if there is no picture.
 class Texels {
 public:
     Texels(const Scene& scene, const TextureRef& ref)
@@ -62,7 +62,7 @@ public:
     uint32_t width() const { return image_ == nullptr ? 1 : max(image_->rgba8.width, image_->rgba_float.width); }
     uint32_t height() const { return image_ == nullptr ? 1 : max(image_->rgba8.height, image_->rgba_float.height); }
 
-    /// The texel at (x, y) of a picture of `columns` by `rows`.
+    /// Returns the texel at the position that (x, y) has in a picture of `columns` by `rows`.
     Texel at(uint64_t x, uint64_t y, uint64_t columns, uint64_t rows) const {
         if (image_ == nullptr) return {};
         const std::size_t offset = (y * height() / rows * width() + x * width() / columns) * 4;
@@ -150,7 +150,7 @@ void convert_textures(const std::vector<PendingConversion>& pending, uint64_t li
             messages.leave_out({location, fmt::format("{}; the specular-glossiness texture is left out", why)});
             specular = material.metallic_texture = {};
         };
-        if (!diffuse.has_image() && !specular.has_image()) continue; // the loader has told why
+        if (!diffuse.has_image() && !specular.has_image()) continue; // the loader has reported why
         if (diffuse.has_image() && specular.has_image() && !use_same_coordinates(diffuse, specular)) {
             use_factors("its two textures use different coordinates");
             continue;

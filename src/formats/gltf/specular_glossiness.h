@@ -19,14 +19,15 @@ struct SpecularGlossiness {
     float glossiness = 1;
 };
 
-/// Converts specular-glossiness values to metallic-roughness ones.
+/// The metallic-roughness values that a conversion from specular-glossiness gives.
 struct MetallicRoughness {
     Rgb base_color = {1, 1, 1};
     float metallic = 0, roughness = 0;
     float ior = 1.5f;
 };
 
-/// `is_exact` is set to whether the conversion is exact up to rounding.
+/// Converts specular-glossiness values to metallic-roughness ones. `is_exact` is set to whether the conversion is exact
+/// up to rounding.
 MetallicRoughness metallic_roughness_of(const SpecularGlossiness& from, bool& is_exact);
 
 /// A material whose textures must be converted texel by texel after decoding. Until then its base colour texture is

@@ -21,8 +21,8 @@ class Textures {
 public:
     Textures(const Document& document, Buffers& buffers, TextureLoader& loader, Messages& messages);
 
-    /// The texture that `info`, a textureInfo, describes. Has no image, after a warning, if that is missing, of an
-    /// unsupported kind, or uses a third set of texture coordinates. Throws Error(BadInput) for an invalid
+    /// The texture that `info`, a textureInfo, describes. The result has no image, with a warning, if that is missing,
+    /// of an unsupported kind, or uses a third set of texture coordinates. Throws Error(BadInput) for an invalid
     /// textureInfo.
     TextureRef read(const JsonValue& info);
 

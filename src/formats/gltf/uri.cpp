@@ -58,7 +58,8 @@ int hex_digit(char c) {
     return -1;
 }
 
-/// A '%' that starts no code stands for itself where `is_lenient`, else there is nothing.
+/// Decodes %XX to bytes. A '%' without two hexadecimal digits after it stands for itself if `is_lenient`; otherwise the
+/// result is nothing.
 std::optional<std::string> undo_percent_encoding(std::string_view text, bool is_lenient) {
     std::string result;
     result.reserve(text.size());
@@ -100,7 +101,8 @@ bool has_scheme(std::string_view uri) {
 
 constexpr std::string_view kData = "data:", kFile = "file:", kBase64 = ";base64";
 
-/// RFC 8089: what stands behind "file:", without the name of a host, and a drive without the slash before it.
+/// Returns the path in `rest`, the part of a file: URI after "file:" (RFC 8089), without a host name, and without the
+/// slash before a drive.
 std::string_view path_of_file_uri(std::string_view rest) {
     if (rest.starts_with("//")) {
         const std::size_t slash = rest.find('/', 2);

@@ -48,7 +48,8 @@ private:
         return true;
     }
 
-    /// After a value: closes what ends there; true at the comma before another value, false at the text's end too.
+    /// Closes the arrays and objects that end after a value. Returns true at a comma before another value, and false at
+    /// a fault and at the end of the text.
     bool next() {
         while (!open_.empty()) {
             if (accept(',')) return true;
@@ -66,7 +67,7 @@ private:
     }
     bool colon() { return accept(':') || fail("a colon after the name"); }
 
-    /// A string, number or word.
+    /// Accepts a string, number or word.
     bool token(const char* expected) {
         skip_space();
         const std::string_view rest = text_.substr(at_);
@@ -89,7 +90,7 @@ private:
     RepairJson repair_;
     std::size_t at_ = 0;
     std::string open_;       // the brackets that are not closed yet
-    bool may_close_ = false; // nothing stands yet after the last of them
+    bool may_close_ = false; // true if nothing follows the last of them yet
     std::optional<JsonFault> fault_;
     simdjson::dom::parser parser_;
 };

@@ -12,7 +12,8 @@ namespace pertev {
 
 class JsonFile {
 public:
-    /// Throws Error(BadInput) for a file that cannot be read or is not JSON, with the location of the first fault.
+    /// Reads and parses a file. Throws Error(BadInput) if it cannot be read or is not JSON, with the location of the
+    /// first fault.
     explicit JsonFile(const std::filesystem::path& path);
     JsonFile(const JsonFile&) = delete; // its values point into it
     JsonFile& operator=(const JsonFile&) = delete;

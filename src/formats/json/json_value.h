@@ -38,15 +38,15 @@ public:
     /// Member of an object; nothing if it is absent or null.
     std::optional<JsonValue> find(std::string_view key) const;
     JsonValue at(std::string_view key) const;
-    /// /extensions/NAME of an object.
+    /// Member /extensions/NAME of an object; nothing if it is absent.
     std::optional<JsonValue> extension(std::string_view name) const;
-    /// Every member, with its name, of an object "extensions" anywhere in this value, except in "extras", whose name
-    /// satisfies `is_wanted`.
+    /// Returns the members of all objects "extensions" in this value, except those in "extras", whose names satisfy
+    /// `is_wanted`, with their names.
     std::vector<std::pair<std::string, JsonValue>>
     extensions_within(const std::function<bool(std::string_view)>& is_wanted) const;
     /// All values of an array, in order.
     std::vector<JsonValue> elements() const;
-    /// The values of member `key`, an array; none when it is missing.
+    /// The values of member `key`, an array; none if it is missing.
     std::vector<JsonValue> elements_of(std::string_view key) const;
 
     /// Returns all members of an object with their names, in order.
@@ -60,7 +60,7 @@ public:
     double to_double() const;
     bool to_bool() const;
     std::string_view to_string() const;
-    /// `count` numbers.
+    /// An array of exactly `count` numbers.
     template <std::size_t count>
     std::array<float, count> to_floats() const {
         std::array<float, count> numbers{};

@@ -13,7 +13,8 @@ constexpr std::string_view kLargest = "1.7976931348623157e308";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Whether RFC 8259 calls it a number. `is_whole`: it has neither a fraction nor an exponent.
+/// Returns whether `text` is a number by RFC 8259, and sets `is_whole` to whether it has neither a fraction nor an
+/// exponent.
 bool is_number(std::string_view text, bool& is_whole) {
     std::size_t at = 0;
     const auto accept = [&](std::string_view any) {
@@ -48,7 +49,7 @@ std::string mended_number(std::string_view text) {
     return is_whole && text.size() > kSurelyIn64Bits ? number + ".0" : number;
 }
 
-/// Empty for a word that is no infinity and no NaN, as languages write them.
+/// Returns JSON in place of an infinity or a NaN in the spelling of a programming language; empty for any other word.
 std::string mended_infinity(std::string_view word) {
     std::string small;
     for (const char c : word) small += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -62,7 +63,7 @@ std::string mended_infinity(std::string_view word) {
     return "";
 }
 
-/// Returns the code unit of the escape (backslash, u, four digits) at `at`, or -1 where there is none.
+/// Returns the code unit of the escape (backslash, u, four digits) at `at`, or -1 if there is none.
 int code_unit(std::string_view text, std::size_t at) {
     if (at + 6 > text.size() || text[at] != '\\' || text[at + 1] != 'u') return -1;
     int unit = 0;

@@ -14,8 +14,8 @@ enum class RepairJson {
     All,     // also invalid: NaN (null), Infinity, bytes that are not UTF-8, half a surrogate pair (U+FFFD), tabs
 };
 
-/// Returns text that simdjson can read; the same text if it contains none of these. Appends to `repairs` what was
-/// invalid, as ends of warnings.
+/// Returns text that simdjson can read; `text` itself if it needs no repair. Appends to `repairs` what was invalid, as
+/// ends of warnings.
 std::string repair_json(std::string_view text, RepairJson repair, std::vector<std::string>* repairs = nullptr);
 
 } // namespace pertev::gltf

@@ -5,7 +5,7 @@
 namespace pertev {
 namespace {
 
-/// Twice the signed area of (a, b, c); in double, so that large coordinates do not drown it.
+/// Returns twice the signed area of (a, b, c), in double, so that it keeps its precision for large coordinates.
 double area2(Vec2 a, Vec2 b, Vec2 c) {
     const double abx = static_cast<double>(b.x) - static_cast<double>(a.x);
     const double aby = static_cast<double>(b.y) - static_cast<double>(a.y);
@@ -14,7 +14,7 @@ double area2(Vec2 a, Vec2 b, Vec2 c) {
     return abx * acy - aby * acx;
 }
 
-/// Inside or on the edge of a counter-clockwise triangle.
+/// Returns whether `p` lies in a counter-clockwise triangle or on its edge.
 bool covers(Vec2 a, Vec2 b, Vec2 c, Vec2 p) {
     return area2(a, b, p) >= 0 && area2(b, c, p) >= 0 && area2(c, a, p) >= 0;
 }
@@ -29,7 +29,7 @@ Vec3 newell_normal(std::span<const Vec3> polygon) {
     return normal;
 }
 
-/// The polygon dropped along the normal's largest axis, turned so that it runs counter-clockwise.
+/// Projects the polygon along the normal's largest axis, mirrored if necessary so that it is counter-clockwise.
 std::vector<Vec2> project(std::span<const Vec3> polygon, Vec3 normal) {
     const Vec3 size = abs(normal);
     const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);

@@ -44,7 +44,7 @@ struct ObjPiece {
     ObjGroupKey key = {};
 };
 
-/// Splits into pieces of about this size, at line ends that cannot continue a line, in comments or not.
+/// Splits a text into pieces of about `piece_bytes` bytes, at line ends that continue no line, inside comments or not.
 std::vector<ObjPiece> cut_into_obj_pieces(std::string_view text, char end_of_line, std::size_t piece_bytes);
 
 /// Sets the state before each piece. Returns the total counts.

@@ -86,7 +86,7 @@ public:
     /// Number of the line after the statement.
     uint32_t number_behind() const { return number_ + joined_; }
 
-    /// Whether the line [begin, end) of `text` continues in the next, unless it is a comment.
+    /// Returns whether the line [begin, end) of `text` continues in the next, unless it is a comment.
     static bool is_joined(std::string_view text, std::size_t begin, std::size_t end) {
         if (end > begin && text[end - 1] == '\r') --end;
         return end > begin && text[end - 1] == '\\';

@@ -40,9 +40,9 @@ constexpr MapKey kMaps[] = {{"map_kd", &MtlStatements::map_kd}, {"map_ke", &MtlS
                             {"map_pm", &MtlStatements::map_pm}, {"norm", &MtlStatements::norm},
                             {"bump", &MtlStatements::bump},     {"map_bump", &MtlStatements::bump}};
 
-/// Ambient light, and what says nothing about the surface.
+/// Statements that are ignored without a message: ambient light, and those that do not describe the surface.
 constexpr std::string_view kHarmless[] = {"ka", "map_ka", "map_aat", "sharpness", "pcr", "anisor"};
-/// Zero is how exporters write "none" for these.
+/// Statements that are left out without a message if their value is zero, which exporters write for "none".
 constexpr std::string_view kLeftOutUnlessZero[] = {"ps", "pc", "aniso"};
 constexpr std::string_view kLeftOut[] = {"map_ks", "map_ns", "map_ps",   "map_pc", "map_pcr",
                                          "disp",   "decal",  "map_disp", "refl",   "map_refl"};
@@ -157,7 +157,7 @@ private:
         return value;
     }
 
-    /// One number is a grey. Nothing, after a warning, for a spectral curve and for CIE XYZ.
+    /// Parses a colour; one number is a grey. Returns nothing, with a warning, for a spectral curve and for CIE XYZ.
     std::optional<Rgb> colour(std::string_view line) {
         std::string_view ahead = line;
         const std::string_view word = take_word(ahead);

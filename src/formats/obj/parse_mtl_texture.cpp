@@ -18,7 +18,7 @@ bool take_switch(std::string_view& text, std::string_view of) {
     throw MtlFault{fmt::format("{}: \"{}\" is neither on nor off", of, shortened(word))};
 }
 
-/// The one to three numbers of -o, -s and -t. Before the name a number that ends the line is the name.
+/// Parses the one to three numbers of -o, -s and -t. Before the name, a number that ends the line is the name.
 void take_up_to_three(std::string_view& text, std::string_view of, bool is_behind_name, float (&to)[3]) {
     for (float& value : to) {
         std::string_view ahead = text, word = take_word(ahead);
@@ -30,7 +30,7 @@ void take_up_to_three(std::string_view& text, std::string_view of, bool is_behin
     }
 }
 
-/// Takes an option off the front of `text`. Returns false where there is none.
+/// Parses the option at the start of `text` and removes it. Returns false if there is none.
 bool take_option(std::string_view& text, bool is_behind_name, MtlTexture& to) {
     std::string_view ahead = text;
     const std::string_view option = take_word(ahead);
@@ -64,7 +64,7 @@ bool take_option(std::string_view& text, bool is_behind_name, MtlTexture& to) {
     return true;
 }
 
-/// Whether `text` is options from its first word to its last.
+/// Returns whether `text` consists of options.
 bool are_options(std::string_view text, MtlTexture& to) {
     MtlTexture read = to;
     try {

@@ -21,7 +21,7 @@ struct MtlFault {
 /// Parses the number at the start of `text` and removes it. Throws MtlFault if there is none or it is not finite.
 float take_mtl_number(std::string_view& text, std::string_view of);
 
-/// Whether the rest of a statement is empty or a comment.
+/// Returns whether the rest of a statement is empty or a comment.
 bool is_mtl_end(std::string_view text);
 
 } // namespace pertev

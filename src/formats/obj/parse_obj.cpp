@@ -49,7 +49,7 @@ Error fault_at(const std::string& file, uint32_t line, const std::string& what) 
 /// Parses one piece, and writes its vertices to their positions in arrays that have their final size.
 class PieceParser {
 public:
-    /// `exact`: of all positions, as `data` has them.
+    /// Parses into `data`, and into `exact`, the positions in double, in the order of those of `data`.
     PieceParser(const ObjPiece& piece, char end_of_line, const std::string& file, ObjData& data,
                 std::span<DoubleVec3> exact, const FoundMaterials* found_materials)
         : lines_(piece.text, end_of_line, piece.line), file_(file), before_(piece.counts), so_far_(piece.counts),
@@ -62,7 +62,7 @@ public:
     std::vector<Vec4> colors; // colours of its positions, as written; or empty
     std::vector<RawGroup> groups;
     std::vector<ObjMaterialFiles> material_files;
-    std::optional<Remark> first_bad_face; // why its first face was left out
+    std::optional<Remark> first_bad_face; // reason why its first face was left out
     CountedLines bad_faces, bad_numbers, short_faces, points_and_lines, free_form, unknown;
 
 private:
@@ -173,7 +173,7 @@ private:
         }
     }
 
-    /// One of v, vt, vn: 1 is the first, -1 the last so far.
+    /// Parses an index of v, vt or vn, of which 1 is the first and -1 the last so far.
     uint32_t index(std::string_view& text, std::size_t count_so_far, const char* of) {
         int64_t number = 0;
         const char* end = text.data() + text.size();

@@ -57,11 +57,11 @@ struct ObjData {
     std::vector<ObjMaterialFiles> material_files;
 };
 
-/// Throws Error(BadInput) that names `file` and the line for a face that is invalid or refers to a missing vertex. An
-/// unreadable number becomes NaN, with a warning; validate() drops its triangles. `found_materials` is called once
-/// with the first of material_files if that is in the first piece, possibly from another thread, and even if this
-/// function throws later. It must not throw. A thread parses about `piece_bytes` at once; the result does not depend
-/// on it.
+/// Parses an OBJ file. Throws Error(BadInput) that names `file` and the line for a face that is invalid or refers to a
+/// missing vertex. An unreadable number becomes NaN, with a warning; validate() drops its triangles. `found_materials`
+/// is called once with the first of material_files if that is in the first piece, possibly from another thread, and
+/// even if this function throws later. It must not throw. A thread parses about `piece_bytes` at once; the result does
+/// not depend on it.
 ObjData parse_obj(std::span<const std::byte> bytes, const std::string& file, Messages& messages,
                   const FoundMaterials& found_materials = {}, std::size_t piece_bytes = std::size_t(1) << 20);
 

@@ -46,7 +46,7 @@ private:
         if (from.name.empty()) return ref;
         try {
             ref.image = loader_.add_file(FileLocation{path_.string(), from.line}, gltf::plain_file_name(from.name));
-        } catch (const Error& error) { // it may not be read
+        } catch (const Error& error) { // the file is outside the allowed folders
             if (error.code() != ErrorCode::BadInput) throw;
             messages_.leave_out(error.remark().and_then("; only its factor is used"));
         }
@@ -134,13 +134,14 @@ std::size_t pixel_count(const TextureImage& image) {
     return max(image.rgba8.pixels.size(), image.rgba_float.pixels.size()) / 4;
 }
 
-/// In [0, 1]; of 8-bit images as stored.
+/// Returns a channel in [0, 1]; that of an 8-bit image as stored.
 float value(const TextureImage& image, std::size_t pixel, int channel) {
     const std::size_t at = 4 * pixel + static_cast<std::size_t>(channel);
     return image.rgba8.pixels.empty() ? image.rgba_float.pixels[at] : static_cast<float>(image.rgba8.pixels[at]) / 255;
 }
 
-/// A tangent-space normal map is bluish, and its texels are unit vectors; a height map is grey.
+/// Returns whether an image is a tangent-space normal map, which is bluish and whose texels are unit vectors; a height
+/// map is grey.
 bool looks_like_normals(const TextureImage& image) {
     std::size_t good = 0, seen = 0;
     for (std::size_t i = 0; i < pixel_count(image); i += 7, ++seen) {

@@ -48,7 +48,8 @@ void warn_of_textures_without_coordinates(const Scene& scene, const ObjData& dat
                      counted(materials.size(), "material"), shortened(first))});
 }
 
-/// A texture tells the colour where there is one: scanners write the same colours to the vertices as well.
+/// Removes vertex colours from meshes with a colour texture, because scanners write the same colours to the vertices as
+/// well.
 void drop_colors_beside_textures(Scene& scene, const std::string& file, Messages& messages) {
     std::size_t dropped = 0;
     for (const Instance& instance : scene.instances) {
@@ -96,7 +97,7 @@ Mesh make_mesh(const ObjGroup& group, const ObjData& data) {
     return mesh;
 }
 
-/// Turns those triangles round whose vertex normals point behind them: the front of a lamp is where its winding says.
+/// Turns those triangles round whose vertex normals point behind them: the winding defines the front of an emitter.
 void wind_after_normals(Mesh& mesh) {
     if (mesh.normals.empty()) return;
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
@@ -111,7 +112,7 @@ void wind_after_normals(Mesh& mesh) {
 std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs::path& obj, const FileAccess& access,
                                           Messages& messages) {
     const FileLocation location = {obj.string(), line.line};
-    bool is_refused = false; // where a file may not be read, that has been told
+    bool is_refused = false; // true once a refused file has been reported
     const auto find = [&](const std::string& name) -> std::optional<fs::path> {
         try {
             return access.find(location, name, messages);
@@ -138,16 +139,16 @@ std::vector<fs::path> find_material_files(const ObjMaterialFiles& line, const fs
     return found;
 }
 
-/// The materials that an OBJ file names, and their textures. Those of its first mtllib, which is the only one of most
-/// files and stands at their top, are read while the geometry is, where there is a thread for them; a fault of the
-/// geometry is then told once they are.
+/// The materials that an OBJ file names, and their textures. Those of its first mtllib, which in most files is the only
+/// one and is at the top, are read concurrently with the geometry if there is a thread for them. A fault of the
+/// geometry is then reported after they have been read.
 class MaterialsBeside {
 public:
-    /// All of these outlive it.
+    /// Makes an object that all arguments must outlive.
     MaterialsBeside(const fs::path& obj, const FileAccess& access, TextureLoader& loader, Messages& messages)
         : obj_(obj), access_(access), loader_(loader), messages_(messages) {}
 
-    /// With the first line of all; once, if at all. Throws nothing.
+    /// Starts to read the materials of the first mtllib statement. It is called at most once, and throws nothing.
     void start(const ObjMaterialFiles& line) {
         if (thread_count() == 1) return;
         try {
@@ -156,10 +157,10 @@ public:
                 read(line);
                 loader_.decode();
             });
-        } catch (const std::system_error&) { // no thread can be had
+        } catch (const std::system_error&) { // no thread is left
         }
     }
-    /// Waits for what is under way, and reads the others of `lines`.
+    /// Waits for the first materials, reads those of the other `lines`, and returns all.
     std::map<std::string, MtlMaterial> finish(const std::vector<ObjMaterialFiles>& lines) {
         const bool is_first_read = first_.valid();
         if (is_first_read) first_.get();
@@ -187,11 +188,11 @@ private:
 Material grey_material(const std::string& name, const ObjData& data) {
     Material material;
     material.name = name;
-    if (!data.colors.empty()) material.base_color = grey(1); // the vertex colours tell
+    if (!data.colors.empty()) material.base_color = grey(1); // the vertex colours replace it
     return material;
 }
 
-/// `loader` knows the textures of `materials`.
+/// Makes the scene. `loader` has the textures of `materials`.
 Scene make_scene(const ObjData& data, const std::map<std::string, MtlMaterial>& materials, TextureLoader& loader,
                  const std::string& file, const ReadOptions& options, Messages& messages) {
     Scene scene;

@@ -14,8 +14,8 @@
 
 namespace pertev {
 
-/// The result is not validated. Throws Error(BadInput) that names the file and the line. A missing .mtl or texture
-/// gives a warning.
+/// Reads an OBJ file without validating the scene. Throws Error(BadInput) that names the file and the line. A missing
+/// .mtl or texture gives a warning.
 Scene read_obj(const std::filesystem::path& path, const FileAccess& access, const ReadOptions& options,
                Messages& messages);
 

@@ -88,7 +88,7 @@ public:
         expect(whole, min_size(property.type), "entries of a list");
         return whole;
     }
-    /// Whether the rest of this line is invalid, up to end_element().
+    /// Returns whether the rest of this line is invalid, up to end_element().
     bool is_line_bad() const { return is_line_bad_; }
 
     void skip(const PlyProperty& property) {
@@ -123,7 +123,8 @@ public:
     }
 
 private:
-    /// Text has one element per line if there are as many non-empty lines as elements, or more with broken lists.
+    /// Finds out whether a text has one element per line: it has as many non-empty lines as elements, or more with
+    /// broken lists.
     void find_lines(const PlyHeader& header) {
         if (format_ != PlyFormat::Ascii) return;
         uint64_t elements = 0, lines = 0;
@@ -139,7 +140,7 @@ private:
         has_lines_ = lines >= elements;
     }
 
-    /// For text only.
+    /// Number of the current line, for text only.
     std::size_t line() const {
         std::size_t lines = 1;
         for (const char* c = begin_; c != at_; ++c) {
@@ -161,7 +162,8 @@ private:
         if (bad_values_++ == 0) first_bad_value_ = fault(what).remark();
     }
 
-    /// NaN, with a warning, for a word that is no number; only what contains it is left out.
+    /// Parses a value of a text. A word that is not a number becomes NaN, with a warning; only the element that
+    /// contains it is left out.
     double text_value(PlyType type) {
         const std::string_view text = word();
         std::string_view rest = text;

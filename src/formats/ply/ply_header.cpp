@@ -36,7 +36,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
     return words;
 }
 
-/// In any case, with or without a colon.
+/// Returns whether a word is `TextureFile`, in either case, with or without a colon.
 bool is_texture_file(std::string_view word) {
     if (word.ends_with(':')) word.remove_suffix(1);
     constexpr std::string_view key = "texturefile";
@@ -93,7 +93,8 @@ private:
         header_.repairs.emplace_back(FileLocation{file_, line_number_}, std::move(what));
     }
 
-    /// Blender 2.4 wrote "Created by Blender3D ...", and old Assimp its own name, without the word comment.
+    /// Treats a line as a comment: Blender 2.4 wrote "Created by Blender3D ...", and old Assimp its own name, without
+    /// the word comment.
     void take_as_comment() {
         if (!header_.elements.empty() && header_.format != PlyFormat::Ascii) { // it may stand for bytes of the body
             throw fault("unknown header line; expected element, property, comment, obj_info or end_header");
@@ -113,7 +114,7 @@ private:
         return line;
     }
 
-    /// Words of the next line that is no comment.
+    /// Returns the words of the next line that is not a comment.
     std::vector<std::string_view> next_words() {
         for (;;) {
             const std::string_view line = next_line();
@@ -141,7 +142,7 @@ private:
         for (const TypeName& known : kTypeNames) {
             if (known.name == name) return known.type;
         }
-        if (header_.format == PlyFormat::Ascii) { // where a value is a word, however many bytes it would have
+        if (header_.format == PlyFormat::Ascii) { // here a value is a word, whatever its size in bytes
             repaired(fmt::format("\"{}\" is not a type; its values are read as numbers", shortened(name)));
             return PlyType::Float64;
         }

@@ -45,7 +45,7 @@ struct PlyHeader {
 /// Bytes of one value in a binary file.
 std::size_t size_of(PlyType type);
 
-/// Throws Error(BadInput) that names `file` and the line.
+/// Parses the header. Throws Error(BadInput) that names `file` and the line.
 PlyHeader parse_ply_header(std::span<const std::byte> bytes, const std::string& file);
 
 } // namespace pertev

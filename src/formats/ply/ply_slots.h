@@ -9,7 +9,7 @@ namespace pertev {
 
 enum PlySlot : std::size_t { kX, kY, kZ, kNormalX, kNormalY, kNormalZ, kRed, kGreen, kBlue, kAlpha, kU, kV, kSlots };
 
-/// Returns kSlots for a name that is not read.
+/// Returns the slot of a property by its name; kSlots for a name that is not read.
 std::size_t ply_slot_of(std::string_view name);
 
 } // namespace pertev

@@ -14,7 +14,7 @@
 namespace pertev {
 namespace {
 
-/// The values of `from` at `selected`; none where it is empty.
+/// Returns the values of `from` at `selected`; none if `from` is empty.
 template <class T>
 std::vector<T> gathered(const std::vector<T>& from, const std::vector<uint32_t>& selected) {
     std::vector<T> to;
@@ -36,7 +36,7 @@ struct Part {
     Mesh mesh;
 };
 
-/// The triangles of one texture, with the vertices that they use.
+/// Returns the triangles of one texture, with the vertices that they use.
 Mesh part_of(const Mesh& mesh, const std::vector<int32_t>& of_triangles, int32_t texture) {
     Mesh part = mesh;
     part.indices.clear();
@@ -54,7 +54,7 @@ Mesh part_of(const Mesh& mesh, const std::vector<int32_t>& of_triangles, int32_t
     return part;
 }
 
-/// By texture, in the order of the header; those without any are the last.
+/// Splits a mesh by texture, in the order of the header; triangles without a texture are the last part.
 std::vector<Part> split_by_texture(Mesh mesh, const std::vector<uint32_t>& sizes, const std::vector<int32_t>& of_faces,
                                    std::size_t textures) {
     std::vector<Part> parts;

@@ -32,7 +32,7 @@ namespace {
 
 bool is_float(PlyType type) { return type == PlyType::Float32 || type == PlyType::Float64; }
 
-/// Colour channel of a file's type to [0, 1], linear; a float one as it stands.
+/// Converts a colour channel to [0, 1], linear; one of a floating-point type is unchanged.
 float colour(double value, PlyType type, bool is_alpha) {
     if (is_float(type)) return static_cast<float>(value);
     if (std::isnan(value)) return 1; // could not be read
@@ -50,10 +50,11 @@ public:
         }
     }
 
-    /// Round what the faces name, in the coordinates of the file: origin_for() it has been taken off the mesh.
+    /// Box of the vertices that faces use, in the coordinates of the file. Its origin_for() has been subtracted from
+    /// the mesh.
     const DoubleBounds3& box() const { return box_; }
 
-    /// The file's mesh. Its faces are those of sizes() and of_faces().
+    /// Reads the file's mesh. Its faces are described by sizes() and of_faces().
     Mesh run(Messages& messages) {
         if (std::none_of(header_.elements.begin(), header_.elements.end(), is_surface)) {
             throw Error(ErrorCode::BadInput,
@@ -239,7 +240,7 @@ private:
         }
     }
 
-    /// Takes back the last face, of so many corners. Returns 0.
+    /// Removes the last face, which has `corners` corners. Returns 0.
     uint64_t drop_face(uint64_t corners) {
         if (corners == 0) return 0;
         corners_.resize(corners_.size() - corners);
@@ -254,7 +255,7 @@ private:
         for (uint64_t i = 0; i < count; ++i) face_uvs_.push_back(static_cast<float>(body_.value(property.type)));
     }
 
-    /// A face without a pair of coordinates for each of its corners has no texture.
+    /// Adds the texture coordinates of a face. One without a pair for each of its corners has no texture.
     void add_face_uvs(uint64_t corners, double& texture) {
         const bool is_whole = face_uvs_.size() == 2 * corners;
         if (!is_whole) texture = kNoPlyTexture;
@@ -272,7 +273,7 @@ private:
         return kNoPlyTexture;
     }
 
-    /// Returns nothing, which counts as a fault, for a value that is no vertex.
+    /// Returns a value as the index of a vertex; nothing, which counts as a fault, if it is out of range.
     std::optional<uint32_t> vertex_of(double value) {
         if (value >= 0 && value < static_cast<double>(vertex_count_) && value == static_cast<uint32_t>(value)) {
             return static_cast<uint32_t>(value);
@@ -288,7 +289,7 @@ private:
         return std::nullopt;
     }
 
-    /// Returns the number of corners, 0 of a face that is left out.
+    /// Reads a face. Returns its number of corners; 0 if it is left out.
     uint64_t face(const PlyProperty& property) {
         const uint64_t count = body_.list_count(property);
         if (count < 3 && !body_.is_line_bad()) ++strays_;
@@ -305,7 +306,7 @@ private:
         return corners_.size() - before;
     }
 
-    /// Returns 0: strips have no textures.
+    /// Reads triangle strips. Returns 0, because strips have no textures.
     uint64_t strip(const PlyProperty& property) {
         const uint64_t count = body_.list_count(property);
         uint32_t before[2] = {};
@@ -334,7 +335,7 @@ private:
         return 0;
     }
 
-    /// Takes off in double what lies between the file's origin and the faces.
+    /// Subtracts the origin in double if the faces are away from 0.
     void move_to_origin() {
         Bounds3 sample;
         for (std::size_t i = 0; i < corners_.size(); i += kCornersApart) sample.extend(mesh_.positions[corners_[i]]);

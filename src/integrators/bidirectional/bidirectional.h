@@ -8,7 +8,7 @@
 // for Light Transport Simulation", 1997, chapter 10. Weights: integrators/subpaths/subpath_memory.h.
 //
 // It finds all light that path tracing finds, L(D|G|S)*E, with less noise if light reaches the visible surfaces
-// through narrow paths. Neither finds a point light that is seen only through clear glass or mirrors, because L S* D
+// through narrow paths. Neither finds a point light that is visible only through clear glass or mirrors, because L S* D
 // S* E then has no vertex to sample.
 
 #include "integrators/bidirectional/camera_subpath_stages.h"

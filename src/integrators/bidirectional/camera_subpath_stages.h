@@ -10,7 +10,7 @@ namespace pertev {
 /// Number of light-subpath vertices that a vertex connects to at once.
 inline constexpr uint32_t kConnectedAtOnce = 4;
 
-/// Shades hits of camera subpaths: emission, next-event estimation, continuation.
+/// The stage that shades hits of camera subpaths: emission, next-event estimation, continuation.
 template <ShadingVariant kVariant>
 struct ShadeCameraSubpaths {
     SubpathScene scene;
@@ -94,7 +94,7 @@ private:
         connection.light = (weight / light.pdf) * (state.throughput * scattered.camera.f * light.radiance);
         subpaths.queue_connection(atomic_add(&subpaths.counts->connections, 1u), connection, state.pixel);
     }
-    /// Density, in 1/m2 across its direction, with which a particle from the sampled point arrives where it shines.
+    /// Density, in 1/m2 across its direction, with which a particle from the sampled point arrives at the surface.
     HD float density_from(const LightSample& light) const {
         const LightSetView& lights = scene.picture.scene.lights;
         if (light.distance == kInfinity) return pdf_disc(scene.world);
@@ -160,8 +160,8 @@ HD inline Vec3 position_of(const SceneView& scene, const Hit& hit) {
     return world_triangle(instance, scene.meshes[instance.mesh], hit).position;
 }
 
-/// Connects pair i: the current round's vertex i % vertices and vertex first + i / vertices of its sample's light
-/// subpath.
+/// The stage that connects pair i: the current round's vertex i % vertices and vertex first + i / vertices of its
+/// sample's light subpath.
 template <ShadingVariant kVariant>
 struct ConnectSubpaths {
     SubpathScene scene;

@@ -12,14 +12,14 @@ struct Cast {
     static constexpr uint32_t kMaxBranches = 0; // continuation rays per vertex
     static constexpr bool kHasShutter = true;
 
-    /// One for each point, spot and directional light: hard shadows.
+    /// Number of shadow rays of a vertex: one for each point, spot and directional light.
     HD static uint32_t shadow_rays(const LightSetView& lights) { return lights.punctual_count; }
     HD static bool sample_direct_light(const TreeVertex& vertex, uint32_t number, TreeShadowRay& shadow) {
         return vertex.make_punctual_shadow_ray(number, shadow);
     }
     HD static void follow(const TreeVertex& vertex) { vertex.add_ambient(); }
 
-    /// There is no ambient light by default.
+    /// Default ambient light: none.
     static Rgb ambient(const EnvironmentView*) { return {0, 0, 0}; }
 };
 

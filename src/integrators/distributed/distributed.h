@@ -17,15 +17,15 @@ namespace pertev {
 struct Distributed {
     static constexpr uint32_t kMaxBranches = 3;
     static constexpr bool kHasShutter = true;
-    static constexpr LeastWeight kLeast = {0x1p-4f, WeakRays::ByChance};
+    static constexpr MinWeight kMinWeight = {0x1p-4f, WeakRays::ByChance};
 
     HD static uint32_t shadow_rays(const LightSetView&) { return 1; }
     HD static bool sample_direct_light(const TreeVertex& vertex, uint32_t, TreeShadowRay& shadow) {
         return vertex.make_drawn_shadow_ray(shadow);
     }
     HD static void follow(const TreeVertex& vertex) {
-        vertex.follow_glossy(kLeast);
-        vertex.follow_specular(kLeast);
+        vertex.follow_glossy(kMinWeight);
+        vertex.follow_specular(kMinWeight);
     }
 
     static Rgb ambient(const EnvironmentView*) { return {0, 0, 0}; } // light from all directions is sampled instead

@@ -23,7 +23,7 @@ struct CacheState {
     float pdf; // density with which its direction was sampled, 1/sr; 0 after the camera or a delta lobe
 };
 
-/// Whether emitters may be visible in mirrors or smooth glass of the scene, which needs both.
+/// Counts of emitters and of mirrors or smooth glass, in which emitters may be visible if there are both.
 struct MirroredEmitters {
     uint64_t mirrors, emitters; // instances; with an environment, all count as emitters
 

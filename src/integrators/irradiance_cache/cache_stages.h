@@ -20,7 +20,7 @@ namespace pertev {
 inline constexpr uint32_t kNumberOfOthers = 2; // index among a vertex's choices: whether the path continues for other
                                                // lobes
 
-/// Counts instance i.
+/// The stage that counts the emitters and mirrors of instance i.
 struct CountMirroredEmitters {
     SceneView scene;
     MirroredEmitters* count;
@@ -35,7 +35,7 @@ struct CountMirroredEmitters {
     }
 };
 
-/// Starts camera paths 0, 1, ... of the samples.
+/// The stage that starts camera paths 0, 1, ... of the samples.
 struct BeginCacheSubpaths {
     BeginCameraSubpaths begin;
     CacheSubpathsView cache;
@@ -49,7 +49,7 @@ struct BeginCacheSubpaths {
     }
 };
 
-/// Shades the hits of paths.
+/// The stage that shades the hits of paths.
 template <ShadingVariant kVariant>
 struct ShadeCacheSubpaths {
     SubpathScene scene;

@@ -120,7 +120,7 @@ struct HemisphereJob {
 
 HD inline Hit hit_of(const RecordSite& site) { return {0, site.u, site.v, site.instance, site.primitive}; }
 
-/// Starts paths 0, 1, ... for the cells `first`, first + 1, ... in memory.
+/// The stage that starts paths 0, 1, ... for the cells `first`, first + 1, ... in memory.
 template <ShadingVariant kVariant>
 struct BeginHemispheres {
     SubpathScene scene;
@@ -162,7 +162,7 @@ struct BeginHemispheres {
     }
 };
 
-/// Stores the hit distance of ray i of a first round.
+/// The stage that stores the hit distance of ray i of a first round.
 struct StoreDistances {
     SubpathsView subpaths;
     CacheSubpathsView cache;
@@ -174,7 +174,7 @@ struct StoreDistances {
     }
 };
 
-/// Converts the sums of cell i in memory to floats.
+/// The stage that converts the sums of cell i in memory to floats.
 struct ReadCells {
     CacheSubpathsView cache;
 
@@ -188,7 +188,7 @@ struct ReadCells {
 /// Limits of a record's radius in pixels (Tabellion and Lamorlette 2004, section 4.2).
 inline constexpr float kMinPixels = 16, kMaxPixels = 400;
 
-/// Finishes record i of those whose cells are in memory.
+/// The stage that finishes record i of those whose cells are in memory.
 template <ShadingVariant kVariant>
 struct FinishRecords {
     SubpathScene scene;

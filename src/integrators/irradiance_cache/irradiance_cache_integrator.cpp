@@ -20,7 +20,7 @@ FilmView film_of_cells(const CacheSubpathsView& cache, uint64_t* invalid, uint32
 void IrradianceCacheIntegrator::reserve(const WorkSize& size) {
     store_.allocate(size.pixels());
     counts_.grow(queue_, kCounts, "counts of irradiance caching");
-    mirrored_.grow(queue_, 1, "counts of mirrors and lamps");
+    mirrored_.grow(queue_, 1, "counts of mirrors and emitters");
     if (goes_by_loop(size)) return;
     // The wavefront holds the picture's samples or all rays of some records, at least of one.
     const uint32_t cells = cells_of(settings_.cache);
@@ -36,7 +36,7 @@ void IrradianceCacheIntegrator::begin(const PictureView& picture, SceneTracer& t
     if (!std::exchange(is_same_picture_, false)) has_records_ = false;
     queue_.zero(counts_.data() + kMissed, sizeof(uint64_t));
     queue_.zero(mirrored_.data(), sizeof(MirroredEmitters));
-    launch(queue_, "count mirrored lamps", picture.scene.instance_count,
+    launch(queue_, "count mirrored emitters", picture.scene.instance_count,
            CountMirroredEmitters{picture.scene, mirrored_.data()});
 }
 

@@ -24,7 +24,7 @@ struct IrradianceCacheRequest {
     IrradianceCacheSettings cache;
 };
 
-/// A wavefront holds at least all rays of one record, even if its batch is smaller.
+/// Renders with an irradiance cache. A wavefront holds at least all rays of one record, even if its batch is smaller.
 class IrradianceCacheIntegrator final : public TwoSchedules<IrradianceCacheRequest, CacheJob> {
 public:
     IrradianceCacheIntegrator(Queue& queue, const IrradianceCacheRequest& settings, bool in_loop, uint32_t batch)

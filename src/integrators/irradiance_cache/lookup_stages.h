@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-/// Lookup i of a picture.
+/// The stage of lookup i of a picture.
 template <ShadingVariant kVariant>
 struct LookUpRadiance {
     SubpathScene scene;
@@ -50,11 +50,11 @@ struct alignas(16) RecordSite {
     uint32_t unused[3] = {};
 };
 
-/// In the overture a record is requested if the existing ones have a smaller total weight than this, because near the
-/// end of their range other samples of the pixel would find none.
+/// Total weight of the existing records below which the overture requests a record, because near the end of their range
+/// other samples of the pixel would find none.
 inline constexpr float kServedWeight = 0.25f;
 
-/// Lookup i of a round of the overture; each of its paths has a site, from `first` on.
+/// The stage of lookup i of a round of the overture; each of its paths has a site, from `first` on.
 template <ShadingVariant kVariant>
 struct FindRecordSites {
     SubpathScene scene;
@@ -78,7 +78,7 @@ struct FindRecordSites {
     }
 };
 
-/// Ends the path if ray i of a picture hits the mark of a record, and shows the mark.
+/// The stage that ends the path if ray i of a picture hits the mark of a record, and shows the mark.
 template <ShadingVariant kVariant>
 struct DrawRecords {
     static constexpr float kPixels = 1.25f; // radius of a mark

@@ -35,7 +35,7 @@ inline OvertureGrid make_overture_grid(uint32_t round, uint32_t width, uint32_t 
     return {step, along(width), along(height), width};
 }
 
-/// Starts paths 0, 1, ... at the grid's indices `first`, first + 1, ...; no record is requested yet.
+/// The stage that starts paths 0, 1, ... at the grid's indices `first`, first + 1, ...; no record is requested yet.
 struct BeginSeekers {
     SubpathScene scene;
     SubpathsView subpaths;

@@ -20,7 +20,7 @@ PointOctree tree_over_centres(std::span<const Sphere> records) {
     return tree;
 }
 
-/// Least radius in the subtree of each node.
+/// Returns the least radius in the subtree of each node.
 std::vector<float> min_radii(const PointOctree& tree) {
     std::vector<float> least(tree.nodes.size());
     for (std::size_t i = tree.nodes.size(); i-- > 0;) { // reverse depth-first order: children come before their
@@ -44,7 +44,7 @@ struct Clamped {
 
 class Clamp {
 public:
-    explicit Clamp(const PointOctree& tree) : tree_(tree), least_(min_radii(tree)) {}
+    explicit Clamp(const PointOctree& tree) : tree_(tree), min_(min_radii(tree)) {}
 
     /// Clamps the record with this index in the tree. Neighbours farther away than its radius do not reduce it, nor
     /// does a subtree whose least radius plus distance is not below the minimum so far. `guess` is a likely minimum,
@@ -57,7 +57,7 @@ public:
         for (uint32_t i = 0; i < tree_.nodes.size();) {
             const PointOctreeNode& node = tree_.nodes[i];
             const float near_squared = squared_distance_to_box(node.lo, node.hi, record.centre);
-            if (near_squared > max_squared || least_[i] + sqrt(near_squared) >= found.radius) {
+            if (near_squared > max_squared || min_[i] + sqrt(near_squared) >= found.radius) {
                 i = node.skip;
                 continue;
             }
@@ -76,7 +76,7 @@ private:
     }
 
     const PointOctree& tree_;
-    std::vector<float> least_;
+    std::vector<float> min_;
 };
 
 } // namespace

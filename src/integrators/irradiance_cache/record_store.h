@@ -16,14 +16,14 @@ namespace pertev {
 
 class RecordStore {
 public:
-    /// `queue` outlives it.
+    /// Makes an empty store; `queue` outlives it.
     explicit RecordStore(Queue& queue) : queue_(queue) {}
 
     /// Maximum additional host memory, in bytes, for the octree and the spacing of records.
     static std::size_t max_host_bytes(uint64_t pixels);
     /// Allocates for a picture of `pixels` pixels. Throws Error(OutOfMemory).
     void allocate(uint64_t pixels);
-    /// Maximum host memory that it has taken, in bytes.
+    /// Maximum host memory that the store has taken, in bytes.
     std::size_t host_bytes() const { return host_bytes_; }
 
     /// Removes all records for a new picture.
@@ -32,12 +32,12 @@ public:
 
     /// [pixels] sites of the overture.
     RecordSite* sites() const { return sites_.data(); }
-    /// Moves the requested ones of the first `count` sites to the front in their order, as many as there is room for,
-    /// and returns their number.
+    /// Moves the requested sites among the first `count` to the front in their order, as many as fit, and returns their
+    /// number.
     uint32_t gather_sites(uint32_t count);
     /// Memory of the next records; the first has index count().
     IrradianceRecord* records() const { return records_.data(); }
-    /// Adds `made` new records, which serve from now on, and recomputes the spacing of all.
+    /// Adds `made` new records, which lookups use from now on, and recomputes the spacing of all.
     void take(uint32_t made, float accuracy);
 
     IrradianceCacheView view() const;

@@ -102,14 +102,14 @@ constexpr std::array kIntegrators = {
                                                  .name = "cast",
                                                  .has_shutter = true,
                                                  .needs_punctual_lights = true,
-                                                 .most_depth = kMaxTreeDepth}),
+                                                 .max_depth = kMaxTreeDepth}),
     row<RayTreeIntegrator<Whitted>, tree_settings>({.value = Kind::Whitted,
                                                     .name = "whitted",
                                                     .has_shutter = true,
                                                     .needs_punctual_lights = true,
-                                                    .most_depth = kMaxTreeDepth}),
+                                                    .max_depth = kMaxTreeDepth}),
     row<RayTreeIntegrator<Distributed>, tree_settings>(
-        {.value = Kind::Distributed, .name = "distributed", .has_shutter = true, .most_depth = kMaxTreeDepth}),
+        {.value = Kind::Distributed, .name = "distributed", .has_shutter = true, .max_depth = kMaxTreeDepth}),
     row<RasterIntegrator, raster_settings>(
         {.value = Kind::Raster, .name = "raster", .rasterises_camera = true, .needs_punctual_lights = true}),
     row<ReyesIntegrator, reyes_settings>({.value = Kind::Reyes,
@@ -121,13 +121,13 @@ constexpr std::array kIntegrators = {
     row<SubpathIntegrator<BothDirections>, traversal_settings>({.value = Kind::Bidirectional,
                                                                 .name = "bidirectional",
                                                                 .finds_all_light = true,
-                                                                .most_depth = kMaxConnectedDepth}),
+                                                                .max_depth = kMaxConnectedDepth}),
     row<PhotonMapIntegrator, photon_map_request>(
-        {.value = Kind::PhotonMap, .name = "photon_map", .finds_all_light = true, .most_depth = kMaxPhotonDepth}),
+        {.value = Kind::PhotonMap, .name = "photon_map", .finds_all_light = true, .max_depth = kMaxPhotonDepth}),
     row<IrradianceCacheIntegrator, irradiance_cache_request>(
         {.value = Kind::IrradianceCache, .name = "irradiance_cache", .finds_all_light = true}),
     row<RadiosityIntegrator, radiosity_settings>(
-        {.value = Kind::Radiosity, .name = "radiosity", .most_depth = kMaxTreeDepth}),
+        {.value = Kind::Radiosity, .name = "radiosity", .max_depth = kMaxTreeDepth}),
 };
 
 constexpr bool are_in_order() {

@@ -72,22 +72,21 @@ struct IntegratorSettings {
 struct IntegratorDescriptor {
     IntegratorKind value;
     std::string_view name; // name as text (base/value_names.h)
-    /// Whether its samples can be separated for frames that are reconstructed (FilmView::frame), for denoised
-    /// pictures and for ReSTIR.
+    /// True if its samples can be separated for frames that are reconstructed (FilmView::frame), for denoised pictures
+    /// and for ReSTIR.
     bool makes_frames = false;
-    /// Whether it supports light-path layers and irradiance: IntegratorSettings::light_paths and irradiance.
+    /// True if it supports light-path layers and irradiance: IntegratorSettings::light_paths and irradiance.
     bool has_light_path_layers = false;
-    /// Whether its mean converges to all light, so that such integrators agree, at least approximately.
+    /// True if its mean converges to all light, so that such integrators agree, at least approximately.
     bool finds_all_light = false;
-    /// Whether it rasterizes primary visibility; why_no_raster (render/raster/pinhole.h) says which cameras it
-    /// excludes.
+    /// True if it rasterizes primary visibility, which excludes the cameras of why_no_raster (render/raster/pinhole.h).
     bool rasterises_camera = false;
-    /// Whether its rays have a time, so that motion while a shutter is open is blurred.
+    /// True if its rays have a time, so that motion while a shutter is open is blurred.
     bool has_shutter = false;
-    /// Whether only point, spot and directional lights illuminate surfaces.
+    /// True if only point, spot and directional lights illuminate surfaces.
     bool needs_punctual_lights = false;
     /// The largest PathSettings::max_depth.
-    uint32_t most_depth = kMaxPathDepth - 1;
+    uint32_t max_depth = kMaxPathDepth - 1;
     /// Returns how many samples per pixel together take hardly longer than one.
     uint32_t (*samples_at_once)(uint64_t pixels) = [](uint64_t) { return 1u; };
     std::unique_ptr<Integrator> (*make)(Queue&, const IntegratorSettings&) = nullptr;
@@ -107,15 +106,15 @@ inline bool finds_all_light(IntegratorKind kind) { return describe(kind).finds_a
 inline bool rasterises_camera(IntegratorKind kind) { return describe(kind).rasterises_camera; }
 inline bool has_shutter(IntegratorKind kind) { return describe(kind).has_shutter; }
 inline bool needs_punctual_lights(IntegratorKind kind) { return describe(kind).needs_punctual_lights; }
-inline uint32_t most_depth(IntegratorKind kind) { return describe(kind).most_depth; }
+inline uint32_t max_depth(IntegratorKind kind) { return describe(kind).max_depth; }
 inline uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pixels) {
     return describe(settings.integrator).samples_at_once(pixels);
 }
 
-/// Whether both give the same samples.
+/// Returns whether the settings `a` and `b` give the same samples.
 bool same_light(const IntegratorSettings& a, const IntegratorSettings& b);
 
-/// `queue` outlives the integrator.
+/// Makes the integrator of the settings; `queue` outlives it.
 std::unique_ptr<Integrator> make_integrator(Queue& queue, const IntegratorSettings& settings);
 
 /// Changes the settings of `integrator` from `from` to `to` and keeps its memory; begin() must follow. Returns false

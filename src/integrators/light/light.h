@@ -14,7 +14,7 @@
 
 namespace pertev {
 
-/// Shades the hits of camera rays.
+/// The stage that shades the hits of camera rays.
 struct ShadeSeen {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -29,7 +29,7 @@ struct ShadeSeen {
     }
 };
 
-/// Runs the stages in order.
+/// The algorithm of particles alone, which runs the stages in order.
 struct ParticlesAlone {
     static constexpr bool kIsConnected = false;
     static SubpathCapacity capacity(const SubpathSettings&, uint32_t subpaths) { return {subpaths, 0, 1}; }

@@ -66,7 +66,7 @@ public:
         kept_ = kept;
         first_ = unpacked(bits_of(kept.diffuse.w));
     }
-    /// Light that the camera ray itself hits is not scattered.
+    /// Leaves out light that the camera ray itself hits, because it is not scattered.
     HD void emitted(const PathState&, Rgb light) {
         if (!frame_.splits_light()) return;
         const Rgb more = first_ * light;
@@ -115,15 +115,15 @@ public:
     }
 
 private:
-    static constexpr uint32_t kMost = 1023;
+    static constexpr uint32_t kMaxCode = 1023;
     HD static uint32_t part(float share) {
-        return static_cast<uint32_t>(to_int(fma(share, static_cast<float>(kMost), 0.5f), 0, kMost));
+        return static_cast<uint32_t>(to_int(fma(share, static_cast<float>(kMaxCode), 0.5f), 0, kMaxCode));
     }
     HD static uint32_t packed(Rgb share) { return part(share.r) | part(share.g) << 10 | part(share.b) << 20; }
     HD static Rgb unpacked(uint32_t bits) {
-        constexpr float kInv = 1.0f / static_cast<float>(kMost);
-        return kInv * Rgb{static_cast<float>(bits & kMost), static_cast<float>(bits >> 10 & kMost),
-                          static_cast<float>(bits >> 20 & kMost)};
+        constexpr float kInv = 1.0f / static_cast<float>(kMaxCode);
+        return kInv * Rgb{static_cast<float>(bits & kMaxCode), static_cast<float>(bits >> 10 & kMaxCode),
+                          static_cast<float>(bits >> 20 & kMaxCode)};
     }
 
     const NoisyFrameView& frame_;
@@ -144,7 +144,7 @@ public:
 
     HD void begins(const PathState& path) {
         if (leaves()) left().light[path.pixel] = {};
-        if (tells()) begin_bounce(path, {}, false);
+        if (records()) begin_bounce(path, {}, false);
     }
     HD bool takes(const PathState& path, const EmitterPoint& point, float light_pdf) {
         if (!leaves() || path.depth != 1 || !(light_pdf > 0)) return false;
@@ -152,19 +152,19 @@ public:
         return true;
     }
     HD void emitted(const PathState& path, Rgb light) {
-        if (!tells() || path.depth <= 1) return;
+        if (!records() || path.depth <= 1) return;
         // Equals the growth of the sample's radiance, which for split light contains only this vertex.
         const Rgb more = frame_.splits_light() ? light : (path.radiance + light) - path.radiance;
         left().add_sent(path.pixel, share_onwards(path.pixel) * more);
     }
     HD bool wants_direct(const PathState& path, const Hit& hit, const Surface& surface) {
         // Beneath coat or sheen, the light that leaves in one direction does not determine the light in another.
-        is_bounce_ = tells() && path.depth == 1 && path.bsdf_pdf > 0 && !surface.bsdf.is_stacked;
+        is_bounce_ = records() && path.depth == 1 && path.bsdf_pdf > 0 && !surface.bsdf.is_stacked;
         if (is_bounce_) begin_bounce(path, hit, true);
         return !(leaves() && path.depth == 0);
     }
     HD void direct(const PathState& path, const SurfaceVertex& at, Vec3 wi, const ShadowRay& shadow) {
-        if (!tells()) return;
+        if (!records()) return;
         const Rgb share = is_bounce_ ? at.surface.diffuse_share(at.wo, wi) : share_onwards(path.pixel);
         shadow_data_ = {share * shadow.contribution, path.pixel};
     }
@@ -176,7 +176,7 @@ public:
     HD void hand_over(ShadowData& shadow_data) const { shadow_data = shadow_data_; }
 
     HD void arrived(Kept&, const ShadowData& shadow_data, Rgb) const {
-        if (tells()) left().add_sent(shadow_data.pixel, shadow_data.sent);
+        if (records()) left().add_sent(shadow_data.pixel, shadow_data.sent);
     }
 
     HD static void load_shadow_data(const ListenerQueues& queues, uint32_t i, ShadowData& shadow_data) {
@@ -193,7 +193,7 @@ public:
 private:
     HD const FirstBounceView& left() const { return frame_.first_bounce; }
     HD bool leaves() const { return left().leaves_direct_light(); }
-    HD bool tells() const { return left().records_bounce(); }
+    HD bool records() const { return left().records_bounce(); }
     /// Stores the point that the first bounce hit before light is added there; none if it cannot be shared.
     HD void begin_bounce(const PathState& path, const Hit& hit, bool is_shared) const {
         left().hit[path.pixel] = {float_of(is_shared ? hit.instance : kNoHit), float_of(hit.primitive), hit.u, hit.v};

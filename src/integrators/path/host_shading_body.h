@@ -25,9 +25,9 @@ inline bool shade_on_host(const PathJob& job, PathState& path, typename Listener
     return wants_shadow;
 }
 
-/// Whether code for a mask of features is inlined as a whole. By default g++ would leave a dozen calls, which takes a
-/// third more time in Bitterli's box. Inlining takes g++ up to twenty times as long, so rare code (layers, motion,
-/// frames of other than diffuse materials) and builds that only test (src/CMakeLists.txt) do without.
+/// Returns whether code for a mask of features is inlined as a whole. By default g++ would leave a dozen calls, which
+/// takes a third more time in Bitterli's box. Inlining takes g++ up to twenty times as long, so rare code (layers,
+/// motion, frames of other than diffuse materials) and builds that only test (src/CMakeLists.txt) do without.
 template <class Listener>
 constexpr bool is_flattened([[maybe_unused]] Features features) {
 #if defined(PERTEV_KEEPS_CALLS)

@@ -10,9 +10,9 @@ namespace pertev {
 uint64_t add_meter_lights(Queue& queue, SceneTracer& tracer, const PictureView& picture, const PathSettings& settings,
                           uint32_t first, uint32_t count, const FilmView& film) {
     if (picture.scene.lights.choice.starts == nullptr) return 0; // there are no lights
-    constexpr uint32_t kMost = 1u << 18;                         // rays at once
+    constexpr uint32_t kMaxRays = 1u << 18;                      // rays at once
     const uint32_t pixels = film.width * film.height;
-    const uint32_t samples_at_once = std::clamp(kMost / pixels, 1u, count);
+    const uint32_t samples_at_once = std::clamp(kMaxRays / pixels, 1u, count);
     const uint32_t most = pixels * samples_at_once;
     const Buffer<Ray> rays(queue, most, "a meter's rays");
     const Buffer<Uint2> targets(queue, most, "a meter's rays");

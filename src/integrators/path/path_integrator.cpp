@@ -144,7 +144,7 @@ void PathIntegrator::begin(const PictureView& picture, SceneTracer& tracer, uint
     if (raster_) raster_->begin(picture);
 }
 
-/// Empty view for a film without layers.
+/// Returns the view of the film's layers; empty if it has none.
 LightPathView PathIntegrator::layers_for(const FilmView& film) const {
     if (!layers_on_device_) return {};
     PERTEV_CHECK(!film.frame.is_there() && film.channels == film_channel_count(film.aovs) + 3 * uploaded_->count());
@@ -182,7 +182,7 @@ void PathIntegrator::render(uint32_t first, uint32_t count, const FilmView& film
     }
 }
 
-/// Vertices whose light ReSTIR takes over use no roulette there.
+/// Returns the job for a film. Vertices whose light ReSTIR adds use no roulette.
 PathJob PathIntegrator::job_for(const FilmView& film) const {
     PathJob job = {picture_, settings_.path, film, layers_for(film), settings_.is_meter};
     if (film.frame.first_bounce.leaves_direct_light()) {

@@ -41,8 +41,8 @@ struct PathRequest {
 
 class PathIntegrator final : public IntegratorBase<PathRequest> {
 public:
-    /// `batch` is the maximum number of paths in flight of all wavefronts, each rounded up to 32; fewer if their
-    /// queues would exceed kMaxQueueBytes.
+    /// Makes an integrator. `batch` is the maximum number of paths in flight of all wavefronts, each rounded up to 32;
+    /// fewer if their queues would exceed kMaxQueueBytes.
     PathIntegrator(Queue& queue, const PathRequest& settings, bool in_loop, uint32_t batch);
 
     static constexpr std::size_t kMaxQueueBytes = 600'000'000;
@@ -76,7 +76,7 @@ private:
         Wavefront(Queue& queue, uint32_t capacity);
         /// Allocates missing memory and keeps the rest.
         void take(Queue& queue, const PathParts& parts);
-        /// Paths of a round; rounds alternate between two sets of arrays.
+        /// Paths of round `of_round`; rounds alternate between two sets of arrays.
         PathQueueView paths(uint32_t of_round) const;
         ShadowQueueView shadows() const;
         ListenerQueues listened(uint32_t of_round) const;

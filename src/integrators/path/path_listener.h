@@ -61,21 +61,21 @@ struct PathListener {
     HD void begins(const PathState&) {}
     template <class K>
     HD void take_up(const K&) {}
-    /// The path's ray has hit a surface after path.depth scatterings.
+    /// Called when the path's ray has hit a surface after path.depth scatterings.
     HD void vertex(const PathState&, const Hit&, Surface&) {}
-    /// The ray has hit no surface: it leaves the scene, or a medium scatters it first.
+    /// Called when the ray has hit no surface: it leaves the scene, or a medium scatters it first.
     HD void missed(const PathState&) {}
     /// Called before light at `point`, which the ray hit, is added; next-event estimation would have sampled it with
     /// density `light_pdf` (0: it could not). Returns true to take that light away from the path.
     HD bool takes(const PathState&, const EmitterPoint&, float) { return false; }
-    /// Light that the ray hit, possibly black, is added next.
+    /// Called before light that the ray hit, possibly black, is added.
     HD void emitted(const PathState&, Rgb) {}
-    /// Whether a vertex samples a light with a shadow ray.
+    /// Returns whether a vertex samples a light with a shadow ray.
     HD bool wants_direct(const PathState&, const Hit&, const Surface&) { return true; }
-    /// A shadow ray goes along `wi`. The vertex is a SurfaceVertex, or that of a medium (medium.h).
+    /// Called for a shadow ray along `wi`. The vertex is a SurfaceVertex, or that of a medium (medium.h).
     template <class Vertex>
     HD void direct(const PathState&, const Vertex&, Vec3, const ShadowRay&) {}
-    /// The path continues along `sample`; it has left the vertex.
+    /// Called when the path continues along `sample` and has left the vertex.
     template <class Vertex>
     HD void scattered(const PathState&, const Vertex&, const BsdfSample&) {}
     /// Called after the vertex to store the listener's data.
@@ -84,10 +84,10 @@ struct PathListener {
     template <class A>
     HD void hand_over(A&) const {}
 
-    /// A shadow ray was unoccluded, and its contribution is added to the path.
+    /// Called for an unoccluded shadow ray, whose contribution is added to the path.
     template <class K, class A>
     HD void arrived(K&, const A&, Rgb) const {}
-    /// The path of a sample of the pixel has ended with this radiance.
+    /// Called when the path of a sample of the pixel has ended with this radiance.
     template <class K>
     HD void ended(uint32_t, Rgb, const K&) const {}
 

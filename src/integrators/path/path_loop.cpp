@@ -46,7 +46,7 @@ private:
         uint32_t key, path;
     };
 
-    /// Whether path i may be shaded in lanes. Layers of the first hit need its whole surface.
+    /// Returns whether path i may be shaded in lanes. Layers of the first hit need its whole surface.
     bool may_be_together(uint32_t i) const {
         return shades_lanes_ && hits_[i].instance != kNoHit && (paths_[i].depth > 0 || job_.film.aovs == 0);
     }
@@ -109,7 +109,7 @@ private:
         return draw_vertex(job_.settings.sampler, keys, depths, has_choices);
     }
 
-    /// Key of the path's ray at its depth, for the coins of blended surfaces only.
+    /// Key of the path's ray at its depth, for blended surfaces only.
     uint32_t key_of(const PathState& path, bool is_shadow) const {
         return job_.picture.scene.any_alpha != 0 ? path_key(path, job_.settings.seed, is_shadow) : 0;
     }

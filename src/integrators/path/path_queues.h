@@ -120,7 +120,7 @@ struct RoundSlots {
 };
 using RoundAppend = BlockAppend<3>;
 
-/// Takes slots. `last` is the slot of the first path that ends.
+/// Reserves the slots of a vertex. `last` is the slot of the first path that ends.
 HD inline RoundSlots append_to_round(const RoundAppend& lists, RoundCounts& round, uint32_t last, bool is_there,
                                      bool goes_on, bool wants_shadow) {
     const bool ends = is_there && !goes_on;

@@ -12,8 +12,8 @@ namespace pertev {
 /// most one D (the thesis's local illumination), Indirect the rest (its figure 3.6); Path = Direct + Indirect.
 enum class PathLight : uint8_t { Path, Direct, Indirect };
 
-/// How lights are sampled: next-event estimation and BSDF sampling combined by the power heuristic, or one alone. All
-/// three converge to one picture (if lights can be hit at all); the single ones are for tests.
+/// Strategy to sample lights: next-event estimation and BSDF sampling combined by the power heuristic, or one alone.
+/// All three converge to one picture (if lights can be hit at all); the single ones are for tests.
 enum class LightStrategy : uint8_t { Mis, NeeOnly, BsdfOnly };
 
 /// Survival probability of Russian roulette as a function of the throughput's largest channel: that itself, or its
@@ -22,8 +22,8 @@ enum class LightStrategy : uint8_t { Mis, NeeOnly, BsdfOnly };
 /// is in between.
 enum class Roulette : uint8_t { Throughput, NearCubeRoot, FourthRoot };
 
-/// Loop is for the CPU and for tracers whose trees it can traverse directly (SceneTracer::host_trees); otherwise
-/// Wavefront is used.
+/// Schedule of the path tracer. Loop is for the CPU and for tracers whose trees it can traverse directly
+/// (SceneTracer::host_trees); otherwise Wavefront is used.
 enum class PathBody : uint8_t { Loop, Wavefront };
 
 /// Optional parts of a path in flight in the queues of a wavefront, which take memory there.
@@ -48,7 +48,7 @@ struct PathSettings {
     bool operator==(const PathSettings&) const = default;
 };
 
-/// Whether Russian roulette is applied at vertex `vertex` of a path, counted from 1.
+/// Returns whether Russian roulette is applied at vertex `vertex` of a path, counted from 1.
 HD inline bool may_end_by_chance(const PathSettings& settings, uint32_t vertex) {
     return vertex >= settings.roulette_depth;
 }

@@ -13,7 +13,7 @@
 
 namespace pertev {
 
-/// Plans a round in one thread: as many new paths as there is room for, until `samples` have begun.
+/// The stage that plans a round in one thread: as many new paths as there is room for, until `samples` have begun.
 struct PlanRound {
     const RoundCounts* before;
     RoundCounts* round;
@@ -58,7 +58,7 @@ struct GeneratePaths {
     }
 };
 
-/// Shades the hits of paths, with the least code that the features need, for `Listener`.
+/// The stage that shades the hits of paths, with the least code that the features need, for `Listener`.
 template <Features kFeatures, class Listener>
 struct Shade {
     PathJob job;
@@ -119,7 +119,7 @@ struct Shade {
     }
 };
 
-/// Adds the light of unoccluded shadow rays.
+/// The stage that adds the light of unoccluded shadow rays.
 template <class Listener>
 struct AddLight {
     PathJob job;
@@ -141,7 +141,7 @@ struct AddLight {
     }
 };
 
-/// Ends paths: adds them to the film.
+/// The stage that ends paths: it adds them to the film.
 template <class Listener>
 struct EndPaths {
     PathJob job;

@@ -16,7 +16,7 @@
 
 namespace pertev {
 
-/// Whether light counts that was scattered `rough` times by other than delta lobes.
+/// Returns whether light counts that was scattered `rough` times by other than delta lobes.
 HD inline bool counts(PathLight light, uint32_t rough) {
     switch (light) {
     case PathLight::Path:

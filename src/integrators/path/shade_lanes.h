@@ -46,7 +46,7 @@ extern const VertexShading kShadingOf16;
 /// The widest that this computer's processor has.
 const VertexShading& vertex_shading();
 
-/// Whether the job's vertices may be shaded so.
+/// Returns whether `shade` may be called for the job.
 bool can_shade_lanes(const PathJob& job);
 
 } // namespace pertev

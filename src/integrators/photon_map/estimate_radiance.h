@@ -4,7 +4,6 @@
 //     L = sum over photons of f(wo, wi) power / (pi r^2),
 // where f is the BSDF of the diffuse lobes. Photons on surfaces turned away by more than 45 degrees belong to another
 // wall and do not count.
-// wall and do not count.
 //
 // Sources: Jensen, "Global Illumination using Photon Maps", 1996, section 5. Of the k nearest photons the farthest
 // sets the radius and does not count itself, so that the mean is right for uniform photons (Loftsgaarden, Quesenberry
@@ -33,7 +32,7 @@ inline constexpr uint32_t kCrowd = 128;
 inline constexpr uint32_t kShares = 32;           // shares of such a lookup
 inline constexpr uint32_t kMaxSharing = 1u << 18; // threads at once
 
-/// Evaluates all lookups. Those with many photons are left to be shared if GatherView has room for that.
+/// The stage that evaluates all lookups. Those with many photons are left to be shared if GatherView has room for that.
 template <ShadingVariant kVariant, PhotonSearch kSearch>
 struct EstimateRadiance {
     SubpathScene scene;
@@ -77,7 +76,7 @@ struct EstimateRadiance {
             atomic_add(&all.global[c], sums.global[c]);
         }
     }
-    /// Adds the sums of that lookup to the film after all shares are done.
+    /// Adds the sums of a shared lookup to the film after all shares are done.
     HD void add_shared(uint32_t at) const { add_sums(gather.load(gather.crowded[at]), gather.shared_sums[at]); }
 
 private:
@@ -164,8 +163,8 @@ private:
     }
 };
 
-/// Shares the lookups with many photons among threads: thread i takes share i % kShares of lookups i / kShares, i /
-/// kShares + sharing / kShares, ...
+/// The stage that shares the lookups with many photons among threads: thread i takes share i % kShares of lookups i /
+/// kShares, i / kShares + sharing / kShares, ...
 template <ShadingVariant kVariant>
 struct ShareLookups {
     EstimateRadiance<kVariant, PhotonSearch::Grid> estimate;
@@ -179,7 +178,7 @@ struct ShareLookups {
     }
 };
 
-/// Adds the shared lookups to the film.
+/// The stage that adds the shared lookups to the film.
 template <ShadingVariant kVariant>
 struct AddSharedLookups {
     EstimateRadiance<kVariant, PhotonSearch::Grid> estimate;

@@ -31,7 +31,7 @@ inline constexpr float kMinSearchChance = 0.125f; // minimum probability of that
 inline constexpr float kSearchWithin = 4.0f;      // its probability is 1 if an emitter's area is more than 1/4 of the
                                                   // squared distance
 
-/// Starts camera subpaths 0, 1, ... of a pass.
+/// The stage that starts camera subpaths 0, 1, ... of a pass.
 struct BeginGather {
     BeginCameraSubpaths begin;
     GatherView gather;
@@ -43,7 +43,7 @@ struct BeginGather {
     }
 };
 
-/// Shades hits of camera subpaths.
+/// The stage that shades hits of camera subpaths.
 template <ShadingVariant kVariant>
 struct ShadeGather {
     SubpathScene scene;
@@ -167,7 +167,7 @@ private:
         return power_heuristic(light.pdf, all.pdf) * all.f;
     }
 
-    /// `nearness` is the result of sample_direct_light.
+    /// Continues or ends the subpath. `nearness` is the result of sample_direct_light.
     HD INLINE_ON_DEVICE void go_on(const Vertex& vertex, uint32_t subpath, SubpathState& state,
                                    GatherState gather_state, float nearness) const {
         const Surface& surface = vertex.surface;

@@ -14,13 +14,13 @@
 
 namespace pertev {
 
-/// Sets order[i] = i.
+/// The stage that sets order[i] = i.
 struct NumberPhotons {
     uint32_t* order;
     HD void operator()(uint32_t i) const { order[i] = i; }
 };
 
-/// Moves photon i of the order from where it was stored.
+/// The stage that moves photon i of the order from where it was stored.
 struct OrderPhotons {
     PhotonsView stored, ordered;
     const uint32_t* order;
@@ -33,7 +33,7 @@ struct OrderPhotons {
     }
 };
 
-/// Sets the key of photon i to its bucket.
+/// The stage that sets the key of photon i to its bucket.
 struct MakeBuckets {
     const Float4* positions;
     PhotonCells cells;
@@ -49,7 +49,7 @@ struct MakeBuckets {
 
 inline constexpr uint32_t kMaxKept = 1024; // photons per bucket
 
-/// Finds the starts of buckets in sorted keys; thread `count` closes the list.
+/// The stage that finds the starts of buckets in sorted keys; thread `count` closes the list.
 struct FindBuckets {
     const uint64_t* sorted_keys;
     uint32_t count, buckets;
@@ -62,10 +62,10 @@ struct FindBuckets {
     }
 };
 
-/// Puts photons into their buckets. Of n > `most` photons in a bucket, the photon of rank r stays if the integer part
-/// of (r * most + offset) / n is less than that for r + 1, with `offset` uniform from 0 to n - 1. These are `most`
-/// photons, evenly spread over the ranks, each with probability most / n. Their power is scaled to compensate for the
-/// others.
+/// The stage that puts photons into their buckets. If a bucket has n > `most` photons, that of rank r stays if the
+/// integer part of (r * most + offset) / n is less than that for r + 1, with `offset` uniform from 0 to n - 1. These
+/// are `most` photons, evenly spread over the ranks, each with probability most / n. Their power is scaled to
+/// compensate for the others.
 struct KeepPhotons {
     PhotonsView photons; // the map's photons; the last component of places becomes 1 for those that stay, else 0
     const uint64_t* sorted_keys;

@@ -8,7 +8,7 @@ namespace pertev {
 
 namespace {
 
-/// `in_loop` means the room of a CPU thread, which has other lookups to do when one is long.
+/// Returns the sizes of the arrays. `in_loop` means those of a CPU thread, which shares no long lookups.
 GatherCapacity gather_capacity(uint32_t subpaths, const PhotonMapSettings& map, bool in_loop) {
     return {subpaths, map.nearest, !in_loop && map.search == PhotonSearch::Grid && map.nearest == 0};
 }

@@ -16,7 +16,7 @@ enum class PhotonSearch : uint8_t {
     Octree, // accel/octree/point_octree.h, built on the host
 };
 
-/// How indirect light at the first diffuse surface is found.
+/// Method to find indirect light at the first diffuse surface.
 enum class PhotonGather : uint8_t {
     Direct, // in the global map at that surface
     Final,  // by one further ray, with the global map where it arrives
@@ -50,7 +50,7 @@ inline constexpr float kMinPhotonRadius = 1e-9f;
 inline constexpr float kRadiusOfScene = 1.0f / 50; // fraction of the radius of a sphere around the scene
 inline constexpr float kCausticRadius = 1.0f / 4;  // fraction of the global map's radius
 
-/// Whether the photons of paths with up to max_depth scatterings can be stored.
+/// Returns whether the photons of paths with up to max_depth scatterings can be stored.
 constexpr bool photons_fit(uint32_t photons, uint32_t max_depth) {
     return uint64_t(photons) * 2 * (max_depth > 1 ? max_depth - 1 : 1) <= kMaxStored;
 }

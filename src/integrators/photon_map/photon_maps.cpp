@@ -18,7 +18,7 @@ namespace {
 uint64_t capacity_of_kind(const PhotonMapSettings& settings, uint32_t max_depth) {
     return uint64_t(settings.photons) * (max_depth > 1 ? max_depth - 1 : 1);
 }
-/// Gathering rays look up all light in the global map (Jensen 1996, section 5).
+/// Returns whether the global map has all light, which final gathering looks up there (Jensen 1996, section 5).
 bool global_has_all(const PhotonMapSettings& settings) { return settings.gather == PhotonGather::Final; }
 /// Maximum number of photons in both maps together.
 uint64_t capacity_of_maps(const PhotonMapSettings& settings, uint32_t max_depth) {
@@ -144,7 +144,7 @@ namespace {
 
 constexpr int kDigitBits = 11;
 
-/// Radix sort, least significant digit first.
+/// Sorts by a radix sort, least significant digit first.
 void sort_on_host(uint64_t* keys, uint32_t* order, uint64_t* sorted_keys, uint32_t* sorted_order, uint32_t count,
                   int bits) {
     uint64_t* from_keys = keys;

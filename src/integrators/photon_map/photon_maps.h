@@ -13,7 +13,7 @@ namespace pertev {
 
 class PhotonMaps {
 public:
-    /// `queue` outlives it.
+    /// Makes empty maps; `queue` outlives them.
     explicit PhotonMaps(Queue& queue) : queue_(queue) {}
 
     /// Allocates for passes with these settings. Throws Error(OutOfMemory).

@@ -47,7 +47,7 @@ struct PhotonPass {
     }
 };
 
-/// Starts photons `first`, first + 1, ... as subpaths 0, 1, ...
+/// The stage that starts photons `first`, first + 1, ... as subpaths 0, 1, ...
 struct BeginPhotons {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -84,7 +84,7 @@ struct BeginPhotons {
     }
 };
 
-/// Shades hits of photons.
+/// The stage that shades hits of photons.
 template <ShadingVariant kVariant>
 struct ShadePhotons {
     SubpathScene scene;

@@ -12,7 +12,7 @@ Float4 sphere_around(const Bounds3& box) {
     return {centre.x, centre.y, centre.z, kGrown * (0.5f * length(box.size()) + 0x1p-20f * box.max_abs())};
 }
 
-/// Spheres of the cells, of which `together` along each axis form one.
+/// Returns the spheres of the cells, of which `together` along each axis form one.
 std::vector<Float4> spheres_of_cells(const SpecularBounds& found, uint32_t together) {
     constexpr uint32_t kAcross = kTargetCellsAcross;
     const uint32_t across = kAcross / together;

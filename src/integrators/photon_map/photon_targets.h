@@ -160,7 +160,7 @@ struct AimFromKind {
     }
 
 private:
-    /// Whether the targets are narrower than the disc through which distant light enters.
+    /// Returns whether the targets are narrower than the disc through which distant light enters.
     HD bool are_narrow() const { return area_of_discs(targets) < square(freely.world.radius); }
 };
 
@@ -183,13 +183,13 @@ HD inline bool aim_particle(const SceneView& scene, const PhotonTargetsView& tar
 inline constexpr uint32_t kTargetCellsAcross = 4;
 static_assert(kTargetCellsAcross * kTargetCellsAcross * kTargetCellsAcross <= kMaxTargets);
 
-/// Result of the stages; all bytes are hploc::kNothing while it is empty.
+/// Bounds of specular triangles and of the cells that hold some; all bytes are hploc::kNothing while it is empty.
 struct SpecularBounds {
     hploc::OrderedBounds all, cells[kMaxTargets];
     int32_t reach; // hploc::ordered of minus the squared distance of the farthest corner from the middle of `all`
 };
 
-/// Extends the bounds by triangle i of all instances, or, once these are known, those of the cells.
+/// The stage that extends the bounds by triangle i of all instances or, once these are known, those of the cells.
 struct FindSpecular {
     SceneView scene;
     SpecularBounds* bounds;

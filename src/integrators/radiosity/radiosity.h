@@ -14,7 +14,7 @@ namespace pertev {
 struct Radiosity {
     static constexpr uint32_t kMaxBranches = 2;
     static constexpr bool kHasShutter = false;
-    static constexpr LeastWeight kLeast = {0x1p-10f, WeakRays::LeftOut};
+    static constexpr MinWeight kMinWeight = {0x1p-10f, WeakRays::LeftOut};
 
     HD static uint32_t shadow_rays(const LightSetView&) { return 0; }
     HD static bool sample_direct_light(const TreeVertex&, uint32_t, TreeShadowRay&) { return false; }
@@ -28,10 +28,10 @@ struct Radiosity {
             const Rgb light = vertex.settings.radiosity.irradiance(face, vertex.uv.x, vertex.uv.y);
             vertex.state.radiance += vertex.ray.weight * albedo * (kInvPi * light);
         }
-        vertex.follow_specular(kLeast);
+        vertex.follow_specular(kMinWeight);
     }
 
-    /// None, because the solution contains it.
+    /// Default ambient light: none, because the solution contains it.
     static Rgb ambient(const EnvironmentView*) { return {0, 0, 0}; }
 };
 

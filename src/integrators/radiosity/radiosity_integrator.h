@@ -14,15 +14,15 @@ public:
         RayTreeSettings trees;
         RadiosityDisplay display;
     };
-    /// `queue`, `in_loop` and `batch` have the meanings of RayTreeIntegrator's.
+    /// Makes an integrator; `queue`, `in_loop` and `batch` are those of RayTreeIntegrator.
     RadiosityIntegrator(Queue& queue, const Settings& settings, bool in_loop, uint32_t batch)
         : RayTreeIntegrator(queue, settings.trees, in_loop, batch), display_(settings.display) {}
 
     void reserve(const WorkSize& size) override;
-    /// Throws Error(BadInput) too, if there is no solution or it belongs to another scene.
+    /// Begins a picture. Throws Error(BadInput) too, if there is no solution or it belongs to another scene.
     void begin(const PictureView& picture, SceneTracer& tracer, uint32_t samples) override;
 
-    /// The settings take effect at the next begin().
+    /// Changes the settings at the next begin().
     void set_settings(const Settings& settings) {
         RayTreeIntegrator::set_settings(settings.trees);
         display_ = settings.display;

@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-/// Maximum number of rows deferred to the second pass; triangles beyond it are scanned in the first one.
+/// Returns the maximum number of rows deferred to the second pass; triangles beyond it are scanned in the first one.
 uint64_t rows_for(uint64_t pixels) { return std::clamp<uint64_t>(pixels, 1u << 12, 1u << 22); }
 
 } // namespace

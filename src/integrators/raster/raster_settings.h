@@ -9,8 +9,8 @@
 
 namespace pertev {
 
-/// Where light is evaluated: once per triangle, at its corners with interpolation (Gouraud 1971), or in every pixel
-/// with interpolated normals (Phong 1975).
+/// Points at which light is evaluated: once per triangle, at its corners with interpolation (Gouraud 1971), or in every
+/// pixel with interpolated normals (Phong 1975).
 enum class RasterShading : uint8_t { Flat, Gouraud, Phong };
 
 inline constexpr ValueName<RasterShading> kRasterShadings[] = {

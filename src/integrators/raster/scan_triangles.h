@@ -27,8 +27,9 @@ struct RasterPass {
     uint64_t max_rows;
     uint32_t sample;
 
-    /// Sample 0 lies in the middle. Further ones follow a sequence that covers the filter evenly from its start, with
-    /// the same position in every pixel: Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018.
+    /// Position of the sample in a pixel. Sample 0 lies in the middle. Further ones follow a sequence that covers the
+    /// filter evenly from its start, with the same position in every pixel: Roberts, "The Unreasonable Effectiveness of
+    /// Quasirandom Sequences", 2018.
     HD SamplePosition sample_position() const {
         const uint32_t x = 0x80000000u + sample * 3242174889u, y = 0x80000000u + sample * 2447445413u;
         const auto unit = [](uint32_t bits) { return (static_cast<float>(bits >> 9) + 0.5f) * 0x1p-23f; };
@@ -55,7 +56,7 @@ struct TriangleScan {
     ProjectedTriangle projected;
     bool has_alpha;
 
-    /// Returns false if no part of it is visible.
+    /// Projects the triangle. Returns false if no part of it is visible.
     HD bool begin() {
         const SceneView& scene = pass.picture.scene;
         if (!triangle_corners(pass.camera, scene, number, corners)) return false;
@@ -98,7 +99,7 @@ private:
     }
 };
 
-/// Scans triangle i. A large one defers its rows to the second pass if there is room.
+/// The stage that scans triangle i. A large one defers its rows to the second pass if there is room.
 struct ScanTriangles {
     RasterPass pass;
 
@@ -121,7 +122,7 @@ struct ScanTriangles {
     }
 };
 
-/// Scans row i of the deferred ones.
+/// The stage that scans row i of the deferred ones.
 struct ScanRows {
     RasterPass pass;
 
@@ -134,8 +135,8 @@ struct ScanRows {
     }
 };
 
-/// Draws the edges of triangle i in place of its interior. Source: Bresenham, "Algorithm for Computer Control of a
-/// Digital Plotter", IBM Systems Journal 4(1), 1965.
+/// The stage that draws the edges of triangle i in place of its interior. Source: Bresenham, "Algorithm for Computer
+/// Control of a Digital Plotter", IBM Systems Journal 4(1), 1965.
 struct DrawEdges {
     RasterPass pass;
 

@@ -114,8 +114,8 @@ struct TreesView {
         weights[at] = {ray.weight.r, ray.weight.g, ray.weight.b, float_of(ray.start.instance)};
         primitives[at] = ray.start.primitive;
     }
-    /// Stores `ray` of `tree` at `slot` of the current rays. `key` is that of its coin, and `time` that of all
-    /// rays of the tree.
+    /// Stores `ray` of `tree` at `slot` of the current rays. `key` is its key for blended surfaces, and `time` that of
+    /// all rays of the tree.
     HD void queue_ray(uint32_t slot, uint32_t tree, const PendingRay& ray, uint32_t key, float time,
                       uint32_t round) const {
         pertev::store_ray(rays + slot, {ray.origin, 0.0f, ray.direction, kInfinity});

@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-/// Starts samples `first`, first + 1, ... of `samples` as trees 0, 1, ... with their camera rays.
+/// The stage that starts samples `first`, first + 1, ... of `samples` as trees 0, 1, ... with their camera rays.
 struct BeginTrees {
     CameraRays camera;
     RayTreeSettings settings;
@@ -35,10 +35,10 @@ struct BeginTrees {
     }
 };
 
-/// Shades hits of the current rays. The vertex's shadow rays from `first_shadow` on are queued, at most
+/// The stage that shades hits of the current rays. The vertex's shadow rays from `first_shadow` on are queued, at most
 /// kShadowsAtOnce; the stage runs again until all have been. The first run adds emission; the last one (`is_last`)
-/// pushes the continuation rays on the stack, in place of the ray that ended there. `kMotion` is None if no shutter
-/// is open; code for both cases would keep surfaces in memory.
+/// pushes the continuation rays on the stack, in place of the ray that ended there. `kMotion` is None if no shutter is
+/// open; code for both cases would keep surfaces in memory.
 template <class Algorithm, MotionKnown kMotion>
 struct ShadeTrees {
     PictureView picture;
@@ -70,8 +70,8 @@ private:
         const float light_pdf = ray.bsdf_pdf > 0 ? pdf_environment(lights, ray.origin, ray.direction) : 0.0f;
         add_emission(state, ray, environment_radiance(lights.environment, ray.direction), light_pdf);
     }
-    /// `light_pdf` is the density with which light sampling at the ray's start samples its direction, 1/sr; 0 if it
-    /// cannot.
+    /// Adds emission that a ray hit. `light_pdf` is the density with which light sampling at the ray's start samples
+    /// its direction, 1/sr; 0 if it cannot.
     HD static void add_emission(TreeState& state, const PendingRay& ray, Rgb emission, float light_pdf) {
         const float weight = ray.bsdf_pdf > 0 && light_pdf > 0 ? power_heuristic(ray.bsdf_pdf, light_pdf) : 1.0f;
         state.radiance += ray.weight * (weight * emission);
@@ -117,7 +117,7 @@ private:
 };
 static_assert(kShadowsAtOnce == 4, "TreesView::asked");
 
-/// Adds light of unoccluded shadow rays, tree by tree, in the order of requests.
+/// The stage that adds light of unoccluded shadow rays, tree by tree, in the order of requests.
 struct AddTreeLight {
     TreesView trees;
     uint32_t round;
@@ -138,7 +138,7 @@ struct AddTreeLight {
     }
 };
 
-/// Pops the next ray of each tree; a tree without one is added to the film.
+/// The stage that pops the next ray of each tree; a tree without one is added to the film.
 struct TakeNextRays {
     CameraRays camera;
     RayTreeSettings settings;
@@ -157,7 +157,7 @@ struct TakeNextRays {
     }
 };
 
-/// Counts in one thread: shadow rays since the last time and, if `ends_round`, the rays that continue.
+/// The stage that counts in one thread: shadow rays since the last time and, if `ends_round`, the rays that continue.
 struct CountTrees {
     TreeCounts* counts;
     bool ends_round;
@@ -172,7 +172,7 @@ struct CountTrees {
     }
 };
 
-/// Starts the first round of `trees` in one thread.
+/// The stage that starts the first round of `trees` in one thread.
 struct BeginRounds {
     TreeCounts* counts;
     uint32_t trees;

@@ -16,7 +16,7 @@ namespace pertev {
 /// Treatment of a ray whose weight is below the minimum: it is dropped, which loses its light, or kept at random with
 /// a compensating weight (Russian roulette), which does not.
 enum class WeakRays : uint8_t { LeftOut, ByChance };
-struct LeastWeight {
+struct MinWeight {
     float weight;
     WeakRays weaker;
 };
@@ -92,7 +92,7 @@ struct TreeVertex {
     HD void add_ambient() const { state.radiance += ray.weight * surface.bsdf.diffuse_albedo() * settings.ambient; }
 
     /// Pushes rays along the directions of the delta lobes: both branches.
-    HD void follow_specular(LeastWeight least) const {
+    HD void follow_specular(MinWeight least) const {
         if (!surface.bsdf.has_delta()) return;
         const Vec3 wo_local = surface.frame.to_local(wo());
         const SpecularBranches branches = surface.bsdf.specular(wo_local);
@@ -102,7 +102,7 @@ struct TreeVertex {
     }
 
     /// Pushes one ray along a direction sampled by the glossy lobes.
-    HD void follow_glossy(LeastWeight least) const {
+    HD void follow_glossy(MinWeight least) const {
         if (!surface.bsdf.has(LobeClass::Glossy)) return;
         const float lobe =
             surface.bsdf.draws_lobe() ? sample_1d(settings.sampler, key(), group(kTreeChoices), kTreeNumberLobe) : 0.5f;
@@ -114,7 +114,7 @@ struct TreeVertex {
     }
 
 private:
-    /// Not inlined, so that a kernel contains it once.
+    /// Scattered light. It is not inlined, so that a kernel contains it once.
     HD_CALL static BsdfValue scattered(const Surface& surface, Vec3 wo, Vec3 wi, LobeClasses classes) {
         return surface.evaluate(wo, wi, classes);
     }
@@ -127,18 +127,18 @@ private:
         shadow.contribution = ray.weight * f_times_light;
         return true;
     }
-    /// Whether the sampled point lies in a transparent part of the emitter.
+    /// Returns whether the sampled point lies in a transparent part of the emitter.
     HD bool is_hole(const LightSample& light) const {
         if (light.instance == kNoLight || picture.scene.any_alpha == 0) return false;
         const AcceptHit accept = {picture.scene, {}, {}, tree_key(state, settings.seed, number(), true)};
         return !accept.passes_alpha(light.instance, light.primitive, light.b1, light.b2);
     }
-    HD void follow_delta(Rgb weight, Vec3 wo_local, Vec3 wi_local, Branch branch, LeastWeight least) const {
+    HD void follow_delta(Rgb weight, Vec3 wo_local, Vec3 wi_local, Branch branch, MinWeight least) const {
         Vec3 wi;
         if (is_black(weight) || !surface.place_specular(wo(), wo_local, wi_local, wi)) return;
         follow(wi, weight, 0, branch, least);
     }
-    HD void follow(Vec3 wi, Rgb factor, float bsdf_pdf, Branch branch, LeastWeight least) const {
+    HD void follow(Vec3 wi, Rgb factor, float bsdf_pdf, Branch branch, MinWeight least) const {
         PendingRay child;
         child.weight = ray.weight * factor;
         const float largest = max_component(child.weight);

@@ -35,7 +35,7 @@ struct DisplacementsView {
     const DisplacementView* of_material = nullptr; // [count]
     uint32_t count = 0;                            // later materials have none
 
-    /// Returns null if the material has none.
+    /// Returns the displacement of a material; null if it has none.
     HD const DisplacementView* find(uint32_t material) const {
         if (material >= count || of_material[material].heights == nullptr) return nullptr;
         return of_material + material;
@@ -58,7 +58,7 @@ struct DicedTriangle {
     DoubleVec3 row_x, row_y, row_depth; // rows of camera-from-mesh
     double reach;                       // maximum displacement of any coordinate in camera space, metres
 
-    /// Returns false if the triangle is hidden.
+    /// Loads a triangle. Returns false if it is hidden.
     HD bool begin(const Pinhole& camera, const SceneView& scene, const DisplacementsView& displacements,
                   uint32_t number) {
         if (!triangle_corners(camera, scene, number, corners)) return false;
@@ -112,8 +112,8 @@ struct DicedTriangle {
         return point;
     }
 
-    /// Whether the edge must be halved: its length through its middle exceeds `rate` pixels, or is undefined because
-    /// the edge crosses the plane of the eye.
+    /// Returns whether the edge must be halved: its length through its middle exceeds `rate` pixels, or is undefined
+    /// because the edge crosses the plane of the eye.
     HD bool is_long(const Pinhole& camera, double rate, const DicedPoint& a, const DicedPoint& b) const {
         const float u = 0.5f * (a.at.x + b.at.x) * 0x1p23f, v = 0.5f * (a.at.y + b.at.y) * 0x1p23f;
         if (!(floor(u) == u && floor(v) == v)) return false; // its middle would have no exact weights
@@ -123,7 +123,7 @@ struct DicedTriangle {
         return is_long(camera, 0.5 * rate, a.position, middle) || is_long(camera, 0.5 * rate, middle, b.position);
     }
 
-    /// Whether no part of the triangle between the points can be in the picture.
+    /// Returns whether no part of the triangle between the points can be in the picture.
     HD bool is_outside(const Pinhole& camera, const DicedPoint (&p)[3]) const {
         const double beyond = camera.filter_radius + 2; // pixels
         const double x = camera.x_of(camera.width + beyond), y = camera.y_of(camera.height + beyond);

@@ -57,7 +57,7 @@ struct SampleLists {
     HD uint32_t pixels() const { return width * height; }
 };
 
-/// Finds the position of sample i of a pass.
+/// The stage that finds the position of sample i of a pass.
 struct PositionSamples {
     CameraRays camera;
     SamplerKind sampler;
@@ -81,7 +81,8 @@ struct PositionSamples {
     }
 };
 
-/// Finds the farthest visible depth of the samples on the list of cell i; anything beyond it stays hidden.
+/// The stage that finds the farthest visible depth of the samples on the list of cell i; anything beyond it stays
+/// hidden.
 struct FindFar {
     SampleLists samples;
 
@@ -108,7 +109,7 @@ struct ReyesPass {
     SampleLists samples;
 };
 
-/// On a displaced surface the micropolygon's own winding determines its front.
+/// Returns whether the micropolygon is a hidden back. On a displaced surface its own winding determines its front.
 HD inline bool is_hidden_back(const InstanceView& placed, const ProjectedPlane& plane) {
     if (placed.hides_back == 0) return false;
     const double away = plane.is_perspective ? plane.constant : plane.depth; // component of the normal away from the
@@ -128,8 +129,8 @@ HD inline uint64_t max_wide(uint64_t pixels) { return min(max_work(pixels) / kWi
 /// Returns false if wide micropolygons have visited so many cells that the pass is aborted.
 HD inline bool may_search(const ReyesPass& pass, uint64_t cells) {
     if (pass.wide == nullptr || cells <= kWideCells) return true;
-    constexpr uint64_t kMost = 1u << 15; // prevents overflow of the count, whatever a round of pieces adds
-    const auto more = static_cast<uint32_t>(min(cells / kWideCells, kMost));
+    constexpr uint64_t kMaxBlocks = 1u << 15; // prevents overflow of the count, whatever a round of pieces adds
+    const auto more = static_cast<uint32_t>(min(cells / kWideCells, kMaxBlocks));
     return atomic_add(pass.wide, more) <= max_wide(pass.samples.pixels());
 }
 

@@ -10,7 +10,7 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kMostLevels = 31; // levels of halving, two bits each in Piece::way
+inline constexpr uint32_t kMaxLevels = 31; // levels of halving, two bits each in Piece::way
 inline constexpr uint64_t kNoWay = ~uint64_t(0);
 
 struct Piece {
@@ -41,7 +41,7 @@ HD inline Piece child_of(const Piece& piece, uint32_t long_edges, uint32_t numbe
     const auto middle = [&](uint32_t edge) { return 0.5f * (c[edge] + c[(edge + 1) % 3]); };
     Piece child = piece;
     child.level = piece.level + 1;
-    child.way = piece.way | uint64_t(number) << (2 * (kMostLevels - 1 - piece.level));
+    child.way = piece.way | uint64_t(number) << (2 * (kMaxLevels - 1 - piece.level));
     const auto set = [&](Vec2 x, Vec2 y, Vec2 z) { child.corners[0] = x, child.corners[1] = y, child.corners[2] = z; };
     if (long_edges == 7) {
         if (number < 3) {
@@ -75,7 +75,7 @@ HD inline Piece child_of(const Piece& piece, uint32_t long_edges, uint32_t numbe
 
 /// The child on the path `way` below a piece at `level`.
 HD inline uint32_t child_on_way(uint64_t way, uint32_t level) {
-    return static_cast<uint32_t>(way >> (2 * (kMostLevels - 1 - level))) & 3u;
+    return static_cast<uint32_t>(way >> (2 * (kMaxLevels - 1 - level))) & 3u;
 }
 
 } // namespace pertev

@@ -19,14 +19,14 @@ constexpr double kMaxPiecesOfTriangle = 64;               // added to kMaxWorkOf
 constexpr uint32_t kRoundsPerUpdate = 8;                  // rounds between updates of the farthest depths
 constexpr uint32_t kStack = 1u << 19, kMaxUnderWay = 1u << 16;
 
-// Why the stack suffices: a round takes at least `kLeast` pieces off the top and leaves at most four of each, one
-// level deeper. Thus a piece 4 kLeast higher is one level deeper, and no level exceeds kMostLevels. Larger rounds
+// Why the stack suffices: a round takes at least `kMinRound` pieces off the top and leaves at most four of each, one
+// level deeper. Thus a piece 4 kMinRound higher is one level deeper, and no level exceeds kMaxLevels. Larger rounds
 // never use the reserve for that.
-constexpr uint32_t kLeast = 1024, kReserve = 4 * kLeast * (kMostLevels + 2);
+constexpr uint32_t kMinRound = 1024, kReserve = 4 * kMinRound * (kMaxLevels + 2);
 
 uint32_t pieces_at_once(uint32_t height) {
     const uint32_t capacity_left = height < kStack - kReserve ? (kStack - kReserve - height) / 4 : 0;
-    return std::min({height, std::max(kLeast, capacity_left), kMaxUnderWay});
+    return std::min({height, std::max(kMinRound, capacity_left), kMaxUnderWay});
 }
 
 uint64_t samples_held(uint64_t pixels, uint32_t samples) {
@@ -39,14 +39,14 @@ uint64_t texels(const HeightMaps& maps) {
     return sum;
 }
 
-/// Number of materials up to the last one with heights.
+/// Returns the number of materials up to the last one with heights.
 uint64_t materials_of(const HeightMaps& maps) {
     uint64_t count = 0;
     for (const HeightMap& map : maps) count = std::max(count, uint64_t(map.material) + 1);
     return count;
 }
 
-/// Maximum of |scale (h - middle)|.
+/// Returns the maximum of |scale (h - middle)|.
 float reach_of(const HeightMap& map) {
     float reach = 0;
     for (const float h : map.heights.pixels) reach = std::max(reach, std::abs(map.scale * (h - map.middle)));
@@ -104,8 +104,9 @@ void ReyesIntegrator::upload_heights() {
     uploaded_ = settings_.heights;
 }
 
-/// Heights that are large relative to the scene fold its surfaces over each other without end. Because hidden pieces
-/// are found in arbitrary order, two runs may differ by some pieces before this limit.
+/// Throws Error(OverLimit) for too much work: heights that are large relative to the scene fold its surfaces over each
+/// other without end. Because hidden pieces are found in arbitrary order, two runs may differ by some pieces before
+/// this limit.
 void ReyesIntegrator::check_work(uint64_t pieces, uint32_t wide) const {
     if (!settings_.heights) return;
     const uint64_t pixels = uint64_t(picture_.camera.width) * picture_.camera.height;

@@ -11,7 +11,7 @@
 
 namespace pertev {
 
-/// Reconstructs a micropolygon from its triangle and its path of splits.
+/// A micropolygon, reconstructed from its triangle and its path of splits.
 struct Micropolygon {
     DicedTriangle triangle;
     Piece piece;
@@ -22,7 +22,7 @@ struct Micropolygon {
         piece = whole_triangle(number);
         for (;;) {
             for (int k = 0; k < 3; ++k) points[k] = triangle.point(pass.camera.is_perspective, piece.corners[k]);
-            const uint32_t edges = piece.level < kMostLevels ? long_edges(pass, triangle, points) : 0;
+            const uint32_t edges = piece.level < kMaxLevels ? long_edges(pass, triangle, points) : 0;
             if (edges == 0) return true;
             piece = child_of(piece, edges, child_on_way(way, piece.level));
         }
@@ -69,7 +69,7 @@ struct Micropolygon {
         return s;
     }
 
-    /// Its single colour towards the eye, W/(sr m2).
+    /// The micropolygon's single colour towards the eye, W/(sr m2).
     HD Rgb color(const ReyesPass& pass) const {
         const CameraRays& camera = pass.picture.camera;
         constexpr float kThird = 1.0f / 3;
@@ -96,7 +96,7 @@ private:
     }
 };
 
-/// Shades all samples of a pixel.
+/// The stage that shades all samples of a pixel.
 struct ShadeSamples {
     ReyesPass pass;
     FilmView film;

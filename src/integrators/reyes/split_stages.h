@@ -14,7 +14,7 @@ namespace pertev {
 // Culling of pieces that cannot be visible: hidden backs, and pieces behind everything that the samples there show
 // already. Such a piece has no nearest micropolygon, so the time of its culling does not change the picture.
 
-/// Whether a piece is behind everything visible in all pixels that it may cover. Only tested if these are few;
+/// Returns whether a piece is behind everything visible in all pixels that it may cover. Only tested if these are few;
 /// otherwise its children will be.
 HD inline bool is_behind(const ReyesPass& pass, const DicedTriangle& triangle, const DicedPoint (&p)[3]) {
     constexpr int32_t kMaxSamplesOnce = 64;
@@ -62,7 +62,8 @@ struct PiecesView {
     uint32_t capacity;
 };
 
-/// Takes piece i of a round: `from_stack` pieces from the top of the stack, then triangles from `first_triangle` on.
+/// The stage that takes piece i of a round: `from_stack` pieces from the top of the stack, then triangles from
+/// `first_triangle` on.
 struct TakePieces {
     PiecesView pieces;
     uint32_t height, from_stack; // `height` of the stack before the round
@@ -75,7 +76,7 @@ struct TakePieces {
     }
 };
 
-/// Bit k means that the edge from point k to the next one must be halved.
+/// Edges that must be halved: bit k means the edge from point k to the next one.
 HD inline uint32_t long_edges(const ReyesPass& pass, const DicedTriangle& triangle, const DicedPoint (&p)[3]) {
     uint32_t edges = 0;
     for (uint32_t k = 0; k < 3; ++k) {
@@ -96,7 +97,7 @@ struct SplitPieces {
         DicedPoint points[3];
         for (int k = 0; k < 3; ++k) points[k] = triangle.point(pass.camera.is_perspective, piece.corners[k]);
         if (triangle.is_outside(pass.camera, points) || is_hidden_piece(pass, triangle, points)) return;
-        const uint32_t edges = piece.level < kMostLevels ? long_edges(pass, triangle, points) : 0;
+        const uint32_t edges = piece.level < kMaxLevels ? long_edges(pass, triangle, points) : 0;
         if (edges == 0) return hide_micropolygon<kPass>(pass, triangle, piece, points);
         const uint32_t children = child_count(edges), first = atomic_add(pieces.count, children);
         for (uint32_t k = 0; k < children && first + k < pieces.capacity; ++k) {

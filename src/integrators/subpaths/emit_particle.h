@@ -23,7 +23,7 @@ struct Particle {
     bool is_from_far; // its ray is one of many parallel ones, so its first segment has no distance
 };
 
-/// For an emitter: density of the direction with `cosine` to its normal, 1/sr.
+/// Density of an emitter's direction with `cosine` to its normal, 1/sr.
 HD inline float pdf_emission(const EmissiveTriangle& triangle, float cosine) {
     return (triangle.is_two_sided != 0 ? 0.5f * kInvPi : kInvPi) * abs(cosine);
 }
@@ -35,7 +35,7 @@ HD inline float pdf_position(const EmissiveTriangle& triangle) {
 /// Density of the points through which parallel rays enter, 1/m2.
 HD inline float pdf_disc(const WorldSphere& world) { return kInvPi / square(world.radius); }
 
-/// Attenuation of a point or spot light at `distance` if its range is `t_max`.
+/// Attenuation, [0, 1], of a point or spot light at `distance` metres if its range is `t_max`.
 HD inline float left_at(float distance, float t_max) {
     return t_max < kInfinity ? range_falloff(t_max, distance) : 1.0f;
 }
@@ -48,7 +48,7 @@ struct EmissionPoint {
 };
 
 /// Finds the point with the weights `at` of a triangle light's second and third vertex. Returns false if it emits
-/// nothing. `key` is that of the coin of a blended emitter.
+/// nothing. `key` is the key of a blended emitter.
 HD inline bool find_emission_point(const SceneView& scene, uint32_t light, Vec2 at, uint32_t key,
                                    EmissionPoint& emission) {
     const EmissiveTriangle& triangle = scene.lights.triangles[light];
@@ -145,7 +145,7 @@ private:
 };
 
 /// Samples a particle; `u_position` is used as in sample_light, and `u` for the rest. Returns false if there is none,
-/// which counts as black. `key` is that of the coin of a blended emitter.
+/// which counts as black. `key` is the key of a blended emitter.
 HD inline bool emit_particle(const SceneView& scene, const WorldSphere& world, SampleBits u_position, Vec2 u,
                              uint32_t key, Particle& particle) {
     if (!(world.radius > 0)) return false;

@@ -83,7 +83,7 @@ HD inline SampleKey particle_sample_key(const SubpathScene& scene, uint32_t pixe
     return {static_cast<uint32_t>(number >> 32), static_cast<uint32_t>(number), scene.settings.seed};
 }
 
-/// Starts the particles of samples `first`, first + 1, ... of `samples` as subpaths 0, 1, ...
+/// The stage that starts the particles of samples `first`, first + 1, ... of `samples` as subpaths 0, 1, ...
 struct BeginParticles {
     SubpathScene scene;
     SubpathsView subpaths;
@@ -110,7 +110,7 @@ struct BeginParticles {
     }
 };
 
-/// Shades hits of particles: a connection to the camera, a stored vertex, the continuation.
+/// The stage that shades hits of particles: a connection to the camera, a stored vertex, the continuation.
 template <ShadingVariant kVariant>
 struct ShadeParticles {
     SubpathScene scene;
@@ -214,7 +214,7 @@ private:
     }
 };
 
-/// Adds the particles that the camera sees.
+/// The stage that adds the particles that the camera sees.
 struct AddSplats {
     SubpathsView subpaths; // connection_keys hold the tracer's results, kNoHit if the ray hit nothing
     PixelFilterView filter;
@@ -227,7 +227,7 @@ struct AddSplats {
     }
 };
 
-/// Adds other connections to their pixels.
+/// The stage that adds other connections to their pixels.
 struct AddConnections {
     SubpathsView subpaths;
     FilmView film;
@@ -239,8 +239,8 @@ struct AddConnections {
     }
 };
 
-/// Counts in one thread: connections since the last count and, if `ends_round`, the rays that continue. `connected` is
-/// the number of light-subpath vertices that each current vertex connects to next.
+/// The stage that counts in one thread: connections since the last count and, if `ends_round`, the rays that continue.
+/// `connected` is the number of light-subpath vertices that each current vertex connects to next.
 struct CountSubpaths {
     SubpathCounts* counts;
     bool ends_round;
@@ -257,7 +257,7 @@ struct CountSubpaths {
     }
 };
 
-/// Starts the first round of `rays` in one thread.
+/// The stage that starts the first round of `rays` in one thread.
 struct BeginSubpaths {
     SubpathCounts* counts;
     uint32_t rays;
@@ -271,7 +271,7 @@ struct BeginSubpaths {
 // Camera subpaths begin like paths of path tracing, with the same random numbers, so that layers of the first surface
 // are equal.
 
-/// Starts the camera subpaths of samples `first`, first + 1, ... of `samples` as subpaths 0, 1, ...
+/// The stage that starts the camera subpaths of samples `first`, first + 1, ... of `samples` as subpaths 0, 1, ...
 struct BeginCameraSubpaths {
     SubpathScene scene;
     SubpathsView subpaths;

@@ -26,7 +26,7 @@ namespace pertev {
 // scatterings count as sampled with the same density from both sides, which is valid for any weights that add up to
 // 1.
 
-/// Larger weight sums are clamped to this, because they determine any weight.
+/// Maximum weight sum; larger ones are clamped, because they determine any weight.
 inline constexpr float kMaxWeightSum = 0x1p+100f;
 
 HD inline float squared_density(float density) { return square(min(density, 0x1p+30f)); }
@@ -63,7 +63,7 @@ struct MisSums {
     }
 };
 
-/// MIS weight of one technique if the weight sum of all others is `others`; 0 if that is not finite.
+/// MIS weight of one technique if the weight sum of all others is `weight_sum`; 0 if that is not finite.
 HD inline float mis_weight(float weight_sum) { return weight_sum < kInfinity ? 1.0f / (1.0f + weight_sum) : 0.0f; }
 
 /// State of a subpath besides its ray.

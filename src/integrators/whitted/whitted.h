@@ -13,7 +13,7 @@ namespace pertev {
 struct Whitted {
     static constexpr uint32_t kMaxBranches = 2;
     static constexpr bool kHasShutter = true;
-    static constexpr LeastWeight kLeast = {0x1p-10f, WeakRays::LeftOut};
+    static constexpr MinWeight kMinWeight = {0x1p-10f, WeakRays::LeftOut};
 
     HD static uint32_t shadow_rays(const LightSetView& lights) { return lights.punctual_count; }
     HD static bool sample_direct_light(const TreeVertex& vertex, uint32_t number, TreeShadowRay& shadow) {
@@ -21,10 +21,11 @@ struct Whitted {
     }
     HD static void follow(const TreeVertex& vertex) {
         vertex.add_ambient();
-        vertex.follow_specular(kLeast);
+        vertex.follow_specular(kMinWeight);
     }
 
-    /// The default is the mean of the environment, which is right for a convex diffuse surface under a uniform sky.
+    /// Default ambient light: the mean of the environment, which is right for a convex diffuse surface under a uniform
+    /// sky.
     static Rgb ambient(const EnvironmentView* environment) {
         return environment != nullptr ? environment->mean : Rgb{0, 0, 0};
     }

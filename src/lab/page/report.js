@@ -250,7 +250,7 @@ function matrix(table, view, rows, title) {
 
 /** Rows that differ in one column alone: the ratio of their times. */
 function ratio(table, view, rows, title) {
-  const keys = ["structure", "walk", "rta", "near_first", "tests", "distribution"].filter((key) => key !== view.change);
+  const keys = ["structure", "traversal", "rta", "near_first", "tests", "distribution"].filter((key) => key !== view.change);
   const alike = (a, b) => a.set === b.set && keys.every((key) => a[key] === b[key]);
   const timed = rows.filter((row) => isNumber(row.median_seconds) && row.is_copy === false);
   const found = timed.filter((row) => row[view.change] === view.of).flatMap((row) => {

@@ -19,7 +19,7 @@ using StateSet = std::vector<uint32_t>; // sorted states of all automata
     throw Error(ErrorCode::OverLimit, "lpe", "", why + "; render some of the expressions separately");
 }
 
-/// The automata of all expressions, side by side as one.
+/// The automata of all expressions, side by side in one.
 class AllExpressions {
 public:
     AllExpressions(std::span<const LightPathExpression> expressions, uint64_t max_steps, StateSet& firsts)
@@ -154,7 +154,7 @@ struct HashOfStates {
     }
 };
 
-/// Subset construction. State 0 is the empty set and state 1 the first one.
+/// Makes the automaton by subset construction. State 0 is the empty set and state 1 the first one.
 LightPathAutomaton determinise(AllExpressions& all, StateSet firsts, const LightPathTags& tags) {
     LightPathAutomaton automaton;
     ReaderSets scatterings, lights;

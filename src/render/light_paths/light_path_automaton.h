@@ -55,8 +55,8 @@ struct LightPathAutomaton {
 inline constexpr uint32_t kMaxLightPathStates = 16384;
 /// Maximum number of table entries: states times all inputs.
 inline constexpr uint64_t kMaxLightPathEntries = 1u << 24;
-/// Maximum number of states of the expressions' own automata together, and of states that may be visited while they
-/// are combined.
+/// Maximum number of states of the expressions' separate automata together, and of states that may be visited while
+/// they are combined.
 inline constexpr uint64_t kMaxLightPathParts = 1u << 22, kMaxLightPathSteps = 1u << 29;
 
 /// Makes the automaton in which layer i belongs to expression i; there is at least one. It has as few states as

@@ -245,7 +245,7 @@ bool is_name(std::string_view name) {
     return !name.empty() && name.size() <= 64 && std::ranges::all_of(name, is_letter);
 }
 
-/// Number of visible letters before byte `place`; UTF-8 has up to four bytes per letter.
+/// Number of visible letters before byte `offset`; UTF-8 has up to four bytes per letter.
 std::size_t letters_before(std::string_view text, std::size_t offset) {
     return static_cast<std::size_t>(
         std::ranges::count_if(text.substr(0, offset), [](char c) { return (static_cast<uint8_t>(c) & 0xc0) != 0x80; }));

@@ -84,7 +84,7 @@ inline constexpr uint64_t kMaxLightPathLetters = 4096;
 /// path can match; Error(OverLimit) beyond kMaxLightPathText and kMaxLightPathLetters.
 LightPathExpression parse_light_path(std::string_view text);
 
-/// A remark on the setting `lpe`: the reason, the expression, and a caret under the letter at `place`.
+/// A remark on the setting `lpe`: the reason, the expression, and a caret under the letter at byte `offset`.
 Remark point_at(const LightPathExpression& expression, std::size_t offset, std::string_view why);
 
 } // namespace pertev

@@ -25,11 +25,11 @@ struct LightPathLayers {
     uint32_t count() const { return static_cast<uint32_t>(expressions.size()); }
 };
 
-/// Throws Error(BadInput) if two layers have the same name.
+/// Checks names of layers. Throws Error(BadInput) if two layers have the same name.
 void check_layers(std::span<const LightPathExpression> expressions);
 
-/// Resolves names as scene/names.h lists them. Throws Error(BadInput) with a caret for a name that nothing has, and
-/// as check_layers and make_automaton.
+/// Makes the layers of expressions for a scene. Names are those of scene/names.h. Throws Error(BadInput) with a caret
+/// for a name that nothing has, and as check_layers and make_automaton.
 LightPathLayers put_to_scene(std::vector<LightPathExpression> expressions, const Scene& scene);
 
 } // namespace pertev

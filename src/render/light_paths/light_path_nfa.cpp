@@ -56,7 +56,7 @@ private:
         }
         return {};
     }
-    /// Built from its end, in the order in which a path is read.
+    /// Adds the automaton of a sequence, built from its end, in the order in which a path is read.
     Part add_sequence(const LightPathNode& node) {
         const uint32_t first = add_state();
         uint32_t last = first;
@@ -115,8 +115,8 @@ private:
     LightPathNfa nfa_;
 };
 
-/// Whether the automaton accepts a path of the eye, any scatterings and a light. `reads_eye` is set to whether it
-/// reads the eye.
+/// Returns whether the automaton accepts a path of the eye, any scatterings and a light. `reads_eye` is set to whether
+/// it reads the eye.
 bool takes_a_path(const LightPathExpression& expression, const LightPathNfa& nfa, bool& reads_eye) {
     using Kind = LightPathLetter::Kind;
     enum Phase : uint32_t { Before, Between, After };

@@ -24,14 +24,14 @@ struct LightPathNfa {
     uint32_t first = 0, last = 0;
 };
 
-/// Throws Error(OverLimit) beyond kMaxLightPathLetters.
+/// Makes the automaton of an expression. Throws Error(OverLimit) beyond kMaxLightPathLetters.
 LightPathNfa make_nfa(const LightPathExpression& expression);
 
 /// Adds all states reachable from `states` by empty transitions; sorted, without duplicates. `seen` is false for each
 /// state before and after.
 void close_over_empty(const LightPathNfa& nfa, std::vector<uint32_t>& states, std::vector<bool>& seen);
 
-/// Throws Error(BadInput) if no path of a light, scatterings and the eye matches.
+/// Checks an expression. Throws Error(BadInput) if no path of a light, scatterings and the eye matches.
 void check_matches_something(const LightPathExpression& expression);
 
 } // namespace pertev

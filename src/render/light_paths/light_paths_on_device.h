@@ -10,7 +10,7 @@ namespace pertev {
 
 class LightPathsOnDevice {
 public:
-    /// `queue` outlives it. Throws Error(OutOfMemory).
+    /// Uploads layers; `queue` outlives them. Throws Error(OutOfMemory).
     LightPathsOnDevice(Queue& queue, const LightPathLayers& layers);
 
     /// View for a film with the auxiliary groups `aovs`.

@@ -18,7 +18,8 @@ struct Capacity {
     uint64_t triangles, entries, rows, tiles;
 };
 
-/// A single tile over the whole picture needs one entry per triangle and no rows, so all visible ones always fit.
+/// Returns the capacity of the lists. A single tile over the whole picture needs one entry per triangle and no rows, so
+/// all visible ones always fit.
 Capacity capacity_for(uint64_t triangles, uint32_t width, uint32_t height) {
     const uint64_t most = std::min<uint64_t>(triangles, kMaxRasterTriangles), pixels = uint64_t(width) * height;
     const uint64_t tiles = (((uint64_t(width) - 1) >> kMinShift) + 1) * (((uint64_t(height) - 1) >> kMinShift) + 1);
@@ -54,7 +55,7 @@ void CameraRaster::begin(const PictureView& picture) {
     }
 }
 
-/// Returns false if the lists do not fit.
+/// Makes the lists of tiles with sides of 2^shift pixels. Returns false if they do not fit.
 bool CameraRaster::make_lists(const Pinhole& camera, uint32_t shift) {
     const uint32_t tiles_x = ((camera.width - 1) >> shift) + 1;
     tiles_.zero();

@@ -17,7 +17,7 @@ namespace pertev {
 
 class CameraRaster {
 public:
-    /// `queue` outlives it.
+    /// Makes a rasterizer; `queue` outlives it.
     explicit CameraRaster(Queue& queue) : queue_(queue) {}
 
     /// Allocates memory for a picture of this size if needed; begin() calls it. Throws Error(OutOfMemory).

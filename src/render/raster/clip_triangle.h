@@ -15,7 +15,7 @@ struct ClippedTriangle {
     int count;
 };
 
-/// Keeps the part with a . p + constant >= 0, or everything if that takes too many corners.
+/// Clips a polygon to the part with a . p + constant >= 0; it does not change if that has too many corners.
 HD inline void clip(ClippedTriangle& polygon, PinholePoint a, double constant) {
     const auto side = [&](const PinholePoint& p) {
         return a.x * p.x + a.y * p.y + a.w * p.w + a.depth * p.depth + constant;

@@ -27,7 +27,7 @@ struct TileRasterView {
     HD float min_t(uint32_t entry) const { return float_of(static_cast<uint32_t>(codes[entry])); }
 };
 
-/// `ray` is a camera ray of a sample of `pixel`; `key` belongs to the coin of that ray.
+/// Finds the closest hit of `ray`, a camera ray of a sample of `pixel`; `key` is the ray's key for blended surfaces.
 HD inline Hit find_in_tile(const TileRasterView& raster, const SceneView& scene, const Ray& ray, uint32_t pixel,
                            uint32_t key) {
     const AcceptCameraHit accept = {{scene, {}, {}, key}, ray.direction};
@@ -55,7 +55,7 @@ HD inline Hit find_in_tile(const TileRasterView& raster, const SceneView& scene,
     return visitor.best;
 }
 
-/// One call per queued camera ray. The rays are endless; t_min holds the pixel's index.
+/// The stage that finds the hits of queued camera rays. The rays are endless; t_min holds the pixel's index.
 struct FindInTiles {
     TileRasterView raster;
     SceneView scene;

@@ -49,7 +49,7 @@ struct Pinhole {
 /// Makes the pinhole of a camera that why_no_raster accepts; its transform is finite and invertible.
 Pinhole make_pinhole(const CameraRays& camera);
 
-/// Why this camera cannot be rasterized; empty if it can.
+/// Returns why this camera cannot be rasterized; empty if it can.
 std::string why_no_raster(const Camera& camera);
 
 } // namespace pertev

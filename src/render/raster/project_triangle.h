@@ -19,7 +19,7 @@ struct TriangleCorners {
     uint32_t instance, primitive;
 };
 
-/// Corners of triangle `number` of the scene. Returns false if it is hidden.
+/// Writes the corners of triangle `number` of the scene. Returns false if it is hidden.
 HD inline bool triangle_corners(const Pinhole& camera, const SceneView& scene, uint32_t number,
                                 TriangleCorners& corners) {
     corners.instance = instance_of(scene, number);
@@ -79,12 +79,12 @@ HD inline ClippedTriangle clip_to_picture(const Pinhole& camera, const PinholePo
     return seen;
 }
 
-/// Rounds to 1/256 of a pixel.
+/// Rounds a coordinate in pixels to 1/256 of a pixel.
 HD inline int32_t to_subpixels(double coordinate) {
     return pixel_of(coordinate * kSubpixels + 0.5, -(1 << 28), 1 << 28);
 }
 
-/// Returns false if no part of the triangle is visible.
+/// Projects a triangle. Returns false if no part of it is visible.
 HD inline bool project_triangle(const Pinhole& camera, const PinholePoint (&corners)[3], ProjectedTriangle& out) {
     const ClippedTriangle seen = clip_to_picture(camera, corners);
     out.count = seen.count;
@@ -100,8 +100,8 @@ HD inline bool project_triangle(const Pinhole& camera, const PinholePoint (&corn
     return true;
 }
 
-/// Weights of the second and third corner at (x, y) in camera space, where the plane is seen; each at least 0, their
-/// sum at most 1.
+/// Weights of the second and third corner at the point of the triangle's plane on the ray through (x, y) in camera
+/// space; each at least 0, their sum at most 1.
 HD inline Vec2 weights_at(const PinholePoint (&corners)[3], double x, double y) {
     double b[3];
     for (int i = 0; i < 3; ++i) {

@@ -24,7 +24,7 @@ HD inline int64_t floor_divide(int64_t a, int64_t b) { // b > 0
     return q * b > a ? q - 1 : q;
 }
 
-/// Lower bound on the columns between its first and its last corner.
+/// Lower bound on the number of columns between a triangle's first and last corner.
 HD inline int32_t columns_of(const ProjectedTriangle& t) {
     int32_t left = t.x[0], right = t.x[0];
     for (int i = 1; i < t.count; ++i) left = min(left, t.x[i]), right = max(right, t.x[i]);
@@ -39,10 +39,11 @@ HD inline PixelSpan rows_of(const ProjectedTriangle& t, SamplePosition position,
     return {max(row(top - 1) + 1, 0), min(row(bottom), static_cast<int32_t>(height) - 1)};
 }
 
-/// The triangle of corners 0, k and k + 1, oriented so that its area is positive. False if it has no area.
+/// The triangle of corners 0, k and k + 1, oriented so that its area is positive.
 struct WoundTriangle {
     int64_t x[3], y[3];
 
+    /// Sets the triangle. Returns false if it has no area.
     HD bool begin(const ProjectedTriangle& t, int k) {
         x[0] = t.x[0], x[1] = t.x[k], x[2] = t.x[k + 1];
         y[0] = t.y[0], y[1] = t.y[k], y[2] = t.y[k + 1];
@@ -56,7 +57,7 @@ struct WoundTriangle {
     }
 };
 
-/// Whether a triangle owns the samples on an edge in direction (dx, dy): a left edge or an upper one.
+/// Returns whether a triangle owns the samples on an edge in direction (dx, dy): a left edge or an upper one.
 HD inline bool has_edge(int64_t dx, int64_t dy) { return dy < 0 || (dy == 0 && dx > 0); }
 
 /// Pixels of row `y` whose samples lie in the triangle of corners 0, k and k + 1.
@@ -83,8 +84,8 @@ HD inline PixelSpan span_of(const ProjectedTriangle& t, int k, int32_t y, Sample
     return span;
 }
 
-/// Whether the polygon contains the single sample at `at`, from the picture's upper left corner; consistent with
-/// span_of.
+/// Returns whether the polygon contains the single sample at `at`, from the picture's upper left corner; consistent
+/// with span_of.
 HD inline bool has_sample(const ProjectedTriangle& t, SamplePosition at) {
     for (int k = 1; k + 1 < t.count; ++k) {
         WoundTriangle wound;

@@ -46,10 +46,10 @@ HD inline DoubleVec3 transform_in_double(const Transform& m, Vec3 p) {
     return {dot(to_double(m.row0), d) + t.x, dot(to_double(m.row1), d) + t.y, dot(to_double(m.row2), d) + t.z};
 }
 
-/// Maximum absolute row sum.
+/// Maximum absolute row sum of the linear part.
 HD inline float row_norm(const Transform& m) { return max_component(transform_sizes(m, {1, 1, 1})); }
 
-/// The instance that a triangle of the scene belongs to.
+/// Instance of triangle number `triangle` of the scene.
 HD inline uint32_t instance_of(const SceneView& scene, uint32_t triangle) {
     uint32_t lo = 0, hi = scene.instance_count; // finds the last instance whose first triangle is not beyond
     while (hi - lo > 1) {
@@ -142,7 +142,7 @@ struct BinTriangles {
     }
 };
 
-/// Second pass: one row of tiles of a triangle that spans several.
+/// The stage of the second pass, which bins one row of tiles of a triangle that spans several.
 struct BinRows {
     Pinhole camera;
     SceneView scene;
@@ -159,7 +159,7 @@ struct BinRows {
     }
 };
 
-/// One call per entry i of all lists after sorting.
+/// The stage that finishes the lists after sorting, with one call per entry.
 struct FinishTileLists {
     const uint64_t* codes; // sorted
     const uint32_t* entry_triangles;

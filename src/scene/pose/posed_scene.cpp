@@ -32,7 +32,8 @@ std::vector<uint32_t> numbers_of(const std::vector<bool>& flags) {
     return numbers;
 }
 
-/// Zeros of different sign count as different, because results computed from them may differ.
+/// Returns whether `a` and `b` are equal to the bit. Zeros of different sign are different, because results computed
+/// from them may differ.
 template <class T>
 bool same_bits(const T& a, const T& b) {
     static_assert(std::is_trivially_copyable_v<T>);

@@ -21,14 +21,14 @@ namespace pertev {
 
 class PosedScene {
 public:
-    /// `rest` has passed validate(). The scene is at rest until the first set_time.
+    /// Takes a scene that has passed validate(). The scene is at rest until the first set_time.
     explicit PosedScene(Scene rest, bool leaves_vertices = false);
 
     /// The scene at rest or at the last time. Its address does not change.
     const Scene& scene() const { return scene_; }
     /// [Scene::shapes] the poses of vertices that animations may move.
     const std::vector<MeshPose>& poses() const { return poses_; }
-    /// Whether the scene differs from rest at any time.
+    /// Returns whether the scene differs from rest at any time.
     bool is_animated() const;
 
     /// Moves the scene to `time_s` and returns the changes (except for cameras). The extent of vertices that are left

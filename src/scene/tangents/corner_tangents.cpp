@@ -66,13 +66,13 @@ Share share_of(const TangentMesh& mesh, const UvDirections& directions, uint32_t
             .is_known = directions.is_known};
 }
 
-/// Triangles of one group take part in each other's tangent unless their directions of u or of v are opposite. (The
-/// method has a threshold angle for this; everyone uses its default, a half turn.)
+/// Returns whether two triangles of one group take part in each other's tangent, that is, unless their directions of u
+/// or of v are opposite. (The method has a threshold angle for this; everyone uses its default, a half turn.)
 bool go_together(const Share& a, const Share& b) {
     return !a.is_known || !b.is_known || (dot(a.along_u, b.along_u) > -1 && dot(a.along_v, b.along_v) > -1);
 }
 
-/// Finds quickly that no two directions are opposite: all lie within a quarter turn of their mean.
+/// Returns true if all directions lie within a quarter turn of their mean, so that no two are opposite.
 bool all_go_together(std::span<const Share> shares) {
     Vec3 sum_u, sum_v;
     for (const Share& share : shares) {
@@ -120,7 +120,7 @@ public:
     }
 
 private:
-    /// Groups with up to this many triangles are compared pair by pair; in a larger group all take part.
+    /// Maximum number of triangles in a group that is compared pair by pair; in a larger group all take part.
     static constexpr std::size_t kMaxCompared = 256;
     using Members = std::array<uint64_t, kMaxCompared / 64>; // a bit for each
 

@@ -28,8 +28,8 @@ public:
         for (std::size_t i = 0; i < indices.size(); ++i) corner_numbers_[i] = static_cast<uint32_t>(i);
     }
 
-    /// The mesh with its vertices at these positions; normals have any length but 0. Valid until the next call, and
-    /// as long as `positions`.
+    /// Returns the mesh with its vertices at these positions; normals have any length but 0. The result is valid until
+    /// the next call, and as long as `positions`.
     TangentMesh at(std::span<const Vec3> positions, std::span<const Vec3> normals) {
         if (has_normals_) {
             normals_.resize(normals.size());
@@ -114,7 +114,8 @@ void wind_other_way(std::vector<uint32_t>& indices) {
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
 }
 
-/// `shape` is null if nothing moves the vertices; otherwise the caller makes the mesh's vertices from the shape's.
+/// Adds tangents to a mesh. `shape` is null if nothing moves the vertices; otherwise the caller makes the mesh's
+/// vertices from the shape's.
 void add_tangents(Mesh& mesh, MeshShape* shape, uint8_t uv_set) {
     const bool is_turned_over = shape != nullptr && shape->is_turned_over;
     if (is_turned_over) wind_other_way(mesh.indices);

@@ -18,8 +18,8 @@ struct SplitVertices {
 
 inline constexpr uint32_t kNoCornerShows = 0xffffffffu;
 
-/// `indices`: [corners] of `vertex_count` vertices; `tangents`: [corners]. The first tangent of a vertex keeps the
-/// vertex's number.
+/// Splits vertices whose corners have different tangents. `indices` are [corners] of `vertex_count` vertices;
+/// `tangents` are [corners]. The first tangent of a vertex keeps the vertex's number.
 SplitVertices split_vertices(std::span<const uint32_t> indices, std::size_t vertex_count,
                              std::span<const Vec4> tangents);
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kNoCorner = 0xffffffffu;
 
-/// Bits of a float; both zeros give the same.
+/// Returns the bits of a float; both zeros have the same.
 uint32_t bits_of_number(float x) { return std::bit_cast<uint32_t>(x + 0.0f); }
 
 std::vector<uint32_t> weld(const TangentMesh& mesh) {
@@ -58,13 +58,14 @@ Triangles sort_out(const TangentMesh& mesh) {
     return triangles;
 }
 
-/// An edge is listed at the vertex with the lower number; `corner` is where its triangle begins the edge.
+/// An edge in the list of its vertex with the lower number. `corner` is the corner of the triangle at which the edge
+/// begins.
 struct Edge {
     uint32_t higher, corner;
     auto operator<=>(const Edge&) const = default;
 };
 
-/// All edges of triangles, sorted by their lower vertex: vertex i has [first[i], first[i + 1]).
+/// All edges of triangles, sorted by their lower vertex: those of vertex i are [first[i], first[i + 1]).
 struct EdgeLists {
     std::vector<std::size_t> first;
     std::vector<Edge> edges;
@@ -149,7 +150,8 @@ private:
         return triangles_.is_counter_clockwise[triangle] == way;
     }
 
-    /// The neighbour across the edge that begins here is pushed last, so that it is visited first.
+    /// Adds a corner to the group. The neighbour across the edge that begins here is pushed last, so that it is visited
+    /// first.
     void take(uint32_t corner) {
         groups_.group[corner] = static_cast<uint32_t>(groups_.count() - 1);
         const uint32_t before = neighbour_[previous_corner(corner)], after = neighbour_[corner];

@@ -39,7 +39,8 @@ struct TangentGroups {
     }
 };
 
-/// Takes time proportional to the corners times the logarithm of the number that meet in a vertex.
+/// Makes the groups of a mesh, in time proportional to the corners times the logarithm of the number that meet in a
+/// vertex.
 TangentGroups make_tangent_groups(const TangentMesh& mesh);
 
 } // namespace pertev

@@ -35,7 +35,7 @@ struct UvDirections {
     bool is_known;             // both directions have a length
 };
 
-/// Numbers below the least normal float count as zero.
+/// Returns whether a number is not zero; numbers below the least normal float count as zero.
 inline bool is_not_zero(float x) { return abs(x) > 0x1p-126f; }
 
 /// Returns the derivatives of the position by u and by v, each scaled to length 1.

@@ -166,7 +166,8 @@ private:
         moves_ = may_move(scene_);
     }
 
-    /// glTF hides a node by a scale of 0. An instance that may move stays hidden, because it may appear at a time.
+    /// Removes instances whose transform is singular, because glTF hides a node by a scale of 0. An instance that may
+    /// move stays hidden, because it may appear at a time.
     void drop_singular_instances() {
         std::vector<Bounds3> bounds;
         for (const Mesh& mesh : scene_.meshes) bounds.push_back(bounds_of(mesh));
@@ -199,7 +200,7 @@ private:
                                     counted(dropped, "instance"), first_singular_)});
     }
 
-    /// Whether a transform removes all area of surfaces.
+    /// Returns whether a transform removes all area of surfaces.
     static bool is_flat(const Transform& m) {
         const Vec3 a = column(m, 0), b = column(m, 1), c = column(m, 2);
         return max_component(abs(cross(a, b)) + abs(cross(b, c)) + abs(cross(c, a))) > 0;

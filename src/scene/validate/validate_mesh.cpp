@@ -16,14 +16,14 @@ namespace {
 
 constexpr uint64_t kGrain = 1 << 14;
 
-/// The normal times twice the area.
+/// Returns the normal of a triangle times twice its area.
 DoubleVec3 area_vector(Vec3 a, Vec3 b, Vec3 c) {
     return cross(to_double(b) - to_double(a), to_double(c) - to_double(a));
 }
 
 Vec3 unit(DoubleVec3 v) { return to_float(v / std::sqrt(dot(v, v))); }
 
-/// Number of i in [0, count) for which body(i) is true.
+/// Returns the number of i in [0, count) for which body(i) is true.
 template <class Body>
 uint64_t count_in_parallel(uint64_t count, const Body& body) {
     std::atomic<uint64_t> total{0};
@@ -97,7 +97,7 @@ void drop_triangles(Mesh& mesh, bool reshaped, MeshRepairs& repairs) {
     mesh.indices.resize(3 * kept);
 }
 
-/// Area-weighted mean normal of the triangles at each vertex of `wanted`; +z if there is none.
+/// Writes the area-weighted mean normal of the triangles at each vertex of `wanted`; +z if there is none.
 void put_geometric_normals(const std::vector<Vec3>& positions, const std::vector<uint32_t>& indices,
                            const std::vector<bool>& wanted, std::vector<Vec3>& normals) {
     std::vector<DoubleVec3> sums(positions.size());

@@ -11,7 +11,7 @@
 namespace pertev {
 namespace {
 
-/// Numbers beyond the range of floats count as not finite.
+/// Returns whether all numbers of a pose are finite; those beyond the range of floats are not.
 bool is_finite_pose(const NodePose& pose) {
     return is_finite(to_float(pose.translation)) && is_finite(to_float(pose.scale)) &&
            std::ranges::all_of(pose.rotation, [](double x) { return is_finite(static_cast<float>(x)); });
@@ -21,13 +21,13 @@ bool is_zero(const std::array<double, 4>& rotation) {
     return std::ranges::all_of(rotation, [](double x) { return static_cast<float>(x) == 0; });
 }
 
-/// Whether the four values from `first` on are a quaternion of length 0.
+/// Returns whether the four values from `first` on are a quaternion of length 0.
 bool is_zero_quaternion(const std::vector<float>& values, std::size_t first) {
     return std::all_of(values.begin() + static_cast<std::ptrdiff_t>(first),
                        values.begin() + static_cast<std::ptrdiff_t>(first + 4), [](float x) { return x == 0; });
 }
 
-/// The name of the list that a channel's target indexes, and the list's size.
+/// Returns the name of the list that a channel's target indexes, and the list's size.
 std::pair<const char*, std::size_t> targets_of(AnimatedPart part, const Scene& scene) {
     if (is_of_node(part)) return {"node", scene.nodes.size()};
     if (is_of_camera(part)) return {"camera", scene.cameras.size()};

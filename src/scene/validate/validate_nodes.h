@@ -8,9 +8,9 @@
 
 namespace pertev {
 
-/// Throws Error(BadInput) for an index out of range (including those of instances, cameras and lights into the
-/// nodes), cycles of nodes, a number that is not finite, a quaternion of length 0, times that do not ascend, and
-/// values that do not match their times.
+/// Checks nodes, skins and animations. Throws Error(BadInput) for an index out of range (including those of instances,
+/// cameras and lights into the nodes), cycles of nodes, a number that is not finite, a quaternion of length 0, times
+/// that do not ascend, and values that do not match their times.
 void validate_nodes(const Scene& scene, const std::string& file);
 
 /// Number of components of a channel's value; its target is in range.

@@ -85,7 +85,7 @@ void focus_in_the_middle(const CameraChoice& choice, const Scene& scene, Camera&
                      distance)});
 }
 
-/// `flattened`: the camera's angle of view has become a height.
+/// Warns of parts of a choice without effect. `flattened` means that the camera's angle of view has become a height.
 void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, bool flattened, Messages& messages) {
     const bool is_perspective = !has_parallel_rays(camera.projection);
     if (choice.view_height && is_perspective) {

@@ -13,13 +13,13 @@ namespace pertev {
 
 class MovingCamera {
 public:
-    /// `rest` is the scene at rest, which has passed validate(). With a `path`, `choice` names no eye, target or up.
-    /// Throws as choose_camera.
+    /// Takes the scene at rest, which has passed validate(). With a `path`, `choice` names no eye, target or up. Throws
+    /// as choose_camera.
     MovingCamera(CameraChoice choice, std::optional<CameraPath> path, const Scene& rest, float aspect,
                  Messages& messages);
 
-    /// `scene` is that of the constructor, at the given time. Without a time a path is at its first key. Throws
-    /// Error(BadInput) if a path's eye and target coincide, or the target lies along up.
+    /// Returns the camera at a time; `scene` is that of the constructor at this time. Without a time a path is at its
+    /// first key. Throws Error(BadInput) if a path's eye and target coincide, or the target lies along up.
     Camera at(const Scene& scene, std::optional<double> time_s) const;
 
     /// The choice that gives at(scene, time_s) again, as text, with everything that was left open.

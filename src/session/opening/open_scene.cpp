@@ -21,7 +21,7 @@
 namespace pertev {
 namespace {
 
-/// Returns nothing if the options set no environment.
+/// Returns the environment that the options set; nothing if they set none.
 std::optional<Environment> environment_of(const SceneOptions& options, Messages& messages) {
     Environment environment;
     if (Rgb color; parse_rgb(options.environment, color)) {
@@ -53,8 +53,8 @@ void turn_and_scale(const SceneOptions& options, Scene& scene, Messages& message
     if (options.environment_scale != 1) warn("environment_scale");
 }
 
-/// Whether such a lamp is set before light is added. An environment is set last, after scaling, and so are added
-/// lamps.
+/// Returns whether `emitter` names an emitter of the file, which is set before light is added. An environment is set
+/// last, after scaling, and so are added lights.
 bool names_emitter_of_file(const Scene& scene, const EmitterStrength& emitter) {
     if (scene.environment) return false;
     const auto is_called_so = [&](const auto& thing) { return has_name(names_of(scene, thing), emitter.name); };
@@ -70,7 +70,8 @@ void show_back_faces(Scene& scene, Messages& messages) {
     if (!any_hidden) messages.warn({"show_back_faces", "", "no surface of the scene has a hidden back"});
 }
 
-/// `light` is the light that was added. `around` describes the scene if that is a sky.
+/// Returns whether a ground is added. `light` is the light that was added. `around` describes the scene if that is a
+/// sky.
 bool wants_ground(Ground ground, const Scene& scene, DefaultLight light, const Surroundings& around) {
     switch (ground) {
     case Ground::Off:
@@ -85,13 +86,13 @@ bool wants_ground(Ground ground, const Scene& scene, DefaultLight light, const S
 
 /// Joins the texts of a list for a message.
 std::string in_a_row(const std::vector<std::string>& list) {
-    constexpr std::size_t kMost = 8;
+    constexpr std::size_t kMaxShown = 8;
     std::string text;
-    for (std::size_t i = 0; i < std::min(list.size(), kMost); ++i) text += (i > 0 ? ", " : "") + shortened(list[i]);
-    return list.size() > kMost ? fmt::format("{} and {} more (pertev info)", text, list.size() - kMost) : text;
+    for (std::size_t i = 0; i < std::min(list.size(), kMaxShown); ++i) text += (i > 0 ? ", " : "") + shortened(list[i]);
+    return list.size() > kMaxShown ? fmt::format("{} and {} more (pertev info)", text, list.size() - kMaxShown) : text;
 }
 
-/// Says which animation plays if the file has several and none was chosen.
+/// Adds a notice of the animation that plays if the file has several and none was chosen.
 void report_animation(const Scene& scene, const std::string& file, Messages& messages) {
     if (scene.clips.size() < 2) return;
     const std::vector<std::string> clips = list_clips(scene.clips);
@@ -172,7 +173,7 @@ Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use, 
         emitters, [&](const EmitterStrength& emitter) { return names_emitter_of_file(scene, emitter); });
     set_emitters(scene, {emitters.begin(), others.begin()}, efficacy);
     Surroundings around;
-    // Someone who switches off the last lamp of a file wants it dark.
+    // Someone who switches off the last light of a file wants it dark.
     const bool is_turned_off = has_light && lacks_light(scene);
     const DefaultLight light = is_turned_off ? DefaultLight::None : add_default_light(scene, use, messages, &around);
     if (wants_ground(ground, scene, light, around)) {

@@ -38,9 +38,9 @@ Scene open_scene(const SceneOptions& options, Messages& messages, SceneUse use =
 /// Opens a scene with all other settings at their defaults.
 Scene open_scene(const std::string& scene, Messages& messages, SceneUse use = SceneUse::Picture);
 
-/// Reads a scene with `formats/read_scene.h` and adds nothing. Says which scene of a file with several is shown and,
-/// for files that cannot say which faces of a lamp emit, comments on its lamps (session/survey/emitter_fronts.h).
-/// Throws Error.
+/// Reads a scene with `formats/read_scene.h` and adds nothing. A notice names the shown scene of a file with several.
+/// For files that cannot say which faces of an emitter emit, others report its emitters
+/// (session/survey/emitter_fronts.h). Throws Error.
 Scene read_scene_and_emitters(const std::filesystem::path& path, const ReadOptions& options, Messages& messages);
 
 } // namespace pertev

@@ -21,7 +21,7 @@ std::optional<PhysicalExposure> physical_exposure(const PictureOptions& options)
 std::optional<FalseColors> false_colors(const PictureOptions& options);
 /// Returns whether the light meter sets the exposure because nothing else does.
 bool is_metered(const PictureOptions& options);
-/// Returns how the current picture is shown. Throws Error(BadInput), and what Session::meter throws.
+/// Returns the display of the current picture. Throws Error(BadInput), and what Session::meter throws.
 Display choose_display(const PictureOptions& options, Session& session);
 
 } // namespace pertev

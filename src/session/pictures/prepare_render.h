@@ -28,7 +28,7 @@ struct RenderSetup {
     const PreparedScene& prepared() const { return moving->prepared(); }
 };
 
-/// Computes the radiosity solution of a scene.
+/// A function that computes the radiosity solution of a scene.
 using SolveRadiosity = std::function<RadiosityDisplay(RenderSetup& ready)>;
 
 /// Prepares everything and reports progress to `sink`. Adds to `options` what the scene's file suggests for the

@@ -1,6 +1,6 @@
 #pragma once
 
-// The free axis of a room, along which a person would look, for the default camera and the default lamps.
+// The free axis of a room, along which a person would look, for the default camera and the default lights.
 
 #include "scene/scene.h"
 #include "session/survey/surroundings.h"

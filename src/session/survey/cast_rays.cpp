@@ -36,8 +36,8 @@ bool meets(const Bounds3& box, const LocalRay& ray) {
     return from <= to * 1.0001f; // boxes may be flat
 }
 
-/// Branchless, so that the compiler vectorizes it. Of two sides at one distance the front counts, so that the order
-/// of threads does not matter.
+/// Updates the hits of rays by a triangle, without branches, so that the compiler vectorizes it. If a front and a back
+/// are at one distance the front counts, so that the order of threads does not matter.
 void meet_triangle(Vec3 a, Vec3 ab, Vec3 ac, bool has_back, RayPack& rays) {
     for (std::size_t k = 0; k < RayPack::kWidth; ++k) {
         const Vec3 direction = {rays.dx[k], rays.dy[k], rays.dz[k]};

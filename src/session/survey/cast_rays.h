@@ -21,9 +21,9 @@ struct SurveyHit {
     bool is_hit() const { return distance < kInfinity; }
 };
 
-/// Which backs rays hit: all, or only those that the camera sees (Material::double_sided).
+/// The backs that rays hit: all, or only those that the camera sees (Material::double_sided).
 enum class Backs { All, Shown };
-/// Whether panes of glass stop rays. (Alpha-blended surfaces always do.)
+/// The effect of panes of glass on rays. (Alpha-blended surfaces always stop them.)
 enum class Glass { Stops, LetsThrough };
 
 /// The nearest hit of each ray; the front if a front and a back have the same distance. A generated ground is

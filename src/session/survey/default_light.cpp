@@ -13,7 +13,7 @@
 namespace pertev {
 namespace {
 
-/// Whether any pixel of an emission texture is above 0.
+/// Returns whether any pixel of an emission texture is above 0.
 bool has_light(const TextureImage& image) {
     const std::vector<uint8_t>& bytes = image.rgba8.pixels;
     for (std::size_t i = 0; i < bytes.size(); i += 4) {
@@ -33,7 +33,7 @@ enum class OwnLight {
     None,
 };
 
-/// Whether an animation that plays raises a light's intensity above 0 at some time.
+/// Returns whether an animation that plays raises a light's intensity above 0 at some time.
 bool brightens_a_light(const Animation& animation) {
     return std::ranges::any_of(animation.channels, [](const AnimationChannel& channel) {
         return channel.part == AnimatedPart::LightIntensity &&

@@ -12,8 +12,8 @@ namespace pertev {
 namespace {
 
 constexpr std::size_t kMaxNames = 5;
-constexpr std::size_t kMostEmitters = 16;          // maximum number of tested lamps
-constexpr std::size_t kMostOfEmitter = 4;          // tested triangles per lamp, spread over its list
+constexpr std::size_t kMaxEmitters = 16;           // maximum number of tested emitters
+constexpr std::size_t kMaxOfEmitter = 4;           // tested triangles per emitter, spread over its list
 constexpr uint64_t kMaxSceneTriangles = 2'000'000; // a tenth of a second for 128 rays on one core
 constexpr float kMuchMore = 20;                    // room behind per metre in front
 
@@ -23,7 +23,7 @@ bool is_one_sided_emitter(const Material& material) { return material.is_emitter
 std::vector<SurveyRay> rays_from(const Scene& scene, const Instance& emitter) {
     const Mesh& mesh = scene.meshes[emitter.mesh];
     std::vector<SurveyRay> rays;
-    const std::size_t count = mesh.triangle_count(), looked_at = std::min(count, kMostOfEmitter);
+    const std::size_t count = mesh.triangle_count(), looked_at = std::min(count, kMaxOfEmitter);
     for (std::size_t k = 0; k < looked_at; ++k) {
         const uint32_t* index = mesh.indices.data() + 3 * (k * count / looked_at);
         const auto corner = [&](int i) { return transform_point(emitter.world_from_local, mesh.positions[index[i]]); };
@@ -51,7 +51,7 @@ void warn_of_turned_emitters(const Scene& scene, const std::vector<const Instanc
     for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
     if (triangles > kMaxSceneTriangles) return;
     const Bounds3 box = bounds_of(scene);
-    for (std::size_t i = 0; i < std::min(emitters.size(), kMostEmitters); ++i) {
+    for (std::size_t i = 0; i < std::min(emitters.size(), kMaxEmitters); ++i) {
         const std::vector<SurveyRay> rays = rays_from(scene, *emitters[i]);
         if (rays.empty()) continue;
         const std::vector<SurveyHit> hits = cast_rays(scene, rays);
@@ -60,7 +60,8 @@ void warn_of_turned_emitters(const Scene& scene, const std::vector<const Instanc
         for (std::size_t k = 0; k < hits.size(); k += 2) {
             const float off = 0.5f * length(rays[k].origin - rays[k + 1].origin);
             const float front = off + hits[k].distance, back = off + hits[k + 1].distance;
-            // No hit behind may mean the sky above a lamp that correctly shines down; then the scene's extent counts.
+            // No hit behind may mean the sky above an emitter that correctly shines down; then the scene's extent
+            // counts.
             const float distance_text =
                 back < kInfinity ? back : reach_of(box, rays[k + 1].origin, rays[k + 1].direction);
             if (!(kMuchMore * front < distance_text)) continue;

@@ -40,7 +40,7 @@ struct RayHits {
         for (int axis = 0; axis < kAxes; ++axis) count += is_closed(axis);
         return count;
     }
-    /// Inside a solid every surface shows its back.
+    /// Returns whether the point is outside of solids, inside which every surface shows its back.
     bool is_in_the_open() const { return 2 * front >= all; }
 };
 
@@ -63,7 +63,7 @@ std::vector<RayHits> cast_visibility_rays(const Scene& scene, const std::vector<
     return all_hits;
 }
 
-/// Whether it is thinner than any room: a panel, whose two sheets see each other.
+/// Returns whether a box is thinner than any room: a panel, whose two sheets see each other.
 bool is_flat(Vec3 size) { return min(size.x, min(size.y, size.z)) < 0.04f * max_component(size); }
 
 bool is_long(Vec3 size) { return max(size.x, size.z) > 1.25f * min(size.x, size.z); }

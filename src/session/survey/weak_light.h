@@ -17,11 +17,11 @@ struct SeenShares {
 /// every machine. The scene has passed validate(). Throws Error(OverLimit) as prepare_scene() does.
 SeenShares shares_seen(const Scene& scene);
 
-/// Whether less than three quarters of the visible surfaces are lit, or over a sixteenth is burnt out, as by labels
-/// that glow brighter than their surroundings and need another light to be read.
+/// Returns whether less than three quarters of the visible surfaces are lit, or over a sixteenth is burnt out, as by
+/// labels that glow brighter than their surroundings and need another light to be read.
 bool is_light_too_weak(const Scene& scene);
 
-/// Whether next to nothing visible is lit, because every light is out of range, turned away or enclosed. Lights
+/// Returns whether next to nothing visible is lit, because every light is out of range, turned away or enclosed. Lights
 /// without extent need nothing more, because their author meant the shadows that they leave.
 bool lights_nothing_seen(const Scene& scene);
 

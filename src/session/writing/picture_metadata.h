@@ -53,7 +53,7 @@ struct CameraSource {
     DoubleVec3 origin = {0, 0, 0}; // origin of the camera's scene (Scene::origin_in_file)
 };
 
-/// How a real-time frame (Session::render_frame) is made from its sample.
+/// Reconstruction of a real-time frame (Session::render_frame) from its sample.
 struct ReconstructedFrame {
     uint32_t number = 0, cut = 0; // number of the frame, and of the first one in its history
     ReconstructionSettings reconstruction;
@@ -68,7 +68,7 @@ struct FalseColors {
     float least = 0, most = 0; // ends of the scale, in that unit; 0: fitted to the picture
 };
 
-/// How PNG and JPEG show the picture.
+/// Display of the picture in PNG and JPEG.
 struct Display {
     ToneMap tone_map = ToneMap::Agx;
     float exposure_stops = 0;
@@ -106,7 +106,7 @@ void name_ids(const Scene& scene, SceneSource& source);
 /// names.
 ExrMetadata id_metadata(const SceneSource& source, std::span<const PixelIds> ids);
 
-/// settings_metadata, and the results. `hash` is that of the film's picture, denoised or not.
+/// Entries of settings_metadata, and of the results. `hash` is that of the film's picture, denoised or not.
 ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& stats, const std::string& hash);
 
 } // namespace pertev

@@ -19,8 +19,8 @@ class SequenceRecord {
 public:
     using Settings = std::vector<std::pair<std::string, std::string>>; // names and values
 
-    /// `outputs` are names with '#' (session/frame_range.h). `settings` is everything that determines the frames'
-    /// pictures.
+    /// Makes a record. `outputs` are names with '#' (session/frame_range.h); `settings` is everything that determines
+    /// the frames' pictures.
     SequenceRecord(std::vector<std::string> outputs, Settings settings);
 
     /// Path of the record: "frame-####.json" for "frame-####.png".
@@ -29,12 +29,12 @@ public:
     /// Loads the record of an earlier run and returns false if there is none. Throws Error(BadInput) for a file that
     /// is no such record, and for one with other settings, of which it names the first.
     bool load();
-    /// Whether all files of the frame exist with the recorded bytes.
+    /// Returns whether all files of the frame exist with the recorded bytes.
     bool has(uint32_t frame) const;
     /// Records the frame's files, which have just been written, and the hash of its picture, and writes the record.
     /// Throws Error(BadInput, FileWrite).
     void add(uint32_t frame, const std::string& picture);
-    /// Throws Error(BadInput) if the frame is recorded with another hash of its picture.
+    /// Checks a frame's picture. Throws Error(BadInput) if it is recorded with another hash.
     void check_picture(uint32_t frame, const std::string& picture) const;
 
 private:

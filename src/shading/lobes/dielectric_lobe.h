@@ -22,7 +22,8 @@ struct DielectricLobe {
     float alpha; // GGX width = roughness^2, [0, 1]
     float ior;   // inside over outside; if rough, within [1.1, 3] or its inverse (usable_ior)
 
-    /// Clamps a rough surface's index to the range of the energy tables. 1 stays: no interface at all.
+    /// Clamps a rough surface's index to the range of the energy tables. An index of 1, which means no interface, does
+    /// not change.
     HD static float usable_ior(float ior, float alpha) {
         using energy_table::kIorMax, energy_table::kIorMin;
         if (!(alpha >= kSmoothAlpha) || ior == 1) return ior;

@@ -17,7 +17,8 @@ struct DielectricFresnel {
     float cos_t;       // cosine of refraction, >= 0; 0 under total reflection
 };
 
-/// `cos_o` is in [0, 1]; `eta` is the refractive index of the far side over that of the near side.
+/// Reflectance of a dielectric and the refracted cosine. `cos_o` is in [0, 1]; `eta` is the refractive index of the far
+/// side over that of the near side.
 HD inline DielectricFresnel fresnel_dielectric(float cos_o, float eta) {
     // 1 - sin^2 / eta^2, written so that nothing cancels at grazing angles.
     const float c2 = cos_o * cos_o, e2 = eta * eta;
@@ -45,7 +46,8 @@ HD inline float fresnel_dielectric_average(float eta) {
     return eta > 1 ? from_thin : 1.0f - (1.0f - from_thin) / (up * up);
 }
 
-/// Conductor with complex index eta + i k (over that of the outside); `cos_o` in [0, 1], eta >= 0, k >= 0.
+/// Reflectance of a conductor with the complex index eta + i k (over that of the outside); `cos_o` in [0, 1], eta >= 0,
+/// k >= 0.
 HD inline float fresnel_conductor(float cos_o, float eta, float k) {
     const float c2 = cos_o * cos_o, s2 = max(1.0f - c2, 0.0f);
     const float eta2 = eta * eta, k2 = k * k;

@@ -21,7 +21,7 @@ HD inline Vec3 sample_grazing_lobe(float alpha, Vec2 u) {
     sin_cos_2pi(u.x, sin_phi, cos_phi);
     return {radius * cos_phi, radius * sin_phi, sqrt(z2)};
 }
-/// Density at `cosine` in [0, 1].
+/// Density of sample_grazing_lobe() at `cosine` in [0, 1], 1/sr.
 HD inline float pdf_grazing_lobe(float cosine, float alpha) {
     return kInvPi * cosine / ((cosine * cosine + alpha * alpha) * grazing_lobe_log(alpha));
 }

@@ -42,11 +42,11 @@ struct SpecularBranches {
     Vec3 refracted = {};              // unit, on the other side; valid if `refraction` is not black
 };
 
-/// Result of draw().
+/// Result of a lobe's draw().
 struct LobeDraw {
     BsdfSample sample = {};  // for a delta lobe as if it were alone; else only wi and is_transmission are set; pdf 0:
                              // no sample
-    float u_lobe = 0;        // for what is beneath
+    float u_lobe = 0;        // random number for sampling what is beneath
     bool is_beneath = false; // whether what is beneath must sample
 };
 

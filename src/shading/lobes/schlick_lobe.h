@@ -102,7 +102,7 @@ struct SchlickLobe {
         return p_specular * once.pdf + p_more * pdf_grazing_lobe(cos_i, alpha);
     }
 
-    /// `fresnel` is the mirror's reflectance seen from wo.
+    /// Samples the lobe by given shares. `fresnel` is the mirror's reflectance seen from wo.
     HD LobeDraw draw_by(const LayerShares& shares, Rgb fresnel, Vec3 wo, float u_lobe, Vec2 u) const {
         Vec3 wi;
         if (u_lobe < shares.beneath) return draw_beneath(u_lobe, shares.beneath);

@@ -61,7 +61,8 @@ private:
             energy_table::make_cell((sqrt(alpha) - kRoughnessMin) * (1.0f / (1.0f - kRoughnessMin)), kRoughnessNodes);
         return energy_table::along([](int i) { return sheen_table::albedo_at(i); }, 0, row, column, kMuNodes);
     }
-    /// At least 1/16 samples this lobe, in case the energy seen from wo does not predict the value at wi.
+    /// Probability of sampling what lies beneath, at most 15/16, because the energy seen from wo may not predict the
+    /// value at wi.
     HD static float probability_beneath(float at_o, float beneath) {
         const float rest = beneath * (1.0f - at_o);
         return rest > 0 ? min(rest / (at_o + rest), 0.9375f) : 0.0f;

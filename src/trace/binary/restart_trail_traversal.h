@@ -21,13 +21,13 @@ namespace pertev {
 
 static_assert(kMaxBvhDepth <= 64); // one bit per level
 
-/// No stack: every pop restarts. (ShortStackTraversal keeps a few entries instead.)
+/// A stack without entries, so that every pop restarts. (ShortStackTraversal keeps a few entries instead.)
 struct NoShortStack {
     HD void push(uint32_t, float) {}
     HD bool pop(TraversalStackEntry&) { return false; }
 };
 
-/// Bit i belongs to level i; the root is level 0. A level above the current one is set, and deeper ones are ignored.
+/// The trail as bits. Bit i belongs to level i; the root is level 0. Levels deeper than the current one are ignored.
 struct RestartTrail {
     uint64_t taken = 0;   // child 1 is on the path
     uint64_t waiting = 0; // the other child is pending; never set at the current level or deeper

@@ -22,7 +22,7 @@ struct ShortStack {
         entries[0] = {link, entry};
         size = min(size + 1, kCapacity);
     }
-    /// Returns false if the stack is empty.
+    /// Pops the top entry. Returns false if the stack is empty.
     HD bool pop(TraversalStackEntry& top) {
         if (size == 0) return false;
         top = entries[0];

@@ -26,7 +26,7 @@ struct TraversalStack {
     int size = 0;
 
     HD void push(uint32_t link, float entry) { slots[size++] = uint64_t(bits_of(entry)) << 32 | link; }
-    /// Returns kNoLink if the stack is empty.
+    /// Pops the first entry that is not beyond `limit`. Returns kNoLink if there is none.
     HD uint32_t pop(float limit) {
         while (size > 0) {
             const Slot top = slots[--size];

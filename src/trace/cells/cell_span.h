@@ -48,7 +48,7 @@ HD inline CellSpan span_above(CellSpan s, const PlaneCrossing& p) {
     return p.forward ? CellSpan{fast_max(s.entry, p.above), s.exit} : CellSpan{s.entry, fast_min(s.exit, p.above)};
 }
 
-/// Whether the cell may hold a relevant hit.
+/// Returns whether the cell may hold a relevant hit.
 HD inline bool is_entered(CellSpan s, float t_limit) { return s.entry <= s.exit && s.entry <= t_limit; }
 
 } // namespace pertev

@@ -62,8 +62,8 @@ HD inline CompressedAxis make_compressed_axis(const CompressedBvhNode& node, int
     return r;
 }
 
-/// Bit s is set if the box of slot s may hold a hit with 0 < t <= r.end; it is entered at entries[s] * r.end or
-/// later. Bits and entries of empty slots are undefined.
+/// Returns the mask of slots that are entered: bit s is set if the box of slot s may hold a hit with 0 < t <= r.end; it
+/// is entered at entries[s] * r.end or later. Bits and entries of empty slots are undefined.
 HD inline uint32_t enters_slots(Vec3 origin, const RaySegment& r, const CompressedBvhNode& node, float (&entries)[8]) {
     const CompressedAxis x = make_compressed_axis(node, 0, origin.x, r.inv.x, r.grow);
     const CompressedAxis y = make_compressed_axis(node, 1, origin.y, r.inv.y, r.grow);
@@ -122,8 +122,8 @@ HD inline uint32_t nearest_slot(uint32_t slots, Vec3 inv) {
     return slots;
 }
 
-/// That order, or its reverse, as three bytes: for the axes z, y, x from the lowest byte on, the half of the slots
-/// that comes first.
+/// The order of nearest_slot(), or its reverse, as three bytes: for the axes z, y, x from the lowest byte on, the half
+/// of the slots that comes first.
 HD inline uint32_t slot_order(Vec3 inv, bool far_first) {
     const auto half = [far_first](float along, uint32_t lower) {
         return (along < 0) != far_first ? lower ^ 0xffu : lower;
@@ -131,7 +131,7 @@ HD inline uint32_t slot_order(Vec3 inv, bool far_first) {
     return half(inv.z, 0x0f) | half(inv.y, 0x33) << 8 | half(inv.x, 0x55) << 16;
 }
 
-/// The bit of the slot that comes first in that order; 0 for no slots.
+/// The bit of the slot that comes first in a slot_order(); 0 for no slots.
 HD inline uint32_t first_of_slots(uint32_t slots, uint32_t order) {
     const auto keep = [&slots](uint32_t half) { slots = (slots & half) != 0 ? slots & half : slots; };
     keep(order); // there are eight bits of slots

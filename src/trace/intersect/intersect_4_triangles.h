@@ -19,9 +19,8 @@ struct RayShear4 {
     __m128 ox, oy, oz; // origin, in that order of axes
 };
 
-/// make_ray_shear with results as vectors too. It does not branch on the direction, because the largest component is
-/// unpredictable, and a misprediction costs a quarter of a node.
-/// wrong one costs as much as a quarter of a node.
+/// Makes the shear of make_ray_shear, also as vectors. It does not branch on the direction, because the largest
+/// component is unpredictable, and a misprediction costs a quarter of a node.
 inline RayShear4 make_ray_shear_4(const Ray& ray, RayShear& shear) {
     const Vec3 size = abs(ray.direction);
     const int x_y = size.x >= size.y, x_z = size.x >= size.z, y_z = size.y >= size.z;
@@ -48,8 +47,8 @@ struct TriangleHit4 {
     alignas(16) float t[4], u[4], v[4];
 };
 
-/// Bit k of the result is set if triangle k is hit with t_min < t < t_max and t <= t_limit; its hit is in `hits`.
-/// Tests `count` triangles from `first` on, at most 4.
+/// Tests `count` triangles from `first` on, at most 4. Bit k of the result is set if triangle k is hit with t_min < t <
+/// t_max and t <= t_limit; its hit is in `hits`.
 inline unsigned intersect_4_triangles(Vec3 origin, const RayShear& shear, const RayShear4& ray, float t_min,
                                       float t_max, float t_limit, const BvhTriangle* first, uint32_t count,
                                       TriangleHit4& hits) {

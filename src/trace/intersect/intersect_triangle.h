@@ -61,8 +61,8 @@ HD inline Vec3 shear(Vec3 p, const RayShear& ray) {
 
 inline constexpr float kSureEdge = 0x1p-100f; // an edge function of this size or more has its exact sign
 
-/// Hit on the front or back face with t_min < t < t_max; false when there is none. `hit` is written on true only. A
-/// triangle without area, or with a vertex that is not finite, is never hit.
+/// Finds a hit on the front or back face with t_min < t < t_max. Returns false if there is none; `hit` is written on
+/// true only. A triangle without area, or with a vertex that is not finite, is never hit.
 HD inline bool intersect_triangle(Vec3 origin, const RayShear& ray, float t_min, float t_max, Vec3 a, Vec3 b, Vec3 c,
                                   TriangleHit& hit) {
     const Vec3 pa = shear(a - origin, ray), pb = shear(b - origin, ray), pc = shear(c - origin, ray);

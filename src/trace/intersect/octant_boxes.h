@@ -15,7 +15,7 @@
 
 namespace pertev {
 
-/// Stands for an unknown octant.
+/// Number of an unknown octant.
 inline constexpr int kAnyOctant = 8;
 
 struct RayOctantBoxes {
@@ -23,7 +23,7 @@ struct RayOctantBoxes {
     Vec3 lo; // -(origin + e) / d: maps a lower plane, moved out, to the ray's crossing
     Vec3 hi; // -(origin - e) / d
 
-    /// Must be called after every change of the segment; `origin` is the ray's.
+    /// Computes the planes from the segment, after each of its changes; `origin` is the ray's.
     HD void set_planes(Vec3 origin) {
         const Vec3 inv = segment.inv;
         const float e = segment.grow;
@@ -40,11 +40,11 @@ HD inline RayOctantBoxes make_ray_octant_boxes(const Ray& ray, float bounds_max_
     return r;
 }
 
-/// Bit a is set if the ray's direction is negative along axis a.
+/// Octant of a ray's direction: bit a is set if it is negative along axis a.
 HD inline int octant_of(Vec3 inv) { return (inv.x < 0 ? 1 : 0) | (inv.y < 0 ? 2 : 0) | (inv.z < 0 ? 4 : 0); }
 
-/// Whether the box of child k may hold a hit with 0 < t <= r.segment.end; it is entered at entry * r.segment.end or
-/// later. kOctant is the ray's, or kAnyOctant.
+/// Returns whether the box of child k may hold a hit with 0 < t <= r.segment.end; it is entered at entry *
+/// r.segment.end or later. kOctant is the ray's, or kAnyOctant.
 template <int kOctant>
 HD inline bool enters_child(const RayOctantBoxes& r, const BvhNode& node, int k, float& entry) {
     const auto cross = [k](int axis, const float(&planes)[4], float inv, float lo, float hi, float& near, float& far) {

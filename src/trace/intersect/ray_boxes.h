@@ -46,7 +46,8 @@ HD inline float box_growth(Vec3 origin, float bounds_max_abs) {
     return 0x1p-20f * (greatest_size(origin) + bounds_max_abs);
 }
 
-/// `bounds_max_abs` belongs to the whole tree; `growth` multiplies e (1 within a mesh).
+/// Makes the data of a ray for box tests. `bounds_max_abs` belongs to the whole tree; `growth` multiplies e (1 within a
+/// mesh).
 HD inline RayBoxes make_ray_boxes(Vec3 origin, Vec3 direction, float bounds_max_abs, float growth = 1.0f) {
     const float e = box_growth(origin, bounds_max_abs) * growth;
     RayBoxes r;
@@ -57,7 +58,7 @@ HD inline RayBoxes make_ray_boxes(Vec3 origin, Vec3 direction, float bounds_max_
     return r;
 }
 
-/// Whether a box may hold a hit with t_min < t <= t_limit; writes its entry parameter to `entry`.
+/// Returns whether a box may hold a hit with t_min < t <= t_limit; writes its entry parameter to `entry`.
 HD inline bool enters_box(const RayBoxes& r, Vec3 lower, Vec3 upper, float t_min, float t_limit, float& entry) {
     const float x0 = fma(lower.x, r.inv.x, r.lo.x), x1 = fma(upper.x, r.inv.x, r.hi.x);
     const float y0 = fma(lower.y, r.inv.y, r.lo.y), y1 = fma(upper.y, r.inv.y, r.hi.y);
@@ -72,7 +73,7 @@ HD inline bool enters_box(const RayBoxes& r, Vec3 lower, Vec3 upper, float t_min
     return entry <= exit;
 }
 
-/// Whether the box of child k may hold a hit, like enters_box.
+/// Returns whether the box of child k may hold a hit, like enters_box.
 HD inline bool enters_child(const RayBoxes& r, const BvhNode& node, int k, float t_min, float t_limit, float& entry) {
     return enters_box(r, {node.x[k], node.y[k], node.z[k]}, {node.x[k + 2], node.y[k + 2], node.z[k + 2]}, t_min,
                       t_limit, entry);

@@ -52,7 +52,8 @@ struct FastTests {
         r.hi = r.lo;
         return r;
     }
-    /// For boxes that are tested against a segment (ray_segment.h): without growth, flat ones would be missed.
+    /// Growth of boxes that are tested against a segment (ray_segment.h), metres. Without growth, flat ones would be
+    /// missed.
     HD static float box_growth(const Ray& ray, float bounds_max_abs) {
         return pertev::box_growth(ray.origin, bounds_max_abs);
     }

@@ -1,8 +1,8 @@
 #pragma once
 
 // Woop's unit-triangle test, only for the laboratory: transforms the ray to the space in which the triangle is the
-// unit triangle. The tree has the transforms (accel/bvh/woop_bvh.h), so the vertices are not read. Boxes are tested
-// see FastTests.
+// unit triangle. The tree has the transforms (accel/bvh/woop_bvh.h), so the vertices are not read. Boxes are tested by
+// FastTests.
 //
 // Sources: Woop, M.Sc. thesis, Saarland University, 2004, section 4.2; used by Aila, Laine, "Understanding the
 // Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.
@@ -38,7 +38,7 @@ struct WoopTests {
     }
 };
 
-/// test_leaf() of trace/intersect/test_leaf.h for these transforms.
+/// Tests a leaf of a tree with Woop's transforms, like test_leaf() of trace/intersect/test_leaf.h.
 template <class Tests, class Visitor, class Counter>
 HD inline bool test_leaf(const WoopBvhView& bvh, uint32_t leaf, const Ray& ray, const typename Tests::Triangles&,
                          uint32_t instance, Visitor& visitor, const Counter& counter) {

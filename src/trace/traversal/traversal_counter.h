@@ -9,7 +9,7 @@
 
 namespace pertev {
 
-/// Counts nothing, at no cost.
+/// A counter that counts nothing, at no cost.
 struct NoTraversalCounter {
     HD void add_node(const void*) const {}
     HD void add_triangle(const void*) const {}

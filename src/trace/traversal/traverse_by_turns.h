@@ -10,7 +10,7 @@
 
 namespace pertev {
 
-/// Returns true if the visitor ended it.
+/// Traverses a tree turn by turn. Returns true if the visitor ended the traversal.
 template <class Traversal, class Visitor, class Counter>
 HD inline bool traverse_by_turns(const typename Traversal::Tree& tree, const Ray& ray, uint32_t instance,
                                  Visitor& visitor, const Counter& counter) {

@@ -18,11 +18,11 @@ namespace pertev {
 
 #if PERTEV_HAS_KERNELS
 
-/// Each lane fetches an index by itself; the compiler combines the additions of converged lanes. No lane relies on
-/// another one, because a warp's lanes may return from a stage diverged. ptxas 13.0 assumes that they reconverge and
-/// omits the waiting of __syncwarp() and of the votes, but where it keeps a convergence barrier in a register across
-/// a call (BMOV in SASS), they do not always. An index that lane 0 fetched for all was then read where there was no
-/// lane 0, and the kernel did not end.
+/// Runs a stage by lanes that each fetch their next index; the compiler combines the additions of converged lanes. No
+/// lane relies on another one, because a warp's lanes may return from a stage diverged. ptxas 13.0 assumes that they
+/// reconverge and omits the waiting of __syncwarp() and of the votes, but where it keeps a convergence barrier in a
+/// register across a call (BMOV in SASS), they do not always. An index that lane 0 fetched for all was then read where
+/// there was no lane 0, and the kernel did not end.
 template <class Stage>
 __global__ void __launch_bounds__(kTraversalThreads) run_stage_persistent(Stage stage, WorkCount work, uint32_t* pool) {
     const uint32_t count = work.value();

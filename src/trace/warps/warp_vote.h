@@ -11,7 +11,7 @@ namespace pertev {
 
 using LaneMask = uint32_t; // bit k stands for lane k
 
-/// The lanes that execute this line together.
+/// The mask of the lanes that execute this line together.
 HD inline LaneMask lanes_here() {
 #if PERTEV_ON_DEVICE
     return __activemask();
@@ -20,7 +20,7 @@ HD inline LaneMask lanes_here() {
 #endif
 }
 
-/// Whether the condition holds for all lanes that execute this line together.
+/// Returns whether the condition holds for all lanes that execute this line together.
 HD inline bool all_lanes_here(bool mine) {
 #if PERTEV_ON_DEVICE
     return __all_sync(__activemask(), mine) != 0;
@@ -29,7 +29,7 @@ HD inline bool all_lanes_here(bool mine) {
 #endif
 }
 
-/// Lanes with the same key as this one, among `lanes`, all of which must call it.
+/// Mask of the lanes with the same key as this one, among `lanes`, all of which must call it.
 HD inline LaneMask lanes_with_same(LaneMask lanes, uint64_t key) {
 #if PERTEV_ON_DEVICE
     return __match_any_sync(lanes, static_cast<unsigned long long>(key));
@@ -39,7 +39,7 @@ HD inline LaneMask lanes_with_same(LaneMask lanes, uint64_t key) {
 #endif
 }
 
-/// Whether this lane is the first of `lanes`, which include it.
+/// Returns whether this lane is the first of `lanes`, which include it.
 HD inline bool is_first_lane(LaneMask lanes) {
 #if PERTEV_ON_DEVICE
     return static_cast<unsigned>(__ffs(static_cast<int>(lanes)) - 1) ==

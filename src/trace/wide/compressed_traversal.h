@@ -31,10 +31,10 @@
 
 namespace pertev {
 
-/// Minimum number of the `working` lanes that must have triangles for a test: 13 of 32, about 40 %; theirs is 20 %.
-/// Counted for warps of 32, not timed, on the second diffuse bounce in Sponza: 2.7 lanes test a triangle together
-/// without postponing, 7.4 with their 20 %, 13 with 40 %, while 25 of 32 test a node. From 35 to 50 % the number of
-/// instructions per ray changes by 2 %. At least 1.
+/// Minimum number of the `working` lanes that must have triangles for a test, at least 1: 13 of 32, about 40 %; the
+/// paper's is 20 %. Counted for warps of 32, not timed, on the second diffuse bounce in Sponza: 2.7 lanes test a
+/// triangle together without postponing, 7.4 with 20 %, 13 with 40 %, while 25 of 32 test a node. From 35 to 50 % the
+/// number of instructions per ray changes by 2 %.
 HD inline int lanes_for_triangles(int working) { return (13 * working + 31) / 32; }
 
 /// Pending children of one node.
@@ -158,7 +158,7 @@ struct CompressedTraversal {
         bool ended = false;
         const auto are_enough = [&] { return count_lanes(ballot(lanes, !state.triangles.is_empty())) >= enough; };
         if (are_enough()) { // all of `lanes` take part in each vote
-            do {            // this form is 1 % faster than one loop that votes first
+            do {            // 1 % faster than one loop that votes first
                 if (!state.triangles.is_empty() && test_triangle(bvh, ray, instance, state, visitor, counter)) {
                     ended = true;
                     state.stop();

@@ -18,7 +18,7 @@ namespace pertev {
 /// Scenes with more triangles use their trees; docs/performance.md has the measurement.
 inline constexpr uint32_t kMaxTestedTriangles = 96;
 
-/// Whether test_every_triangle may trace the scene's rays.
+/// Returns whether EveryTriangle may trace the scene's rays.
 inline bool is_small(const HostTrees& scene) {
     return scene.tlas_root == kNoLink && scene.baked.nodes != nullptr &&
            scene.baked.triangle_count <= kMaxTestedTriangles;

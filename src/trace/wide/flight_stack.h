@@ -65,7 +65,7 @@ public:
         size_ = size;
         return {entry_[size], link_[size], count_[size]};
     }
-    /// Drops entries beyond `limit`.
+    /// Pops entries beyond `limit`.
     void shorten(float limit) {
         int kept = 0;
         const __m256 limits = _mm256_set1_ps(limit);

@@ -21,15 +21,15 @@ enum class RayOrder {
     Together,  // tests whether each eight consecutive rays are coherent
 };
 
-/// Traverses the scene with many rays: see traverse_scene_in_flight.
+/// Traverses the scene with many rays, in packets where they are coherent and otherwise by traverse_scene_in_flight.
 template <TraversalOptions kOptions, class RayOf, class AcceptOf, class MakeVisitor, class End>
 void traverse_scene_together(const HostTrees& scene, uint32_t count, const RayOf& ray_of, const AcceptOf& accept_of,
                              const MakeVisitor& make_visitor, const End& end_of) {
     using Accept = decltype(accept_of(0));
     using Visitor = decltype(make_visitor(std::declval<const Accept&>(), std::declval<const Ray&>()));
     using Packet = WidePacket<kOptions, Visitor>;
-    constexpr uint32_t kSize = kWidePacket, kMostAlone = 256, kViewRays = 3;
-    std::array<uint32_t, kMostAlone> alone;
+    constexpr uint32_t kSize = kWidePacket, kMaxAlone = 256, kViewRays = 3;
+    std::array<uint32_t, kMaxAlone> alone;
     uint32_t waiting = 0;
     const auto send_alone = [&] {
         traverse_scene_in_flight<kOptions>(
@@ -40,7 +40,7 @@ void traverse_scene_together(const HostTrees& scene, uint32_t count, const RayOf
     };
     const auto put_alone = [&](uint32_t first, uint32_t some) {
         for (uint32_t i = 0; i < some; ++i) alone[waiting++] = first + i;
-        if (waiting + kSize > kMostAlone) send_alone();
+        if (waiting + kSize > kMaxAlone) send_alone();
     };
     HostTrees instances = scene;
     instances.baked = {};
@@ -97,7 +97,7 @@ void trace_closest_many(const HostTrees& scene, uint32_t count, RayOrder order, 
     traverse_scene_many<kOptions, false>(scene, count, order, ray_of, accept_of, make_visitor, end);
 }
 
-/// Occlusion of `count` rays: met[i].
+/// Occlusion of `count` rays: met[i] is whether ray i hits anything.
 template <TraversalOptions kOptions, class RayOf, class AcceptOf>
 void trace_any_many(const HostTrees& scene, uint32_t count, RayOrder order, const RayOf& ray_of,
                     const AcceptOf& accept_of, bool* met) {

@@ -63,7 +63,8 @@ struct EnteredChildren {
     unsigned mask() const { return static_cast<unsigned>(_mm256_movemask_ps(is_in)); }
 };
 
-/// Always inlined: as a call, with its vectors through memory, it would take a tenth of a render.
+/// Tests the boxes of a node's children. It is always inlined: as a call, with its vectors through memory, it would
+/// take a tenth of a render.
 [[gnu::always_inline]] inline EnteredChildren
 enters_children(const WideRay& ray, const WideBvhNode<kWideChildren>& node, __m256 t_min, __m256 t_limit) {
     const auto near = [&](int axis) {
@@ -78,8 +79,7 @@ enters_children(const WideRay& ray, const WideBvhNode<kWideChildren>& node, __m2
     return {entries, _mm256_cmp_ps(entries, exit, _CMP_LE_OQ)};
 }
 
-/// Tests leaves of up to four triangles at once, or one by one if hits need not be exact. Returns true if the visitor
-/// ended it.
+/// Tests leaves of up to four triangles at once, or one by one if hits need not be exact.
 template <TraversalOptions kOptions>
 struct LeafOfFour {
     const Ray& ray;
@@ -184,8 +184,8 @@ template <TraversalOptions kOptions>
     return true;
 }
 
-/// Returns true if the visitor ended it. The tree has a node. Always inlined: as a call it makes a render a twentieth
-/// slower.
+/// Traverses a tree with at least one node. Returns true if the visitor ended the traversal. It is always inlined: as a
+/// call it makes a render a twentieth slower.
 template <TraversalOptions kOptions, class Visitor, class Counter>
 [[gnu::always_inline]] inline bool traverse_wide(const WideBvhView<kWideChildren>& bvh, const Ray& ray,
                                                  uint32_t instance, Visitor& visitor, const Counter& counter) {

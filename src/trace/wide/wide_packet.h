@@ -46,11 +46,11 @@ public:
             }
             set_shear(eight, lanes, first);
             eight.t_min = lanes.t_min, eight.t_max = lanes.t_max;
-            min_t_ = min(min_t_, least_of(lanes.t_min));
+            min_t_ = min(min_t_, min_of(lanes.t_min));
         }
     }
 
-    /// Whether the rays are coherent; others must not run.
+    /// Returns whether the rays are coherent; others must not run.
     bool is_coherent() const { return is_coherent_; }
 
     void run(Visitor* visitors, int count) {
@@ -85,8 +85,8 @@ private:
         const __m256 q_far = back ? _mm256_xor_ps(above, sign) : below;
         const __m256 size = size_of(inv);
         Extent& all = extents_[axis];
-        all = {min(all.min_inv, least_of(size)), max(all.max_inv, most_of(size)), max(all.most_near, most_of(q_near)),
-               min(all.min_far, least_of(q_far))};
+        all = {min(all.min_inv, min_of(size)), max(all.max_inv, max_of(size)), max(all.max_near, max_of(q_near)),
+               min(all.min_far, min_of(q_far))};
     }
 
     void traverse() {
@@ -143,10 +143,10 @@ private:
 
     /// Bounds of all rays along an axis: |1/direction|, and the origins that enter_together subtracts from planes.
     struct Extent {
-        float min_inv, max_inv, most_near, min_far;
+        float min_inv, max_inv, max_near, min_far;
     };
 
-    /// make_ray_shear of eight rays that share the first one's order of axes.
+    /// Makes the shears of eight rays that share the first one's order of axes, like make_ray_shear.
     void set_shear(Eight& eight, const Lanes& lanes, const RayShear& first) {
         RayShearOf<Floats8>& shear = eight.shear;
         shear.kx = first.kx, shear.ky = first.ky, shear.kz = first.kz;
@@ -167,12 +167,12 @@ private:
     }
 
     static __m256 size_of(__m256 x) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), x); }
-    static float least_of(__m256 all) {
+    static float min_of(__m256 all) {
         __m128 least = _mm_min_ps(_mm256_castps256_ps128(all), _mm256_extractf128_ps(all, 1));
         least = _mm_min_ps(least, _mm_movehl_ps(least, least));
         return _mm_cvtss_f32(_mm_min_ss(least, _mm_shuffle_ps(least, least, 1)));
     }
-    static float most_of(__m256 all) {
+    static float max_of(__m256 all) {
         __m128 most = _mm_max_ps(_mm256_castps256_ps128(all), _mm256_extractf128_ps(all, 1));
         most = _mm_max_ps(most, _mm_movehl_ps(most, most));
         return _mm_cvtss_f32(_mm_max_ss(most, _mm_shuffle_ps(most, most, 1)));
@@ -190,13 +190,13 @@ private:
                                               int (&order)[kWideChildren]) const {
         __m256 limits = _mm256_load_ps(eights_[0].limits);
         for (int g = 1; g < kPacketEights; ++g) limits = _mm256_max_ps(limits, _mm256_load_ps(eights_[g].limits));
-        __m256 entry = _mm256_set1_ps(min_t_), exit = _mm256_set1_ps(most_of(limits));
+        __m256 entry = _mm256_set1_ps(min_t_), exit = _mm256_set1_ps(max_of(limits));
         for (int axis = 0; axis < 3; ++axis) {
             const Extent& extent = extents_[axis];
             const __m256 sign = _mm256_set1_ps(back_[axis] ? -0.0f : 0.0f);
             const __m256 least = _mm256_set1_ps(extent.min_inv), most = _mm256_set1_ps(extent.max_inv);
             const __m256 a = _mm256_sub_ps(_mm256_xor_ps(_mm256_load_ps(near_planes(node, axis)), sign),
-                                           _mm256_set1_ps(extent.most_near));
+                                           _mm256_set1_ps(extent.max_near));
             const __m256 b = _mm256_sub_ps(_mm256_xor_ps(_mm256_load_ps(far_planes(node, axis)), sign),
                                            _mm256_set1_ps(extent.min_far));
             entry = _mm256_max_ps(entry, _mm256_min_ps(_mm256_mul_ps(a, least), _mm256_mul_ps(a, most)));
@@ -216,7 +216,8 @@ private:
         return n;
     }
 
-    /// enters_children (traverse_wide.h) of child k for eight rays: nonzero if any enters, with the entry parameters.
+    /// Tests the box of child k for eight rays, like enters_children (traverse_wide.h). The result is nonzero if any
+    /// ray enters, with the entry parameters.
     [[gnu::always_inline]] int enter_child(const Eight& eight, const WideBvhNode<kWideChildren>& node, int k,
                                            __m256& entry) const {
         const auto near = [&](int axis) {

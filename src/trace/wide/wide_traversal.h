@@ -81,7 +81,7 @@ struct WideTraversal {
     }
 
 private:
-    /// The child to enter first ends on top.
+    /// Pushes the entered children, the one to enter first last.
     template <class Visitor>
     HD static void push_children(const WideBvhNode<kWidth>* node, const RayBoxes& boxes, float t_min, float t_limit,
                                  TraversalStackEntry* stack, int& size) {

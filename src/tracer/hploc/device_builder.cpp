@@ -12,9 +12,9 @@
 namespace pertev {
 namespace {
 
-/// Wide nodes of n triangles, at most. The plan leaves no node beside an empty place that its children fit in: where a
-/// node has c children, the one above it has at least 10 - c. So there are the most where nodes of two triangles hang
-/// eight to a node. Counts are compared with it all the same.
+/// Maximum number of wide nodes over n triangles. The plan leaves no node whose children would fit into empty slots of
+/// its parent: if a node has c children, its parent has at least 10 - c. So the number is largest if each node has
+/// eight children that are nodes of two triangles. Counts are checked against it nevertheless.
 std::size_t max_nodes(uint32_t triangles) { return static_cast<std::size_t>(triangles) * 4 / 7 + 8; }
 
 } // namespace

@@ -27,8 +27,9 @@ public:
     /// count <= most.
     void start(const BvhTriangle* triangles, uint32_t count);
 
-    /// finish() waits for the queue and returns figures of the tree. A tree that is too deep for the traversal stack,
-    /// which only contrived coordinates cause, is rebuilt with equal halves of the curve. Throws Error(DeviceFault).
+    /// Figures of the tree that finish() returns, after waiting for the queue. A tree that is too deep for the
+    /// traversal stack, which only contrived coordinates cause, is rebuilt with equal halves of the curve. Throws
+    /// Error(DeviceFault).
     struct Figures {
         uint32_t nodes = 0, triangles = 0;
         int depth = 0;
@@ -48,12 +49,12 @@ public:
     CompressedBvhView view() const;
     CompressedBvh download() const;
 
-    /// For tests: the cleared working memory of the stages, and the binary tree before the conversion.
+    /// Clears and returns the working memory of the stages, with the binary tree before the conversion, for tests.
     hploc::Climb prepare_climb() const;
     hploc::EmitWide prepare_emit();
     std::vector<hploc::ClusterNode> download_clusters() const { return nodes_.download(); }
 
-    /// For tests: builds with equal halves of the curve from now on, as after a tree that was too deep.
+    /// Builds with equal halves of the curve from now on, as after a tree that was too deep, for tests.
     void set_balanced(bool balanced) { balanced_ = balanced; }
 
 private:

@@ -216,7 +216,8 @@ struct EmitWide {
     }
 };
 
-/// One call per wide node of a level. Its inner children are appended to the next level in no fixed order.
+/// The stage that makes the wide nodes of a level, one per call. Inner children are appended to the next level in no
+/// fixed order.
 struct EmitLevel {
     EmitWide emit;
     const uint32_t* level;

@@ -13,7 +13,8 @@
 
 namespace pertev::hploc {
 
-/// One call per node: counts its inner children and stores their links to it. The caller sets the root's entry.
+/// The stage that counts the inner children of each node and stores their links to it. The caller sets the root's
+/// entry.
 struct LinkParents {
     const CompressedBvhNode* nodes;
     uint32_t *parents, *children;
@@ -25,7 +26,7 @@ struct LinkParents {
     }
 };
 
-/// One call per triangle of the tree: copies its new vertices.
+/// The stage that copies the new vertices of each triangle of the tree.
 struct MoveTriangles {
     const BvhTriangle* moved; // in the order of the triangles that the tree was built from
     const uint32_t* sources;  // [triangle of the tree] index into `moved`
@@ -38,7 +39,7 @@ struct MoveTriangles {
     }
 };
 
-/// One call per node.
+/// The stage that refits the boxes, with one call per node.
 struct RefitNodes {
     CompressedBvhNode* nodes;
     const BvhTriangle* triangles;

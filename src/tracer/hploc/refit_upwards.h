@@ -33,8 +33,9 @@ struct UpwardLinks {
     NodeBox* boxes;
     RefitResult* result;
 
-    /// Called once for each node. Nodes without inner children start, and climb as long as they are the last child to
-    /// arrive. `fit(node)` returns the NodeBox of a node whose inner children have theirs in `boxes`.
+    /// Refits from node `i` upwards; it is called once for each node. Nodes without inner children start, and climb as
+    /// long as they are the last child to arrive. `fit(node)` returns the NodeBox of a node whose inner children have
+    /// theirs in `boxes`.
     template <class Fit>
     HD void climb_from(uint32_t i, const Fit& fit) const {
         if (children[i] != 0) return;
@@ -57,7 +58,7 @@ struct UpwardLinks {
     HD NodeBox box_of(uint32_t node) const { return hploc::load_fresh(boxes + node); }
 
 private:
-    /// Returns the number of arrivals including this one; writes of earlier arrivals are visible.
+    /// Counts an arrival. Returns the number of arrivals including this one; writes of earlier arrivals are visible.
     HD static uint32_t arrive(uint32_t* count) {
 #if defined(__CUDA_ARCH__)
         __threadfence();

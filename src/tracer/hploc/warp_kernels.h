@@ -53,7 +53,7 @@ __device__ inline uint32_t take_clusters(const Climb& climb, const LeafRange& ra
     return static_cast<uint32_t>(__popc(there));
 }
 
-/// join_range by all lanes of a warp.
+/// Merges the clusters of a node by all lanes of a warp, like join_range.
 __device__ inline void join_range_together(const Climb& climb, const LeafRange& range, WarpClusters& all,
                                            uint32_t lane) {
     uint32_t count = take_clusters(climb, range, all, lane);
@@ -98,7 +98,7 @@ __device__ inline void join_range_together(const Climb& climb, const LeafRange& 
     __syncwarp();
 }
 
-/// ClimbFromLeaves, with ranges merged by all lanes of the warp, one node after the other.
+/// Climbs like ClimbFromLeaves, with ranges merged by all lanes of the warp, one node after the other.
 __device__ inline void climb_together(const Climb& climb, WarpClusters& all) {
     const uint32_t n = climb.tree.count, lane = threadIdx.x & 31u;
     const uint32_t leaf = blockIdx.x * blockDim.x + threadIdx.x;
@@ -165,7 +165,7 @@ struct alignas(16) GroupMemory {
 };
 inline constexpr uint32_t kLast = 0x80000000u;
 
-__device__ inline uint64_t least_of_group(uint64_t x) {
+__device__ inline uint64_t min_of_group(uint64_t x) {
     for (uint32_t step = 1; step < kMaxWidth; step *= 2) {
         const auto other = static_cast<uint64_t>(__shfl_xor_sync(kAllLanes, static_cast<unsigned long long>(x), step));
         x = other < x ? other : x;
@@ -182,8 +182,8 @@ __device__ inline uint32_t sum_before(uint32_t x, uint32_t k) {
     return sum - x;
 }
 
-/// children_of in parallel: each lane gets a child or kNone, in the binary tree's order. A subtree that may have j
-/// roots owns j consecutive lanes, so its halves know theirs.
+/// Finds the children of a wide node in parallel, like children_of: each lane gets a child or kNone, in the binary
+/// tree's order. A subtree that may have j roots owns j consecutive lanes, so its halves know theirs.
 __device__ inline uint32_t child_of_lane(const ClusterTree& tree, uint32_t node, GroupMemory& memory, uint32_t k) {
     uint2 own = k == 0 ? make_uint2(node, kMaxWidth) : make_uint2(kNone, 0);
     memory.entries[k] = own;
@@ -206,7 +206,7 @@ __device__ inline uint32_t child_of_lane(const ClusterTree& tree, uint32_t node,
     }
 }
 
-/// choose_slots for the lane's child (kNone if it has none).
+/// Chooses the slot of the lane's child (kNone if it has none), like choose_slots.
 __device__ inline uint32_t slot_of_lane(uint32_t child, Vec3 from, uint32_t k) {
     uint32_t slot = kNone, free = 0xffu;
     bool wants = child != kNone;
@@ -220,7 +220,7 @@ __device__ inline uint32_t slot_of_lane(uint32_t child, Vec3 from, uint32_t k) {
                 if (free >> s & 1u && cost < own) own = cost;
             }
         }
-        const uint64_t least = least_of_group(wants ? own : ~uint64_t(0));
+        const uint64_t least = min_of_group(wants ? own : ~uint64_t(0));
         if (least == ~uint64_t(0)) continue; // no lane of this group wants a slot
         const auto taken = static_cast<uint32_t>(least & 7u);
         free &= ~(1u << taken);
@@ -232,7 +232,8 @@ __device__ inline uint32_t slot_of_lane(uint32_t child, Vec3 from, uint32_t k) {
     return slot;
 }
 
-/// EmitWide::make by the eight lanes of each group that is ready. All lanes of the warp must call it.
+/// Makes wide nodes like EmitWide::make, by the eight lanes of each group that is ready. All lanes of the warp must
+/// call it.
 __device__ inline void make_together(const EmitWide& emit, uint32_t index, const WideItem& item, bool is_ready,
                                      GroupMemory& memory) {
     const ClusterTree& tree = emit.tree;

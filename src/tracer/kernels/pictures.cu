@@ -7,10 +7,10 @@
 
 namespace pertev {
 
-/// Rendering uses it for camera rays.
+/// The traversal of camera rays in pictures.
 template <>
 inline constexpr bool kOfPictures<OctantTraversal<TraversalOptions{}>> = true;
-/// Rendering uses these for bounce and shadow rays.
+/// The traversal of bounce and shadow rays in pictures.
 template <>
 inline constexpr bool kOfPictures<CompressedTraversal<TraversalOptions{.rta_at_pops = false}>> = true;
 template <>

@@ -34,7 +34,8 @@ HD inline void store_hit(const HitQueueView& hits, uint32_t i, const Hit& hit) {
     }
 }
 
-/// `Scene` is SceneTrees or SingleTree of the structure; `Accept` is AcceptOpaque or AcceptQueued.
+/// The stage that traces a queue. `Scene` is SceneTrees or SingleTree of the structure; `Accept` is AcceptOpaque or
+/// AcceptQueued.
 template <class Traversal, bool kAny, class Accept, class Scene>
 struct TraceQueue {
     Scene scene;
@@ -46,7 +47,7 @@ struct TraceQueue {
     }
 };
 
-/// Reads rays and stores hits for launch_dynamic_fetch (trace/dynamic_fetch.h).
+/// The rays and hits of a queue for launch_dynamic_fetch (trace/dynamic_fetch.h).
 template <bool kAny, class Accept>
 struct QueueInOut {
     TraceQuery query;
@@ -57,7 +58,7 @@ struct QueueInOut {
     HD void store(uint32_t i, const Hit& hit) const { store_hit<kAny>(hits, i, hit); }
 };
 
-/// QueueInOut without stored hits.
+/// The rays of a queue, like QueueInOut without stored hits.
 template <class Accept>
 struct QueueIn {
     TraceQuery query;
@@ -67,7 +68,7 @@ struct QueueIn {
     HD void store(uint32_t, const Hit&) const {}
 };
 
-/// A traversal that counts its work. It is a stage of its own so that counting does not slow down the timed one.
+/// The stage that counts the work of a traversal. It is separate so that counting does not slow down the timed one.
 template <class Traversal, bool kAny>
 struct CountQueue {
     SceneTrees<typename Traversal::Tree> scene;

@@ -15,7 +15,7 @@ namespace pertev {
 // traversals are also compiled for non-opaque scenes with one tree, and those that rendering uses also for static
 // instances.
 
-/// Whether rendering uses this traversal by default.
+/// True for the traversals that rendering uses by default.
 template <class Traversal>
 inline constexpr bool kOfPictures = false;
 
@@ -88,7 +88,7 @@ void trace_dynamic(Queue& queue, const AnyTrees& trees, const RayBatch& batch, c
 // Lanes are counted only in opaque scenes with one tree, because each counting kernel takes as long to compile as a
 // traversal.
 
-/// Counts lanes as in trace/warps/lane_counter.h.
+/// The stage that counts active lanes (trace/warps/lane_counter.h).
 template <class Traversal, bool kAny>
 struct CountLanes {
     SingleTree<typename Traversal::Tree> scene;
