@@ -30,7 +30,7 @@ std::optional<FilmPart> join(const FilmPart& a, const FilmPart& b) {
 } // namespace
 
 Film::Film(Queue& queue, uint32_t width, uint32_t height, uint32_t aovs, std::vector<std::string> light_layers)
-    : queue_(&queue), width_(width), height_(height), aovs_(aovs), light_layers_(std::move(light_layers)),
+    : queue_(&queue), window_{.width = width, .height = height}, aovs_(aovs), light_layers_(std::move(light_layers)),
       channels_(film_channel_count(aovs) + 3 * static_cast<uint32_t>(light_layers_.size())) {
     const std::size_t pixels = std::size_t(width) * height;
     const auto take = [&]<class Target>(std::size_t count, const char* name, const Target*& taken) {
@@ -57,14 +57,13 @@ void Film::clear() {
 }
 
 FilmView Film::view() const {
-    FilmView view = {nullptr, nullptr, nullptr, channels_, aovs_, width_, height_, {}, window_};
+    FilmView view = {nullptr, nullptr, nullptr, channels_, aovs_, window_, {}};
     for (const auto& target : targets_) target->show(view);
     return view;
 }
 
 void Film::add(const Film& other) {
-    PERTEV_CHECK(other.width_ == width_ && other.height_ == height_ && other.aovs_ == aovs_ &&
-                 other.light_layers_ == light_layers_ && other.window_ == window_ &&
+    PERTEV_CHECK(other.window_ == window_ && other.aovs_ == aovs_ && other.light_layers_ == light_layers_ &&
                  other.targets_.size() == targets_.size());
     for (std::size_t i = 0; i < targets_.size(); ++i) PERTEV_CHECK(targets_[i]->is_like(*other.targets_[i]));
     const std::optional<FilmPart> both = join(part_, other.part_);
@@ -82,7 +81,7 @@ uint64_t Film::invalid_samples() const { return invalid_->elements().download()[
 Image Film::resolve(uint32_t first, uint32_t channels, bool over_hits) const {
     launch(*queue_, "resolve_film", pixel_count(),
            ResolveFilm{view(), first, channels, over_hits, part_.samples.count(), resolved_.data()});
-    Image image{width_, height_, channels, {}};
+    Image image{width(), height(), channels, {}};
     image.pixels.resize(std::size_t(pixel_count()) * channels);
     queue_->copy_to_host(image.pixels.data(), resolved_.data(), image.pixels.size() * sizeof(float));
     return image;
@@ -104,7 +103,7 @@ void Film::display(ToneMap kind, float exposure_stops, bool transparent) {
 Rgba8Image Film::displayed() const {
     PERTEV_CHECK(display_ != nullptr);
     const auto* const bytes = static_cast<const uint8_t*>(queue_->wait(*display_));
-    return {width_, height_, {bytes, bytes + std::size_t(pixel_count()) * 4}};
+    return {width(), height(), {bytes, bytes + std::size_t(pixel_count()) * 4}};
 }
 
 std::vector<FilmLayer> Film::layers() const {
@@ -122,7 +121,7 @@ std::vector<FilmLayer> Film::layers() const {
         first += 3;
     }
     for (const auto& target : targets_) {
-        for (FilmLayer& layer : target->layers(width_, part_.samples.count())) layers.push_back(std::move(layer));
+        for (FilmLayer& layer : target->layers(width(), part_.samples.count())) layers.push_back(std::move(layer));
     }
     return layers;
 }

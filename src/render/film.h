@@ -70,22 +70,22 @@ public:
     std::span<const std::unique_ptr<FilmTarget>> targets() const { return targets_; }
 
     FilmView view() const;
-    uint32_t width() const { return width_; }
-    uint32_t height() const { return height_; }
+    uint32_t width() const { return window_.width; }
+    uint32_t height() const { return window_.height; }
     uint32_t aovs() const { return aovs_; }
     const std::vector<std::string>& light_layers() const { return light_layers_; }
     void clear();
 
-    /// Restricts the film to this window of the picture. The integrators `path`, `direct`, `indirect` and `hybrid`
-    /// can render windows; the others throw std::logic_error.
+    /// Makes the film hold this window, which has its size, of a larger picture. Each pixel gets the bytes that it has
+    /// in the whole picture.
     void set_window(const PixelWindow& window) {
-        PERTEV_CHECK(window.picture_width == 0 ||
-                     (window.width == width_ && window.x + window.width <= window.picture_width));
+        PERTEV_CHECK(window.width == width() && window.height == height());
+        PERTEV_CHECK(window.picture_width == 0 || window.x + window.width <= window.picture_width);
         window_ = window;
     }
 
     /// Sets which samples, of all rows, have been added to view() so far.
-    void set_samples(SampleRange samples) { set_part({0, height_, samples}); }
+    void set_samples(SampleRange samples) { set_part({0, height(), samples}); }
     void set_part(FilmPart part) { part_ = part; }
     const FilmPart& part() const { return part_; }
 
@@ -109,14 +109,14 @@ public:
     uint64_t invalid_samples() const;
 
 private:
-    uint32_t pixel_count() const { return width_ * height_; }
+    uint32_t pixel_count() const { return window_.count(); }
     Image resolve(uint32_t first, uint32_t channels, bool over_hits) const;
 
     Queue* queue_;
-    uint32_t width_, height_, aovs_;
+    PixelWindow window_;
+    uint32_t aovs_;
     std::vector<std::string> light_layers_;
     uint32_t channels_;
-    PixelWindow window_;
     FilmPart part_;
     std::vector<std::unique_ptr<FilmTarget>> targets_; // the film's own targets below come first
     const SumTarget* sums_;
