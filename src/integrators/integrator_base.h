@@ -52,6 +52,7 @@ protected:
     /// Calls work(begin, end) with ranges of [0, count) on all threads and adds up the rays that the calls return.
     template <class Work>
     void share_out(uint64_t count, uint64_t least, const Work& work) {
+        const UseThreads use(queue_.threads());
         std::atomic<uint64_t> bounces{0}, shadows{0};
         parallel_for_ranges(count, least, [&](uint64_t begin, uint64_t end) {
             const RayCounts traced = work(begin, end);

@@ -91,6 +91,7 @@ void IrradianceCacheIntegrator::report_invalid(uint64_t* invalid) {
 
 bool IrradianceCacheIntegrator::prepare(const std::function<bool(double share)>& goes_on) {
     if (has_records_) return true;
+    const UseThreads use(queue_.threads());
     store_.clear();
     queue_.zero(counts_.data() + kInvalid, sizeof(uint64_t));
     // Shadow rays alone find light that is scattered once.
