@@ -178,7 +178,7 @@ void PathIntegrator::render(uint32_t first, uint32_t count, const FilmView& film
     } else {
         render_wavefront(first, count, film);
     }
-    if (is_light_meter(picture_.camera.view.projection)) {
+    if (picture_.camera.is_meter()) {
         rays_.shadow += add_meter_lights(queue_, *tracer_, picture_, settings_.path, first, count, film);
     }
 }

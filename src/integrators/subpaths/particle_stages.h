@@ -287,7 +287,7 @@ struct BeginCameraSubpaths {
         const Ray ray = camera.ray(state.pixel, scene.settings.sampler, key);
         state.throughput = {1, 1, 1};
         state.mis = {min(square(1.0f / camera_density(camera, ray.direction)), kMaxWeightSum), 0};
-        state.is_from_far = has_parallel_rays(camera.view.projection) ? 1 : 0;
+        state.is_from_far = falls_with_distance(camera) ? 0 : 1;
         subpaths.states[i] = state;
         subpaths.queue_ray(i, i, ray, {}, coin_key(key, 0, false), 0);
     }
