@@ -142,7 +142,7 @@ Camera camera_through(const Camera& camera, float aspect, float x, float y) {
     Camera through = camera;
     through.aperture_radius = 0;
     const bool is_flat = has_parallel_rays(camera.projection);
-    const float half_height = is_flat ? 0.5f * camera.ortho_height : tan(0.5f * camera.fov_y);
+    const float half_height = half_view_height(camera);
     const float right = (2 * x - 1) * half_height * aspect, above = (1 - 2 * y) * half_height;
     if (is_flat) {
         through.world_from_camera.translation = from.translation + right * column(from, 0) + above * column(from, 1);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #if !defined(PERTEV_STD_THREADS)
@@ -38,23 +39,29 @@ int hardware_threads() { return std::max(1, static_cast<int>(std::thread::hardwa
 
 #if defined(PERTEV_STD_THREADS)
 
-/// The threads that work for the calling thread.
-struct Team {
-    int count = 0;               // 0: one per hardware thread
+} // namespace
+
+/// The threads that work for some threads.
+struct ThreadTeam {
+    explicit ThreadTeam(int threads) : count(threads) {}
+    int count;                   // 0: one per hardware thread
     std::atomic<int> helpers{0}; // helpers of parallel_invoke, because nested calls of a recursive builder would
                                  // start a thread each
 };
 
-thread_local Team t_own_team;
-thread_local Team* t_team = nullptr; // the team of the thread that this one helps; null: its own
+namespace {
 
-Team& team() { return t_team != nullptr ? *t_team : t_own_team; }
+/// The team of this thread, or of the one that it helps; null: one per hardware thread.
+thread_local std::shared_ptr<ThreadTeam> t_team;
+
+ThreadTeam& team() {
+    if (t_team == nullptr) t_team = std::make_shared<ThreadTeam>(0);
+    return *t_team;
+}
 
 } // namespace
 
 int thread_count() { return team().count > 0 ? team().count : hardware_threads(); }
-
-void set_thread_count(int count) { team().count = count; }
 
 void parallel_for_ranges(uint64_t count, uint64_t grain, const std::function<void(uint64_t, uint64_t)>& body) {
     if (count == 0) return;
@@ -78,7 +85,7 @@ void parallel_for_ranges(uint64_t count, uint64_t grain, const std::function<voi
     };
     std::vector<std::thread> threads;
     for (uint64_t i = 1; i < workers; ++i) {
-        threads.emplace_back([&work, of = &team()] {
+        threads.emplace_back([&work, of = t_team] {
             t_team = of;
             work();
         });
@@ -98,7 +105,7 @@ void parallel_invoke(const std::function<void()>& a, const std::function<void()>
         return;
     }
     std::exception_ptr error;
-    std::thread other([&, of = &team()] {
+    std::thread other([&, of = t_team] {
         t_team = of;
         const DefaultFloatingPoint control;
         try {
@@ -124,18 +131,24 @@ void parallel_invoke(const std::function<void()>& a, const std::function<void()>
 
 constexpr std::size_t kMaxThreads = 4096;
 
-/// The threads that work for one thread, separate from those of others.
-struct Team {
-    explicit Team(int count) : arena(count) {
+} // namespace
+
+/// The threads that work for some threads, separate from those of others.
+struct ThreadTeam {
+    explicit ThreadTeam(int threads) : count(threads), arena(threads) {
         // TBB has one worker less than hardware threads unless it is allowed more. Of several such permissions the
         // least counts, so there is one.
         if (count <= hardware_threads()) return;
         static const tbb::global_control permit(tbb::global_control::max_allowed_parallelism, kMaxThreads);
     }
+    int count;
     tbb::task_arena arena;
 };
 
-thread_local std::unique_ptr<Team> t_team; // null: one per hardware thread, or the team in which the thread works
+namespace {
+
+/// Null: one per hardware thread, or the team in which the thread works.
+thread_local std::shared_ptr<ThreadTeam> t_team;
 
 template <class Work>
 void run_in_team(const Work& work) {
@@ -148,8 +161,6 @@ void run_in_team(const Work& work) {
 int thread_count() {
     return t_team != nullptr ? t_team->arena.max_concurrency() : tbb::this_task_arena::max_concurrency();
 }
-
-void set_thread_count(int count) { t_team = count > 0 ? std::make_unique<Team>(count) : nullptr; }
 
 void parallel_for_ranges(uint64_t count, uint64_t grain, const std::function<void(uint64_t, uint64_t)>& body) {
     if (count == 0) return;
@@ -173,5 +184,16 @@ void parallel_invoke(const std::function<void()>& a, const std::function<void()>
 }
 
 #endif
+
+void set_thread_count(int count) { t_team = count > 0 ? std::make_shared<ThreadTeam>(count) : nullptr; }
+
+Threads::Threads() {
+    if (t_team != nullptr && t_team->count > 0) team_ = t_team;
+}
+
+UseThreads::UseThreads(const Threads& threads) : own_(t_team) {
+    if (threads.team_ != nullptr) t_team = threads.team_;
+}
+UseThreads::~UseThreads() { t_team = std::move(own_); }
 
 } // namespace pertev

@@ -8,12 +8,35 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 
 namespace pertev {
 
 /// Sets how many threads work for the calling thread from now on; 0 means one per hardware thread.
 void set_thread_count(int count);
 int thread_count();
+
+struct ThreadTeam;
+/// The threads that work for the thread that makes this. Copies share them.
+class Threads {
+public:
+    Threads();
+
+private:
+    friend class UseThreads;
+    std::shared_ptr<ThreadTeam> team_; // null: no count was set
+};
+/// While it exists, these threads work for the calling thread in place of its own, if their count was set.
+class UseThreads {
+public:
+    explicit UseThreads(const Threads& threads);
+    ~UseThreads();
+    UseThreads(const UseThreads&) = delete;
+    UseThreads& operator=(const UseThreads&) = delete;
+
+private:
+    std::shared_ptr<ThreadTeam> own_;
+};
 
 /// Runs body(begin, end) over disjoint ranges of at least `grain` indices that cover [0, count).
 void parallel_for_ranges(uint64_t count, uint64_t grain, const std::function<void(uint64_t, uint64_t)>& body);

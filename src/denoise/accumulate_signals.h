@@ -36,7 +36,7 @@ struct AccumulateSignals {
         const uint32_t object = object_of(guide);
         const Vec2 centre = {static_cast<float>(at.x) + 0.5f, static_cast<float>(at.y) + 0.5f};
         if (object == kNoHit) {
-            if (has_history) was_at[pixel] = reproject_sky(cameras, centre);
+            if (has_history) was_at[pixel] = reproject_far(cameras.now, cameras.before, centre);
             return forget(pixel);
         }
         Taps taps = {}, mirrored = {};
@@ -124,11 +124,8 @@ private:
     /// Number of frames in which a camera with constant motion passes half a lobe of this width; meanwhile the
     /// reflection that it sees changes.
     HD float frames_of_lobe(float alpha, Float4 hit) const {
-        if (has_parallel_rays(cameras.now.projection)) return kInfinity;
-        const Vec3 point = point_at(scene.instances, scene.meshes, hit),
-                   now_seen = normalize(point - cameras.now.world_from_camera.translation),
-                   then_seen = normalize(point - cameras.before.world_from_camera.translation);
-        return max(0.5f * alpha / max(length(now_seen - then_seen), 1e-6f), 1.0f);
+        const float turn = view_turn(cameras.now, cameras.before, point_at(scene.instances, scene.meshes, hit));
+        return turn < 0 ? kInfinity : max(0.5f * alpha / max(turn, 1e-6f), 1.0f);
     }
 
     HD static float ratio_of(float was, float is) { return was > 1e-12f ? is / was : 1.0f; }

@@ -44,7 +44,7 @@ struct MotionOfHits {
         const Hit hit = hits.load(i);
         Vec2 then = centre;
         if (hit.instance == kNoHit) {
-            if (faces_sky_before(centre)) then = reproject_sky(cameras, centre);
+            if (faces_sky_before(centre)) then = reproject_far(cameras.now, cameras.before, centre);
         } else {
             const bool was_there = before.instances[hit.instance].is_hidden == 0;
             const Reprojection at =

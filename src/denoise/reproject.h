@@ -22,13 +22,6 @@ HD inline Reprojection reproject_virtual(const FrameCameras& cameras, Vec2 centr
     return {then.pixel, then.depth};
 }
 
-/// Reprojects the sky, which is infinitely far.
-HD inline Vec2 reproject_sky(const FrameCameras& cameras, Vec2 centre) {
-    if (has_parallel_rays(cameras.now.projection)) return centre;
-    const Vec3 direction = make_camera_ray(cameras.now, centre, {0, 0}).direction;
-    return project_point(cameras.before, cameras.before.world_from_camera.translation + direction).pixel;
-}
-
 /// Up to four pixels of the previous frame around a position, with their weights; the sum is 0 if none matches.
 struct Taps {
     uint32_t first;   // upper left pixel, which need not match

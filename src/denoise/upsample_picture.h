@@ -55,7 +55,7 @@ private:
     HD Vec2 position_before(uint32_t pixel, uint32_t own) const {
         const FrameCameras cameras = {camera, camera_before, width, height};
         const Vec2 centre = {static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f};
-        if (own == kNoHit) return reproject_sky(cameras, centre);
+        if (own == kNoHit) return reproject_far(cameras.now, cameras.before, centre);
         return reproject_surface(cameras, scene, scene_before, centre, features.hit[pixel]).pixel;
     }
 

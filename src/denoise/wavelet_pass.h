@@ -85,14 +85,13 @@ private:
     /// Approximates exp(-x) at a fifth of its cost: (1 - x / 4)^4, and 0 from 4 on.
     HD static float falloff(float x) { return square(square(max(fma(-0.25f, x, 1.0f), 0.0f))); }
 
-    /// The plane of the surface at a pixel. In camera space a point is linear in its pixel, times its depth for a
-    /// perspective camera.
+    /// The plane of the surface at a pixel. In camera space a point is linear in its pixel, times the view's growth.
     struct Plane {
         float at_zero, per_column, per_row, per_depth, here;
-        bool is_parallel; // the camera's rays are parallel
+        ViewGrowth growth;
 
         HD Plane(const CameraView& camera, Vec3 normal, float depth, int x, int y, int step)
-            : is_parallel(has_parallel_rays(camera.projection)) {
+            : growth(growth_of(camera)) {
             const Vec3 n = transform_transposed(camera.world_from_camera, normal);
             // Distances are measured in units of a tap's step at this depth.
             const float size = pixel_size(camera, depth);
@@ -108,7 +107,7 @@ private:
         HD float on_column(int x) const { return fma(per_column, static_cast<float>(x), at_zero); }
         HD float on_row(int y) const { return per_row * static_cast<float>(y); }
         HD float signed_distance(float in_view, float depth) const {
-            return fma(is_parallel ? 1.0f : depth, in_view, fma(per_depth, depth, -here));
+            return fma(growth.at(depth), in_view, fma(per_depth, depth, -here));
         }
         HD float distance(float in_view, float depth) const { return abs(signed_distance(in_view, depth)); }
     };

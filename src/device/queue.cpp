@@ -114,6 +114,7 @@ Queue Queue::make_cuda(int index) { return Queue(make_cuda_backend(index)); }
 Queue::Queue(Queue&& other) {
     PERTEV_CHECK(other.allocations_.empty());
     backend_ = std::move(other.backend_);
+    threads_ = other.threads_;
 }
 
 void* Queue::allocate(std::size_t bytes, const std::string& name) {

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "base/parallel_for.h"
 #include "device/backend.h"
 
 namespace pertev {
@@ -29,6 +30,8 @@ public:
     /// Moves a queue that has not allocated memory; later its buffers would point to the old one.
     Queue(Queue&& other);
 
+    /// The threads that did the host's work for the thread that made the queue, and do it for the queue.
+    const Threads& threads() const { return threads_; }
     bool is_cuda() const { return backend_->is_cuda(); }
     bool is_dry_run() const { return backend_->is_dry_run(); }
     void* stream() const { return backend_->stream(); }
@@ -135,6 +138,7 @@ private:
     }
 
     std::unique_ptr<DeviceBackend> backend_;
+    Threads threads_;
     const char* stage_ = "start";
     int stream_index_ = 0, streams_ = 1;
     std::vector<Allocation> allocations_;

@@ -58,7 +58,7 @@ HD inline uint32_t coin_owner(const MeshView& mesh, uint32_t primitive, float u,
 
 /// Key of the random decisions of blended surfaces for a ray of a sample's path after `depth` scatterings.
 HD inline uint32_t coin_key(SampleKey sample, uint32_t depth, bool is_shadow) {
-    return hash_words(sample.pixel, sample.sample, sample.seed, depth * 2 + (is_shadow ? 1u : 0u)).x;
+    return hash_words(sample.stream, sample.sample, sample.seed, depth * 2 + (is_shadow ? 1u : 0u)).x;
 }
 
 struct AcceptHit {

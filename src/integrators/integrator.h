@@ -78,9 +78,10 @@ public:
         return true;
     }
 
-    /// Adds samples [first, first + count) of every pixel to `film`, which has the picture's size, and returns when
-    /// they are done. The film view of a noisy frame (render/noisy_frame.h) takes only one sample. A sample depends
-    /// only on the picture, the settings and its number, so work may be split in any way. Throws Error(DeviceFault).
+    /// Adds samples [first, first + count) of every pixel of `film`, a window of the picture or all of it, and returns
+    /// when they are done. The film view of a noisy frame (render/noisy_frame.h) takes only one sample. A sample
+    /// depends only on the picture, the settings, its pixel and its number, so work may be split in any way. Throws
+    /// Error(DeviceFault), and std::logic_error for a frame if the integrator makes none (makes_frames).
     virtual void render(uint32_t first, uint32_t count, const FilmView& film) = 0;
 
     /// Renders like render(), but if few samples take long, it calls `goes_on` on the caller's thread about every

@@ -6,6 +6,7 @@
 
 #include <atomic>
 
+#include "base/error.h"
 #include "base/parallel_for.h"
 #include "integrators/integrator.h"
 
@@ -37,12 +38,21 @@ protected:
     /// Returns the trees that the loop traverses for the current picture, or null if it does not run by the loop.
     const HostTrees* trees_of_loop() const { return in_loop_ ? tracer_->host_trees() : nullptr; }
     bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }
-    uint32_t pixels() const { return picture_.camera.width * picture_.camera.height; }
+    /// Throws std::logic_error unless `film` lies in the picture.
+    void check_window(const FilmView& film) const {
+        PERTEV_CHECK(film.window.is_in(picture_.camera.width, picture_.camera.height));
+    }
+    /// Throws std::logic_error, too, if `film` is a frame.
+    void check_sums(const FilmView& film) const {
+        PERTEV_CHECK(!film.frame.is_there());
+        check_window(film);
+    }
 
     static constexpr uint32_t kLoopCount = 256; // minimum number of pixels that a thread of the loop takes at once
     /// Calls work(begin, end) with ranges of [0, count) on all threads and adds up the rays that the calls return.
     template <class Work>
     void share_out(uint64_t count, uint64_t least, const Work& work) {
+        const UseThreads use(queue_.threads());
         std::atomic<uint64_t> bounces{0}, shadows{0};
         parallel_for_ranges(count, least, [&](uint64_t begin, uint64_t end) {
             const RayCounts traced = work(begin, end);

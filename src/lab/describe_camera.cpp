@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "math/scalar.h"
 #include "math/vec3.h"
+#include "session/degrees.h"
 #include "settings/value_names.h"
 
 namespace pertev {
@@ -30,12 +30,9 @@ std::string describe_camera(const Camera& camera, DoubleVec3 origin) {
     while (distance < max_component(abs(eye))) distance *= 2;
     const std::string place = fmt::format("`eye={}` `target={}` `up={}`", text_of(eye, origin),
                                           text_of(eye + distance * forward, origin), text_of(column(m, 1)));
-    const std::string_view projection = name_of(camera.projection);
-    if (has_parallel_rays(camera.projection)) {
-        return fmt::format("{} `projection={}` `view_height={}` (metres)", place, projection, camera.ortho_height);
-    }
-    return fmt::format("{} `projection={}` `fov={}` (vertical field of view, degrees)", place, projection,
-                       camera.fov_y * 180 / kPi);
+    const ViewSize view = view_size(camera);
+    return fmt::format("{} `projection={}` `{}={}` ({})", place, name_of(camera.projection), view.setting, view.value,
+                       view.meaning);
 }
 
 } // namespace pertev

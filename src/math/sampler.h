@@ -1,10 +1,11 @@
 #pragma once
 
-// Random numbers of a path: a pure function of (pixel, sample index, group, number in the group, seed), each strictly
-// inside (0, 1). A group is four numbers that are stratified together, for decisions that belong together.
+// Random numbers of a path: a pure function of (stream, sample index, group, number in the group, seed), each strictly
+// inside (0, 1). The stream of a camera ray is its pixel in the whole picture. A group is four numbers that are
+// stratified together, for decisions that belong together.
 //
-// Sobol: each (pixel, group, seed) has its own random shuffle and scrambling of one four-dimensional sequence. Of the
-// first 2^k samples of a pixel one falls into each of the 2^k equal intervals of any number, and into each box 2^-a x
+// Sobol: each (stream, group, seed) has its own random shuffle and scrambling of one four-dimensional sequence. Of the
+// first 2^k samples of a stream one falls into each of the 2^k equal intervals of any number, and into each box 2^-a x
 // 2^-(k-a) of the first two numbers and of the last two; of the first 4^k one falls into each four-dimensional box
 // whose sides are powers of 1/4 and whose volume is 4^-k. Different groups are independent.
 //
@@ -31,8 +32,8 @@ enum class SamplerKind : uint8_t {
 /// Key of the random numbers of a sample; `Word` is for one path, or for eight (math/random.h).
 template <class Word>
 struct SampleKeyOf {
-    Word pixel = {};   // any numbering of the pixels
-    Word sample = {};  // index among the samples of the pixel
+    Word stream = {};  // a pixel of the picture, a photon, ...: its samples are stratified
+    Word sample = {};  // index among the samples of the stream
     uint32_t seed = 0; // another seed gives another picture with the same expectation
 };
 using SampleKey = SampleKeyOf<uint32_t>;
@@ -140,7 +141,7 @@ struct GroupKeys {
 
 template <class Word>
 HD inline GroupKeys<Word> group_keys(SampleKeyOf<Word> key, std::type_identity_t<Word> group) {
-    const Hash3Of<Word> keys = hash_words<Word>(key.pixel, group, Word{} + key.seed);
+    const Hash3Of<Word> keys = hash_words<Word>(key.stream, group, Word{} + key.seed);
     // Scrambling the index shuffles the order of the points.
     return {reverse_bits(owen_scramble_reversed(reverse_bits(key.sample), keys.x)), keys};
 }
@@ -168,7 +169,7 @@ sample_bits(SamplerKind kind, std::type_identity_t<SampleKeyOf<Word>> key, std::
     case SamplerKind::Independent:
         break;
     }
-    const Hash4Of<Word> bits = hash_words<Word>(key.pixel, key.sample, group, Word{} + key.seed);
+    const Hash4Of<Word> bits = hash_words<Word>(key.stream, key.sample, group, Word{} + key.seed);
     return pair == Pair::First ? SampleBitsOf<Word>{bits.x, bits.y} : SampleBitsOf<Word>{bits.z, bits.w};
 }
 
@@ -186,7 +187,7 @@ HD inline float sample_1d(SamplerKind kind, SampleKey key, uint32_t group, uint3
     case SamplerKind::Independent:
         break;
     }
-    const Hash4 bits = hash_words(key.pixel, key.sample, group, key.seed);
+    const Hash4 bits = hash_words(key.stream, key.sample, group, key.seed);
     return unit_interval(number == 0 ? bits.x : number == 1 ? bits.y : number == 2 ? bits.z : bits.w);
 }
 

@@ -108,7 +108,7 @@ private:
                 if (!(depth < depths_[pixel])) continue;
                 const auto u = static_cast<float>(weights[1]), v = static_cast<float>(weights[2]);
                 if (view.any_alpha != 0) {
-                    const uint32_t coin = coin_key({key.pixel, static_cast<uint32_t>(pixel), key.seed}, 0, false);
+                    const uint32_t coin = coin_key({key.stream, static_cast<uint32_t>(pixel), key.seed}, 0, false);
                     if (!AcceptHit{view, {}, {}, coin}.passes_alpha(placed.instance, placed.primitive, u, v)) continue;
                 }
                 depths_[pixel] = depth;

@@ -49,7 +49,7 @@ void add_light_rays(const RowScene& scene, const Patch& patch, SampleKey key, co
         if (scene.is_over()) return;
         uint32_t count = 0;
         for (uint32_t k = first; k < min(rays.count, first + kRaysAtOnce); ++k) {
-            const SampleKey of_ray = {key.pixel, k, key.seed};
+            const SampleKey of_ray = {key.stream, k, key.seed};
             const Vec2 on_patch = sample_2d(SamplerKind::Sobol, of_ray, kGroupLights);
             const PatchPoint point = point_on_patch(view, patch, on_patch);
             const SampleBits u = sample_bits(SamplerKind::Sobol, of_ray, kGroupLights, Pair::Last);

@@ -51,7 +51,7 @@ private:
     void send(const Patch& patch, SampleKey key, uint32_t first, uint32_t count) {
         const SceneView& view = scene_.scene.view();
         for (uint32_t i = 0; i < count; ++i) {
-            const SampleKey of_ray = {key.pixel, first + i, key.seed};
+            const SampleKey of_ray = {key.stream, first + i, key.seed};
             const Vec2 on_patch = sample_2d(SamplerKind::Sobol, of_ray, kGroupHemisphere);
             const Vec2 direction = sample_2d(SamplerKind::Sobol, of_ray, kGroupHemisphere, Pair::Last);
             const PatchPoint point = point_on_patch(view, patch, on_patch);

@@ -22,10 +22,9 @@ struct AddFrameToFilm {
         const bool is_background = shows_background(scene, hit.instance);
         if (!is_background) add_hit(pixel, hit);
         if ((film.aovs & kAovIds) != 0 && is_first) {
-            film.ids[pixel] = {kNoHit, kNoHit, kNoHit};
-            if (!is_background) {
-                film.ids[pixel] = {hit.instance, hit.primitive, scene.instances[hit.instance].material};
-            }
+            film.set_ids(pixel, is_background
+                                    ? PixelIds{kNoHit, kNoHit, kNoHit}
+                                    : PixelIds{hit.instance, hit.primitive, scene.instances[hit.instance].material});
         }
     }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "base/host_device.h"
+#include "render/pixel_window.h"
 #include "render/tiled_pixel.h"
 
 namespace pertev {
@@ -16,26 +17,26 @@ namespace pertev {
 /// consecutive pixels form an approximate square.
 inline constexpr uint32_t kBandRows = 16;
 
-/// The pixel at `index` of the order.
-HD inline uint32_t ordered_pixel(uint32_t index, uint32_t width, uint32_t height) {
-    return tiled_pixel(index, width, height, kBandRows);
-}
-
-/// A sample of a pixel; the pixel is counted row by row in a film.
+/// A sample of a pixel of the picture.
 struct PixelSample {
     uint32_t pixel, sample;
 };
 
-/// Samples [first_sample, + samples) of the pixels at positions [first_index, + pixels) of ordered_pixel.
+/// Samples [first_sample, + samples) of all pixels of a window.
 struct BeginOrder {
-    uint32_t first_index, pixels, first_sample, samples;
+    PixelWindow window;
+    uint32_t first_sample, samples;
 
-    HD uint64_t count() const { return uint64_t(pixels) * samples; }
-    /// The sample with the index `number` < count(), in a picture of width x height.
-    HD PixelSample at(uint64_t number, uint32_t width, uint32_t height) const {
+    HD uint64_t count() const { return uint64_t(window.count()) * samples; }
+    /// The pixel at `index` < window.count() of the order.
+    HD uint32_t pixel(uint32_t index) const {
+        return window.pixel_at(FilmSlot{tiled_pixel(index, window.width, window.height, kBandRows)});
+    }
+    /// The sample at `number` < count() of the order.
+    HD PixelSample at(uint64_t number) const {
         const uint32_t index = static_cast<uint32_t>(number / samples);
         const uint32_t sample = static_cast<uint32_t>(number - uint64_t(index) * samples);
-        return {ordered_pixel(first_index + index, width, height), first_sample + sample};
+        return {pixel(index), first_sample + sample};
     }
 };
 

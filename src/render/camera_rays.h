@@ -52,8 +52,9 @@ struct CameraRays {
     /// For a light meter, whose rays count as scattered by a white surface, the density of the direction in 1/sr;
     /// otherwise 0.
     HD float pdf_of_surface(Vec3 direction) const {
-        return is_light_meter(view.projection) ? pdf_cosine_hemisphere(dot(direction, axis)) : 0.0f;
+        return is_meter() ? pdf_cosine_hemisphere(dot(direction, axis)) : 0.0f;
     }
+    HD bool is_meter() const { return is_light_meter(view.projection); }
     HD bool has_lens() const { return view.aperture_radius > 0; }
 
 private:

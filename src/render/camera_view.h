@@ -24,6 +24,9 @@ struct CameraView {
     float focus_distance;          // metres
 };
 
+/// Half the height of the view: at distance 1, or in metres for parallel rays.
+float half_view_height(const Camera& camera);
+
 /// Fits the camera's view to the aspect ratio of the picture: the vertical angle is kept and the width follows.
 /// `centre` is the origin of the rays' world in the camera's coordinates.
 CameraView make_camera_view(const Camera& camera, uint32_t width, uint32_t height, Vec3 centre = {0, 0, 0});
@@ -34,10 +37,13 @@ HD inline Vec2 view_position(const CameraView& camera, Vec2 pixel) {
             (1.0f - 2.0f * (pixel.y * camera.inv_height)) * camera.half_height};
 }
 
-/// Scale of the view at `depth`: objects there appear smaller by this factor.
-HD inline float growth_at(const CameraView& camera, float depth) {
-    return has_parallel_rays(camera.projection) ? 1.0f : depth;
-}
+/// Scale of a view as a function of depth: objects there appear smaller by this factor.
+struct ViewGrowth {
+    bool is_constant;
+    HD float at(float depth) const { return is_constant ? 1.0f : depth; }
+};
+HD inline ViewGrowth growth_of(const CameraView& camera) { return {has_parallel_rays(camera.projection)}; }
+HD inline float growth_at(const CameraView& camera, float depth) { return growth_of(camera).at(depth); }
 
 /// Ray through `pixel` from the point `lens` (unit square) of the lens. Its direction is unit.
 HD inline Ray make_camera_ray(const CameraView& camera, Vec2 pixel, Vec2 lens) {
@@ -92,6 +98,22 @@ HD inline Vec3 unproject_point(const CameraView& camera, Vec2 pixel, float depth
 /// Returns whether project_point is valid at `depth`: in front of the camera, or for an orthographic camera.
 HD inline bool is_projected(const CameraView& camera, float depth) {
     return depth > 0 || has_parallel_rays(camera.projection);
+}
+
+/// Where a camera, moved from `now` to `before`, saw what is infinitely far away at `pixel`.
+HD inline Vec2 reproject_far(const CameraView& now, const CameraView& before, Vec2 pixel) {
+    if (has_parallel_rays(now.projection)) return pixel;
+    const Vec3 direction = make_camera_ray(now, pixel, {0, 0}).direction;
+    return project_point(before, before.world_from_camera.translation + direction).pixel;
+}
+
+/// How far the direction in which a camera sees `point` turns from `before` to `now`, as the length of the difference
+/// of unit directions; negative if it sees all points in one direction.
+HD inline float view_turn(const CameraView& now, const CameraView& before, Vec3 point) {
+    if (has_parallel_rays(now.projection)) return -1;
+    const Vec3 now_seen = normalize(point - now.world_from_camera.translation),
+               then_seen = normalize(point - before.world_from_camera.translation);
+    return length(now_seen - then_seen);
 }
 
 /// Side of a pixel's footprint at `depth`, in metres.

@@ -17,12 +17,14 @@ struct CameraConnection {
     float distance_squared; // m2; 1 if the rays are parallel
 };
 
+/// Whether the density of camera rays at a point is that of CameraConnection over its squared distance.
+HD inline bool falls_with_distance(const CameraRays& camera) { return !has_parallel_rays(camera.view.projection); }
+
 /// Density of camera rays along `direction` (unit), as in CameraConnection.
 HD inline float camera_density(const CameraRays& camera, Vec3 direction) {
     const float cosine = dot(direction, camera.axis);
     const float view = 4.0f * camera.view.half_width * camera.view.half_height;
-    return has_parallel_rays(camera.view.projection) ? 1.0f / (view * cosine)
-                                                     : 1.0f / (view * cosine * cosine * cosine);
+    return falls_with_distance(camera) ? 1.0f / (view * cosine * cosine * cosine) : 1.0f / (view * cosine);
 }
 
 /// Projects `point` through the lens point `u`. Returns false if it is not in front of the camera, or if the camera
@@ -31,11 +33,11 @@ HD inline bool connect_to_camera(const CameraRays& camera, Vec3 point, Vec2 u, C
     const CameraView& view = camera.view;
     const Vec3 local = transform_transposed(view.world_from_camera, point - view.world_from_camera.translation);
     const float depth = -local.z;
-    if (!(depth > 0) || is_light_meter(view.projection)) return false;
+    if (!(depth > 0) || camera.is_meter()) return false;
     const Vec2 lens = camera.has_lens() ? view.aperture_radius * sample_uniform_disk_concentric(u) : Vec2{0, 0};
     float x, y; // in the plane at distance 1, or in the orthographic view
     Vec3 from = {lens.x, lens.y, 0};
-    const bool is_parallel = has_parallel_rays(view.projection);
+    const bool is_parallel = !falls_with_distance(camera);
     if (!is_parallel) {
         x = local.x / depth;
         y = local.y / depth;

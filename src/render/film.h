@@ -1,9 +1,7 @@
 #pragma once
 
 // The film: targets (render/film_target.h) to which samples are added on a device, and the part of a picture that
-// they hold. The picture depends only on the exact sums and the number of samples. Means and displayed pixels are
-// computed on the device (render/film_stages.h) in memory that is allocated from the start, so a long render never
-// fails because of it.
+// they hold. The picture depends only on the exact sums (render/sum_target.h) and the number of samples.
 
 #include <cstdint>
 #include <memory>
@@ -14,18 +12,9 @@
 #include "base/error.h"
 #include "device/buffer.h"
 #include "image/image.h"
-#include "image/tone_map.h"
-#include "render/film_stages.h"
-#include "render/film_target.h"
+#include "render/sum_target.h"
 
 namespace pertev {
-
-/// Exact sums of the channels of render/film_channels.h.
-class SumTarget : public ElementTarget<FixedSum, AddSums, 0> {
-public:
-    using ElementTarget::ElementTarget;
-    void show(FilmView& view) const override { view.sums = elements().data(); }
-};
 
 /// Ids of the first hit of sample 0 of each pixel.
 class IdTarget : public ElementTarget<PixelIds, AddIds, 0xff> { // kNoHit
@@ -70,22 +59,22 @@ public:
     std::span<const std::unique_ptr<FilmTarget>> targets() const { return targets_; }
 
     FilmView view() const;
-    uint32_t width() const { return width_; }
-    uint32_t height() const { return height_; }
-    uint32_t aovs() const { return aovs_; }
-    const std::vector<std::string>& light_layers() const { return light_layers_; }
+    uint32_t width() const { return window_.width; }
+    uint32_t height() const { return window_.height; }
+    uint32_t aovs() const { return sums_->aovs(); }
+    const std::vector<std::string>& light_layers() const { return sums_->light_layers(); }
     void clear();
 
-    /// Restricts the film to this window of the picture. The integrators `path`, `direct`, `indirect` and `hybrid`
-    /// can render windows; the others throw std::logic_error.
+    /// Makes the film hold this window, which has its size, of a larger picture. Each pixel gets the bytes that it has
+    /// in the whole picture.
     void set_window(const PixelWindow& window) {
-        PERTEV_CHECK(window.picture_width == 0 ||
-                     (window.width == width_ && window.x + window.width <= window.picture_width));
+        PERTEV_CHECK(window.width == width() && window.height == height());
+        PERTEV_CHECK(window.picture_width == 0 || window.x + window.width <= window.picture_width);
         window_ = window;
     }
 
     /// Sets which samples, of all rows, have been added to view() so far.
-    void set_samples(SampleRange samples) { set_part({0, height_, samples}); }
+    void set_samples(SampleRange samples) { set_part({0, height(), samples}); }
     void set_part(FilmPart part) { part_ = part; }
     const FilmPart& part() const { return part_; }
 
@@ -95,7 +84,9 @@ public:
     void add(const Film& other);
 
     /// Returns the mean of all samples: RGB, or RGBA (colour times coverage, coverage) if `transparent`.
-    Image picture(bool transparent) const;
+    Image picture(bool transparent) const {
+        return sums_->picture(width(), part_.samples.count(), transparent ? 4 : 3);
+    }
     /// Computes the bytes of tone_map_image(picture(transparent), kind, exposure_stops) on the device and starts
     /// their copy to the host.
     void display(ToneMap kind, float exposure_stops, bool transparent);
@@ -109,20 +100,13 @@ public:
     uint64_t invalid_samples() const;
 
 private:
-    uint32_t pixel_count() const { return width_ * height_; }
-    Image resolve(uint32_t first, uint32_t channels, bool over_hits) const;
-
     Queue* queue_;
-    uint32_t width_, height_, aovs_;
-    std::vector<std::string> light_layers_;
-    uint32_t channels_;
     PixelWindow window_;
     FilmPart part_;
     std::vector<std::unique_ptr<FilmTarget>> targets_; // the film's own targets below come first
     const SumTarget* sums_;
     const IdTarget* ids_ = nullptr; // null without kAovIds
     const InvalidTarget* invalid_;
-    Buffer<float> resolved_; // kFilmColorChannels per pixel, the most that a picture, a layer or a display needs
     std::unique_ptr<HostCopy> display_; // null before the first display()
 };
 

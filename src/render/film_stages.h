@@ -62,7 +62,7 @@ struct ResolveFilm {
     float* pixels;            // [pixels * channels]
 
     HD void operator()(uint32_t i) const {
-        const FixedSum* sums = film.at_slot(i);
+        const FixedSum* sums = film.at_slot(FilmSlot{i});
         const uint64_t count = over_hits ? sums[kFilmHits].high : samples; // each hit adds one, which is 2^64 units
         float* to = pixels + static_cast<uint64_t>(i) * channels;
         for (uint32_t c = 0; c < channels; ++c) to[c] = count == 0 ? 0.0f : mean_of(sums[first + c], count);
@@ -79,7 +79,7 @@ struct DisplayFilm {
     uint8_t* pixels;  // [pixels * 4]
 
     HD void operator()(uint32_t i) const {
-        const FixedSum* sums = film.at_slot(i);
+        const FixedSum* sums = film.at_slot(FilmSlot{i});
         const Rgb light = {mean_of(sums[0], samples), mean_of(sums[1], samples), mean_of(sums[2], samples)};
         tone_map_pixel(light, keeps_alpha ? mean_of(sums[kFilmHits], samples) : 1.0f, kind, scale,
                        pixels + 4 * static_cast<uint64_t>(i));

@@ -41,8 +41,7 @@ public:
     /// Adds the contents of `other`, which holds other samples, from any queue. Throws std::logic_error unless
     /// is_like() holds.
     virtual void add(const FilmTarget& other) = 0;
-    /// Layers of the picture, for a film that is `width` columns wide and has `samples` samples per pixel. The film
-    /// resolves its own targets itself.
+    /// Layers of the picture, for a film that is `width` columns wide and has `samples` samples per pixel.
     virtual std::vector<FilmLayer> layers(uint32_t width, uint64_t samples) const {
         static_cast<void>(width), static_cast<void>(samples);
         return {};
@@ -105,6 +104,9 @@ public:
         elements_.upload(values);
         queue_->wait();
     }
+
+protected:
+    Queue& queue() const { return *queue_; }
 
 private:
     Queue* queue_;

@@ -25,17 +25,16 @@ struct FilmView {
     PixelIds* ids;     // [pixels], or null
     uint64_t* invalid; // number of samples that were not finite or over kMaxSampleValue
     uint32_t channels;
-    uint32_t aovs; // AovBits
-    uint32_t width, height;
-    NoisyFrameView frame; // if present, samples go to it, and there are no sums, ids or auxiliary channels
-    PixelWindow window;   // the window that sums and ids cover
+    uint32_t aovs;        // AovBits
+    PixelWindow window;   // the part of the picture that it covers
+    NoisyFrameView frame; // if present, samples go to it, and there are no sums, ids or auxiliary channels; it covers
+                          // the whole picture
 
-    /// Returns whether it takes sums of every pixel of the picture, which is all that most integrators can fill.
-    bool is_whole_picture() const { return !frame.is_there() && window.picture_width == 0; }
-
-    HD FixedSum* pixel(uint32_t index) const { return at_slot(window.slot_of(index)); }
-    HD FixedSum* at_slot(uint32_t slot) const { return sums + static_cast<uint64_t>(slot) * channels; }
-    HD void set_ids(uint32_t pixel, const PixelIds& of_pixel) const { ids[window.slot_of(pixel)] = of_pixel; }
+    HD FixedSum* pixel(uint32_t number) const { return at_slot(window.slot_of(number)); }
+    HD FixedSum* at_slot(FilmSlot slot) const { return sums + uint64_t(static_cast<uint32_t>(slot)) * channels; }
+    HD void set_ids(uint32_t pixel, const PixelIds& of_pixel) const {
+        ids[static_cast<uint32_t>(window.slot_of(pixel))] = of_pixel;
+    }
 };
 
 HD inline bool is_valid_sample(float x) { return abs(x) <= kMaxSampleValue; } // false for NaN

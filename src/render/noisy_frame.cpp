@@ -32,8 +32,7 @@ NoisyFrame::NoisyFrame(Queue& queue, uint32_t width, uint32_t height, bool split
 
 void NoisyFrame::show(FilmView& view) const {
     view.invalid = invalid_.data();
-    view.width = width_;
-    view.height = height_;
+    view.window = {.width = width_, .height = height_};
     view.frame = view_;
 }
 

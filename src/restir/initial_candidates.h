@@ -31,7 +31,7 @@ struct SampleInitialCandidates {
         RisSelection selection = {sample_1d(here.sampler, key, kGroupSelectCandidate)};
         const float drawn = static_cast<float>(candidates);
         for (uint32_t k = 0; k < candidates; ++k) {
-            const SampleKey candidate = {key.pixel, key.sample * candidates + k, key.seed};
+            const SampleKey candidate = {key.stream, key.sample * candidates + k, key.seed};
             LightSample light;
             if (!sample_light(scene.lights, surface.light_context(wo),
                               sample_bits(here.sampler, candidate, kGroupCandidates), light)) {

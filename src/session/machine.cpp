@@ -53,7 +53,8 @@ ComingMachine::ComingMachine(const MachineOptions& options, Messages& messages)
     if (!is_auto && !may_have_cuda()) refuse_device(name_, why_no_cuda(index));
     std::promise<std::string> why_no_gpu;
     why_no_gpu_ = why_no_gpu.get_future();
-    coming_ = std::async(std::launch::async, [index, why_no_gpu = std::move(why_no_gpu)]() mutable {
+    coming_ = std::async(std::launch::async, [index, own = Threads(), why_no_gpu = std::move(why_no_gpu)]() mutable {
+        const UseThreads use(own); // so that the queue has them
         std::string reason;
         try {
             reason = why_no_cuda(index);

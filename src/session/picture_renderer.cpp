@@ -54,7 +54,7 @@ Integrator& PictureRenderer::begin(const Camera& camera, const RenderSettings& s
     check_camera(settings, camera);
     if (picture.camera.is_open) {
         check_shutter(settings);
-        if (is_light_meter(camera.projection)) {
+        if (picture.camera.is_meter()) {
             throw Error(ErrorCode::BadInput, "shutter", "", "irradiance does not support an open shutter");
         }
     }

@@ -1,5 +1,6 @@
 #include "session/post_steps.h"
 
+#include "base/error.h"
 #include "denoise/picture_denoiser.h"
 #include "device/launch.h"
 #include "render/add_frame_to_film.h"
@@ -51,6 +52,7 @@ void PostSteps::begin(const Camera& camera, const RenderSettings& settings) {
 }
 
 void PostSteps::add(Integrator& integrator, uint32_t first, uint32_t count, const Film& film) {
+    PERTEV_CHECK(film.view().window.picture_width == 0);
     const SceneView& scene = pictures_.scene().view();
     FilmView into = sample_.value().film_view();
     into.invalid = film.view().invalid;

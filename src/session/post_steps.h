@@ -21,7 +21,8 @@ public:
     /// Error(OutOfMemory, DeviceFault).
     void begin(const Camera& camera, const RenderSettings& settings);
     /// Renders samples [first, first + count) into `film` and into each step. Stops in the middle once the renderer
-    /// is abandoned; film and steps must then be discarded.
+    /// is abandoned; film and steps must then be discarded. Throws std::logic_error for a film of a window, because
+    /// steps filter whole pictures.
     void add(Integrator& integrator, uint32_t first, uint32_t count, const Film& film);
     /// Returns `picture`, that of the film, after all steps. Throws Error(DeviceFault).
     Image apply(Image picture);

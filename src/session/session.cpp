@@ -9,18 +9,21 @@ namespace pertev {
 
 Session::Session(Queue& queue, const PreparedScene& scene, const Camera& camera, const RenderSettings& settings)
     : scene_(queue), pictures_(scene_), film_(pictures_, camera, settings), frames_(pictures_), meter_(pictures_) {
+    const UseThreads use(queue.threads());
     scene_.set(scene, settings);
 }
 
 void Session::set_scene(const PreparedScene& scene) {
     cut();
     film_.restart_for_scene();
+    const UseThreads use(scene_.queue().threads());
     scene_.set(scene, settings());
 }
 
 void Session::update_scene(const PreparedScene& scene, uint32_t parts) {
     film_.restart_for_scene();
     frames_.scene_changes();
+    const UseThreads use(scene_.queue().threads());
     scene_.update(scene, parts, settings());
 }
 
@@ -37,6 +40,7 @@ void Session::set_settings(const RenderSettings& settings) {
     const bool same_frames = this->settings().frame_depth == settings.frame_depth;
     if (film_.set_settings(settings)) cut();
     if (!same_frames) frames_.cut();
+    const UseThreads use(scene_.queue().threads());
     scene_.set_tracer(settings);
 }
 

@@ -15,7 +15,7 @@
 #include "integrators/kinds/make_integrator.h"
 #include "render/film.h"
 #include "restir/restir.h"
-#include "tracer/deforming_tree.h"
+#include "tracer/structure_on_device.h"
 
 namespace pertev {
 namespace {
@@ -43,16 +43,16 @@ public:
     std::size_t bytes() const { return queue_.allocated_bytes() + other_bytes_; }
 
 private:
-    /// Allocates the device's trees of meshes whose vertices move. The top level over them is added separately.
+    /// Allocates the device's trees of meshes whose vertices move, and the top levels over them.
     void take_deforming_trees(const PreparedScene& scene, const TracerChoice& tracers) {
         std::set<TreeLayout> layouts;
         for (const RayKind kind : kValuesOf<RayKind>) layouts.insert(layout_of(tracers[kind]));
         const auto may_deform = [&](TreeLayout layout) { return can_deform(layout, queue_.is_cuda()); };
         if (scene.poses.empty() || !std::ranges::all_of(layouts, may_deform)) return;
         for (const TreeLayout layout : layouts) {
-            other_bytes_ += scene.tlas.nodes.size() * sizeof(BvhNode) +
-                            scene.tlas.instances.size() * sizeof(InstanceRecord) +
-                            scene.trees.parts.size() * sizeof(CompressedBvhView) + 3 * 256;
+            const std::vector<CompressedBvhView> views(scene.trees.parts.size());
+            SceneTrees<CompressedBvhView> top = {};
+            upload_top_level(queue_, top_levels_.emplace_back(), views, scene.tlas, top);
             if (layout != TreeLayout::Compressed) continue; // the host's other trees are not counted
             for (std::size_t i = 0; i < scene.poses.size(); ++i) {
                 const uint32_t mesh = scene.scene->shapes[i].mesh;
@@ -66,6 +66,7 @@ private:
     SceneOnDevice scene_;
     std::unique_ptr<Integrator> integrator_;
     std::vector<DeformingCompressed> trees_;
+    std::vector<Buffer<std::byte>> top_levels_;
     std::size_t other_bytes_ = 0; // known without a dry run: copies of trees, host memory
 };
 

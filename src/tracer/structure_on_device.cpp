@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "device_scene/part_arrays.h"
 
 namespace pertev {
 
@@ -118,14 +117,7 @@ void StructureOnDevice::place(std::span<const DeformedMesh> meshes, const Tlas& 
                 },
                 deforming_.at(mesh.mesh).tree);
         }
-        PartArrays arrays;
-        arrays.add(views, scene.meshes);
-        arrays.add(tlas.nodes, scene.tlas_nodes);
-        arrays.add(tlas.instances, scene.instances);
-        arrays.upload(queue_, placed_, "top level of what moves");
-        scene.tlas_root = tlas.root;
-        scene.tlas_reach = tlas.reach;
-        scene.tlas_growth = tlas.growth;
+        upload_top_level(queue_, placed_, views, tlas, scene);
     };
     std::visit(place_in, trees_);
 }

@@ -10,10 +10,26 @@
 #include <variant>
 
 #include "device/buffer.h"
+#include "device_scene/part_arrays.h"
 #include "tracer/built_structure.h"
 #include "tracer/deforming_tree.h"
 
 namespace pertev {
+
+/// Uploads the top level of `scene`: the views of its meshes, and a tree over its instances. `memory` is reused if it
+/// is large enough. Throws Error(OutOfMemory).
+template <class View>
+void upload_top_level(Queue& queue, Buffer<std::byte>& memory, const std::vector<View>& views, const Tlas& tlas,
+                      SceneTrees<View>& scene) {
+    PartArrays arrays;
+    arrays.add(views, scene.meshes);
+    arrays.add(tlas.nodes, scene.tlas_nodes);
+    arrays.add(tlas.instances, scene.instances);
+    arrays.upload(queue, memory, "top level of what moves");
+    scene.tlas_root = tlas.root;
+    scene.tlas_reach = tlas.reach;
+    scene.tlas_growth = tlas.growth;
+}
 
 /// A structure as a device traverses it: on the CPU a reference to the host's, on a GPU a copy in one allocation.
 class StructureOnDevice {

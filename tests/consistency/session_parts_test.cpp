@@ -2,6 +2,7 @@
 // sessions run side by side.
 
 #include <atomic>
+#include <stdexcept>
 #include <thread>
 
 #include <doctest/doctest.h>
@@ -84,6 +85,22 @@ TEST_CASE("frames, the meter and post steps work without a session") {
     for (std::size_t i = 3; i < denoised.pixels.size(); i += 4) {
         REQUIRE(denoised.pixels[i] == picture.pixels[i]); // alpha is the film's
     }
+}
+
+TEST_CASE("post steps refuse a film of a window") {
+    const MixedWorld world;
+    Queue queue = test::requested_queue();
+    RenderSettings settings = part_settings();
+    settings.denoise = Denoise::Svgf;
+    const Camera camera = test::mixed_scene_camera();
+    Parts parts(queue, world, settings);
+    PostSteps steps(parts.pictures);
+    steps.begin(camera, settings);
+    Integrator& integrator = parts.pictures.begin(camera, settings, 1);
+    Film film(queue, settings.width, settings.height, settings.aovs);
+    CHECK_NOTHROW(steps.add(integrator, 0, 1, film));
+    film.set_window({.picture_width = 64, .width = settings.width, .height = settings.height});
+    CHECK_THROWS_AS(steps.add(integrator, 1, 1, film), std::logic_error);
 }
 
 TEST_CASE("two sessions with different thread counts run at once on two threads, and give the same bytes") {

@@ -57,7 +57,7 @@ struct BeginRound {
 
     HD void operator()(uint32_t i) const {
         RoundPath<Listener>& path = view.paths[i];
-        path.state = generate_path(job.picture.camera, job.settings, job.film.window.pixel_at(i), sample);
+        path.state = generate_path(job.picture.camera, job.settings, job.film.window.pixel_at(FilmSlot{i}), sample);
         path.goes_on = true;
         view.store_ray(i);
     }
@@ -127,7 +127,7 @@ public:
 
     /// Adds samples [first, end) of the job's picture to its film, of at most `pixels` pixels.
     void render(const Job& job, SceneTracer& tracer, uint32_t first, uint32_t end) {
-        const uint32_t count = job.film.width * job.film.height;
+        const uint32_t count = job.film.window.count();
         const uint32_t p = pixels_;
         Uint2* const ids = triangles_.data();
         const RoundsView<Listener> view = {.paths = paths_.data(),

@@ -84,7 +84,8 @@ class CoverageListener : public PathListener<CoverageListener<kIds>> {
 public:
     HD explicit CoverageListener(const CoverageJob<kIds>& job) : job_(job) {}
     HD void vertex(const PathState& path, const Hit& hit, Surface&) {
-        if (path.depth == 0) job_.coverage[job_.film.window.slot_of(path.pixel)].take(hit.instance, 1);
+        if (path.depth == 0)
+            job_.coverage[static_cast<uint32_t>(job_.film.window.slot_of(path.pixel))].take(hit.instance, 1);
     }
 
 private:

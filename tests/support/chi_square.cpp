@@ -172,7 +172,7 @@ ChiSquareResult chi_square_of_directions(const std::function<std::optional<Vec3>
     constexpr double kTurn = 6.283185307179586;
     const Grid grid{0, kTurn, -1, 1, settings.cells_x, settings.cells_y};
     const auto next = [&](uint32_t i) {
-        const SampleKey key{.pixel = 0, .sample = i, .seed = settings.seed};
+        const SampleKey key{.stream = 0, .sample = i, .seed = settings.seed};
         const Vec2 u = sample_2d(SamplerKind::Independent, key, 0);
         const float lobe = sample_1d(SamplerKind::Independent, key, 1);
         const std::optional<Vec3> w = sample(lobe, u);
@@ -193,7 +193,7 @@ ChiSquareResult chi_square_of_points(const std::function<Vec2(Vec2 u)>& sample, 
     const Grid grid{static_cast<double>(lo.x), static_cast<double>(hi.x), static_cast<double>(lo.y),
                     static_cast<double>(hi.y), settings.cells_x,          settings.cells_y};
     const auto next = [&](uint32_t i) {
-        const SampleKey key{.pixel = 0, .sample = i, .seed = settings.seed};
+        const SampleKey key{.stream = 0, .sample = i, .seed = settings.seed};
         const Vec2 p = sample(sample_2d(SamplerKind::Independent, key, 0));
         return grid.find(static_cast<double>(p.x), static_cast<double>(p.y));
     };

@@ -8,4 +8,5 @@ template void launch(Queue&, const char*, WorkCount, const test::DrawLights&);
 template void launch(Queue&, const char*, WorkCount, const test::DeformAndFold&);
 template void launch(Queue&, const char*, WorkCount, const test::EvaluateMath&);
 template void launch(Queue&, const char*, WorkCount, const test::ShearRays&);
+template void launch(Queue&, const char*, WorkCount, const test::CountThreads&);
 } // namespace pertev

@@ -4,6 +4,7 @@
 // each on the CPU and in CUDA and compares: what the statistical tests find of a function on the CPU then holds on the
 // GPU.
 
+#include "base/parallel_for.h"
 #include "math/sampler.h"
 #include "scene/deform_vertices.h"
 #include "shading/bsdf.h"
@@ -132,6 +133,19 @@ struct EvaluateMath {
             hash = fold(hash, portable_math_value(function, first + i * per_index + k));
         }
         out[i] = hash;
+    }
+};
+
+/// Tells how many threads of the CPU run the stage; 0 on a GPU.
+struct CountThreads {
+    int* count;
+
+    HD void operator()(uint32_t) const {
+#if PERTEV_ON_DEVICE
+        *count = 0;
+#else
+        *count = thread_count();
+#endif
     }
 };
 

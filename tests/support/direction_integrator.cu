@@ -17,7 +17,8 @@ struct AddDirections {
     uint32_t first, count; // samples
     FilmView film;
 
-    HD void operator()(uint32_t pixel) const {
+    HD void operator()(uint32_t slot) const {
+        const uint32_t pixel = film.window.pixel_at(FilmSlot{slot});
         for (uint32_t sample = first; sample < first + count; ++sample) {
             const Vec2 in_filter = sample_2d(SamplerKind::Sobol, {pixel, sample, 0}, 0);
             const Vec3 d = camera.ray(pixel, in_filter, {0.5f, 0.5f}).direction;
@@ -34,7 +35,7 @@ void DirectionIntegrator::begin(const PictureView& picture, SceneTracer&, uint32
 }
 
 void DirectionIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
-    const uint32_t pixels = picture_.camera.width * picture_.camera.height;
+    const uint32_t pixels = film.window.count();
     launch(queue_, "add_directions", pixels, AddDirections{picture_.camera, first, count, film});
     rays_.camera += uint64_t(pixels) * count;
     queue_.wait();

@@ -131,9 +131,10 @@ TEST_CASE("targets given to a film are added and cleared with its own, and those
     CHECK_THROWS_AS(a.add(with_counts(cpu, 5, "other counts")), std::logic_error);
     CHECK_THROWS_AS(a.add(Film(cpu, kWidth, kHeight, 0)), std::logic_error);
     Film other_window = with_counts(cpu, 5, "counts");
-    other_window.set_window({.picture_width = 100, .x = 3, .y = 2, .width = kWidth});
+    other_window.set_window({.picture_width = 100, .x = 3, .y = 2, .width = kWidth, .height = kHeight});
     CHECK_THROWS_AS(a.add(other_window), std::logic_error);
-    CHECK_THROWS_AS(a.set_window({.picture_width = kWidth, .x = 1, .width = kWidth}), std::logic_error);
+    CHECK_THROWS_AS(a.set_window({.picture_width = kWidth, .x = 1, .width = kWidth, .height = kHeight}),
+                    std::logic_error);
     CHECK(counts_of(a).elements().download() == std::vector<uint64_t>(5, 7)); // unchanged
     a.clear();
     CHECK(counts_of(a).elements().download() == std::vector<uint64_t>(5, 0));

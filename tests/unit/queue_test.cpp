@@ -1,11 +1,15 @@
 #include <stdexcept>
+#include <thread>
+#include <utility>
 
 #include <doctest/doctest.h>
 
+#include "base/parallel_for.h"
 #include "device/buffer.h"
 #include "device/launch.h"
 #include "device/readback.h"
 #include "integrators/ray_tree/tree_stages.h"
+#include "tests/support/device_stages.h"
 #include "tests/support/render_scenes.h"
 
 using namespace pertev;
@@ -95,4 +99,30 @@ TEST_CASE("a number is read back as it was when requested, whatever follows") {
         number.fill(0);
         CHECK(readback.wait() == 0x01010101u * value);
     }
+}
+
+TEST_CASE("the CPU's queues have the threads with which they were made, on one thread or on another") {
+    const int own = thread_count();
+    const auto counted_by = [](Queue& queue) {
+        int count = 0;
+        launch(queue, "count_threads", 1, test::CountThreads{&count});
+        return count;
+    };
+    Queue any = Queue::make_cpu();
+    set_thread_count(1);
+    Queue one = Queue::make_cpu();
+    set_thread_count(3);
+    Queue three = Queue::make_cpu();
+    CHECK(counted_by(any) == 3); // it was made when no count was set
+    CHECK(counted_by(one) == 1);
+    CHECK(thread_count() == 3);
+    set_thread_count(0);
+    CHECK(counted_by(three) == 3);
+    CHECK(counted_by(one) == 1);
+    CHECK(counted_by(any) == own);
+    CHECK(thread_count() == own);
+    Queue moved = std::move(three);
+    int elsewhere = 0;
+    std::thread([&] { elsewhere = counted_by(moved); }).join();
+    CHECK(elsewhere == 3);
 }

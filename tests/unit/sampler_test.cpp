@@ -156,7 +156,7 @@ TEST_CASE("the numbers match the recorded ones") {
     uint64_t sum = 0;
     for (const SamplerKind kind : kKinds) {
         for (uint32_t i = 0; i < 20'000; i++) {
-            const SampleKey key{.pixel = hash_word(i), .sample = i, .seed = i / 1000};
+            const SampleKey key{.stream = hash_word(i), .sample = i, .seed = i / 1000};
             const Vec2 p = sample_2d(kind, key, i % 50), q = sample_2d(kind, key, i % 50, Pair::Last);
             CHECK(sample_1d(kind, key, i % 50, 1) == p.y);
             CHECK(sample_1d(kind, key, i % 50, 2) == q.x);

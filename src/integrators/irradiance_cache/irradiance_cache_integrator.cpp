@@ -12,7 +12,7 @@ enum : std::size_t { kMissed, kInvalid, kCounts }; // indices into counts_
 uint32_t cells_of(const IrradianceCacheSettings& cache) { return make_hemisphere_grid(cache.hemisphere_rays).cells(); }
 
 FilmView film_of_cells(const CacheSubpathsView& cache, uint64_t* invalid, uint32_t cells) {
-    return {cache.light, nullptr, invalid, 3, 0, cells, 1, {}};
+    return {cache.light, nullptr, invalid, 3, 0, {.width = cells, .height = 1}, {}};
 }
 
 } // namespace
@@ -63,7 +63,7 @@ CacheJob IrradianceCacheIntegrator::make_job(uint32_t seed) const {
 }
 
 void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
-    PERTEV_CHECK(film.is_whole_picture());
+    check_sums(film);
     if (count == 0) return;
     if (!prepare([this](double) { return !is_abandoned(); })) return;
     if (first == 0) report_invalid(film.invalid);
@@ -72,7 +72,7 @@ void IrradianceCacheIntegrator::render(uint32_t first, uint32_t count, const Fil
     job.shows_records = picture_settings_.cache.show_records;
     const float bright = 4.0f * store_.mean_luminance();
     job.mark = {bright, 0.35f * bright, 0};
-    job.samples = {0, pixels(), first, count};
+    job.samples = {film.window, first, count};
     run_subpaths(job, 0, job.samples.count(), [this](auto& way, const CacheJob& part) {
         if (!is_abandoned()) run_picture(way, part);
     });
@@ -91,6 +91,7 @@ void IrradianceCacheIntegrator::report_invalid(uint64_t* invalid) {
 
 bool IrradianceCacheIntegrator::prepare(const std::function<bool(double share)>& goes_on) {
     if (has_records_) return true;
+    const UseThreads use(queue_.threads());
     store_.clear();
     queue_.zero(counts_.data() + kInvalid, sizeof(uint64_t));
     // Shadow rays alone find light that is scattered once.

@@ -9,7 +9,7 @@ namespace pertev {
 
 /// Sets the sample of one of eight lanes.
 inline void set_lane(SampleKeyOf<Words8>& keys, uint32_t lane, SampleKey key) {
-    keys.pixel[lane] = key.pixel;
+    keys.stream[lane] = key.stream;
     keys.sample[lane] = key.sample;
     keys.seed = key.seed;
 }

@@ -15,7 +15,7 @@ public:
     bool is_full() const { return count_ == kWords; }
     void add(uint32_t pixel, uint32_t sample) {
         set_lane(keys_, count_, sample_key(settings_, pixel, sample));
-        pixels_[count_++] = pixel; // its key may contain another pixel number
+        pixels_[count_++] = pixel;
     }
 
     /// Passes each path to `take`, in the order in which they were added, and becomes empty.

@@ -11,7 +11,7 @@ uint64_t add_meter_lights(Queue& queue, SceneTracer& tracer, const PictureView& 
                           uint32_t first, uint32_t count, const FilmView& film) {
     if (picture.scene.lights.choice.starts == nullptr) return 0; // there are no lights
     constexpr uint32_t kMaxRays = 1u << 18;                      // rays at once
-    const uint32_t pixels = film.width * film.height;
+    const uint32_t pixels = film.window.count();
     const uint32_t samples_at_once = std::clamp(kMaxRays / pixels, 1u, count);
     const uint32_t most = pixels * samples_at_once;
     const Buffer<Ray> rays(queue, most, "a meter's rays");
@@ -22,7 +22,7 @@ uint64_t add_meter_lights(Queue& queue, SceneTracer& tracer, const PictureView& 
     for (uint32_t done = 0; done < count;) {
         const uint32_t now = std::min(samples_at_once, count - done);
         launch(queue, "draw_meter_lights", pixels * now,
-               DrawMeterLights{picture, settings, {pixels, first + done, film.window}, view});
+               DrawMeterLights{picture, settings, {film.window, first + done, now}, view});
         tracer.find_occlusions(view.query(), pixels * now, {nullptr, keys.data()});
         launch(queue, "add_meter_lights", pixels * now, AddMeterLights{view, film});
         done += now;

@@ -11,18 +11,13 @@
 #include "device_scene/surface.h"
 #include "integrators/path/path_settings.h"
 #include "integrators/path/path_state.h"
+#include "render/begin_order.h"
 #include "render/film_view.h"
 #include "render/picture_view.h"
 #include "shading/power_heuristic.h"
 #include "tracer/scene_tracer.h"
 
 namespace pertev {
-
-/// Samples of pixels that are traced together.
-struct MeterSamples {
-    uint32_t pixels, first_sample;
-    PixelWindow window; // the pixels of the picture that they belong to
-};
 
 struct MeterQueueView {
     Ray* rays;
@@ -67,12 +62,11 @@ HD inline ShadowRay draw_meter_light(const PictureView& picture, const PathSetti
 struct DrawMeterLights {
     PictureView picture;
     PathSettings settings;
-    MeterSamples samples;
+    BeginOrder samples; // traced together
     MeterQueueView queue;
 
     HD void operator()(uint32_t i) const {
-        const uint32_t pixel = samples.window.pixel_at(i % samples.pixels);
-        const uint32_t sample = samples.first_sample + i / samples.pixels;
+        const auto [pixel, sample] = samples.at(i);
         const ShadowRay shadow = draw_meter_light(picture, settings, pixel, sample);
         store_ray(queue.rays + i, {shadow.origin, 0.0f, shadow.direction, shadow.t_max});
         queue.targets[i] = {shadow.target.instance, shadow.target.primitive};

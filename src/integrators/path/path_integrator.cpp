@@ -172,12 +172,13 @@ void PathIntegrator::take_wavefronts(uint64_t samples, const PathParts& parts) {
 
 void PathIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
     PERTEV_CHECK(!film.frame.is_there() || (count == 1 && !settings_.is_meter));
+    check_window(film);
     if (const HostTrees* trees = trees_of_loop()) {
         render_loop(first, count, film, *trees);
     } else {
         render_wavefront(first, count, film);
     }
-    if (is_light_meter(picture_.camera.view.projection)) {
+    if (picture_.camera.is_meter()) {
         rays_.shadow += add_meter_lights(queue_, *tracer_, picture_, settings_.path, first, count, film);
     }
 }
@@ -192,25 +193,24 @@ PathJob PathIntegrator::job_for(const FilmView& film) const {
 }
 
 void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees) {
-    const uint64_t pixels = uint64_t(film.width) * film.height;
+    const BeginOrder samples = {film.window, first, count};
     const PathJob job = job_for(film);
     const TileRasterView* const raster = raster_ ? &raster_->view() : nullptr;
-    share_out(pixels, kLoopCount, [&](uint64_t begin, uint64_t end) {
+    share_out(film.window.count(), kLoopCount, [&](uint64_t begin, uint64_t end) {
         RayCounts counts;
         if (is_abandoned()) return counts;
-        render_pixels(job, {trees, raster},
-                      {static_cast<uint32_t>(begin), static_cast<uint32_t>(end - begin), first, count}, counts);
+        const PixelRange range = {static_cast<uint32_t>(begin), static_cast<uint32_t>(end)};
+        render_pixels(job, {trees, raster}, samples, range, counts);
         return counts;
     });
-    rays_.camera += pixels * count;
+    rays_.camera += samples.count();
 }
 
 void PathIntegrator::render_wavefront(uint32_t first, uint32_t count, const FilmView& film) {
     take_wavefronts(
         uint64_t(picture_.camera.width) * picture_.camera.height * count,
         {.splits_light = film.frame.splits_light(), .records_bounce = film.frame.first_bounce.records_bounce()});
-    const uint32_t pixels = film.width * film.height;
-    const Work work = {{0, pixels, first, count}, job_for(film)};
+    const Work work = {{film.window, first, count}, job_for(film)};
     // Ray kinds can only be timed one after the other.
     const bool in_turns = tracer_->times_kinds();
     const uint64_t all = work.samples.count();

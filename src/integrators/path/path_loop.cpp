@@ -209,18 +209,18 @@ private:
 };
 
 template <class Listener>
-void render_group(const PathJob& job, const LoopTrees& trees, const BeginOrder& work, RayCounts& counts) {
+void render_group(const PathJob& job, const LoopTrees& trees, const BeginOrder& order, PixelRange range,
+                  RayCounts& counts) {
     PathGroup<Listener> group(job, trees);
-    const FilmView& film = job.film;
     EightSamples samples(job.picture.camera, job.settings);
     const auto trace = [&](const PathState& path) {
         group.add(path);
         while (group.is_full()) group.advance(counts);
     };
-    for (uint32_t i = 0; i < work.pixels; ++i) {
-        const uint32_t pixel = film.window.pixel_at(ordered_pixel(work.first_index + i, film.width, film.height));
-        for (uint32_t k = 0; k < work.samples; ++k) {
-            samples.add(pixel, work.first_sample + k);
+    for (uint32_t i = range.begin; i < range.end; ++i) {
+        const uint32_t pixel = order.pixel(i);
+        for (uint32_t k = 0; k < order.samples; ++k) {
+            samples.add(pixel, order.first_sample + k);
             if (samples.is_full()) samples.begin(trace);
         }
     }
@@ -230,10 +230,11 @@ void render_group(const PathJob& job, const LoopTrees& trees, const BeginOrder& 
 
 } // namespace
 
-void render_pixels(const PathJob& job, const LoopTrees& trees, const BeginOrder& work, RayCounts& counts) {
-    if (job.film.frame.is_there()) return render_group<ReuseListeners>(job, trees, work, counts);
-    if (job.layers.is_there() || job.is_meter) return render_group<LayerListeners>(job, trees, work, counts);
-    render_group<FilmListeners>(job, trees, work, counts);
+void render_pixels(const PathJob& job, const LoopTrees& trees, const BeginOrder& order, PixelRange range,
+                   RayCounts& counts) {
+    if (job.film.frame.is_there()) return render_group<ReuseListeners>(job, trees, order, range, counts);
+    if (job.layers.is_there() || job.is_meter) return render_group<LayerListeners>(job, trees, order, range, counts);
+    render_group<FilmListeners>(job, trees, order, range, counts);
 }
 
 } // namespace pertev

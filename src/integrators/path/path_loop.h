@@ -17,7 +17,14 @@ struct LoopTrees {
     const TileRasterView* raster;
 };
 
-/// Adds the samples to the job's film and its layers, if any. Rays other than camera rays are added to `counts`.
-void render_pixels(const PathJob& job, const LoopTrees& trees, const BeginOrder& work, RayCounts& counts);
+/// Pixels at [begin, end) of an order.
+struct PixelRange {
+    uint32_t begin, end;
+};
+
+/// Adds the samples of these pixels to the job's film and its layers, if any. Rays other than camera rays are added to
+/// `counts`.
+void render_pixels(const PathJob& job, const LoopTrees& trees, const BeginOrder& order, PixelRange range,
+                   RayCounts& counts);
 
 } // namespace pertev

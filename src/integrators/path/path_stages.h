@@ -49,10 +49,8 @@ struct GeneratePaths {
     PathQueueView paths;
 
     HD void operator()(uint32_t i) const {
-        const FilmView& film = job.film;
-        const PixelSample begun = samples.at(round->first + i, film.width, film.height);
-        const PathState path =
-            generate_path(job.picture.camera, job.settings, film.window.pixel_at(begun.pixel), begun.sample);
+        const PixelSample begun = samples.at(round->first + i);
+        const PathState path = generate_path(job.picture.camera, job.settings, begun.pixel, begun.sample);
         paths.store(last - i, path, job.settings.seed, any_alpha);
         if (paths.times != nullptr) paths.times[last - i] = path.time;
     }

@@ -66,7 +66,7 @@ PhotonJob PhotonMapIntegrator::make_job(uint32_t pass, const FilmView& film) {
     PhotonJob job = {};
     job.scene = {picture_, picture_settings_.subpaths, world_, false};
     job.film = film;
-    job.samples = {0, pixels(), pass, 1};
+    job.samples = {film.window, pass, 1};
     const PhotonMapSettings& map = picture_settings_.map;
     job.pass = {pass, map.photons, {targets_.data(), target_count_}, maps_.clear(), film.invalid, energy_};
     job.how = map.gather;
@@ -75,7 +75,7 @@ PhotonJob PhotonMapIntegrator::make_job(uint32_t pass, const FilmView& film) {
 }
 
 void PhotonMapIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
-    PERTEV_CHECK(film.is_whole_picture());
+    check_sums(film);
     for (uint32_t pass = first; pass < first + count && !is_abandoned(); ++pass) render_pass(pass, film);
 }
 
@@ -91,10 +91,10 @@ void PhotonMapIntegrator::render_pass(uint32_t pass, const FilmView& film) {
     const float shrunk = radius_of_pass(pass), largest = length(world_.centre) + world_.radius;
     job.near = max(shrunk * global_radius_, kMinPhotonRadius);
     job.maps = maps_.build(job.near, max(shrunk * caustic_radius_, kMinPhotonRadius), largest, pass, subpaths.seed);
-    run_stages(job, 0, pixels(), loop_capacity(), 1, [this](auto& schedule, const PhotonJob& part) {
+    run_stages(job, 0, job.samples.count(), loop_capacity(), 1, [this](auto& schedule, const PhotonJob& part) {
         if (!is_abandoned()) run_gather(schedule, part);
     });
-    rays_.camera += pixels();
+    rays_.camera += job.samples.count();
 }
 
 float radius_of_pass(uint32_t pass) {

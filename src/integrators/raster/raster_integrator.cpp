@@ -35,7 +35,7 @@ void RasterIntegrator::begin(const PictureView& picture, SceneTracer& tracer, ui
 }
 
 void RasterIntegrator::render(uint32_t first, uint32_t count, const FilmView& film) {
-    PERTEV_CHECK(film.is_whole_picture());
+    check_sums(film);
     const auto triangles = static_cast<uint32_t>(picture_.scene.triangle_count);
     for (uint32_t sample = first; sample < first + count; ++sample) {
         if (is_abandoned()) return;
@@ -49,7 +49,7 @@ void RasterIntegrator::render(uint32_t first, uint32_t count, const FilmView& fi
             launch(queue_, "scan_triangles", triangles, ScanTriangles{pass});
             launch(queue_, "scan_rows", static_cast<uint32_t>(rows_.size()), ScanRows{pass});
         }
-        launch(queue_, "shade_pixels", pixels(), ShadePixels{pass, film});
+        launch(queue_, "shade_pixels", camera_.width * camera_.height, ShadePixels{pass, film});
     }
     queue_.wait();
 }

@@ -51,11 +51,11 @@ void RayTreeIntegrator<Algorithm>::begin(const PictureView& picture, SceneTracer
 
 template <class Algorithm>
 void RayTreeIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const FilmView& film) {
-    PERTEV_CHECK(film.is_whole_picture());
+    check_sums(film);
     constexpr std::size_t kLoopBytes = std::size_t(1) << 19; // per thread, so that it fits the cache
     constexpr uint64_t kMaxInLoop = 128;
     const bool has_times = picture_.scene.motions.is_there();
-    const BeginOrder samples = {0, pixels(), first, count};
+    const BeginOrder samples = {film.window, first, count};
     run_stages({.picture = picture_, .settings = picture_settings_, .film = film, .samples = samples}, 0,
                samples.count(), capacity_for(picture_settings_, has_times, kLoopBytes, kMaxInLoop), count,
                [this](auto& schedule, const TreeJob& part) {

@@ -20,7 +20,7 @@ struct BeginTrees {
     uint64_t first;
 
     HD void operator()(uint32_t i) const {
-        const PixelSample begun = samples.at(first + i, camera.width, camera.height);
+        const PixelSample begun = samples.at(first + i);
         TreeState state = {};
         state.pixel = begun.pixel, state.sample = begun.sample;
         state.rays = 1;

@@ -157,7 +157,7 @@ void ReyesIntegrator::render(uint32_t first, uint32_t count, const FilmView& fil
 
 uint32_t ReyesIntegrator::render_while(uint32_t first, uint32_t count, const FilmView& film,
                                        const std::function<bool()>& goes_on) {
-    PERTEV_CHECK(film.is_whole_picture());
+    check_sums(film);
     const uint32_t pixels = picture_.camera.width * picture_.camera.height;
     const auto at_once = static_cast<uint32_t>(std::min<uint64_t>(count, positions_.size() / pixels));
     DisplacementsView displacements;

@@ -47,27 +47,29 @@ HD inline float filter_density(const PixelFilterView& filter, float x) {
     return pdf_tent(2.0f * u - 1.0f) * (2.0f * part) / (width * filter.radius);
 }
 
-/// Adds `light` at `raster`, in pixels from the upper left corner.
+/// Adds `light` at `raster`, in pixels from the picture's upper left corner, as far as the film holds it.
 HD inline void add_splat(const FilmView& film, const PixelFilterView& filter, Vec2 raster, Rgb light) {
     constexpr int kFar = 1 << 30;
     const float left = raster.x - 0.5f - filter.radius, top = raster.y - 0.5f - filter.radius;
-    const int first_x = to_int(floor(left) + 1.0f, 0, kFar), first_y = to_int(floor(top) + 1.0f, 0, kFar);
-    const int last_x = to_int(raster.x - 0.5f + filter.radius, 0, static_cast<int>(film.width) - 1);
-    const int last_y = to_int(raster.y - 0.5f + filter.radius, 0, static_cast<int>(film.height) - 1);
+    const PixelWindow& window = film.window;
+    const int first_x = to_int(floor(left) + 1.0f, static_cast<int>(window.x), kFar);
+    const int first_y = to_int(floor(top) + 1.0f, static_cast<int>(window.y), kFar);
+    const int last_x = to_int(raster.x - 0.5f + filter.radius, 0, static_cast<int>(window.x + window.width) - 1);
+    const int last_y = to_int(raster.y - 0.5f + filter.radius, 0, static_cast<int>(window.y + window.height) - 1);
     for (int y = first_y; y <= last_y; ++y) {
         const float row = filter_density(filter, raster.y - 0.5f - static_cast<float>(y));
         if (!(row > 0)) continue;
         for (int x = first_x; x <= last_x; ++x) {
             const float share = row * filter_density(filter, raster.x - 0.5f - static_cast<float>(x));
             if (!(share > 0)) continue;
-            add_radiance(film, static_cast<uint32_t>(y) * film.width + static_cast<uint32_t>(x), share * light);
+            add_radiance(film, window.pixel_in(static_cast<uint32_t>(x), static_cast<uint32_t>(y)), share * light);
         }
     }
 }
 
 /// Initial state of a subpath for the sample `number`.
-HD inline SubpathState state_of_sample(const BeginOrder& samples, uint64_t number, const CameraRays& camera) {
-    const PixelSample begun = samples.at(number, camera.width, camera.height);
+HD inline SubpathState state_of_sample(const BeginOrder& samples, uint64_t number) {
+    const PixelSample begun = samples.at(number);
     SubpathState state = {};
     state.pixel = begun.pixel, state.sample = begun.sample;
     return state;
@@ -92,7 +94,7 @@ struct BeginParticles {
 
     HD void operator()(uint32_t i) const {
         const SubpathSettings& settings = scene.settings;
-        SubpathState state = state_of_sample(samples, first + i, scene.picture.camera);
+        SubpathState state = state_of_sample(samples, first + i);
         if (subpaths.capacity.kept > 0) subpaths.kept_counts[i] = 0;
         const SampleKey key = particle_sample_key(scene, state.pixel, state.sample);
         const SampleBits bits = sample_bits(settings.sampler, key, kGroupLight);
@@ -280,12 +282,12 @@ struct BeginCameraSubpaths {
 
     HD void operator()(uint32_t i) const {
         const CameraRays& camera = scene.picture.camera;
-        SubpathState state = state_of_sample(samples, first + i, camera);
+        SubpathState state = state_of_sample(samples, first + i);
         const SampleKey key = {state.pixel, state.sample, scene.settings.seed};
         const Ray ray = camera.ray(state.pixel, scene.settings.sampler, key);
         state.throughput = {1, 1, 1};
         state.mis = {min(square(1.0f / camera_density(camera, ray.direction)), kMaxWeightSum), 0};
-        state.is_from_far = has_parallel_rays(camera.view.projection) ? 1 : 0;
+        state.is_from_far = falls_with_distance(camera) ? 0 : 1;
         subpaths.states[i] = state;
         subpaths.queue_ray(i, i, ray, {}, coin_key(key, 0, false), 0);
     }

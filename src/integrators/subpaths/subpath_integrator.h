@@ -34,17 +34,24 @@ void SubpathIntegrator<Algorithm>::reserve(const WorkSize& size) {
 
 template <class Algorithm>
 void SubpathIntegrator<Algorithm>::render(uint32_t first, uint32_t count, const FilmView& film) {
-    PERTEV_CHECK(film.is_whole_picture());
+    check_sums(film);
     constexpr std::size_t kLoopBytes = std::size_t(1) << 18; // per thread, so that it fits the cache
     SubpathJob job = {};
     job.scene = {picture_, picture_settings_, sphere_round(tracer_->bounds()), Algorithm::kIsConnected};
     job.film = film;
-    job.samples = {0, pixels(), first, count};
-    run_stages(job, 0, job.samples.count(), capacity_for(picture_settings_, kLoopBytes, kLoopCount), count,
-               [this](auto& schedule, const SubpathJob& part) {
-                   if (!is_abandoned()) Algorithm::render(schedule, part);
-               });
+    const SubpathCapacity loop_capacity = capacity_for(picture_settings_, kLoopBytes, kLoopCount);
+    const auto run = [&](const PixelWindow& window, const auto& stages) {
+        job.samples = {window, first, count};
+        run_stages(job, 0, job.samples.count(), loop_capacity, count, [&](auto& schedule, const SubpathJob& part) {
+            if (!is_abandoned()) stages(schedule, part);
+        });
+    };
+    run(film.window, [](auto& schedule, const SubpathJob& part) { Algorithm::render(schedule, part); });
     rays_.camera += job.samples.count();
+    // Particles of the pixels around the window may be seen in it.
+    for (const PixelWindow& window : windows_around(film.window, picture_.camera.height)) {
+        run(window, [](auto& schedule, const SubpathJob& part) { run_particles(schedule, part); });
+    }
 }
 
 // Explicit instantiations.

@@ -70,7 +70,7 @@ HD inline float mis_weight(float weight_sum) { return weight_sum < kInfinity ? 1
 struct alignas(16) SubpathState {
     Rgb throughput; // from the camera: of radiance; from a light: power, W
     MisSums mis;
-    uint32_t pixel, sample;   // sample that it belongs to
+    uint32_t pixel, sample;   // its sample; photons and rays of records have other numbers here
     uint16_t scatterings = 0; // so far
     uint16_t is_from_far = 0; // 1 if its first segment has no distance
 

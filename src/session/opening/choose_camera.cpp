@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/limits.h"
 #include "formats/files/parse_number.h"
-#include "math/portable_math.h"
+#include "render/camera_view.h"
 #include "scene/scene_origin.h"
 #include "session/degrees.h"
 #include "session/position_text.h"
@@ -62,8 +62,7 @@ void flatten(const CameraChoice& choice, const Scene& scene, Camera& camera) {
     const Bounds3 bounds = bounds_of(scene);
     const float distance = choice.target ? length(in_scene(scene, *choice.target) - eye)
                                          : dot(0.5f * (bounds.lo + bounds.hi) - eye, forward);
-    camera.projection = choice.projection.value();
-    if (distance > 0) camera.ortho_height = min(2 * tan(0.5f * camera.fov_y) * distance, kMaxCoordinate);
+    if (distance > 0) camera.ortho_height = min(2 * half_view_height(camera) * distance, kMaxCoordinate);
 }
 
 /// If there is an aperture, but neither focus nor target was given, focuses the placed `camera` on what is in the

@@ -153,11 +153,9 @@ ExrMetadata camera_metadata(const CameraSource& source) {
                             {"pertev.aperture", camera.aperture_radius}};
     if (camera.aperture_radius > 0) metadata.emplace_back("pertev.focus", camera.focus_distance);
     metadata.emplace_back("pertev.projection", std::string(name_of(camera.projection)));
-    if (has_parallel_rays(camera.projection)) {
-        metadata.emplace_back("pertev.view_height", camera.ortho_height);
-    } else {
-        metadata.emplace_back("pertev.fov", source.fov_deg > 0 ? source.fov_deg : degrees_for(camera.fov_y));
-    }
+    const ViewSize view = view_size(camera);
+    const bool has_stated = view.setting == "fov" && source.fov_deg > 0;
+    metadata.emplace_back(fmt::format("pertev.{}", view.setting), has_stated ? source.fov_deg : view.value);
     return metadata;
 }
 

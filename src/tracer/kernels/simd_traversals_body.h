@@ -14,18 +14,20 @@ namespace pertev {
 inline constexpr uint64_t kRaysATask = 256;
 
 template <TraversalOptions kOptions, bool kAny>
-void trace_simd(Queue&, const AnyTrees& trees, const RayBatch& batch, const HitQueueView& hits) {
+void trace_simd(Queue& queue, const AnyTrees& trees, const RayBatch& batch, const HitQueueView& hits) {
     using Traversal = Wide8SimdTraversal<kOptions>;
     using Trees = SceneTrees<typename Traversal::Tree>;
     const TraceQueue<Traversal, kAny, AcceptQueued<true>, Trees> stage = {std::get<Trees>(trees), batch.query, hits};
+    const UseThreads use(queue.threads());
     parallel_for(batch.count.value(), kRaysATask, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
 }
 
 template <TraversalOptions kOptions, bool kAny>
-void count_simd(Queue&, const AnyTrees& trees, const RayBatch& batch, RayWork* work) {
+void count_simd(Queue& queue, const AnyTrees& trees, const RayBatch& batch, RayWork* work) {
     using Traversal = Wide8SimdTraversal<kOptions>;
     const CountQueue<Traversal, kAny> stage = {std::get<SceneTrees<typename Traversal::Tree>>(trees), batch.query,
                                                work};
+    const UseThreads use(queue.threads());
     parallel_for(batch.count.value(), kRaysATask, [&](uint64_t i) { stage(static_cast<uint32_t>(i)); });
 }
 
