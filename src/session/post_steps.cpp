@@ -64,15 +64,4 @@ void PostSteps::add(Integrator& integrator, uint32_t first, uint32_t count, cons
     pictures_.queue().wait();
 }
 
-Image PostSteps::apply(Image picture) {
-    const std::size_t channels = picture.channels;
-    for (const auto& denoiser : denoisers_) {
-        const Image denoised = denoiser->picture();
-        for (std::size_t i = 0; i < denoised.pixels.size(); ++i) { // the picture keeps its alpha
-            picture.pixels[i / 3 * channels + i % 3] = denoised.pixels[i];
-        }
-    }
-    return picture;
-}
-
 } // namespace pertev

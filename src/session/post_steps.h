@@ -24,7 +24,7 @@ public:
     /// is abandoned; film and steps must then be discarded.
     void add(Integrator& integrator, uint32_t first, uint32_t count, const Film& film);
     /// Returns `picture`, that of the film, after all steps. Throws Error(DeviceFault).
-    Image apply(Image picture);
+    Image apply(Image picture) { return apply_steps(denoisers_, std::move(picture)); }
 
 private:
     PictureRenderer& pictures_;
