@@ -357,7 +357,7 @@ void RenderLoop::report_state() {
     if (view_.window_pixels > 0) {
         numbers.flags += fmt::format(" --size {}x{}", view_.picture.width, view_.picture.height);
     }
-    if (start_.record.scene.has_ground) numbers.flags += " --ground on"; // an --eye alone removes it
+    if (!start_.record.scene.ground.empty()) numbers.flags += " --ground on"; // an --eye alone removes it
     numbers.why_still = start_.why_still;
     numbers.input = input_;
     numbers.steerer = steerer_;
