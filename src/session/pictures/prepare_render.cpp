@@ -34,27 +34,6 @@ Ground ground_of(const PictureOptions& options) {
     return is_off ? Ground::Off : Ground::Auto;
 }
 
-/// Reports all given settings and their sources, with the resulting size and number of samples.
-void report_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source) {
-    const CameraChoice& choice = options.scene.camera;
-    const Camera* const own = scene_camera(choice.camera, scene);
-    const bool is_own = own != nullptr && !choice.eye && options.camera_path.empty();
-    auto origins = options.given; // the scene's own camera has no value that a settings file could contain
-    if (is_own) origins.try_emplace("camera", SettingOrigin::Scene);
-    if (own != nullptr && own->aspect > 0) origins.try_emplace("size", SettingOrigin::Scene);
-    for (const auto& [name, origin] : origins) {
-        std::string& names = origin == SettingOrigin::Caller ? source.by_flags
-                             : origin == SettingOrigin::File ? source.by_settings
-                                                             : source.by_scene;
-        names += (names.empty() ? "" : " ") + name;
-    }
-    options.size = PictureSize{settings.width, settings.height};
-    options.given.try_emplace("size", SettingOrigin::File);
-    options.given.try_emplace("spp", SettingOrigin::File);
-    source.hash = scene_hash(options.scene.scene);
-    source.settings = settings_json(options, source.hash);
-}
-
 } // namespace
 
 std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
@@ -103,6 +82,27 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     return ready;
 }
 
+void record_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source) {
+    const CameraChoice& choice = options.scene.camera;
+    const Camera* const own = scene_camera(choice.camera, scene);
+    const bool is_own = own != nullptr && !choice.eye && options.camera_path.empty();
+    auto origins = options.given; // the scene's own camera has no value that a settings file could contain
+    if (is_own) origins.try_emplace("camera", SettingOrigin::Scene);
+    if (own != nullptr && own->aspect > 0) origins.try_emplace("size", SettingOrigin::Scene);
+    source.by_scene = source.by_settings = source.by_flags = "";
+    for (const auto& [name, origin] : origins) {
+        std::string& names = origin == SettingOrigin::Caller ? source.by_flags
+                             : origin == SettingOrigin::File ? source.by_settings
+                                                             : source.by_scene;
+        names += (names.empty() ? "" : " ") + name;
+    }
+    options.size = PictureSize{settings.width, settings.height};
+    options.given.try_emplace("size", SettingOrigin::File);
+    options.given.try_emplace("spp", SettingOrigin::File);
+    if (source.hash.empty()) source.hash = scene_hash(options.scene.scene);
+    source.settings = settings_json(options, source.hash);
+}
+
 PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, const Messages& messages) {
     PictureRecord record = {.scene = source_of(options.scene, ready.scene()),
                             .camera = {},
@@ -111,7 +111,7 @@ PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, 
                             .frame = {},
                             .display = {}};
     if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
-    report_settings(options, ready.settings, ready.scene(), record.scene);
+    record_settings(options, ready.settings, ready.scene(), record.scene);
     record.scene.made_up = messages.made_up();
     record.scene.left_out = messages.left_out();
     record.scene.load_seconds = ready.load_s;

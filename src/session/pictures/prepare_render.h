@@ -36,6 +36,9 @@ using SolveRadiosity = std::function<RadiosityDisplay(RenderSetup& ready)>;
 std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
                                             const SolveRadiosity& solve);
 
+/// Records all given settings and their sources, with the resulting size and number of samples, in `source`.
+void record_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source);
+
 /// Returns the record of the first frame's picture, with its camera but without its display.
 PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, const Messages& messages);
 
