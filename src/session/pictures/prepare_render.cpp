@@ -52,6 +52,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
         options.render.integrator == IntegratorKind::Radiosity && !options.radiosity.solution.empty();
     const SceneUse use = shows_solution ? SceneUse::Measurement : SceneUse::Picture; // opened as for the solution
     Scene scene = open_scene(options.scene, messages, use, ground_of(options));
+    sink.check(); // the file was read to its end, and trees are built to theirs
     take_suggestions(scene, verbs, options, messages);
     if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
     RenderSettings& settings = ready->settings;
@@ -69,6 +70,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     ready->sequence = frame_range(options).value_or(FrameRange{.time_s = options.time_s, .shutter = shutter(options)});
     ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, messages,
                           ready->sequence.shutter);
+    sink.check();
     ready->queue = machine.take();
     if (settings.integrator == IntegratorKind::Radiosity) {
         if (ready->moving->is_animated() && !options.frames.empty()) {
