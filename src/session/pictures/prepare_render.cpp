@@ -91,13 +91,17 @@ void record_settings(PictureOptions options, const RenderSettings& settings, con
     auto origins = options.given; // the scene's own camera has no value that a settings file could contain
     if (is_own) origins.try_emplace("camera", SettingOrigin::Scene);
     if (own != nullptr && own->aspect > 0) origins.try_emplace("size", SettingOrigin::Scene);
-    source.by_scene = source.by_settings = source.by_flags = "";
+    source.by_default = source.by_scene = source.by_settings = source.by_flags = "";
+    const auto add = [](std::string& names, const std::string& name) { names += (names.empty() ? "" : " ") + name; };
     for (const auto& [name, origin] : origins) {
-        std::string& names = origin == SettingOrigin::Caller ? source.by_flags
-                             : origin == SettingOrigin::File ? source.by_settings
-                                                             : source.by_scene;
-        names += (names.empty() ? "" : " ") + name;
+        add(origin == SettingOrigin::Caller ? source.by_flags
+            : origin == SettingOrigin::File ? source.by_settings
+                                            : source.by_scene,
+            name);
     }
+    if (!is_own && !choice.eye && options.camera_path.empty()) add(source.by_default, "camera");
+    if (source.has_environment && options.scene.environment.empty()) add(source.by_default, "environment");
+    if (!source.ground.empty() && !options.is_given("ground")) add(source.by_default, "ground");
     options.size = PictureSize{settings.width, settings.height};
     options.given.try_emplace("size", SettingOrigin::File);
     options.given.try_emplace("spp", SettingOrigin::File);

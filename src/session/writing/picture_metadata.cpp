@@ -58,15 +58,15 @@ MetadataValue metadata_value(const PictureOptions& options, const Setting& setti
         setting.field(const_cast<PictureOptions&>(options)));
 }
 
-ExrMetadata::value_type matrix_of(const CameraSource& source) {
-    const Transform& from = source.camera.world_from_camera;
-    const auto text = [](Vec3 axis) { return fmt::format("{},{},{}", axis.x, axis.y, axis.z); };
-    return {"pertev.world_from_camera",
-            fmt::format("{} {} {} {}", text(column(from, 0)), text(column(from, 1)), text(column(from, 2)),
-                        comma_separated(stated_position(from.translation, source.origin)))};
+/// Returns the settings of cameras, or all others.
+std::vector<Setting> rows_of(bool camera) {
+    std::vector<Setting> rows = all_settings();
+    std::erase_if(rows, [&](const Setting& row) { return (row.group == std::string_view("Camera")) != camera; });
+    return rows;
 }
 
-/// Returns the options that would give this picture: those that were given, and what was chosen in place of others.
+/// Returns the options that would give this picture, without its camera: those that were given, and what was chosen in
+/// place of others.
 PictureOptions used_options(const PictureRecord& record) {
     const RenderSettings& settings = record.settings;
     PictureOptions used;
@@ -74,7 +74,6 @@ PictureOptions used_options(const PictureRecord& record) {
     used.render.filter_radius = filter_radius_of(settings);
     used.scene = record.scene;
     if (used.scene.environment.empty()) used.scene.environment = record.scene.has_environment ? "made up" : "none";
-    used.scene.camera = choice_of(record.camera);
     used.time_s = record.scene.time_s;
     if (const auto& shutter = record.scene.shutter) {
         used.shutter = fmt::format("{},{}", shutter->open_s, shutter->close_s);
@@ -182,22 +181,23 @@ CameraChoice choice_of(const CameraSource& source) {
 }
 
 ExrMetadata camera_metadata(const CameraSource& source) {
-    std::vector<Setting> rows = all_settings();
-    std::erase_if(rows, [](const Setting& row) { return row.group != std::string_view("Camera"); });
     PictureOptions options;
     options.scene.camera = choice_of(source);
-    ExrMetadata metadata = recorded_settings(options, rows);
-    metadata.push_back(matrix_of(source));
+    ExrMetadata metadata = recorded_settings(options, rows_of(true));
+    const Transform& from = source.camera.world_from_camera;
+    const auto text = [](Vec3 axis) { return fmt::format("{},{},{}", axis.x, axis.y, axis.z); };
+    metadata.emplace_back("pertev.world_from_camera",
+                          fmt::format("{} {} {} {}", text(column(from, 0)), text(column(from, 1)),
+                                      text(column(from, 2)), comma_separated(*options.scene.camera.eye)));
     return metadata;
 }
 
 ExrMetadata settings_metadata(const PictureRecord& record) {
     const SceneSource& scene = record.scene;
     const RenderSettings& settings = record.settings;
-    ExrMetadata metadata = recorded_settings(used_options(record), all_settings());
-    append(metadata, {{"pertev.version", fmt::format("{} {}", version(), git_commit())},
-                      {"pertev.scene", scene.scene},
-                      matrix_of(record.camera)});
+    ExrMetadata metadata = recorded_settings(used_options(record), rows_of(false));
+    append(metadata,
+           {{"pertev.version", fmt::format("{} {}", version(), git_commit())}, {"pertev.scene", scene.scene}});
     if (scene.position_origin) metadata.emplace_back("pertev.position_origin", comma_separated(*scene.position_origin));
     if (settings.integrator == IntegratorKind::Radiosity && settings.radiosity->solution) {
         const RadiositySolution& solution = *settings.radiosity->solution;
@@ -212,6 +212,7 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     if (record.display && !record.display->false_colors) { // metered or given
         metadata.emplace_back("pertev.exposure", record.display->exposure_stops);
     }
+    append(metadata, camera_metadata(record.camera)); // last, because time moves it
     return metadata;
 }
 
@@ -230,6 +231,7 @@ ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& sta
     const SceneSource& scene = record.scene;
     for (const auto& [name, text] : {std::pair("pertev.scene_hash", &scene.hash),
                                      {"pertev.settings", &scene.settings},
+                                     {"pertev.by_default", &scene.by_default},
                                      {"pertev.by_scene", &scene.by_scene},
                                      {"pertev.by_settings", &scene.by_settings},
                                      {"pertev.by_flags", &scene.by_flags}}) {

@@ -26,8 +26,8 @@ struct SceneSource : SceneOptions {
     std::optional<Shutter> shutter; // open around that time; none: the picture shows one moment
     std::string hash;               // scene_hash() of settings/settings_file.h; empty if unknown
     std::string settings;           // all given settings, as JSON (settings/settings_file.h); empty if unknown
-    std::string by_scene, by_settings, by_flags;   // names of settings from the scene's file, from a settings file,
-                                                   // and from flags
+    // Names of settings that were chosen for want of others, from the scene's file, from a settings file, from flags.
+    std::string by_default, by_scene, by_settings, by_flags;
     std::vector<std::string> instances, materials; // names by id, for pictures with ids; empty without them
     std::vector<std::string> made_up, left_out;    // messages: generated parts of the scene; parts of it left out
     std::optional<DoubleVec3> position_origin;     // origin of positions in a far scene; none: the file's origin
