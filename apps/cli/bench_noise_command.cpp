@@ -59,10 +59,10 @@ Pictures render_pictures(Session& session, SamplerKind sampler, const NoiseFlags
         settings.path.seed = flags.render.render.path.seed + i;
         session.set_settings(settings);
         session.cut();
-        session.render(settings.samples, [&](const RenderProgress& now) {
-            report(static_cast<double>(now.samples_done) / now.samples);
-            return !interrupted();
-        });
+        session.render(settings.samples, ProgressSink([&](const Progress& now) {
+                           report(now.share);
+                           return !interrupted();
+                       }));
         throw_if_interrupted();
         const RenderStats stats = session.stats();
         pictures.seconds += stats.render_seconds / flags.seeds;

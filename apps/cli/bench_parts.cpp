@@ -202,7 +202,7 @@ Camera moved(const Camera& camera, float yaw, Vec3 step) {
 void render_again(Session& session, uint32_t samples) {
     throw_if_interrupted();
     session.cut();
-    session.render(samples, [](const RenderProgress&) { return !interrupted(); });
+    session.render(samples, InterruptSink());
     throw_if_interrupted();
 }
 

@@ -153,7 +153,7 @@ void bench_scene(const std::string& name, Queue& queue, const RaysFlags& flags, 
     const Camera camera = choose_camera(flags.scene.camera, scene, 16.0f / 9.0f, messages);
     reporter.report_messages();
     watch.restart();
-    std::vector<RaySet> sets = make_isolated_sets(queue, scene, camera, prepared, flags.count, throw_if_interrupted);
+    std::vector<RaySet> sets = make_isolated_sets(queue, scene, camera, prepared, flags.count, reporter);
     const std::size_t recorded = sets.size();
     if (flags.axes) std::ranges::move(make_axis_ray_sets(sets[2]), std::back_inserter(sets));
     reporter.print(fmt::format("{}: {} triangles, scene {:.2f} s, trees {:.2f} s, ray sets {:.2f} s (frames of {}x{})",

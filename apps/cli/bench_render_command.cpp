@@ -67,7 +67,7 @@ IsolatedRates isolated_rates(Queue& queue, const RecordJob& job, const Scene& sc
         scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, reporter.messages());
     const Camera camera = job_camera(job, scene, 16.0f / 9.0f, reporter.messages()); // the aspect of the sets' frames
     const uint32_t count = queue.is_cuda() ? kRecordRays : kRecordRays / 16;         // a CPU takes seconds for these
-    return measure_isolated_rays(queue, scene, camera, prepared, choice, count, throw_if_interrupted);
+    return measure_isolated_rays(queue, scene, camera, prepared, choice, count, reporter);
 }
 
 int bench_job(JobFlags& flags) {

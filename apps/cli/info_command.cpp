@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <concepts>
+#include <map>
 #include <memory>
+#include <sstream>
 #include <string_view>
 
 #include <CLI/CLI.hpp>
@@ -24,6 +26,7 @@
 #include "image/read_image.h"
 #include "radiosity/radiosity_solution.h"
 #include "scene/scene_origin.h"
+#include "session/survey/default_light.h"
 #include "session/writing/metadata_json.h"
 #include "shading/build_light_set.h"
 
@@ -58,9 +61,11 @@ public:
         for (const std::string& text : texts) json += (json.empty() ? "" : ",") + json_string(text);
         facts_.push_back({name, fmt::format("{}", fmt::join(texts, " ")), fmt::format("[{}]", json)});
     }
-    void add(const ExrMetadata::value_type& entry) {
+    /// `origin` says where the value came from; empty: unknown.
+    void add(const ExrMetadata::value_type& entry, const std::string& origin) {
         const auto text = [](const auto& value) { return fmt::format("{}", value); };
-        facts_.push_back({entry.first, phrase(std::visit(text, entry.second)), metadata_json(entry)});
+        const std::string after = origin.empty() ? "" : fmt::format("  ({})", origin);
+        facts_.push_back({entry.first, phrase(std::visit(text, entry.second)) + after, metadata_json(entry)});
     }
     void report(Reporter& reporter) const {
         std::string json = R"({"event":"info")", lines;
@@ -79,6 +84,21 @@ private:
     std::vector<Fact> facts_;
 };
 
+/// Returns where the values of settings came from, by their keys.
+std::map<std::string, std::string> origins_in(const ExrMetadata& metadata) {
+    std::map<std::string, std::string> origins;
+    for (const auto& [key, origin] : {std::pair("pertev.by_default", "made up"),
+                                      {"pertev.by_scene", "the scene's file"},
+                                      {"pertev.by_settings", "a settings file"},
+                                      {"pertev.by_flags", "a flag"}}) {
+        const auto entry = std::ranges::find(metadata, key, &ExrMetadata::value_type::first);
+        if (entry == metadata.end() || !std::holds_alternative<std::string>(entry->second)) continue;
+        std::istringstream names(std::get<std::string>(entry->second));
+        for (std::string name; names >> name;) origins.emplace("pertev." + name, origin);
+    }
+    return origins;
+}
+
 void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
     const Image image = read_image(flags.scene.scene, &messages);
     facts.add("width", image.width);
@@ -96,7 +116,11 @@ void describe_image(const InfoFlags& flags, Facts& facts, Messages& messages) {
     std::vector<std::string> channels;
     for (const ExrChannel& channel : exr.channels) channels.push_back(channel.name);
     facts.add("channels", channels);
-    for (const auto& entry : exr.metadata) facts.add(entry);
+    const std::map<std::string, std::string> origins = origins_in(exr.metadata);
+    for (const auto& entry : exr.metadata) {
+        const auto origin = origins.find(entry.first);
+        facts.add(entry, origin == origins.end() ? "" : origin->second);
+    }
 }
 
 /// Returns the settings that made a picture, with as many samples as it has. Throws Error(BadInput).
@@ -158,6 +182,18 @@ void describe_scene(const InfoFlags& flags, Facts& facts, Messages& messages) {
     }
     facts.add("cameras", cameras);
     describe_choices(scene, facts);
+    std::vector<std::string> suggests, makes_up; // settings that a render takes from the file; what it makes up
+    if (scene.cameras.empty()) makes_up.emplace_back("camera");
+    if (lacks_light(scene)) makes_up.emplace_back("light");
+    if (!scene.cameras.empty()) {
+        suggests.push_back("camera=" + cameras.front());
+        RenderSettings size;
+        set_default_size(size, &scene.cameras.front());
+        if (scene.cameras.front().aspect > 0) suggests.push_back(fmt::format("size={}x{}", size.width, size.height));
+    }
+    for (const SuggestedSetting& setting : scene.suggested) suggests.push_back(setting.name + "=" + setting.text);
+    facts.add("suggests", suggests);
+    facts.add("makes_up", makes_up);
 }
 
 void describe_solution(const InfoFlags& flags, Facts& facts) {

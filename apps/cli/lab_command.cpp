@@ -159,7 +159,11 @@ int run(LabFlags& flags) {
     settings.camera = phrase(describe_camera(camera, scene.origin_in_file));
     listen_for_interrupt();
     const Measurement head = start_measurement(*queue, settings.scene);
-    const LabReport report = run_lab(*queue, scene, camera, settings, show_lab_progress(reporter, flags.output, head));
+    const auto save = [&](const LabReport& so_far) {
+        if (flags.output.empty() || !has_findings(so_far)) return;
+        write_measurement(flags.output, "report", measurement_of(so_far, head), "runs");
+    };
+    const LabReport report = run_lab(*queue, scene, camera, settings, reporter, save);
     reporter.end_progress();
     reporter.result(json_of(measurement_of(report, head), "lab"));
     if (!has_findings(report) && report.interrupted) {

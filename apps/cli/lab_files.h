@@ -1,12 +1,10 @@
 #pragma once
 
-// Files and progress of the laboratory's commands.
+// Files of the laboratory's commands.
 
 #include <filesystem>
-#include <functional>
 #include <string>
 
-#include "apps/cli/reporter.h"
 #include "lab/measurement.h"
 #include "lab/run_lab.h"
 
@@ -20,11 +18,6 @@ void check_lab_folder(const std::filesystem::path& folder);
 void write_measurement(const std::filesystem::path& folder, const std::string& name, const Measurement& measurement,
                        std::string_view csv_table);
 void write_text(const std::filesystem::path& path, const std::string& text);
-
-/// A progress bar with the time left; stops at Ctrl-C. If `folder` is not empty, the report so far is written
-/// there after each structure; nothing is written before there is something. `reporter` outlives it.
-std::function<bool(const LabProgress&)> show_lab_progress(Reporter& reporter, const std::filesystem::path& folder = {},
-                                                          const Measurement& head = {});
 
 /// Throws Error(DeviceFault) that names the combinations that differ from the proven traversal, if there are any.
 void fail_if_wrong(const LabReport& report);

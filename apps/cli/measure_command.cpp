@@ -95,11 +95,13 @@ int measure(MeasureFlags& flags) {
     listen_for_interrupt();
     reporter.set_work("measuring");
     const Stopwatch watch;
-    const auto keep_going = [&](double share) {
-        reporter.progress(share, "measuring");
-        return !interrupted();
-    };
-    const Irradiance irradiance = measure_irradiance(*queue, moving.prepared(), point, settings, keep_going);
+    ProgressSink part(
+        [&](const Progress& now) {
+            reporter.progress(now.share, "measuring");
+            return true;
+        },
+        &reporter);
+    const Irradiance irradiance = measure_irradiance(*queue, moving.prepared(), point, settings, part);
     reporter.end_progress();
     print(flags, irradiance, *queue, watch.seconds(), reporter);
     return 0;

@@ -46,36 +46,6 @@ std::optional<std::size_t> max_memory_bytes(const RadiosityOptions& options) {
     return static_cast<std::size_t>(std::min(options.max_memory * 0x1p20, 0x1p62));
 }
 
-namespace {
-
-/// Shows how far each step is, and what is left of it.
-class StepProgress {
-public:
-    explicit StepProgress(Reporter& reporter) : reporter_(reporter) {}
-
-    void show(const char* what, double share) {
-        if (what_ != what) {
-            what_ = what;
-            first_ = share;
-            step_watch_.restart();
-        }
-        const double done = share - first_, seconds = step_watch_.seconds();
-        const double left = done > 0.01 && seconds > 1 ? seconds * (1 - share) / done : -1;
-        reporter_.progress(share, left >= 0 ? fmt::format("{}, {:.0f} s left", what, left) : what);
-        reporter_.event(
-            fmt::format(R"({{"event":"progress","seconds":{:.3f},"step":{},"share":{:.4f},"seconds_left":{}}})",
-                        watch_.seconds(), json_string(what_), share, left >= 0 ? fmt::format("{:.3f}", left) : "null"));
-    }
-
-private:
-    Reporter& reporter_;
-    std::string what_;
-    double first_ = 0;
-    Stopwatch watch_, step_watch_;
-};
-
-} // namespace
-
 SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityOptions& options, uint32_t seed,
                                  Reporter& reporter) {
     const RadiositySettings settings = radiosity_settings(options, seed);
@@ -90,11 +60,7 @@ SolvedRadiosity solve_and_report(const PreparedScene& prepared, const RadiosityO
         memory.patches, memory.shown, patch_size_of(prepared, settings), memory.bytes, before));
     check_memory(memory, settings, max_memory_bytes(options).value_or(machine_memory_bytes()));
     listen_for_interrupt();
-    StepProgress progress(reporter);
-    SolvedRadiosity solved = solve_radiosity(prepared, settings, [&](const char* what, double share) {
-        progress.show(what, share);
-        return !interrupted();
-    });
+    SolvedRadiosity solved = solve_radiosity(prepared, settings, reporter);
     reporter.end_progress();
     const SolveStats& stats = solved.stats;
     reporter.print(

@@ -26,43 +26,6 @@
 namespace pertev {
 namespace {
 
-/// The current step: the integrator's precomputation, or the samples.
-struct Step {
-    const char* name;
-    double share, seconds; // done, [0, 1]; since it began
-    double known_from = 0; // share from which it tells what is left
-    std::optional<double> seconds_left() const {
-        if (!(share > known_from)) return std::nullopt;
-        return seconds * (1 - share) / share;
-    }
-};
-
-/// Progress of the samples, or of the time if that ends first.
-Step step_of(const RenderProgress& now, double time_limit_s) {
-    if (now.made_share < 1) return {"before_samples", now.made_share, now.seconds, 0.01};
-    const double of_samples = static_cast<double>(now.samples_done) / now.samples,
-                 seconds = now.seconds - now.made_seconds;
-    const double of_time = time_limit_s > now.made_seconds ? seconds / (time_limit_s - now.made_seconds) : 0;
-    return {"samples", std::max(of_samples, std::min(of_time, 1.0)), seconds};
-}
-
-/// Shows the progress; false when asked to end.
-bool report_progress(const RenderProgress& now, const RenderSettings& settings, Reporter& reporter) {
-    const Step step = step_of(now, settings.time_limit_s);
-    const std::optional<double> left = step.seconds_left();
-    std::string detail = now.made_share < 1 ? fmt::format("{}, before the first sample", integrator_name(settings))
-                                            : fmt::format("{}/{} spp", now.samples_done, now.samples);
-    detail +=
-        fmt::format("  {:.1f} Mrays/s", static_cast<double>(now.rays.total()) / std::max(now.seconds, 1e-9) * 1e-6);
-    if (left) detail += fmt::format("  {:.0f} s left", *left);
-    reporter.progress(step.share, detail);
-    reporter.event(fmt::format(
-        R"({{"event":"progress","samples":{},"of":{},"seconds":{:.3f},"rays":{},"step":"{}","share":{:.4f},"seconds_left":{}}})",
-        now.samples_done, now.samples, now.seconds, now.rays.total(), step.name, step.share,
-        left ? fmt::format("{:.3f}", *left) : "null"));
-    return !interrupted();
-}
-
 void report_hidden_backs(double share, Messages& messages) {
     if (!(share > 0.01)) return;
     messages.note(fmt::format("the camera looks through the backs of surfaces at {:.0f} % of the picture, as they are "
@@ -105,8 +68,7 @@ Error ended_before_samples(const RenderSettings& settings) {
 
 int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureRecord& record,
               std::optional<Session>& session, const Queue& queue, const Stopwatch& watch, Reporter& reporter) {
-    const uint32_t added = session->render(
-        settings.samples, [&](const RenderProgress& now) { return report_progress(now, settings, reporter); });
+    const uint32_t added = session->render(settings.samples, reporter);
     if (added == 0) {
         reporter.end_progress();
         throw ended_before_samples(settings);

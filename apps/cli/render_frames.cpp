@@ -137,13 +137,16 @@ void make_frames(const SequenceRun& run, SequenceRecord& done, Tally& tally) {
             continue;
         }
         if (in_real_time) show_progress(run, frame, 0, is_there ? " again" : "");
-        auto [result, update_s] = render_frame(frame, run, run.reporter.messages(), [&](const RenderProgress& now) {
-            show_progress(run, frame, static_cast<double>(now.samples_done) / now.samples,
-                          now.made_share >= 1
-                              ? fmt::format("  {}/{} spp", now.samples_done, now.samples)
-                              : fmt::format("  {:.0f} % before the first sample", 100 * now.made_share));
-            return !interrupted();
-        });
+        ProgressSink part(
+            [&](const Progress& now) {
+                show_progress(run, frame, now.made_share >= 1 ? now.share : 0,
+                              now.made_share >= 1
+                                  ? fmt::format("  {}/{} spp", now.samples_done, now.samples)
+                                  : fmt::format("  {:.0f} % before the first sample", 100 * now.made_share));
+                return true;
+            },
+            &run.reporter);
+        auto [result, update_s] = render_frame(frame, run, part);
         if (result.samples < run.record.settings.samples) return; // interrupted: not whole, and not written
         tally.has_begun = true;
         const std::string hash = picture_hash(result.picture).hex();

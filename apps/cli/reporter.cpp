@@ -65,12 +65,36 @@ void Reporter::report_messages() {
     }
 }
 
-bool Reporter::is_cancelled() { return interrupted(); }
+bool Reporter::should_stop() { return interrupted(); }
 
 void Reporter::print(const std::string& line) {
     if (is_silent()) return;
     end_progress();
     write_now(stderr, line + '\n');
+}
+
+void Reporter::progress(const Progress& now) {
+    constexpr double often_s = 0.1; // enough for eyes
+    const bool is_soon = now.seconds >= shown_at_s_ && now.seconds - shown_at_s_ < often_s;
+    if (now.samples == 0 && now.doing == shown_step_ && is_soon && now.share < 1) return; // a render tells seldom
+    shown_step_ = now.doing, shown_at_s_ = now.seconds;
+    const bool is_render = now.samples > 0, is_made = now.made_share >= 1;
+    std::string detail = !is_render ? now.doing
+                         : is_made  ? fmt::format("{}/{} spp", now.samples_done, now.samples)
+                                    : "before the first sample";
+    if (now.share_of_step > 0) detail += fmt::format(" ({:.0f} %)", 100 * now.share_of_step);
+    if (is_render) {
+        detail += fmt::format("  {:.1f} Mrays/s", static_cast<double>(now.rays) / std::max(now.seconds, 1e-9) * 1e-6);
+    }
+    if (now.seconds_left) detail += fmt::format("{}{:.0f} s left", is_render ? "  " : ", ", *now.seconds_left);
+    progress(now.share, detail);
+    std::string members = fmt::format(R"("seconds":{:.3f},"step":{},"share":{:.4f},"seconds_left":{})", now.seconds,
+                                      json_string(now.doing), now.share,
+                                      now.seconds_left ? fmt::format("{:.3f}", *now.seconds_left) : "null");
+    if (now.share_of_step > 0) members += fmt::format(R"(,"share_of_step":{:.4f})", now.share_of_step);
+    if (is_render)
+        members += fmt::format(R"(,"samples":{},"of":{},"rays":{})", now.samples_done, now.samples, now.rays);
+    event(fmt::format(R"({{"event":"progress",{}}})", members));
 }
 
 void Reporter::progress(double share, const std::string& detail) {

@@ -9,7 +9,7 @@
 
 #include "base/heartbeat.h"
 #include "base/json_text.h"
-#include "session/sink.h"
+#include "base/sink.h"
 
 namespace CLI {
 class App;
@@ -35,12 +35,14 @@ public:
     /// Writes the messages. The destructor writes remaining ones, which may explain an error.
     void report_messages() override;
     /// Returns whether Ctrl-C was pressed.
-    bool is_cancelled() override;
+    bool should_stop() override;
     /// Writes a line for people to stderr.
     void print(const std::string& line);
+    /// Shows the progress, and the event `progress`.
+    void progress(const Progress& now) override;
     /// Shows the share that is done, in [0, 1], and a text after the bar. It is redrawn in place on a terminal;
     /// otherwise, or on a dumb one, there is a line every 10 s.
-    void progress(double share, const std::string& detail) override;
+    void progress(double share, const std::string& detail);
     /// Names the current work for these lines until there is a share.
     void set_work(const std::string& work) override;
     /// Writes a JSON object ("{...}") of the given event; only with --json.
@@ -65,6 +67,8 @@ private:
     bool redraws_; // a terminal with escape sequences
     bool drawn_ = false;
     std::size_t reported_ = 0;
+    std::string shown_step_; // step of the last progress, and the time of that
+    double shown_at_s_ = 0;
     std::unique_ptr<Heartbeat> heartbeat_; // used if nobody sees a bar
 };
 

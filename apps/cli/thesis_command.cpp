@@ -60,7 +60,7 @@ RenderResult render(Session& session, PathLight light) {
     RenderSettings settings = session.settings();
     settings.path.light = light;
     session.set_settings(settings);
-    session.render(settings.samples, [](const RenderProgress&) { return !interrupted(); });
+    session.render(settings.samples, InterruptSink());
     return session.result();
 }
 
@@ -130,14 +130,19 @@ void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, const st
     picture.samples = queue.is_cuda() ? kPictureSamplesCuda : kPictureSamples;
     ThesisPictures pictures(queue, picture);
     const std::vector<std::string> names = thesis_picture_names();
-    const std::function<bool(const LabProgress&)> show = show_lab_progress(reporter);
     const Stopwatch watch;
     for (std::size_t i = 0; i < names.size() && attempts.may_go_on(); ++i) {
         attempts.attempt(names[i], [&] {
-            ThesisPicture made = pictures.make(names[i], [&](const char* doing, double share) {
-                const double all = (static_cast<double>(i) + share) / static_cast<double>(names.size());
-                return show({all, fmt::format("{}: {}", names[i], doing), share, watch.seconds()});
-            });
+            ProgressSink part(
+                [&](const Progress& now) {
+                    const double all = (static_cast<double>(i) + now.share) / static_cast<double>(names.size());
+                    return reporter.goes_on({.doing = fmt::format("{}: {}", names[i], now.doing),
+                                             .share = all,
+                                             .seconds = watch.seconds(),
+                                             .share_of_step = now.share});
+                },
+                &reporter);
+            ThesisPicture made = pictures.make(names[i], part);
             made.command = phrase(made.command);
             write_file(folder, made);
             thesis.pictures.push_back(std::move(made));
@@ -186,7 +191,7 @@ int run_thesis(Queue& queue, const SceneOptions& options, LabSettings settings, 
         reporter.print(fmt::format("{}: {}x{}, depths {} to {}", scene.name, settings.width, settings.height,
                                    settings.first_depth, settings.depth));
         attempts.attempt(scene.name, [&] {
-            LabReport report = run_lab(queue, scene.scene, scene.camera, settings, show_lab_progress(reporter));
+            LabReport report = run_lab(queue, scene.scene, scene.camera, settings, reporter);
             reporter.end_progress();
             reporter.event(json_of(measurement_of(report, head), "lab"));
             if (has_findings(report)) thesis.scenes.push_back(std::move(report));

@@ -145,7 +145,6 @@ int run_transport_command(Queue& queue, const SceneOptions& scene, const Transpo
                               .seed = settings.picture.path.seed,
                               .seconds = settings.seconds};
     const Measurement head = start_measurement(queue, "");
-    const std::function<bool(const LabProgress&)> show = show_lab_progress(reporter);
     const double count = static_cast<double>(subjects.size());
     double before_s = 0;
     for (std::size_t i = 0; i < subjects.size() && !report.interrupted; ++i) {
@@ -154,15 +153,16 @@ int run_transport_command(Queue& queue, const SceneOptions& scene, const Transpo
             flags.reference_integrator.empty() ? subject.reference_integrator : flags.reference_integrator;
         settings.camera = phrase(describe_camera(subject.camera, subject.scene.origin_in_file));
         double seconds = 0;
-        TransportScene measured =
-            run_transport(queue, subject.scene, subject.camera, settings, [&](const LabProgress& now) {
-                seconds = now.seconds;
-                LabProgress of_all = now; // every scene takes about as long
-                of_all.share = (static_cast<double>(i) + now.share) / count;
-                of_all.seconds = before_s + now.seconds;
-                of_all.doing = fmt::format("{}: {}", subject.name, now.doing);
-                return show(of_all);
-            });
+        ProgressSink part([&](Progress now) {
+            seconds = now.seconds;
+            now.share = (static_cast<double>(i) + now.share) / count; // every scene takes about as long
+            now.seconds += before_s;
+            now.seconds_left.reset();
+            if (now.share > 0.01) now.seconds_left = now.seconds * (1 - now.share) / now.share;
+            now.doing = fmt::format("{}: {}", subject.name, now.doing);
+            return reporter.goes_on(now);
+        });
+        TransportScene measured = run_transport(queue, subject.scene, subject.camera, settings, part);
         before_s += seconds;
         measured.name = subject.name, measured.shows = subject.shows;
         phrase_all(measured);

@@ -221,9 +221,6 @@ int view(ViewFlags& flags) {
     listen_for_interrupt();
     reporter.set_work("handing the scene to the device");
     PictureRecord record = picture_record(flags.render, *ready, reporter.messages());
-    for (std::string* text :
-         {&record.scene.settings, &record.scene.by_scene, &record.scene.by_settings, &record.scene.by_flags})
-        text->clear(); // the panel changes them
     const Camera& camera = record.camera.camera;
     Session session(*ready->queue, ready->prepared(), camera, ready->settings);
     const bool on_cuda = ready->queue->is_cuda();
@@ -232,6 +229,7 @@ int view(ViewFlags& flags) {
     start.scene = &ready->scene();
     start.camera.camera = camera;
     start.record = record;
+    start.options = flags.render;
     start.view.picture = ready->settings;
     if (!flags.render.size) {
         start.view.window_pixels = uint64_t(ready->settings.width) * ready->settings.height;

@@ -10,7 +10,9 @@
 #include "apps/viewer/panel_text.h"
 #include "base/error.h"
 #include "scene/scene_origin.h"
+#include "session/pictures/prepare_render.h"
 #include "session/writing/write_picture.h"
+#include "settings/check_settings.h"
 
 namespace pertev {
 namespace {
@@ -303,6 +305,34 @@ void RenderLoop::show_next() {
     if (is_done_ || now - reported_at_s_ > kReportEvery) report_state();
 }
 
+/// The options by which `pertev render` makes the picture of `record`: those of the start, as the panel, the camera and
+/// the clock have changed them.
+PictureOptions RenderLoop::options_for(const PictureRecord& record) const {
+    const PictureOptions& start = start_.options;
+    PictureOptions options = start;
+    options.render = view_.picture;
+    options.tone_map = view_.display.tone_map;
+    options.exposure = fmt::format("{}", record.display->exposure_stops);
+    options.time_s = record.scene.time_s;
+    if (!record.scene.ground.empty()) options.scene.ground = record.scene.ground; // an eye alone removes it
+    options.scene.environment = file_name(options.scene.environment);
+    options.radiosity.solution = file_name(options.radiosity.solution);
+    options.scene.camera = choice_of(record.camera);
+    if (camera_.is_of_scene()) {
+        for (auto* place : {&options.scene.camera.eye, &options.scene.camera.target}) place->reset();
+        options.scene.camera.up.reset();
+    }
+    for (const Setting& setting : all_settings()) {
+        const std::vector<std::string> texts = texts_of(options, setting);
+        if (texts == texts_of(start, setting)) continue;
+        options.given[setting.name] = SettingOrigin::Caller;
+        if (texts.empty() || texts.front().empty()) options.given.erase(setting.name);
+    }
+    for (const char* name : {"camera_path", "turntable", "f_number", "shutter_time", "iso"}) options.given.erase(name);
+    while (const auto conflict = find_conflict(options, kRender)) options.given.erase(conflict->setting->name);
+    return options;
+}
+
 /// Record of how the current picture is made.
 PictureRecord RenderLoop::record() const {
     PictureRecord record = start_.record;
@@ -310,8 +340,6 @@ PictureRecord RenderLoop::record() const {
     for (std::vector<std::string>* list : {&record.scene.made_up, &record.scene.left_out}) {
         for (std::string& text : *list) text = without_folders(std::move(text), record.scene.scene);
     }
-    record.scene.scene = file_name(record.scene.scene);
-    record.scene.environment = file_name(record.scene.environment);
     if (start_.is_animated) record.scene.time_s = clock_.time_s;
     record.settings = view_.picture;
     record.display = view_.display;
@@ -325,6 +353,10 @@ PictureRecord RenderLoop::record() const {
     }
     if (!camera_.is_at_start() || camera_.is_own()) record.camera.name = camera_.name();
     record.camera.fov_deg = degrees_for(view_.lens.fov_y);
+    record_settings(options_for(record), view_.picture, *start_.scene, record.scene);
+    record.scene.settings = without_folders(std::move(record.scene.settings), record.scene.scene);
+    record.scene.scene = file_name(record.scene.scene);
+    record.scene.environment = file_name(record.scene.environment);
     return record;
 }
 
@@ -357,7 +389,7 @@ void RenderLoop::report_state() {
     if (view_.window_pixels > 0) {
         numbers.flags += fmt::format(" --size {}x{}", view_.picture.width, view_.picture.height);
     }
-    if (start_.record.scene.has_ground) numbers.flags += " --ground on"; // an --eye alone removes it
+    if (!start_.record.scene.ground.empty()) numbers.flags += " --ground on"; // an --eye alone removes it
     numbers.why_still = start_.why_still;
     numbers.input = input_;
     numbers.steerer = steerer_;

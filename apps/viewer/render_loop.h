@@ -37,6 +37,7 @@ private:
     void show_next();
     void save_pictures();
     PictureRecord record() const;
+    PictureOptions options_for(const PictureRecord& record) const;
     void report_state();
     bool time_matters() const;
     bool time_runs() const;

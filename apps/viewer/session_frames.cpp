@@ -49,6 +49,13 @@ uint32_t aovs_of(ShownLayer layer) {
     return 0;
 }
 
+/// Stops when another thread sets the flag; null: never.
+struct FlagSink final : Sink {
+    explicit FlagSink(const std::atomic<bool>* stops) : flag(stops) {}
+    bool should_stop() override { return flag != nullptr && *flag; }
+    const std::atomic<bool>* flag;
+};
+
 bool is_beauty(ShownLayer layer) { return layer == ShownLayer::Beauty; }
 
 /// Returns whether a moving frame belongs to the session's sequence (Session::render_frame), as all do that show more
@@ -93,9 +100,7 @@ bool SessionFrames::Seen::is_of(const FrameRequest& request, uint64_t changes) c
 }
 
 SessionFrames::SessionFrames(Session& session, MovingScene& scene, double frame_s, double soon_s)
-    : session_(session), scene_(scene), pace_(frame_s), growth_(soon_s) {
-    session_.abandon_when(&abandon_);
-}
+    : session_(session), scene_(scene), pace_(frame_s), growth_(soon_s) {}
 
 void SessionFrames::set_time(double time_s) {
     if (scene_.time_s() == time_s && !is_behind_) return;
@@ -282,8 +287,8 @@ std::optional<ShownFrame> SessionFrames::reconstruct(const FrameRequest& request
     still_frames_ = is_still ? still_frames_ + 1 : 1;
     session_.set_camera(request.camera);
     const Stopwatch render;
-    session_.abandon_when(is_growing ? &hurry_ : nullptr);
-    if (!session_.render_frame(next_sample_, settings, view.restir)) return std::nullopt;
+    FlagSink sink(is_growing ? &hurry_ : nullptr);
+    if (!session_.render_frame(next_sample_, settings, view.restir, sink)) return std::nullopt;
     next_sample_ = (next_sample_ + 1) % kMaxSamplesPerPixel;
     shows_reconstruction_ = true;
     reconstructed_as_ = session_.settings();
@@ -419,8 +424,9 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     // for, and a long one uses a film of its own. The first has none before it.
     const bool is_slow = growth_.is_slow(), is_short = was_begun && growth_.is_short(sample_s_);
     const std::atomic<bool>& stops = is_slow ? hurry_ : abandon_;
-    session_.abandon_when(is_of_movement || is_short ? nullptr : &stops);
-    session_.keep_samples_when_abandoned(!is_short);
+    FlagSink flag(is_of_movement ? nullptr : &stops);
+    session_.leave_passes(!is_short);
+    const RayCounts rays_before = session_.rays();
     const Stopwatch render;
     ShownFrame frame;
     uint32_t added = 0;
@@ -429,13 +435,16 @@ std::optional<ShownFrame> SessionFrames::make_next(const FrameRequest& request) 
     // After a change of tones the existing samples are shown first.
     const bool waits = was_begun && !is_small && is_slow && shows_film_ && !is_shown_as(shown_as_, request, exposed);
     if (before < wanted && !waits) {
-        added = session_.render(is_small ? 1 : until - before, [&](const RenderProgress& now) {
-            frame.rays = now.rays;
-            if (now.made_share < 1 && request.on_progress) request.on_progress(now.made_share);
-            const bool has_begun = now.samples_done > before; // a picture has at least one sample, however long it
-                                                              // takes
-            return (is_of_movement || !stops) && (!has_begun || now.seconds < request.budget_s);
-        });
+        ProgressSink sink(
+            [&](const Progress& now) {
+                if (now.made_share < 1 && request.on_progress) request.on_progress(now.made_share);
+                const bool has_begun = now.samples_done > before; // a picture has at least one sample, however long
+                                                                  // it takes
+                return !has_begun || now.seconds < request.budget_s;
+            },
+            &flag);
+        added = session_.render(is_small ? 1 : until - before, sink);
+        frame.rays = session_.rays() - rays_before;
     }
     frame.render_s = render.seconds();
     if (added > 0 && session_.settings().time_kinds) frame.kind_seconds = session_.stats().kind_seconds;

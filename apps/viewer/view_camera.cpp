@@ -64,6 +64,13 @@ bool ViewCamera::is_given_by_pose() const {
     return is_own_ || look_at(pose_.eye, pose_.target, pose_.up) == base_.world_from_camera;
 }
 
+bool ViewCamera::is_of_scene() const {
+    if (is_given_by_pose() || name_.empty()) return false;
+    const Camera& own = *scene_camera(name_, scene_);
+    return own.world_from_camera == base_.world_from_camera && own.projection == base_.projection &&
+           own.ortho_height == base_.ortho_height;
+}
+
 bool ViewCamera::moves_with_time() const {
     if (is_own_) return false;
     switch (guide_) {
@@ -218,13 +225,7 @@ void ViewCamera::remove_key(uint32_t index) {
 
 std::string ViewCamera::flags(const Camera& lens, std::optional<double> time_s) const {
     const std::string time = time_s ? fmt::format(" --time {}", *time_s) : "";
-    if (!is_given_by_pose() && !name_.empty()) {
-        const Camera* own = scene_camera(name_, scene_);
-        if (own->world_from_camera == base_.world_from_camera && own->projection == base_.projection &&
-            own->ortho_height == base_.ortho_height) {
-            return scene_camera_flags(camera(lens), name_) + time;
-        }
-    }
+    if (is_of_scene()) return scene_camera_flags(camera(lens), name_) + time;
     return camera_flags(pose_, camera(lens), name_, scene_.origin_in_file) + time;
 }
 

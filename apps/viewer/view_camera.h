@@ -45,6 +45,8 @@ public:
     bool is_own() const { return is_own_; }
     /// Returns whether text (eye, target, up) states its position to the bit.
     bool is_given_by_pose() const;
+    /// Returns whether it is the scene's camera name() at its own position, which text does not state to the bit.
+    bool is_of_scene() const;
     /// Returns whether time moves it.
     bool moves_with_time() const;
     bool is_at_start() const { return guide_ == Guide::Start; }

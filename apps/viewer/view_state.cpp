@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -12,6 +13,8 @@
 #include "apps/viewer/window_shape.h"
 #include "base/error.h"
 #include "base/limits.h"
+#include "session/degrees.h"
+#include "settings/parse_values.h"
 #include "settings/setting_table.h"
 #include "settings/value_names.h"
 
@@ -94,10 +97,69 @@ std::string why_no_layer(ShownLayer layer, const RenderSettings& settings) {
                        integrator_name(settings));
 }
 
-std::string why_too_deep(const RenderSettings& settings) {
-    const uint32_t most = max_depth(settings.integrator);
-    if (settings.path.max_depth <= most) return {};
-    return fmt::format("{}: at most {} scatterings", integrator_name(settings), most);
+std::string why_no_integrator(const ViewState& state) {
+    const RenderSettings& wanted = state.picture;
+    for (const auto& [kind, why_dark] : state.dark) {
+        if (kind == wanted.integrator) return why_dark;
+    }
+    if (rasterises_camera(wanted.integrator) && state.lens.aperture_radius > 0) {
+        return fmt::format("{}: its camera has no lens; the lens radius must be 0", integrator_name(wanted));
+    }
+    const std::string why_not = why_no_layer(state.layer, wanted);
+    const uint32_t most = max_depth(wanted.integrator);
+    if (!why_not.empty() || wanted.path.max_depth <= most) return why_not;
+    return fmt::format("{}: at most {} scatterings", integrator_name(wanted), most);
+}
+
+/// Sets a setting of pictures. Returns why nothing was changed; empty on success.
+std::string set_shared(ViewState& state, const Setting& setting, const std::string& text) {
+    const PictureOptions before = options_of(state);
+    PictureOptions options = before;
+    set_value(options, setting, std::span(&text, 1));
+    ViewState wanted = state;
+    wanted.picture = options.render;
+    wanted.display.tone_map = *options.tone_map;
+    wanted.reconstruction = options.reconstruction.settings;
+    wanted.restir = options.reconstruction.sharing;
+    const CameraChoice& lens = options.scene.camera;
+    if (lens.fov_deg != before.scene.camera.fov_deg) wanted.lens.fov_y = *lens.fov_deg * kRadiansPerDegree;
+    wanted.lens.aperture_radius = *lens.aperture;
+    wanted.lens.focus_distance = *lens.focus;
+    const std::string_view name = setting.name;
+    if (name == "integrator") {
+        if (std::string why_not = why_no_integrator(wanted); !why_not.empty()) return why_not;
+    } else if (name == "max_depth") {
+        uint32_t& depth = wanted.picture.path.max_depth;
+        wanted.moving_depth = depth = std::min(depth, max_depth(wanted.picture.integrator));
+    } else if (name == "aperture" && rasterises_camera(wanted.picture.integrator)) {
+        wanted.lens.aperture_radius = 0;
+    }
+    state = wanted;
+    return {};
+}
+
+/// A row whose description, range and value are those of a setting of pictures.
+ViewSetting shared_row(const char* name, const char* label, const char* group, double step) {
+    const Setting& setting = *find_setting(name);
+    PictureOptions any;
+    ViewSetting row;
+    row.name = name, row.label = label, row.group = group;
+    row.hint = *setting.more != '\0' ? setting.more : setting.sentence;
+    row.choices = choices_of(setting);
+    row.kind = !row.choices.empty()                                    ? Kind::Choice
+               : std::holds_alternative<uint32_t*>(setting.field(any)) ? Kind::Whole
+                                                                       : Kind::Number;
+    row.low = setting.above ? kMinShown : setting.low;
+    row.high = setting.high, row.step = step;
+    const bool is_choice = row.kind == Kind::Choice;
+    row.get = [&setting, is_choice](const ViewState& s) -> SettingValue {
+        const std::string text = texts_of(options_of(s), setting).front();
+        return is_choice ? SettingValue(text) : SettingValue(static_cast<double>(number_in(text).value()));
+    };
+    row.set = [&setting, is_choice](ViewState& s, const SettingValue& v) {
+        return set_shared(s, setting, is_choice ? text_of(v) : fmt::format("{}", std::get<double>(v)));
+    };
+    return row;
 }
 
 std::vector<ViewSetting> make_settings() {
@@ -133,17 +195,8 @@ std::vector<ViewSetting> make_settings() {
                        }});
     };
 
-    // Settings that are also flags of pictures: their description and values come from the table of settings.
-    const auto shared_choice = [&](const char* name, const char* label, const char* group, auto get, auto set) {
-        const Setting& setting = *find_setting(name);
-        choice(name, label, group, *setting.more != '\0' ? setting.more : setting.sentence, choices_of(setting), get,
-               set);
-    };
-    const auto shared_number = [&](const char* name, const char* label, const char* group, Kind kind, double step,
-                                   auto get, auto set) {
-        const Setting& setting = *find_setting(name);
-        const double low = setting.above ? kMinShown : setting.low;
-        numeric(name, label, group, setting.sentence, kind, low, setting.high, step, get, set);
+    const auto shared = [&](const char* name, const char* label, const char* group, double step = 1) {
+        all.push_back(shared_row(name, label, group, step));
     };
 
     choice(
@@ -169,35 +222,10 @@ std::vector<ViewSetting> make_settings() {
         "exposure", "Stops", "Picture", "Each stop doubles the light. It is added to an automatic exposure",
         Kind::Number, -60, 60, 0.25, [](const ViewState& s) { return s.display.exposure_stops; },
         [](ViewState& s, float v) { s.display.exposure_stops = v; });
-    shared_choice(
-        "tone_map", "Tone map", "Picture", [](const ViewState& s) { return name_of(s.display.tone_map); },
-        [](ViewState& s, const std::string& name) { s.display.tone_map = *value_named<ToneMap>(name); });
-    shared_choice(
-        "integrator", "Light", "Light", [](const ViewState& s) { return integrator_name(s.picture); },
-        [](ViewState& s, const std::string& name) {
-            RenderSettings wanted = s.picture;
-            set_integrator(wanted, name);
-            for (const auto& [kind, why_dark] : s.dark) {
-                if (kind == wanted.integrator) return why_dark;
-            }
-            if (rasterises_camera(wanted.integrator) && s.lens.aperture_radius > 0) {
-                return fmt::format("{}: its camera has no lens; the lens radius must be 0", name);
-            }
-            const std::string why_not = why_no_layer(s.layer, wanted);
-            if (!why_not.empty()) return why_not;
-            const std::string too_deep = why_too_deep(wanted);
-            if (too_deep.empty()) s.picture = wanted;
-            return too_deep;
-        });
-    shared_number(
-        "max_depth", "Max depth", "Light", Kind::Whole, 1, [](const ViewState& s) { return s.picture.path.max_depth; },
-        [](ViewState& s, float v) {
-            s.picture.path.max_depth = std::min(static_cast<uint32_t>(v), max_depth(s.picture.integrator));
-            s.moving_depth = s.picture.path.max_depth;
-        });
-    shared_number(
-        "spp", "Samples a pixel", "Light", Kind::Whole, 1, [](const ViewState& s) { return s.picture.samples; },
-        [](ViewState& s, float v) { s.picture.samples = static_cast<uint32_t>(v); });
+    shared("tone_map", "Tone map", "Picture");
+    shared("integrator", "Light", "Light");
+    shared("max_depth", "Max depth", "Light");
+    shared("spp", "Samples a pixel", "Light");
     choice(
         "mode", "At rest", "Frames",
         "reference: samples accumulate to the picture of pertev render; real time: as in motion",
@@ -213,17 +241,9 @@ std::vector<ViewSetting> make_settings() {
         "svgf: frames are filtered and accumulated; off: frames show their samples", {"svgf", "off"},
         [](const ViewState& s) { return s.is_reconstructed ? "svgf" : "off"; },
         [](ViewState& s, const std::string& name) { s.is_reconstructed = name == "svgf"; });
-    shared_choice(
-        "restir", "ReSTIR", "Frames", [](const ViewState& s) { return name_of(s.restir.light); },
-        [](ViewState& s, const std::string& name) { s.restir.light = *value_named<RestirLight>(name); });
-    shared_number(
-        "restir_history", "ReSTIR max history, frames", "Frames", Kind::Whole, 1,
-        [](const ViewState& s) { return s.restir.history; },
-        [](ViewState& s, float v) { s.restir.history = static_cast<uint32_t>(v); });
-    shared_number(
-        "resolution_scale", "Light resolution, per side", "Frames", Kind::Number, 0.05,
-        [](const ViewState& s) { return s.reconstruction.resolution_scale; },
-        [](ViewState& s, float v) { s.reconstruction.resolution_scale = v; });
+    shared("restir", "ReSTIR", "Frames");
+    shared("restir_history", "ReSTIR max history, frames", "Frames");
+    shared("resolution_scale", "Light resolution, per side", "Frames", 0.05);
     choice(
         "moving_scale", "Size in motion", "Frames", "automatic: as large as the frame rate permits", strings(kScales),
         [](const ViewState& s) {
@@ -232,18 +252,9 @@ std::vector<ViewSetting> make_settings() {
         [](ViewState& s, const std::string& name) {
             s.moving_scale = kScaleValues[std::ranges::find(kScales, name) - std::begin(kScales)];
         });
-    shared_number(
-        "fov", "Field of view, degrees", "Camera", Kind::Number, 1,
-        [](const ViewState& s) { return degrees_for(s.lens.fov_y); },
-        [](ViewState& s, float v) { s.lens.fov_y = v * kRadiansPerDegree; });
-    shared_number(
-        "aperture", "Lens radius, m", "Camera", Kind::Number, 0.005,
-        [](const ViewState& s) { return s.lens.aperture_radius; },
-        [](ViewState& s, float v) { s.lens.aperture_radius = rasterises_camera(s.picture.integrator) ? 0.0f : v; });
-    shared_number(
-        "focus", "Focus distance, m", "Camera", Kind::Number, 0.1,
-        [](const ViewState& s) { return s.lens.focus_distance; },
-        [](ViewState& s, float v) { s.lens.focus_distance = v; });
+    shared("fov", "Field of view, degrees", "Camera");
+    shared("aperture", "Lens radius, m", "Camera", 0.005);
+    shared("focus", "Focus distance, m", "Camera", 0.1);
     choice(
         "structure", "Structure", "Rays (the picture stays the same)",
         "The acceleration structure. It changes only the speed", names_of<StructureKind>(),
@@ -283,6 +294,19 @@ std::string why_no_value(const ViewSetting& setting, const SettingValue& value) 
 }
 
 } // namespace
+
+PictureOptions options_of(const ViewState& state) {
+    PictureOptions options;
+    options.render = state.picture;
+    options.size = PictureSize{state.picture.width, state.picture.height};
+    options.tone_map = state.display.tone_map;
+    options.reconstruction.settings = state.reconstruction;
+    options.reconstruction.sharing = state.restir;
+    options.scene.camera.fov_deg = degrees_for(state.lens.fov_y);
+    options.scene.camera.aperture = state.lens.aperture_radius;
+    options.scene.camera.focus = state.lens.focus_distance;
+    return options;
+}
 
 const char* name_of(ShownLayer layer) { return kLayers[static_cast<std::size_t>(layer)]; }
 

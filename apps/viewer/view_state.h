@@ -13,7 +13,7 @@
 #include "denoise/reconstruction_settings.h"
 #include "restir/restir_settings.h"
 #include "session/writing/picture_metadata.h"
-#include "settings/render_settings.h"
+#include "settings/picture_options.h"
 
 namespace pertev {
 
@@ -57,16 +57,17 @@ struct ViewState {
                                                               // why
 };
 
+/// The options of pictures that a page may change, and the picture's size.
+PictureOptions options_of(const ViewState& state);
+
 /// The value of a setting: text for choices, a number for the others.
 using SettingValue = std::variant<double, std::string>;
 
 struct ViewSetting {
     enum class Kind : uint8_t { Choice, Number, Whole };
-    const char* name;
-    const char* label;
-    const char* group;
-    const char* hint; // for people who do not know it
-    Kind kind;
+    const char *name = "", *label = "", *group = "";
+    const char* hint = ""; // for people who do not know it
+    Kind kind = Kind::Choice;
     std::vector<std::string> choices;   // for a Choice
     double low = 0, high = 0, step = 1; // for a number
     std::function<SettingValue(const ViewState&)> get;

@@ -33,8 +33,9 @@ struct ViewerStart {
     ViewState view;
     StartCamera camera;
     SceneClock clock;
-    PictureRecord record; // for saved pictures
-    float speed = 1;      // metres per second of keys
+    PictureRecord record;   // for saved pictures
+    PictureOptions options; // the picture's, which the panel changes
+    float speed = 1;        // metres per second of keys
     /// Rows about the scene in the panel's group "Scene": labels with values.
     std::vector<std::pair<std::string, std::string>> about;
 };

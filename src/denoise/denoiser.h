@@ -1,7 +1,11 @@
 #pragma once
 
-// Interface of a post step that makes a picture from noisy samples. It gets one sample per pixel at a time, with
-// colour, albedo and normal (render/noisy_frame.h), and returns a picture of all of them.
+// Interface of a post step, which may use the samples of a picture. It gets one sample per pixel at a time, with
+// colour, albedo and normal (render/noisy_frame.h), and then the picture of all of them.
+
+#include <memory>
+#include <span>
+#include <utility>
 
 #include "device_scene/scene_view.h"
 #include "image/image.h"
@@ -24,8 +28,15 @@ public:
     virtual void add_features(const NoisyFrame& frame, const SceneView& scene) = 0;
     /// Adds the next sample of each pixel, with light.
     virtual void add(const NoisyFrame& frame, const SceneView& scene) = 0;
-    /// Returns RGB, linear, of the samples since begin(), of which there is at least one.
-    virtual Image picture() = 0;
+    /// Returns `picture`, linear RGB or RGBA, after this step; alpha stays. It is that of the samples since begin(), of
+    /// which there is at least one, after the steps before this one.
+    virtual Image apply(Image picture) = 0;
 };
+
+/// Returns `picture` after all steps: each works on the result of the one before.
+inline Image apply_steps(std::span<const std::unique_ptr<Denoiser>> steps, Image picture) {
+    for (const auto& step : steps) picture = step->apply(std::move(picture));
+    return picture;
+}
 
 } // namespace pertev

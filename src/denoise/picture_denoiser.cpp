@@ -68,8 +68,8 @@ void PictureDenoiser::add(const NoisyFrame& frame, const SceneView& scene) {
     ++samples_;
 }
 
-Image PictureDenoiser::picture() {
-    PERTEV_CHECK(samples_ > 0);
+Image PictureDenoiser::apply(Image picture) {
+    PERTEV_CHECK(samples_ > 0 && picture.width == width_ && picture.height == height_);
     const uint32_t pixels = width_ * height_;
     SignalsView from = from_, to = to_;
     const PictureGuide smooth = {smooth_, guide_.albedo, guide_.object};
@@ -85,10 +85,12 @@ Image PictureDenoiser::picture() {
            ComposeSamples{sums_, from, static_cast<float>(features_), has_gloss_, to.diffuse});
     std::vector<Float4> shown(pixels);
     queue_->copy_to_host(shown.data(), to.diffuse, pixels * sizeof(Float4));
-    Image image{width_, height_, 3, {}};
-    image.pixels.reserve(std::size_t(3) * pixels);
-    for (const Float4& p : shown) image.pixels.insert(image.pixels.end(), {p.x, p.y, p.z});
-    return image;
+    float* pixel = picture.pixels.data();
+    for (const Float4& p : shown) {
+        pixel[0] = p.x, pixel[1] = p.y, pixel[2] = p.z;
+        pixel += picture.channels;
+    }
+    return picture;
 }
 
 } // namespace pertev

@@ -27,7 +27,8 @@ public:
     uint32_t feature_samples() const override { return kFeatures; }
     void add_features(const NoisyFrame& frame, const SceneView& scene) override;
     void add(const NoisyFrame& frame, const SceneView& scene) override;
-    Image picture() override;
+    /// Replaces the colours by those of the samples that it got, so it can only be the first step.
+    Image apply(Image picture) override;
 
 private:
     SampledSurfaces surfaces_of(const NoisyFrame& frame, const SceneView& scene) const;

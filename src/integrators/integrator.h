@@ -3,11 +3,11 @@
 // The interface between light-transport algorithms and their users: sessions, the command line, viewers. Each
 // algorithm has its own folder and includes no other; integrators/kinds/make_integrator.h knows them all.
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 
+#include "base/sink.h"
 #include "render/film_view.h"
 #include "render/picture_view.h"
 #include "tracer/scene_tracer.h"
@@ -21,6 +21,9 @@ struct RayCounts {
 };
 inline RayCounts operator+(const RayCounts& a, const RayCounts& b) {
     return {a.camera + b.camera, a.bounce + b.bounce, a.shadow + b.shadow};
+}
+inline RayCounts operator-(const RayCounts& a, const RayCounts& b) {
+    return {a.camera - b.camera, a.bounce - b.bounce, a.shadow - b.shadow};
 }
 
 /// Sizes that determine, with the settings, the device memory of an integrator.
@@ -94,8 +97,8 @@ public:
         return count;
     }
 
-    /// Lets render() return early when `*flag` is true, if it can; the film must then be discarded. Null: never.
-    virtual void abandon_when(const std::atomic<bool>*) {}
+    /// Lets render() return early once `sink` stops, if it can; the film must then be discarded. Null: never.
+    virtual void stop_with(Sink* sink) { static_cast<void>(sink); }
 
     /// Number of rays traced since begin().
     virtual RayCounts rays() const = 0;

@@ -1,7 +1,7 @@
 #pragma once
 
 // This base class holds what every integrator has: its settings, the current picture and its tracer, the count of rays,
-// and the flag that abandons a render. Most integrators have a second schedule, the loop, in which each thread of the
+// and the sink that may stop a render. Most integrators have a second schedule, the loop, in which each thread of the
 // CPU renders samples of its own (integrators/two_schedules.h).
 
 #include <atomic>
@@ -27,7 +27,7 @@ public:
         picture_settings_ = settings_;
         reserve(size_of(picture, tracer, samples));
     }
-    void abandon_when(const std::atomic<bool>* flag) override { abandon_ = flag; }
+    void stop_with(Sink* sink) override { sink_ = sink; }
     RayCounts rays() const override { return rays_; }
 
     /// Changes the settings at the next begin().
@@ -37,7 +37,7 @@ protected:
     bool goes_by_loop(const WorkSize& size) const { return in_loop_ && size.traverses_on_host; }
     /// Returns the trees that the loop traverses for the current picture, or null if it does not run by the loop.
     const HostTrees* trees_of_loop() const { return in_loop_ ? tracer_->host_trees() : nullptr; }
-    bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }
+    bool is_abandoned() const { return sink_ != nullptr && sink_->should_stop(); }
     /// Throws std::logic_error unless `film` lies in the picture.
     void check_window(const FilmView& film) const {
         PERTEV_CHECK(film.window.is_in(picture_.camera.width, picture_.camera.height));
@@ -71,7 +71,7 @@ protected:
 
 private:
     bool in_loop_;
-    const std::atomic<bool>* abandon_ = nullptr;
+    Sink* sink_ = nullptr;
 };
 
 } // namespace pertev

@@ -13,13 +13,12 @@ const Combination& tracer_of_pictures(const RaySet& set, const TracerChoice& cho
 }
 
 std::vector<RaySet> make_isolated_sets(Queue& queue, const Scene& scene, const Camera& camera,
-                                       const PreparedScene& prepared, uint32_t count,
-                                       const std::function<void()>& between) {
+                                       const PreparedScene& prepared, uint32_t count, Sink& sink) {
     const Tracer tracer = make_tracer(queue, kBinaryTracer, prepared);
     const FrameSize frame = record_frame(count);
     const auto trace = [&, trace_rays = make_ray_tracer(queue, tracer)](std::span<const Ray> rays,
                                                                         std::span<RayHit> hits) {
-        between();
+        sink.check();
         trace_rays(rays, hits);
     };
     return make_record_ray_sets({scene, camera, frame.width, frame.height, trace}, count);
@@ -38,15 +37,15 @@ double IsolatedRates::of_mix(const RayCounts& rays) const {
 
 IsolatedRates measure_isolated_rays(Queue& queue, const Scene& scene, const Camera& camera,
                                     const PreparedScene& prepared, const TracerChoice& choice, uint32_t count,
-                                    const std::function<void()>& between) {
+                                    Sink& sink) {
     struct Sum {
         double rays = 0, seconds = 0;
         double rate() const { return seconds > 0 ? rays / seconds : 0.0; }
     };
     Sum camera_rays, bounces, shadows;
-    for (RaySet& set : make_isolated_sets(queue, scene, camera, prepared, count, between)) {
+    for (RaySet& set : make_isolated_sets(queue, scene, camera, prepared, count, sink)) {
         if (set.rays.empty()) continue;
-        between();
+        sink.check();
         const Tracer tracer = make_tracer(queue, tracer_of_pictures(set, choice), prepared);
         RaysOnDevice rays(queue, set);
         Sum& sum = set.any_hit ? shadows : set.name == "primary" ? camera_rays : bounces;

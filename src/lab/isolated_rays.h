@@ -6,7 +6,6 @@
 // (trace/wide/trace_many.h).
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "integrators/integrator.h"
@@ -27,11 +26,10 @@ Tracer make_tracer(Queue& queue, const Combination& combination, const PreparedS
 /// The tracer that renders use for rays of this set's kind.
 const Combination& tracer_of_pictures(const RaySet& set, const TracerChoice& choice);
 
-/// Makes the record's sets for a scene. `prepared` must come from `scene` and keep its coordinates. `between()` is
-/// called now and then and may throw to end the work.
+/// Makes the record's sets for a scene. `prepared` must come from `scene` and keep its coordinates. Throws
+/// Error(Interrupted) if `sink` stops.
 std::vector<RaySet> make_isolated_sets(Queue& queue, const Scene& scene, const Camera& camera,
-                                       const PreparedScene& prepared, uint32_t count,
-                                       const std::function<void()>& between);
+                                       const PreparedScene& prepared, uint32_t count, Sink& sink);
 
 /// Rays per second of each kind in isolation; 0 where there were no such rays.
 struct IsolatedRates {
@@ -45,6 +43,6 @@ struct IsolatedRates {
 /// rays. See make_isolated_sets for the arguments. Throws Error(OutOfMemory, DeviceFault).
 IsolatedRates measure_isolated_rays(Queue& queue, const Scene& scene, const Camera& camera,
                                     const PreparedScene& prepared, const TracerChoice& choice, uint32_t count,
-                                    const std::function<void()>& between);
+                                    Sink& sink);
 
 } // namespace pertev

@@ -24,7 +24,7 @@
 namespace pertev {
 namespace {
 
-/// The exception when keep_going returns false; everything measured so far is kept.
+/// The exception when the sink stops; everything measured so far is kept.
 struct Stopped {};
 
 /// The proven traversal. Some of its rays are compared with brute force, so that every other combination can be
@@ -43,9 +43,9 @@ uint64_t host_memory_bytes() {
 
 class Lab {
 public:
-    Lab(Queue& queue, const Scene& scene, const Camera& camera, const LabSettings& settings,
-        const std::function<bool(const LabProgress&)>& keep_going)
-        : queue_(queue), scene_(scene), camera_(camera), settings_(settings), keep_going_(keep_going),
+    Lab(Queue& queue, const Scene& scene, const Camera& camera, const LabSettings& settings, Sink& sink,
+        const std::function<void(const LabReport&)>& save)
+        : queue_(queue), scene_(scene), camera_(camera), settings_(settings), sink_(sink), save_(save),
           triangles_{{scene, place_meshes(scene)}, {}} {
         report_ = {.scene = settings.scene,
                    .device = queue.device_name(),
@@ -84,12 +84,11 @@ public:
     }
 
 private:
-    LabProgress progress_now(std::string doing, double share_of_that = 0) const {
-        const double share = std::min(1.0, work_done_ / std::max(work_, 1.0));
-        return {share, std::move(doing), share_of_that, watch_.seconds()};
-    }
-    void progress(const std::string& doing, double share_of_that = 0) {
-        if (keep_going_ && !keep_going_(progress_now(doing, share_of_that))) throw Stopped{};
+    void progress(const std::string& doing, double share_of_step = 0) {
+        const double share = std::min(1.0, work_done_ / std::max(work_, 1.0)), seconds = watch_.seconds();
+        Progress now = {.doing = doing, .share = share, .seconds = seconds, .share_of_step = share_of_step};
+        if (share > 0.01) now.seconds_left = seconds * (1 - share) / share;
+        if (!sink_.goes_on(now)) throw Stopped{};
     }
     /// Returns a progress callback for work in pieces. `doing` must outlive it.
     PieceDone progress_of(const std::string& doing) {
@@ -249,9 +248,8 @@ private:
             report_.structures.push_back({.name = std::string(name_of(structure)), .failed = failed});
             for (CombinationFigures* c : combinations) c->structure = at, c->refused = failed;
         }
-        LabProgress now = progress_now("measured " + std::string(name_of(structure)));
-        now.so_far = &report_;
-        if (keep_going_ && !keep_going_(now)) throw Stopped{};
+        if (save_) save_(report_);
+        progress("measured " + std::string(name_of(structure)));
     }
 
     /// Runs f and returns its message if memory or another limit did not suffice, else nothing.
@@ -411,7 +409,8 @@ private:
     const Scene& scene_;
     const Camera& camera_;
     const LabSettings& settings_;
-    const std::function<bool(const LabProgress&)>& keep_going_;
+    Sink& sink_;
+    const std::function<void(const LabReport&)>& save_;
     LabTriangles triangles_;
     std::vector<StructureKind> structures_;
     std::vector<TracedSet> sets_;
@@ -424,9 +423,9 @@ private:
 
 } // namespace
 
-LabReport run_lab(Queue& queue, const Scene& scene, const Camera& camera, const LabSettings& settings,
-                  const std::function<bool(const LabProgress&)>& keep_going) {
-    return Lab(queue, scene, camera, settings, keep_going).run();
+LabReport run_lab(Queue& queue, const Scene& scene, const Camera& camera, const LabSettings& settings, Sink& sink,
+                  const std::function<void(const LabReport&)>& save) {
+    return Lab(queue, scene, camera, settings, sink, save).run();
 }
 
 } // namespace pertev

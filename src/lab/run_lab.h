@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/sink.h"
 #include "device/queue.h"
 #include "lab/lab_report.h"
 #include "scene/scene.h"
@@ -39,20 +40,12 @@ struct LabSettings {
 /// and additional rays along axes or exactly at edges of triangles.
 inline constexpr uint32_t kOracleRays = 2000, kOracleStressRays = 200;
 
-struct LabProgress {
-    double share = 0; // finished share of all work, [0, 1]
-    std::string doing;
-    double share_of_that = 0;          // finished share of the current work if it is long and done in pieces
-    double seconds = 0;                // since the start
-    const LabReport* so_far = nullptr; // set after each structure: results so far, for the caller to save
-};
-
-/// Measures all combinations of the settings. Stops early, with `interrupted` set, when keep_going returns false; a
-/// running build or timed run is finished first. Throws Error(BadInput) for a scene without triangles or if no
-/// combination can be measured, Error(OutOfMemory) if the rays do not fit, and Error(DeviceFault) if the proven
-/// traversal differs from brute force. A combination that differs from the proven traversal or does not fit into memory
-/// has no figures but a reason.
+/// Measures all combinations of the settings. Stops early, with `interrupted` set, when `sink` stops; a running build
+/// or timed run is finished first. `save` gets the results so far after each structure. Throws Error(BadInput) for a
+/// scene without triangles or if no combination can be measured, Error(OutOfMemory) if the rays do not fit, and
+/// Error(DeviceFault) if the proven traversal differs from brute force. A combination that differs from the proven
+/// traversal or does not fit into memory has no figures but a reason.
 LabReport run_lab(Queue& queue, const Scene& scene, const Camera& camera, const LabSettings& settings,
-                  const std::function<bool(const LabProgress&)>& keep_going);
+                  Sink& sink = nobody(), const std::function<void(const LabReport&)>& save = {});
 
 } // namespace pertev

@@ -61,8 +61,8 @@ Rgba8Image draw_errors(const Image& errors) {
 class TransportRunner {
 public:
     TransportRunner(Queue& queue, const Scene& scene, const Camera& camera, const TransportSettings& settings,
-                    const std::function<bool(const LabProgress&)>& keep_going)
-        : queue_(queue), scene_(scene), camera_(camera), settings_(settings), keep_going_(keep_going) {
+                    Sink& sink)
+        : queue_(queue), scene_(scene), camera_(camera), settings_(settings), sink_(sink) {
         report_.camera = settings.camera;
         for (const std::string& name : settings.integrators) {
             settings_of(settings, name, 0);
@@ -144,8 +144,7 @@ private:
         const double turn_s = turns_ > 0 ? turns_s_ / turns_ : share_s();
         const double left_s = left_of_that_s + turns_left_ * turn_s;
         share_ = std::max(share_, left_s > 0 ? now_s / (now_s + left_s) : share_);
-        const LabProgress now = {share_, doing, share_of_that, now_s};
-        if (keep_going_ && !keep_going_(now)) throw TransportStopped{};
+        if (!sink_.goes_on({doing, share_, now_s, left_s, share_of_that})) throw TransportStopped{};
     }
 
     /// Returns the seconds that a turn has left; `made_s` of the elapsed seconds were spent before its first sample.
@@ -159,14 +158,14 @@ private:
     TransportFigures render(Session& session, const TransportRow& row, uint32_t samples, const std::string& doing,
                             const TransportFigures& before) {
         TransportFigures all;
-        session.render(samples - before.samples, [&](const RenderProgress& now) {
-            all = {.samples = now.samples_done,
-                   .seconds = before.seconds + now.seconds,
-                   .made_seconds = before.made_seconds + now.made_seconds};
-            const double left_s = left_of_turn_s(row, all.seconds, all.samples, all.made_seconds);
-            progress(doing, all.seconds / (all.seconds + left_s), left_s);
-            return true;
-        });
+        session.render(samples - before.samples, ProgressSink([&](const Progress& now) {
+                           all = {.samples = now.samples_done,
+                                  .seconds = before.seconds + now.seconds,
+                                  .made_seconds = before.made_seconds + now.made_seconds};
+                           const double left_s = left_of_turn_s(row, all.seconds, all.samples, all.made_seconds);
+                           progress(doing, all.seconds / (all.seconds + left_s), left_s);
+                           return true;
+                       }));
         return all;
     }
 
@@ -178,13 +177,13 @@ private:
         Session session(queue_, prepared_, camera_,
                         settings_of(settings_, reference.integrator, reference_seed(settings_, half)));
         double seconds = 0;
-        session.render(samples, [&](const RenderProgress& now) {
-            seconds = now.seconds;
-            const double share = (static_cast<double>(now.samples_done) / samples + half) / 2;
-            const double all_s = reference.seconds + seconds;
-            progress(doing, share, share > 0 ? all_s / share - all_s : 0);
-            return true;
-        });
+        session.render(samples, ProgressSink([&](const Progress& now) {
+                           seconds = now.seconds;
+                           const double share = (static_cast<double>(now.samples_done) / samples + half) / 2;
+                           const double all_s = reference.seconds + seconds;
+                           progress(doing, share, share > 0 ? all_s / share - all_s : 0);
+                           return true;
+                       }));
         reference.seconds += seconds;
         return session.picture();
     }
@@ -275,11 +274,11 @@ private:
         const Stopwatch watch;
         const RenderSettings picture = settings_of(settings_, row.name, repetition_seed(settings_, number));
         const uint32_t samples = std::min(kSolutionSamples, settings_.max_samples);
-        const auto report = [&](const char* what, double share) {
-            progress(fmt::format("{}, solution {}: {}", doing, figures.size() + 1, what), share,
+        ProgressSink tell([&](const Progress& now) {
+            progress(fmt::format("{}, solution {}: {}", doing, figures.size() + 1, now.doing), now.share,
                      left_of_turn_s(row, watch.seconds(), 0));
             return true;
-        };
+        });
         try {
             for (bool is_next = true; is_next;) {
                 const auto level = static_cast<uint32_t>(figures.size());
@@ -366,7 +365,7 @@ private:
     const Scene& scene_;
     const Camera& camera_;
     const TransportSettings& settings_;
-    const std::function<bool(const LabProgress&)>& keep_going_;
+    Sink& sink_;
     TransportScene report_;
     PreparedScene prepared_;
     Image reference_;
@@ -387,16 +386,16 @@ uint32_t next_samples(const TransportFigures& last, double share_s, uint32_t mos
 
 void warm_up(Session& session, const std::function<void()>& report) {
     bool has_begun = false;
-    session.render(1, [&](const RenderProgress& now) {
-        if (report) report();
-        return now.made_share >= 1 || !std::exchange(has_begun, true);
-    });
+    session.render(1, ProgressSink([&](const Progress& now) {
+                       if (report) report();
+                       return now.made_share >= 1 || !std::exchange(has_begun, true);
+                   }));
     session.cut();
 }
 
 TransportScene run_transport(Queue& queue, const Scene& scene, const Camera& camera, const TransportSettings& settings,
-                             const std::function<bool(const LabProgress&)>& keep_going) {
-    return TransportRunner(queue, scene, camera, settings, keep_going).run();
+                             Sink& sink) {
+    return TransportRunner(queue, scene, camera, settings, sink).run();
 }
 
 } // namespace pertev

@@ -59,10 +59,10 @@ void warm_up(Session& session, const std::function<void()>& report = {});
 /// of the time (one sample is always rendered), and then as many as fit; its other repetitions use these numbers.
 /// Radiosity makes solutions of growing detail instead (lab/transport_solutions.h), while the next alone would fit into
 /// the share. An integrator that cannot render the scene is refused in its row. `scene` must have passed validate().
-/// Stops early, with `interrupted` set, when keep_going returns false; an unfinished repetition is kept if it is an
+/// Stops early, with `interrupted` set, when `sink` stops; an unfinished repetition is kept if it is an
 /// integrator's first. Throws Error(BadInput) if a given reference has another size or is not finite, or if the
 /// reference's integrator cannot render the scene, and the device errors that Session throws.
 TransportScene run_transport(Queue& queue, const Scene& scene, const Camera& camera, const TransportSettings& settings,
-                             const std::function<bool(const LabProgress&)>& keep_going);
+                             Sink& sink = nobody());
 
 } // namespace pertev

@@ -125,15 +125,13 @@ std::vector<std::string> thesis_picture_files() {
 struct ThesisPictures::Job {
     const ThesisRecipe& recipe;
     RenderSettings settings;
-    const Progress& progress;
+    Sink& sink;
     Scene scene;
     Camera camera;
     PreparedScene prepared;
-
-    bool report(const char* doing, double share) const { return !progress || progress(doing, share); }
 };
 
-ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progress) {
+ThesisPicture ThesisPictures::make(std::string_view name, Sink& sink) {
     const ThesisRecipe& recipe = recipe_named(name);
     ThesisPicture picture = {.name = recipe.name,
                              .place = place_of(recipe.name),
@@ -146,7 +144,7 @@ ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progre
         picture.shows += ' ' + describe(found);
         return picture;
     }
-    Job job = {recipe, settings_, progress, make_thesis_scene(recipe.scene), {}, {}};
+    Job job = {recipe, settings_, sink, make_thesis_scene(recipe.scene), {}, {}};
     RenderSettings& settings = job.settings;
     if (!recipe.is_whole) {
         settings.width = std::max(1u, settings.width / 2), settings.height = std::max(1u, settings.height / 2);
@@ -185,9 +183,8 @@ ThesisPicture ThesisPictures::make(std::string_view name, const Progress& progre
 
 /// Renders once and reports its progress as the share [from, to] of the picture's.
 RenderResult ThesisPictures::render_once(const Job& job, const RenderSettings& settings, double from, double to) {
-    RenderResult result = render_picture(queue_, job.prepared, job.camera, settings, [&](const RenderProgress& now) {
-        return job.report("rendering", from + (to - from) * now.samples_done / now.samples);
-    });
+    ProgressSink part = part_of(job.sink, from, to);
+    RenderResult result = render_picture(queue_, job.prepared, job.camera, settings, part);
     if (result.samples == 0) throw Error(ErrorCode::Interrupted, "interrupted before a picture had a sample");
     return result;
 }
@@ -238,8 +235,8 @@ void ThesisPictures::count_work(const Job& job, ThesisPicture& picture) {
 void ThesisPictures::show_radiosity(const Job& job, ThesisPicture& picture) {
     const RadiosityPanel& panel = job.recipe.panel;
     const RadiositySettings requested = solution_of(panel, job.settings);
-    const SolvedRadiosity solved = solve_radiosity(
-        job.prepared, requested, [&](const char* what, double share) { return job.report(what, 0.5 * share); });
+    ProgressSink solving = part_of(job.sink, 0, 0.5);
+    const SolvedRadiosity solved = solve_radiosity(job.prepared, requested, solving);
     if (solved.stats.was_interrupted) throw Error(ErrorCode::Interrupted, "interrupted");
     const SolveStats& stats = solved.stats;
     picture.solve_seconds = stats.factor_seconds + stats.solve_seconds + stats.divide_seconds;

@@ -5,7 +5,6 @@
 // panels, 3.8 the Cornell box with a mirror sphere, 3.9 the photon map, 3.10 the caustic under glass, 4.1 points
 // found in a tree. Other pictures that belong to these chapters are listed under their section.
 
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,16 +40,13 @@ std::vector<std::string> thesis_picture_files();
 /// Makes pictures one by one. A picture's exposure does not depend on its size.
 class ThesisPictures {
 public:
-    /// A function that is called with the current work and the finished share of the picture; returning false ends it.
-    using Progress = std::function<bool(const char* doing, double share)>;
-
     /// Takes size, samples, depth and the path tracer's body from `settings`. Pictures that stand side by side have
     /// half the width and height. `queue` must outlive this.
     ThesisPictures(Queue& queue, const RenderSettings& settings) : queue_(queue), settings_(settings) {}
 
     /// Makes the picture with this name. Throws Error(Interrupted) if it is stopped before there is anything to show,
     /// and what Session and solve_radiosity throw.
-    ThesisPicture make(std::string_view name, const Progress& progress);
+    ThesisPicture make(std::string_view name, Sink& sink = nobody());
 
 private:
     struct Job;

@@ -36,10 +36,9 @@ bool may_be_solved(const PreparedScene& prepared, uint32_t number) {
 }
 
 SolvedPicture solve_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,
-                            uint32_t number, uint32_t samples, const SolveProgress& progress) {
+                            uint32_t number, uint32_t samples, Sink& sink) {
     const Stopwatch watch;
-    SolvedRadiosity solved =
-        solve_radiosity(prepared, solution_settings(prepared, number, settings.path.seed), progress);
+    SolvedRadiosity solved = solve_radiosity(prepared, solution_settings(prepared, number, settings.path.seed), sink);
     SolvedPicture shown;
     shown.figures.seconds = watch.seconds();
     shown.figures.samples = samples;
@@ -50,11 +49,12 @@ SolvedPicture solve_picture(Queue& queue, const PreparedScene& prepared, const C
     Session session(queue, prepared, camera, settings);
     const auto render = [&](uint32_t count) {
         double seconds = 0;
-        session.render(count, [&](const RenderProgress& now) {
-            seconds = now.seconds;
-            progress("rendering", static_cast<double>(now.samples_done) / now.samples);
-            return true;
-        });
+        session.render(count, ProgressSink([&](const Progress& now) {
+                           seconds = now.seconds;
+                           Progress rendering = now;
+                           rendering.doing = "rendering";
+                           return sink.goes_on(rendering);
+                       }));
         return seconds;
     };
     render(1); // memory allocation, caches and the driver's first launch are not timed

@@ -32,9 +32,8 @@ struct SolvedPicture {
 };
 
 /// Solves a scene's light and renders `samples` samples per pixel of the solution. Both are timed, except for one
-/// warm-up sample, which all integrators render first. `progress` may throw. Throws what solve_radiosity and Session
-/// throw.
+/// warm-up sample, which all integrators render first. `sink` may throw. Throws what solve_radiosity and Session throw.
 SolvedPicture solve_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera, RenderSettings settings,
-                            uint32_t number, uint32_t samples, const SolveProgress& progress);
+                            uint32_t number, uint32_t samples, Sink& sink);
 
 } // namespace pertev

@@ -262,9 +262,9 @@ SolvedExtent extent_of(const SolveStats& stats, RadiositySolver solver) {
 
 } // namespace
 
-SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySettings& settings,
-                                const SolveProgress& progress, uint64_t max_links) {
-    WorkWatch watch(progress);
+SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySettings& settings, Sink& sink,
+                                uint64_t max_links) {
+    WorkWatch watch(sink);
     const SolvedScene scene(prepared);
     const float patch_size = patch_size_of(prepared, settings);
     SolvedRadiosity solved;

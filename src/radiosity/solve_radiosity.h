@@ -37,11 +37,11 @@ struct SolvedRadiosity {
 /// Patch size in metres: the requested one, or kPatchOfScene of the scene's longest side.
 float patch_size_of(const PreparedScene& prepared, const RadiositySettings& settings);
 
-/// Solves a scene's diffuse light. The result has the same bytes for any number of threads. If `progress` returns false
-/// before there are form factors, Error(Interrupted) is thrown; later the solution is as far as it got. Throws as
-/// SolvedScene, make_patches and check_light_ends. `max_links` is for solve_hierarchically.
-SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySettings& settings,
-                                const SolveProgress& progress = {}, uint64_t max_links = kMaxLinks);
+/// Solves a scene's diffuse light. The result has the same bytes for any number of threads. If `sink` stops it before
+/// there are form factors, Error(Interrupted) is thrown; later the solution is as far as it got. Throws as SolvedScene,
+/// make_patches and check_light_ends. `max_links` is for solve_hierarchically.
+SolvedRadiosity solve_radiosity(const PreparedScene& prepared, const RadiositySettings& settings, Sink& sink = nobody(),
+                                uint64_t max_links = kMaxLinks);
 
 /// Warns of a complete solution that does not meet the request.
 void warn_of_limits(const SolveStats& stats, const RadiositySettings& settings, Messages& messages);

@@ -1,24 +1,22 @@
 #pragma once
 
-// Long work by many threads with an observer that gets the progress and may end it. Threads may ask as often as they
-// like: all but one return at once, and that one reads the clock.
+// Long work by many threads that reports to a sink. Threads may ask as often as they like whether it goes on: all but
+// one return at once.
 
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <mutex>
 #include <string>
 
-namespace pertev {
+#include "base/sink.h"
 
-/// A function that gets the current work and its progress in [0, 1]. It is called from any thread, never concurrently.
-/// Returning false ends the work.
-using SolveProgress = std::function<bool(const char* what, double share)>;
+namespace pertev {
 
 class WorkWatch {
 public:
-    explicit WorkWatch(SolveProgress progress) : progress_(std::move(progress)) {}
+    /// `sink` outlives it.
+    explicit WorkWatch(Sink& sink) : sink_(sink), began_(Clock::now()), step_began_(began_) {}
     WorkWatch(const WorkWatch&) = delete;
     WorkWatch& operator=(const WorkWatch&) = delete;
 
@@ -39,7 +37,9 @@ private:
     using Clock = std::chrono::steady_clock;
     void report();
 
-    SolveProgress progress_;
+    Sink& sink_;
+    Clock::time_point began_, step_began_;
+    double step_first_ = 0; // share at which the step began
     std::string what_, note_;
     uint64_t pieces_ = 0;
     double first_ = 0, last_ = 1;

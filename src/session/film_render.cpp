@@ -30,6 +30,27 @@ uint32_t next_pass(const RenderSettings& settings, uint32_t left, uint32_t done,
     return std::min(left, std::max(at_once, static_cast<uint32_t>(std::clamp(budget / a_sample, 1.0, 65536.0))));
 }
 
+/// Progress of an integrator's precomputation.
+Progress made_progress(uint32_t done, uint32_t samples, double made_share, double seconds, const RayCounts& rays) {
+    Progress now = {.doing = "before_samples", .share = made_share, .seconds = seconds};
+    if (made_share > 0.01) now.seconds_left = seconds * (1 - made_share) / made_share;
+    now.samples_done = done, now.samples = samples, now.rays = rays.total();
+    now.made_share = made_share, now.made_seconds = seconds;
+    return now;
+}
+
+/// Progress of the samples, or of the time if that ends first.
+Progress progress_of(const RenderSettings& settings, uint32_t done, uint32_t samples, double seconds,
+                     double made_seconds, const RayCounts& rays) {
+    Progress now = {.doing = "samples", .share = static_cast<double>(done) / samples, .seconds = seconds};
+    const double limit = settings.time_limit_s - made_seconds, sampled = seconds - made_seconds;
+    if (limit > 0) now.share = std::clamp(sampled / limit, now.share, 1.0);
+    if (now.share > 0) now.seconds_left = sampled * (1 - now.share) / now.share;
+    now.samples_done = done, now.samples = samples, now.rays = rays.total();
+    now.made_seconds = made_seconds;
+    return now;
+}
+
 } // namespace
 
 FilmRender::FilmRender(PictureRenderer& pictures, const Camera& camera, const RenderSettings& settings)
@@ -76,7 +97,7 @@ Film& FilmRender::film() {
     return fit_film(pictures_.queue(), film_, settings_);
 }
 
-uint32_t FilmRender::render(SampleRange range, const KeepGoing& keep_going) {
+uint32_t FilmRender::render(SampleRange range, Sink& sink) {
     PERTEV_CHECK(samples().count() == 0 || range.first == samples().end);
     const uint32_t first = range.first, before = samples().count();
     const uint32_t count = std::min(range.count(), kMaxSamplesPerPixel - std::min(first, kMaxSamplesPerPixel));
@@ -84,45 +105,45 @@ uint32_t FilmRender::render(SampleRange range, const KeepGoing& keep_going) {
     const Stopwatch since_call;
     Film& into_film = film();
     const bool has_steps = settings_.denoise != Denoise::None;
-    if (has_steps && before == 0) steps_.begin(camera_, settings_);
+    const bool on_cpu = !pictures_.queue().is_cuda(); // a GPU's passes are short
+    if (has_steps && before == 0 && !steps_.begin(camera_, settings_, on_cpu ? &sink : nullptr)) return 0;
     Integrator& integrator = pictures_.begin(camera_, settings_, has_steps ? 1 : count, number_);
-    integrator.abandon_when(pictures_.abandon_flag());
     const RayCounts rays_before = stats_.rays;
     const double seconds_before = stats_.render_seconds;
     const Stopwatch watch;
-    // Before the first sample there is nothing to keep.
-    const bool is_apart = keeps_samples_ && pictures_.abandon_flag() != nullptr && before > 0 && !has_steps;
+    const bool is_apart = leaves_passes_ && on_cpu && before > 0 && !has_steps;
     if (!is_apart) pass_film_.reset();
     Film& into = is_apart ? fit_film(pictures_.queue(), pass_film_, settings_) : into_film;
     bool makes = false;
     const auto goes_on = [&](double made_share) {
         makes = true;
         const double seconds = watch.seconds();
-        if (pictures_.is_abandoned()) return false;
         if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) return false;
-        return !keep_going || keep_going({before, before + count, seconds, integrator.rays(), made_share, seconds});
+        return sink.goes_on(made_progress(before, before + count, made_share, seconds, integrator.rays()));
     };
     if (!integrator.prepare(goes_on)) return 0;
     const double made_seconds = makes ? watch.seconds() : 0;
     for (uint32_t done = 0; done < count;) {
         const auto now = [&] {
-            return RenderProgress{before + done, before + count, watch.seconds(), integrator.rays(), 1, made_seconds};
+            return progress_of(settings_, before + done, before + count, watch.seconds(), made_seconds,
+                               integrator.rays());
         };
         const uint32_t pass = next_pass(settings_, count - done, done, watch.seconds());
+        Sink* const stops = on_cpu && (leaves_passes_ || (before == 0 && done == 0)) ? &sink : nullptr;
+        integrator.stop_with(stops);
         uint32_t added = pass;
         try {
             if (has_steps) {
-                steps_.add(integrator, first + done, pass, into_film);
+                steps_.add(integrator, first + done, pass, into_film, stops);
             } else {
                 if (is_apart) into.clear();
-                added = integrator.render_while(first + done, pass, into.view(),
-                                                [&] { return !keep_going || keep_going(now()); });
+                added = integrator.render_while(first + done, pass, into.view(), [&] { return sink.goes_on(now()); });
             }
         } catch (...) { // parts of the pass may be in the film
             if (!is_apart) forget_samples();
             throw;
         }
-        if (pictures_.is_abandoned()) { // parts of a sample may be missing
+        if (stops != nullptr && added == pass && sink.should_stop()) { // parts of a sample may be missing
             if (is_apart) break;
             forget_samples();
             return 0;
@@ -139,7 +160,7 @@ uint32_t FilmRender::render(SampleRange range, const KeepGoing& keep_going) {
         stats_.kind_seconds = pictures_.scene().tracer().seconds();
         stats_.render_seconds = seconds_before + seconds;
         if (before == 0 && done == added) stats_.first_pixel_seconds = since_call.seconds();
-        if (added < pass || (keep_going && !keep_going(now()))) break;
+        if (added < pass || !sink.goes_on(now())) break;
         if (settings_.time_limit_s > 0 && seconds >= settings_.time_limit_s) break;
     }
     return samples().count() - before;

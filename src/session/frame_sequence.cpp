@@ -44,7 +44,7 @@ Restir* FrameSequence::restir_for(const RestirSettings& settings, const RenderSe
 }
 
 bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSettings& settings,
-                           const ReconstructionSettings& reconstruction, const RestirSettings& restir) {
+                           const ReconstructionSettings& reconstruction, const RestirSettings& restir, Sink& sink) {
     DeviceScene& scene = pictures_.scene();
     if (!makes_frames(settings.integrator)) {
         throw Error(ErrorCode::BadInput, "integrator", std::string(integrator_name(settings)),
@@ -75,8 +75,9 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
     kind_seconds_ = {};
     const TemporalGradientsView change = measure_gradients(of_light, reconstruction);
     frame.leave(shared != nullptr ? shared->first_bounce() : FirstBounceView{});
-    take_sample(number, camera, of_light, frame, pictures_.abandon_flag());
-    if (pictures_.is_abandoned()) { // parts of the sample may be missing
+    Sink* const stops = pictures_.queue().is_cuda() ? nullptr : &sink; // a GPU's samples are short
+    take_sample(number, camera, of_light, frame, stops);
+    if (stops != nullptr && sink.should_stop()) { // parts of the sample may be missing
         cut();
         return false;
     }
@@ -108,13 +109,13 @@ bool FrameSequence::render(uint32_t number, const Camera& camera, const RenderSe
     return true;
 }
 
-/// Renders sample `number` of each pixel of `frame`, at its size. While `*abandon` is true, pixels are left out.
+/// Renders sample `number` of each pixel of `frame`, at its size. Once `sink` stops, pixels are left out.
 void FrameSequence::take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
-                                const std::atomic<bool>* abandon) {
+                                Sink* sink) {
     settings.width = frame.width();
     settings.height = frame.height();
     Integrator& integrator = pictures_.begin(camera, settings, 1);
-    integrator.abandon_when(abandon);
+    integrator.stop_with(sink);
     frame.begin();
     integrator.render(number, 1, frame.film_view());
     rays_ = rays_ + integrator.rays();

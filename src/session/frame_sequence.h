@@ -27,10 +27,10 @@ public:
 
     /// Renders sample `number` of each pixel and reconstructs the picture. `restir` is ignored if the path settings
     /// request indirect light only, or a single light strategy. Another resolution_scale is a cut. Returns false, and
-    /// restarts the sequence, if the renderer was abandoned. Throws Error(OutOfMemory, DeviceFault), and
-    /// Error(BadInput) for an integrator without frames (makes_frames) or for an open shutter.
+    /// restarts the sequence, if `sink` stopped it, which only a CPU notices. Throws Error(OutOfMemory, DeviceFault),
+    /// and Error(BadInput) for an integrator without frames (makes_frames) or for an open shutter.
     bool render(uint32_t number, const Camera& camera, const RenderSettings& settings,
-                const ReconstructionSettings& reconstruction, const RestirSettings& restir);
+                const ReconstructionSettings& reconstruction, const RestirSettings& restir, Sink& sink = nobody());
 
     // The following functions refer to the last frame. All but rays() and the seconds throw as render().
 
@@ -56,7 +56,7 @@ public:
 
 private:
     void take_sample(uint32_t number, const Camera& camera, RenderSettings settings, NoisyFrame& frame,
-                     const std::atomic<bool>* abandon = nullptr);
+                     Sink* sink = nullptr);
     TemporalGradientsView measure_gradients(const RenderSettings& of_light, const ReconstructionSettings& settings);
     void keep_light(uint32_t number, const Camera& camera, const RenderSettings& of_light, bool goes_on);
     Restir* restir_for(const RestirSettings& settings, const RenderSettings& of_light);

@@ -54,7 +54,7 @@ Camera meter_camera(const Scene& scene, const MeterPoint& meter) {
 }
 
 Irradiance measure_irradiance(Queue& queue, const PreparedScene& scene, const MeterPoint& meter,
-                              const RenderSettings& requested, const std::function<bool(double)>& keep_going) {
+                              const RenderSettings& requested, Sink& sink) {
     PERTEV_CHECK(requested.path.seed <= kMaxMeterSeed);
     RenderSettings settings = probe_settings(requested);
     Session session(queue, scene, meter_camera(*scene.scene, meter), settings);
@@ -64,13 +64,9 @@ Irradiance measure_irradiance(Queue& queue, const PreparedScene& scene, const Me
         settings.path.seed = requested.path.seed * kMeterRepeats + repeat;
         session.set_settings(settings);
         session.cut();
-        session.render(settings.samples, [&](const RenderProgress& now) {
-            const double share = static_cast<double>(now.samples_done) / now.samples;
-            if (keep_going && !keep_going((repeat + share) / kMeterRepeats)) {
-                throw Error(ErrorCode::Interrupted, "interrupted");
-            }
-            return true;
-        });
+        session.render(settings.samples,
+                       part_of(sink, double(repeat) / kMeterRepeats, double(repeat + 1) / kMeterRepeats));
+        sink.check();
         const Image picture = session.picture();
         double sums[3] = {};
         for (std::size_t i = 0; i < picture.pixels.size(); ++i) sums[i % 3] += static_cast<double>(picture.pixels[i]);

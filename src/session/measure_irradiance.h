@@ -4,8 +4,8 @@
 // equal on every device. The standard error comes from independent estimates.
 
 #include <cstdint>
-#include <functional>
 
+#include "base/sink.h"
 #include "device/queue.h"
 #include "render/prepare_scene.h"
 #include "settings/render_settings.h"
@@ -42,9 +42,9 @@ Camera meter_camera(const Scene& scene, const MeterPoint& meter);
 
 /// Measures irradiance. Of `settings` it uses path settings, samples (paths through each pixel) and tracers. The seed
 /// is at most kMaxMeterSeed. Light with up to settings.path.max_depth scatterings counts. Culled backs do not block
-/// rays; to include them, make materials double sided first. `keep_going` gets the share that is done, in [0, 1]; if
-/// it returns false, Error(Interrupted) is thrown. Throws as Session.
+/// rays; to include them, make materials double sided first. If `sink` stops it, Error(Interrupted)
+/// is thrown. Throws as Session.
 Irradiance measure_irradiance(Queue& queue, const PreparedScene& scene, const MeterPoint& meter,
-                              const RenderSettings& settings, const std::function<bool(double)>& keep_going = {});
+                              const RenderSettings& settings, Sink& sink = nobody());
 
 } // namespace pertev

@@ -72,7 +72,7 @@ Integrator& PictureRenderer::begin(const Camera& camera, const RenderSettings& s
     Integrator& integrator = *held.integrator;
     SceneTracer& tracer = scene_.tracer();
     tracer.time_kinds(settings.time_kinds);
-    integrator.abandon_when(nullptr);
+    integrator.stop_with(nullptr);
     if (stays && number != 0 && number == begun_number_) integrator.expect_same_picture();
     if (!is_aside) begun_number_ = 0; // because the next line may throw
     integrator.begin(picture, tracer, samples);

@@ -3,7 +3,6 @@
 // Takes samples of any picture of a scene on a device, by the integrator of the picture's settings. The integrator
 // keeps its queues from one picture to the next, so films, frames and the meter share one PictureRenderer.
 
-#include <atomic>
 #include <memory>
 #include <optional>
 
@@ -29,7 +28,7 @@ public:
     Queue& queue() { return scene_.queue(); }
     PictureView view_of(const Camera& camera, const RenderSettings& settings);
 
-    /// Returns an integrator that is ready to add `samples` samples of this picture, and that nothing abandons. Its
+    /// Returns an integrator that is ready to add `samples` samples of this picture, and that nothing stops. Its
     /// precomputed data is kept if `number`, which new_number() returned, equals that of the previous begin(). 0
     /// stands for a picture whose samples are not continued. Throws Error(BadInput) if the camera or the shutter is
     /// incompatible with the settings, and Error(OutOfMemory, DeviceFault).
@@ -40,12 +39,6 @@ public:
 
     /// Renders `settings.samples` samples from `first` on into a separate film. Throws as begin().
     RenderResult render_separately(const Camera& camera, const RenderSettings& settings, uint32_t first = 0);
-
-    /// Lets films and frames abort in the middle of a sample while `*flag` is true, on the CPU only. Null: never.
-    /// `flag` outlives this.
-    void abandon_when(const std::atomic<bool>* flag) { abandon_ = queue().is_cuda() ? nullptr : flag; }
-    const std::atomic<bool>* abandon_flag() const { return abandon_; }
-    bool is_abandoned() const { return abandon_ != nullptr && *abandon_; }
 
 private:
     MotionTrack motion_of(const Camera& camera, Vec3 centre);
@@ -60,7 +53,6 @@ private:
     HeldIntegrator main_, aside_; // aside_ renders other pictures while main_ holds precomputed data of the film's
     uint64_t last_number_ = 0;
     uint64_t begun_number_ = 0; // number of the picture that main_ has begun
-    const std::atomic<bool>* abandon_ = nullptr;
 };
 
 } // namespace pertev

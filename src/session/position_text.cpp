@@ -60,4 +60,10 @@ DoubleVec3 stated_position(const Scene& scene, Vec3 p, int digits) {
     return {number(numbers[0]), number(numbers[1]), number(numbers[2])};
 }
 
+DoubleVec3 stated_position(Vec3 p, DoubleVec3 origin) {
+    if (origin != DoubleVec3{0, 0, 0}) return origin + to_double(p);
+    const auto shortest = [](float x) { return number(fmt::format("{}", x)); };
+    return {shortest(p.x), shortest(p.y), shortest(p.z)};
+}
+
 } // namespace pertev

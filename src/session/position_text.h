@@ -16,4 +16,8 @@ std::string position_text(const Scene& scene, Vec3 p, int digits);
 /// The position that position_text() states, in the coordinates of the file.
 DoubleVec3 stated_position(const Scene& scene, Vec3 p, int digits);
 
+/// Returns the numbers that state `p` of a scene with this origin in its file, to the bit: those of a float's shortest
+/// text if the origin is 0.
+DoubleVec3 stated_position(Vec3 p, DoubleVec3 origin);
+
 } // namespace pertev

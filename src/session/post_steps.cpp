@@ -22,7 +22,7 @@ std::vector<std::unique_ptr<Denoiser>> make_denoisers(Queue& queue, const Render
 
 } // namespace
 
-void PostSteps::begin(const Camera& camera, const RenderSettings& settings) {
+bool PostSteps::begin(const Camera& camera, const RenderSettings& settings, Sink* sink) {
     NoisyFrame& frame = fit_frame(pictures_.scene(), sample_, settings.width, settings.height);
     if (made_for_ != std::tuple(settings.denoise, settings.width, settings.height)) {
         denoisers_.clear(); // freed before the new ones, so that both need not fit
@@ -38,43 +38,36 @@ void PostSteps::begin(const Camera& camera, const RenderSettings& settings) {
     pinhole.aperture_radius = 0;
     Integrator& of_pinhole = pictures_.begin(pinhole, of_centres, 1);
     frame.begin();
+    of_pinhole.stop_with(sink);
     of_pinhole.render(0, 1, frame.film_view());
     const CameraView centres = pictures_.view_of(pinhole, of_centres).camera.view;
     for (const auto& denoiser : denoisers_) denoiser->begin(frame, centres);
     Integrator& integrator = pictures_.begin(camera, of_features, 1);
+    integrator.stop_with(sink);
     const SceneView& scene = pictures_.scene().view();
     for (const auto& denoiser : denoisers_) {
         for (uint32_t sample = 0; sample < denoiser->feature_samples(); ++sample) {
             integrator.render(sample, 1, frame.film_view());
+            if (sink != nullptr && sink->should_stop()) return false;
             denoiser->add_features(frame, scene);
         }
     }
+    return true;
 }
 
-void PostSteps::add(Integrator& integrator, uint32_t first, uint32_t count, const Film& film) {
+void PostSteps::add(Integrator& integrator, uint32_t first, uint32_t count, const Film& film, Sink* sink) {
     PERTEV_CHECK(film.view().window.picture_width == 0);
     const SceneView& scene = pictures_.scene().view();
     FilmView into = sample_.value().film_view();
     into.invalid = film.view().invalid;
     for (uint32_t sample = first; sample < first + count; ++sample) {
         integrator.render(sample, 1, into);
-        if (pictures_.is_abandoned()) return;
+        if (sink != nullptr && sink->should_stop()) return;
         launch(pictures_.queue(), "add_frame_to_film", film.width() * film.height(),
                AddFrameToFilm{sample_->view(), film.view(), scene, sample == 0});
         for (const auto& denoiser : denoisers_) denoiser->add(*sample_, scene);
     }
     pictures_.queue().wait();
-}
-
-Image PostSteps::apply(Image picture) {
-    const std::size_t channels = picture.channels;
-    for (const auto& denoiser : denoisers_) {
-        const Image denoised = denoiser->picture();
-        for (std::size_t i = 0; i < denoised.pixels.size(); ++i) { // the picture keeps its alpha
-            picture.pixels[i / 3 * channels + i % 3] = denoised.pixels[i];
-        }
-    }
-    return picture;
 }
 
 } // namespace pertev

@@ -17,15 +17,15 @@ public:
     /// Makes an object without steps; `pictures` outlives it.
     explicit PostSteps(PictureRenderer& pictures) : pictures_(pictures) {}
 
-    /// Begins a picture: creates the steps that `settings` request, and passes them the visible surfaces. Throws
-    /// Error(OutOfMemory, DeviceFault).
-    void begin(const Camera& camera, const RenderSettings& settings);
-    /// Renders samples [first, first + count) into `film` and into each step. Stops in the middle once the renderer
-    /// is abandoned; film and steps must then be discarded. Throws std::logic_error for a film of a window, because
+    /// Begins a picture: creates the steps that `settings` request, and passes them the visible surfaces. Returns false
+    /// once `sink` stops; null: never. Throws Error(OutOfMemory, DeviceFault).
+    bool begin(const Camera& camera, const RenderSettings& settings, Sink* sink);
+    /// Renders samples [first, first + count) into `film` and into each step. Stops in the middle once `sink` stops;
+    /// film and steps must then be discarded. Null: never. Throws std::logic_error for a film of a window, because
     /// steps filter whole pictures.
-    void add(Integrator& integrator, uint32_t first, uint32_t count, const Film& film);
+    void add(Integrator& integrator, uint32_t first, uint32_t count, const Film& film, Sink* sink);
     /// Returns `picture`, that of the film, after all steps. Throws Error(DeviceFault).
-    Image apply(Image picture);
+    Image apply(Image picture) { return apply_steps(denoisers_, std::move(picture)); }
 
 private:
     PictureRenderer& pictures_;

@@ -3,10 +3,9 @@
 namespace pertev {
 
 RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
-                            const RenderSettings& settings,
-                            const std::function<bool(const RenderProgress&)>& keep_going) {
+                            const RenderSettings& settings, Sink& sink) {
     Session session(queue, prepared, camera, settings);
-    session.render(settings.samples, keep_going);
+    session.render(settings.samples, sink);
     return session.result();
 }
 

@@ -6,10 +6,9 @@
 
 namespace pertev {
 
-/// Renders `settings.samples` samples, or fewer when time is over or `keep_going` (called after each pass) returns
-/// false; at least one sample. Throws Error(OutOfMemory, DeviceFault).
+/// Renders `settings.samples` samples, or fewer when time is over or `sink` stops. Throws Error(OutOfMemory,
+/// DeviceFault).
 RenderResult render_picture(Queue& queue, const PreparedScene& prepared, const Camera& camera,
-                            const RenderSettings& settings,
-                            const std::function<bool(const RenderProgress&)>& keep_going = {});
+                            const RenderSettings& settings, Sink& sink = nobody());
 
 } // namespace pertev

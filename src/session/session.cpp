@@ -1,7 +1,5 @@
 #include "session/session.h"
 
-#include <fmt/format.h>
-
 #include "render/camera_work.h"
 #include "session/check_integrator.h"
 
@@ -49,18 +47,6 @@ void Session::cut() {
     ++cuts_;
     frames_.cut();
     film_.restart();
-}
-
-uint32_t Session::render(uint32_t samples, Sink& sink) {
-    return render(samples, [&](const RenderProgress& now) {
-        if (now.made_share < 1) {
-            sink.progress(now.made_share, "before the first sample");
-        } else {
-            sink.progress(double(now.samples_done) / now.samples,
-                          fmt::format("{}/{} spp", now.samples_done, now.samples));
-        }
-        return !sink.is_cancelled();
-    });
 }
 
 void Session::display(ToneMap tone_map, float exposure_stops) {

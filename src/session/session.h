@@ -21,11 +21,11 @@
 #include <optional>
 
 #include "base/limits.h"
+#include "base/sink.h"
 #include "device_scene/ray_queue.h"
 #include "session/film_render.h"
 #include "session/frame_sequence.h"
 #include "session/meter_exposure.h"
-#include "session/sink.h"
 
 namespace pertev {
 
@@ -60,13 +60,12 @@ public:
     void cut();
 
     /// Adds up to `samples` samples to each pixel; see FilmRender::render.
-    uint32_t render(uint32_t samples, const FilmRender::KeepGoing& keep_going = {}) {
+    uint32_t render(uint32_t samples, Sink& sink = nobody()) {
         const uint32_t first = film_.samples().end;
-        return film_.render({first, first + std::min(samples, kMaxSamplesPerPixel - first)}, keep_going);
+        return film_.render({first, first + std::min(samples, kMaxSamplesPerPixel - first)}, sink);
     }
-    /// Adds samples in the same way, reports progress to `sink`, and stops when that is cancelled.
-    uint32_t render(uint32_t samples, Sink& sink);
-    void keep_samples_when_abandoned(bool keeps) { film_.keep_samples_when_abandoned(keeps); }
+    uint32_t render(uint32_t samples, Sink&& sink) { return render(samples, sink); }
+    void leave_passes(bool leaves) { film_.leave_passes(leaves); }
 
     /// Returns the film of the current picture. It is all zero before the first sample.
     const Film& film() { return film_.film(); }
@@ -74,6 +73,7 @@ public:
     std::optional<Image> denoised() { return film_.denoised(); }
     std::vector<FilmLayer> layers() { return film_.layers(); }
     RenderStats stats() { return film_.stats(); }
+    const RayCounts& rays() const { return film_.rays(); }
     /// Computes the picture for a display, times 2^exposure_stops, as tone_map_image of picture(), and starts its
     /// copy to the host.
     void display(ToneMap tone_map, float exposure_stops);
@@ -83,9 +83,9 @@ public:
     float meter(ToneMap tone_map) { return meter_.stops(camera(), settings(), tone_map); }
 
     /// Renders the next frame of a sequence by FrameSequence::render. The film stays as it is.
-    bool render_frame(uint32_t number, const ReconstructionSettings& reconstruction,
-                      const RestirSettings& restir = {}) {
-        return frames_.render(number, camera(), settings(), reconstruction, restir);
+    bool render_frame(uint32_t number, const ReconstructionSettings& reconstruction, const RestirSettings& restir = {},
+                      Sink& sink = nobody()) {
+        return frames_.render(number, camera(), settings(), reconstruction, restir, sink);
     }
     FrameSequence& frames() { return frames_; }
     Reconstruction& frame() { return frames_.reconstruction(); }
@@ -101,7 +101,6 @@ public:
     /// Returns the nodes and triangles that the ray through the middle of each pixel tests, by the tracer of camera
     /// rays; nothing for packets. Throws Error(OutOfMemory, DeviceFault).
     std::vector<RayWork> count_camera_work();
-    void abandon_when(const std::atomic<bool>* flag) { pictures_.abandon_when(flag); }
 
     History history() const { return {film_.samples().end, previous_camera_, cuts_}; }
     const Camera& camera() const { return film_.camera(); }

@@ -48,7 +48,7 @@ std::vector<Setting> integrator_settings() {
         row("displacement", "Reyes", "MATERIAL=FILE,SCALE[,MIDDLE]", FIELD(displacement),
             "A height map that displaces surfaces of this material along their normals by SCALE (height - MIDDLE) in "
             "the mesh's own unit; MIDDLE defaults to 0. It may be given again.",
-            Of{kReyes}),
+            Of{kReyes}, Recorded::AsUsed),
 
         row("photons", "Photons", "N", FIELD(render.photon_map.edit().photons),
             "The number of photons from the lights per sample; as many again are aimed at mirrors and glass.",
@@ -109,7 +109,7 @@ std::vector<Setting> integrator_settings() {
             "A solution that pertev solve radiosity wrote, to be rendered.", Otherwise{"the scene is solved first"},
             Mark::Name, Mark::OpensScene),
         row("flat_patches", "Radiosity", "", FIELD(radiosity.flat_patches),
-            "Patches have constant radiosity, without interpolation."),
+            "Patches have constant radiosity, without interpolation.", Recorded::AsUsed),
     };
     for (Setting& row : rows) {
         const bool is_of_radiosity = row.integrators == 0, is_shown = row.is_name || is_switch(row);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Settings of a render besides scene and camera, its progress, and its result.
+// Settings of a render besides scene and camera, and its result.
 
 #include <cstdint>
 #include <optional>
@@ -71,14 +71,6 @@ RenderSettings settings_of_frames(RenderSettings settings);
 
 /// Returns whether `a` and `b` give the same picture for the same scene, camera and number of samples.
 bool same_picture(const RenderSettings& a, const RenderSettings& b);
-
-struct RenderProgress {
-    uint32_t samples_done = 0, samples = 0; // in the film now, and at the end of the call
-    double seconds = 0;                     // since the call began to render
-    RayCounts rays;                         // rays of the call
-    double made_share = 1;                  // progress of the integrator's precomputation, 1 when it is complete
-    double made_seconds = 0;                // the part of `seconds` that it took; 0 if there was none
-};
 
 /// Statistics of the samples in the film.
 struct RenderStats {

@@ -83,8 +83,9 @@ enum SettingVerbs : uint32_t {
 
 /// Form in which a picture's file records a setting under its name.
 enum class Recorded : uint8_t {
-    No,        // nothing, or something else (session/writing/picture_metadata.h)
+    No,        // nothing
     Always,    // its value
+    AsUsed,    // the value that the picture has, whether it was given or not; nothing if that is empty
     WhereUsed, // its value, if the integrator has it and it is not empty
     Changed,   // its value, if it is not the default
 };

@@ -20,7 +20,8 @@ using gltf::JsonValue;
 
 /// Returns whether the value can be given again, which a value that means "not given" cannot.
 bool is_written(const PictureOptions& options, const Setting& setting) {
-    const bool is_recorded = setting.recorded != Recorded::No && has_setting(options.render.integrator, setting);
+    const bool is_recorded = setting.recorded != Recorded::No && setting.recorded != Recorded::AsUsed &&
+                             has_setting(options.render.integrator, setting);
     if (!setting.is_kept || !(is_recorded || options.is_given(setting.name))) return false;
     const std::vector<std::string> texts = texts_of(options, setting);
     return !texts.empty() &&

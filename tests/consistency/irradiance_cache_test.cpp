@@ -11,6 +11,7 @@
 #include "integrators/irradiance_cache/irradiance_cache_settings.h"
 #include "integrators/irradiance_cache/record_store.h"
 #include "session/session.h"
+#include "tests/support/asked_sink.h"
 #include "tests/support/check_one_picture.h"
 #include "tests/support/flat_scenes.h"
 
@@ -101,10 +102,10 @@ namespace {
 /// Rays that the session traces for one more sample.
 uint64_t rays_of_a_sample(Session& session) {
     uint64_t rays = 0;
-    CHECK(session.render(1, [&](const RenderProgress& now) {
-        rays = now.rays.total();
-        return true;
-    }) == 1);
+    CHECK(session.render(1, ProgressSink([&](const Progress& now) {
+                             rays = now.rays;
+                             return true;
+                         })) == 1);
     return rays;
 }
 
@@ -205,19 +206,19 @@ TEST_CASE("an overture's progress rises monotonically from 0 to 1") {
         settings.body = body;
         settings.batch = 2000; // many parts
         Session session(queue, prepared, test::camera_with_lens(), settings);
-        std::vector<RenderProgress> reported;
-        session.render(2, [&](const RenderProgress& now) {
-            reported.push_back(now);
-            return true;
-        });
-        const auto is_of_samples = [](const RenderProgress& now) { return now.samples_done > 0; };
+        std::vector<Progress> reported;
+        session.render(2, ProgressSink([&](const Progress& now) {
+                           reported.push_back(now);
+                           return true;
+                       }));
+        const auto is_of_samples = [](const Progress& now) { return now.samples_done > 0; };
         const auto samples = std::ranges::find_if(reported, is_of_samples);
         REQUIRE(samples - reported.begin() > 12);
-        const auto all_rays = static_cast<double>(samples[-1].rays.total());
+        const auto all_rays = static_cast<double>(samples[-1].rays);
         CHECK(reported.front().made_share == 0);
         CHECK(samples[-1].made_share > 0.9);
         for (auto now = reported.begin(); now < samples; ++now) {
-            const double share = now->made_share, done = static_cast<double>(now->rays.total()) / all_rays;
+            const double share = now->made_share, done = static_cast<double>(now->rays) / all_rays;
             if (now > reported.begin()) CHECK(share >= now[-1].made_share);
             CHECK(pertev::abs(static_cast<float>(share - done)) < 0.35f);
             CHECK(share < 1);
@@ -228,7 +229,8 @@ TEST_CASE("an overture's progress rises monotonically from 0 to 1") {
             CHECK(now->made_seconds >= samples[-1].seconds);
             CHECK(now->made_seconds <= now->seconds);
         }
-        CHECK(session.render(1, [&](const RenderProgress& now) { return now.made_share == 1; }) == 1); // all is there
+        CHECK(session.render(1, ProgressSink([&](const Progress& now) { return now.made_share == 1; })) ==
+              1); // all is there
     }
 }
 
@@ -256,7 +258,7 @@ TEST_CASE("invalid values in records are reported with sample 0, whatever was re
     CHECK(in_parts.stats().invalid_samples + 100 < at_once.stats().invalid_samples);
 }
 
-TEST_CASE("an overture can be stopped by its callback, a time limit or abandonment, and leaves no trace") {
+TEST_CASE("an overture can be stopped by a sink or a time limit, and leaves no trace") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
@@ -270,21 +272,17 @@ TEST_CASE("an overture can be stopped by its callback, a time limit or abandonme
         Session session(queue, prepared, test::camera_with_lens(), settings);
         for (int most = 0; most < 12; ++most) { // before the first part, between rounds, among records
             int connections = 0;
-            CHECK(session.render(2, [&](const RenderProgress& now) {
-                CHECK(now.samples_done == 0);
-                return connections++ < most;
-            }) == 0);
+            CHECK(session.render(2, ProgressSink([&](const Progress& now) {
+                                     CHECK(now.samples_done == 0);
+                                     return connections++ < most;
+                                 })) == 0);
             CHECK(connections == most + 1);
             CHECK(session.history().samples == 0);
             CHECK(session.stats().invalid_samples == 0);
         }
-        if (!queue.is_cuda()) { // where the flag is heard
-            std::atomic<bool> is_abandoned = true;
-            session.abandon_when(&is_abandoned);
-            CHECK(session.render(2) == 0);
-            int connections = 0;
-            CHECK(session.render(2, [&](const RenderProgress&) { return is_abandoned = ++connections > 5; }) == 0);
-            session.abandon_when(nullptr);
+        if (!queue.is_cuda()) { // which asks within a part
+            CHECK(session.render(2, test::AskedSink(0)) == 0);
+            CHECK(session.render(2, test::AskedSink(5)) == 0);
         }
         RenderSettings short_of_time = settings;
         short_of_time.time_limit_s = 1e-9;

@@ -100,7 +100,7 @@ void check_scene_by(Queue& queue, const Scene& scene, std::vector<Combination> c
     settings.depth = 2;
     Messages messages;
     const Camera camera = make_default_camera(scene, 4.0f / 3.0f, messages);
-    const LabReport report = run_lab(queue, scene, camera, settings, {});
+    const LabReport report = run_lab(queue, scene, camera, settings);
     REQUIRE(report.sets.size() == 3);
     CHECK(report.sets[0].rays >= rays);
     for (const SetFigures& set : report.sets) CHECK(set.brute_force_rays >= 2200);

@@ -46,7 +46,7 @@ void check_stress_meshes(Queue& queue, uint32_t side) {
         Camera camera;
         camera.world_from_camera =
             look_at(stress.centre + stress.extent * Vec3{1.5f, 0.7f, 3}, stress.centre, {0, 1, 0});
-        check_report(run_lab(queue, scene, camera, settings, {}));
+        check_report(run_lab(queue, scene, camera, settings));
     }
 }
 
@@ -57,7 +57,7 @@ TEST_CASE("every combination gives the same hits in the mixed scene with instanc
     const Scene scene = make_mixed_scene();
     LabSettings settings = all_combinations(false, true);
     settings.width = 64, settings.height = 48, settings.depth = 3;
-    check_report(run_lab(queue, scene, mixed_scene_camera(), settings, {}));
+    check_report(run_lab(queue, scene, mixed_scene_camera(), settings));
 }
 
 TEST_CASE("every combination gives the same hits in stress meshes") {
@@ -73,7 +73,7 @@ TEST_CASE("CUDA: every combination gives the same hits in stress meshes and in t
     LabSettings settings = all_combinations(true, true);
     settings.width = 64, settings.height = 48, settings.depth = 3;
     settings.runs = 1; // timed and counted too
-    check_report(run_lab(queue, mixed, mixed_scene_camera(), settings, {}));
+    check_report(run_lab(queue, mixed, mixed_scene_camera(), settings));
 }
 
 TEST_CASE("inexact tests miss a few rays, which are counted") {
@@ -92,7 +92,7 @@ TEST_CASE("inexact tests miss a few rays, which are counted") {
     settings.runs = 1, settings.warm_ups = 0;
     Camera camera;
     camera.world_from_camera = look_at(centre + Vec3{1.5f, 0.7f, 3}, centre, {0, 1, 0});
-    const LabReport report = run_lab(queue, scene, camera, settings, {});
+    const LabReport report = run_lab(queue, scene, camera, settings);
     std::map<TestKind, uint64_t> bytes;
     for (const CombinationFigures& c : report.combinations) {
         CAPTURE(c.name);
@@ -119,7 +119,7 @@ TEST_CASE("Woop's tests traverse instances and differ from exact tests on few ra
     }
     settings.width = 256, settings.height = 192;
     settings.runs = settings.warm_ups = 0;
-    const LabReport report = run_lab(queue, make_mixed_scene(), mixed_scene_camera(), settings, {});
+    const LabReport report = run_lab(queue, make_mixed_scene(), mixed_scene_camera(), settings);
     CHECK(report.instances > 1);
     for (const CombinationFigures& c : report.combinations) {
         CAPTURE(c.name);
@@ -136,8 +136,8 @@ TEST_CASE("an interrupted laboratory keeps what it has measured") {
     settings.width = settings.height = 16;
     Camera camera;
     camera.world_from_camera = look_at({1.5f, 0.7f, 3}, {}, {0, 1, 0});
-    const LabReport report =
-        run_lab(queue, scene, camera, settings, [](const LabProgress& now) { return now.share < 0.5; });
+    ProgressSink first_half([](const Progress& now) { return now.share < 0.5; });
+    const LabReport report = run_lab(queue, scene, camera, settings, first_half);
     CHECK(report.interrupted);
     const auto measured = std::ranges::count_if(report.combinations, [](const auto& c) { return !c.runs.empty(); });
     CHECK(measured > 10);
@@ -157,16 +157,17 @@ TEST_CASE("the laboratory can be stopped inside each stage of long work and repo
         CAPTURE(stage);
         bool stopped = false;
         double share = 0;
-        const LabReport report = run_lab(queue, scene, camera, settings, [&](const LabProgress& now) {
+        ProgressSink sink([&](const Progress& now) {
             CHECK_FALSE(stopped);
             stopped = now.doing.find(stage) != std::string::npos;
-            share = now.share_of_that;
+            share = now.share_of_step;
             // Where a stage has pieces, in its middle.
             const std::string name = stage;
             const bool in_pieces = name.starts_with("against") || name.starts_with("what") || name.ends_with("if-if");
             if (in_pieces) stopped = stopped && share > 0 && share < 1;
             return !stopped;
         });
+        const LabReport report = run_lab(queue, scene, camera, settings, sink);
         CHECK(stopped);
         CHECK(report.interrupted);
         CHECK_FALSE(has_findings(report));
@@ -177,5 +178,5 @@ TEST_CASE("the laboratory can be stopped inside each stage of long work and repo
 TEST_CASE("a scene without triangles is refused with a clear message") {
     Queue queue = Queue::make_cpu();
     const LabSettings settings = all_combinations(false, false);
-    CHECK_THROWS_WITH(run_lab(queue, Scene{}, Camera{}, settings, {}), "the scene has no triangles: nothing to trace");
+    CHECK_THROWS_WITH(run_lab(queue, Scene{}, Camera{}, settings), "the scene has no triangles: nothing to trace");
 }

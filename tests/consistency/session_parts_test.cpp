@@ -9,9 +9,12 @@
 
 #include "base/parallel_for.h"
 #include "image/picture_hash.h"
+#include "session/pictures/prepare_render.h"
 #include "session/render_picture.h"
+#include "tests/support/asked_sink.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 
@@ -46,13 +49,14 @@ struct Parts {
 /// Ends what goes on once it has heard `most` steps of it.
 struct EndingSink : Sink {
     explicit EndingSink(int steps) : most(steps) {}
-    void progress(double share, const std::string&) override {
-        CHECK(share > last);
-        last = share;
+    void progress(const Progress& now) override {
+        CHECK(now.share > last);
+        last = now.share;
         ++heard;
     }
-    bool is_cancelled() override { return heard >= most; }
-    int most, heard = 0;
+    bool should_stop() override { return heard >= most; }
+    int most;
+    std::atomic<int> heard = 0;
     double last = 0;
 };
 
@@ -139,7 +143,37 @@ TEST_CASE("two sessions with different thread counts run at once on two threads,
     CHECK(of_three == 3);
 }
 
-TEST_CASE("a progress callback gets a session's progress and stops it at a whole sample") {
+TEST_CASE("a sink stops the preparation of a picture between its steps") {
+    PictureOptions options;
+    options.scene.scene = "cornell-box";
+    options.machine.device = "cpu";
+    options.no_cache = true;
+    for (const int step : {0, 1}) { // after reading, and after building trees
+        test::AskedSink stops(step);
+        const auto error = test::thrown_error([&] { prepare_render(options, kRender, stops, {}); });
+        REQUIRE(error.has_value());
+        CHECK(error->code() == ErrorCode::Interrupted);
+        CHECK(stops.asked == step + 1);
+    }
+    test::AskedSink never;
+    CHECK(prepare_render(options, kRender, never, {})->scene().instances.size() > 1);
+}
+
+TEST_CASE("a frame that a sink stops is discarded, and the next one begins a sequence") {
+    const MixedWorld world;
+    Queue queue = Queue::make_cpu(); // a GPU's frames are not broken off
+    RenderSettings settings = part_settings();
+    Session session(queue, world.prepared, test::mixed_scene_camera(), settings);
+    Session fresh(queue, world.prepared, test::mixed_scene_camera(), settings);
+    REQUIRE(session.render_frame(0, {}));
+    test::AskedSink stops(0);
+    CHECK(!session.render_frame(1, {}, {}, stops));
+    REQUIRE(session.render_frame(2, {}));
+    REQUIRE(fresh.render_frame(2, {}));
+    CHECK(picture_hash(session.frame().picture()) == picture_hash(fresh.frame().picture()));
+}
+
+TEST_CASE("a sink gets a session's progress and stops it at a whole sample") {
     const MixedWorld world;
     Queue queue = test::requested_queue();
     RenderSettings settings = part_settings();

@@ -101,7 +101,7 @@ class Integrators(CliTest):
                 self.assertEqual(event["seconds_left"] is None, event["share"] < 0.01, event)
         self.assertEqual([(event["samples"], event["share"], event["seconds_left"]) for event in told[-1:]], [(2, 1, 0)])
         self.assertRegex(self.stderr_on_a_terminal(flags),
-                         r"\r\[=* *\] +\d+ %  irradiance_cache, before the first sample  [\d.]+ Mrays/s  \d+ s left\x1b\[K")
+                         r"\r\[=* *\] +\d+ %  before the first sample  [\d.]+ Mrays/s  \d+ s left\x1b\[K")
 
     @unittest.skipIf(DEVICE != "cpu", "a GPU may have samples, or be at the limit of work, before the signal comes")
     def test_reyes_hears_an_interrupt_while_it_dices(self):

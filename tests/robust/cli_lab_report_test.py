@@ -251,7 +251,7 @@ class WhatIsWritten(LabTest):
         with subprocess.Popen([PROGRAM, *line], cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE) as program:
             for text in program.stdout:
-                if re.search(when, json.loads(text).get("doing", "")):
+                if re.search(when, json.loads(text).get("step", "")):
                     break
             time.sleep(after_s)
             program.send_signal(signal.SIGINT)
@@ -295,7 +295,7 @@ class WhatIsWritten(LabTest):
         with subprocess.Popen([PROGRAM, *line], cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE) as program:
             for text in program.stdout:
-                if json.loads(text).get("doing", "").startswith("figure-3.7a: form factors"):
+                if json.loads(text).get("step", "").startswith("figure-3.7a: form factors"):
                     break
             program.send_signal(signal.SIGINT)
             stdout, stderr = program.communicate(timeout=PATIENCE_S)

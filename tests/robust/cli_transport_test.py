@@ -137,7 +137,7 @@ class Transport(CliTest):
         with subprocess.Popen([PROGRAM, *line], cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE) as program:
             for text in program.stdout:
-                if re.search(when, json.loads(text).get("doing", "")):
+                if re.search(when, json.loads(text).get("step", "")):
                     break
             program.send_signal(signal.SIGINT)
             begin = time.monotonic()

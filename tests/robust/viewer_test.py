@@ -322,6 +322,27 @@ class Pictures(CliTest):
             info = self.info("saved.exr")
             self.assertEqual(info["hash"], state["hash"])
 
+    def test_render_makes_a_saved_exr_again_from_the_settings_in_it(self):
+        with Viewer("--seed", "7", "--restir", "di", "--exposure", "1.5", "--environment", "0.1,0.2,0.3") as viewer, \
+                Client(viewer) as client:
+            client.done()
+            changes = [("max_depth", 2), ("spp", 3), ("tone_map", "aces"), ("integrator", "direct"), ("fov", 50), ("aperture", 0.01)]
+            for moves in [False, True]:
+                last = client.steer(type="orbit", dx=-0.2, dy=0.1) if moves else 0
+                for name, value in changes if moves else []:
+                    last = client.set(name, value)
+                state = client.done(lambda s, n=last: s["input"] >= n and s["hash"])
+                with open(self.path("saved.exr"), "wb") as file:
+                    file.write(viewer.get("/save?format=exr")[2])
+                write(self.path("s.json"), self.succeed("info", "saved.exr", "--settings").stdout)
+                self.succeed("render", "cornell-box", "-o", "again.exr", "-o", "again.png", "--settings", "s.json", "--device", "cpu")
+                saved, again = self.info("saved.exr"), self.info("again.exr")
+                self.assertEqual(saved["hash"], state["hash"])
+                for name in ["hash", "pertev.hash", "pertev.spp", "pertev.integrator", "pertev.max_depth", "pertev.seed", "pertev.eye",
+                             "pertev.fov", "pertev.tone_map", "pertev.exposure", "pertev.environment", "pertev.scene_hash"]:
+                    self.assertEqual(saved[name], again[name], name)
+                self.assertIn("seed", saved["pertev.by_flags"].split())
+
     def test_the_object_at_a_pixel_is_reported_by_name(self):
         with Viewer() as viewer, Client(viewer) as client:
             client.steer(type="pick", x=0.5, y=0.95, use="show")

@@ -81,6 +81,9 @@ class Times(CliTest):
                 file.write(viewer.get("/save?format=exr")[2])
             info = self.info("saved.exr")
             self.assertEqual((info["pertev.time"], info["hash"]), (2, state["hash"]))
+            write(self.path("s.json"), self.succeed("info", "saved.exr", "--settings").stdout)
+            self.succeed("render", "m.gltf", "-o", "again.exr", "--settings", "s.json", "--device", "cpu")
+            self.assertEqual(self.info("again.exr")["hash"], state["hash"])
 
     def test_with_radiosity_time_moves_only_the_camera(self):
         scene = json.loads(moving_gltf())

@@ -144,7 +144,7 @@ TEST_CASE("links over the limit are refined again with a larger error and give t
     const auto solve = [&](float link_error, uint64_t max_links) {
         RadiositySettings settings;
         settings.link_error = link_error;
-        WorkWatch watch({});
+        WorkWatch watch(nobody());
         return solve_hierarchically(patched.solved, patched.tree, 0.4f, settings, watch, max_links);
     };
     const HierarchicalSolution fine = solve(0.05f, kMaxLinks), coarse = solve(0.4f, kMaxLinks);
@@ -175,8 +175,8 @@ TEST_CASE("a solution with an enlarged error warns and records that error") {
     settings.patch_size = 0.4f, settings.subdivisions = 0;
     settings.link_error = 0.05f;
     std::set<std::string> reported;
-    const auto report = [&](const char* what, double) { return reported.insert(what), true; };
-    const uint64_t most = solve_radiosity(patched.prepared, settings, {}).stats.factors / 2;
+    ProgressSink report([&](const Progress& now) { return reported.insert(now.doing), true; });
+    const uint64_t most = solve_radiosity(patched.prepared, settings).stats.factors / 2;
     const SolvedRadiosity solved = solve_radiosity(patched.prepared, settings, report, most);
     REQUIRE(solved.stats.link_error >= 0.1f);
     CHECK(solved.solution.made.find(fmt::format(R"("link_error":{},)", solved.stats.link_error)) != std::string::npos);

@@ -5,11 +5,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <atomic>
 
 #include "base/parallel_for.h"
 #include "session/session.h"
 #include "session/session_bytes.h"
+#include "tests/support/asked_sink.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -78,12 +78,9 @@ inline CheckedPicture check_one_picture(const Scene& scene, RenderSettings setti
 /// Ctrl-C), ended by the time limit after another and resumed, with passes of one sample, two samples or more.
 inline void check_goes_on(Session& session, Queue& queue, const Scene& scene, const RenderSettings& settings,
                           const Camera& camera = camera_with_lens()) {
-    std::atomic<bool> is_abandoned = true;
     session.set_settings(settings);
-    session.abandon_when(&is_abandoned);
-    if (!queue.is_cuda()) CHECK(session.render(settings.samples) == 0);
-    is_abandoned = false;
-    const auto until_first = [](const RenderProgress& now) { return now.samples_done == 0; };
+    if (!queue.is_cuda()) CHECK(session.render(settings.samples, AskedSink(0)) == 0);
+    ProgressSink until_first([](const Progress& now) { return now.samples_done == 0; });
     CHECK(session.render(settings.samples, until_first) == 1);
     RenderSettings short_of_time = settings;
     short_of_time.time_limit_s = 1e-9;
@@ -92,7 +89,6 @@ inline void check_goes_on(Session& session, Queue& queue, const Scene& scene, co
     session.set_settings(settings);
     CHECK(session.render(settings.samples - 2) == settings.samples - 2);
     CHECK(render_hash(session.result()) == render_hash(render(queue, scene, camera, settings)));
-    session.abandon_when(nullptr);
 }
 
 /// Checks that a picture takes the predicted memory. `sorts` means that it sorts on a GPU, where only CUB on the device

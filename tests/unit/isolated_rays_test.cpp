@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "lab/isolated_rays.h"
+#include "tests/support/asked_sink.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 
@@ -16,18 +17,21 @@ TEST_CASE("a mix of rays has the rate of its kinds traced one after the other") 
     CHECK(IsolatedRates{.camera = 4}.of_mix({.camera = 4, .bounce = 1, .shadow = 0}) == 0.0); // no rate, no mix
 }
 
-TEST_CASE("rays of each kind have a rate, and the callback is called during the measurement") {
+TEST_CASE("rays of each kind have a rate, and the sink is asked during the measurement") {
     Queue queue = test::requested_queue();
     Messages messages;
     const Scene scene = test::make_mixed_scene();
     const TracerChoice choice = default_tracers(queue.is_cuda());
     const PreparedScene prepared =
         prepare_scene(scene, {.bvh = {}, .bvh_cache = {}, .tracers = choice, .keep_coordinates = true}, messages);
-    int requested = 0;
+    test::AskedSink sink;
     const IsolatedRates rates =
-        measure_isolated_rays(queue, scene, test::mixed_scene_camera(), prepared, choice, 1000, [&] { ++requested; });
+        measure_isolated_rays(queue, scene, test::mixed_scene_camera(), prepared, choice, 1000, sink);
     CHECK(rates.camera > 0);
     CHECK(rates.bounce > 0);
     CHECK(rates.shadow > 0);
-    CHECK(requested > 5);
+    CHECK(sink.asked > 5);
+    test::AskedSink stops(3);
+    CHECK_THROWS_AS(measure_isolated_rays(queue, scene, test::mixed_scene_camera(), prepared, choice, 1000, stops),
+                    Error);
 }

@@ -12,6 +12,7 @@
 #include "integrators/kinds/make_integrator.h"
 #include "radiosity/corner_light.h"
 #include "radiosity/solve_memory.h"
+#include "tests/support/asked_sink.h"
 #include "tests/support/cpu_seconds.h"
 #include "tests/support/options.h"
 #include "tests/support/radiosity_scenes.h"
@@ -265,8 +266,8 @@ TEST_CASE("an interrupted solution records its state and is rendered with a warn
         if (solver != RadiositySolver::Matrix) settings.patch_size = 0.2f; // there are too many for it
         settings.contrast = 0.01f;
         int count = 0;
-        const SolvedRadiosity solved = solve_radiosity(
-            prepared, settings, [&](const char* what, double) { return what != during || ++count < heard; });
+        ProgressSink sink([&](const Progress& now) { return now.doing != during || ++count < heard; });
+        const SolvedRadiosity solved = solve_radiosity(prepared, settings, sink);
         CHECK(solved.stats.was_interrupted);
         write_solution(path, solved.solution);
         Messages warnings;
@@ -321,10 +322,11 @@ TEST_CASE("if links are interrupted while patches are divided, the parts keep th
     settings.patch_size = 0.1f;
     settings.subdivisions = 0;
     bool has_links = false;
-    const SolvedRadiosity solved = solve_radiosity(prepared, settings, [&](const char* what, double) {
-        has_links |= std::string(what).starts_with("links");
-        return !has_links || std::string(what) != "direct light";
+    ProgressSink sink([&](const Progress& now) {
+        has_links |= now.doing.starts_with("links");
+        return !has_links || now.doing != "direct light";
     });
+    const SolvedRadiosity solved = solve_radiosity(prepared, settings, sink);
     CHECK(solved.stats.was_interrupted);
     CHECK(solved.solution.extent.part == SolvedPart::SomeBounces);
     CHECK(solved.solution.patches.size() > 24);                    // some were divided
@@ -372,13 +374,16 @@ TEST_CASE("a scene that cannot be solved is refused") {
     RadiositySettings tiny = quick_settings();
     tiny.patch_size = 1e-4f;
     CHECK(test::is_about(fault(lit_box(), tiny), ErrorCode::OverLimit, "patch_size", "0.0001"));
-    const auto stop = [](const char*, double) { return false; };
+    ProgressSink stop([](const Progress&) { return false; });
     Messages messages;
     const Scene scene = lit_box();
     const PreparedScene prepared = prepare_scene(scene, {}, messages);
     const auto error = test::thrown_error([&] { solve_radiosity(prepared, quick_settings(), stop); });
     CHECK(error.has_value());
     CHECK(error->code() == ErrorCode::Interrupted);
+    test::AskedSink asked(0); // stops without progress
+    const auto again = test::thrown_error([&] { solve_radiosity(prepared, quick_settings(), asked); });
+    CHECK(again->code() == ErrorCode::Interrupted);
 }
 
 TEST_CASE("solving stops promptly on request, however long a row takes") {
@@ -388,11 +393,11 @@ TEST_CASE("solving stops promptly on request, however long a row takes") {
     const auto seconds_to_end = [&](const RadiositySettings& settings, const char* during) {
         double requested = -1;
         int heard = 0;
-        const auto end_in = [&](const char* what, double) {
-            if (std::string(what) != during || ++heard == 1) return true; // it begins
+        ProgressSink end_in([&](const Progress& now) {
+            if (now.doing != during || ++heard == 1) return true; // it begins
             if (requested < 0) requested = test::cpu_seconds();
             return false;
-        };
+        });
         try {
             CHECK(solve_radiosity(prepared, settings, end_in).stats.was_interrupted);
         } catch (const Error& error) {

@@ -350,10 +350,10 @@ TEST_CASE("many samples are rendered as a few first and then as many as fit") {
     const RenderSettings settings = reyes_settings(24, 16);
     Session session(queue, prepared, test::mixed_scene_camera(), settings);
     std::vector<uint32_t> reported;
-    const auto keep = [&](const RenderProgress& now) {
+    ProgressSink keep([&](const Progress& now) {
         if (reported.empty() || now.samples_done > reported.back()) reported.push_back(now.samples_done);
         return now.samples_done < 32;
-    };
+    });
     const uint32_t added = session.render(8388607, keep);
     REQUIRE(reported.size() >= 2);
     CHECK(added == reported.back());

@@ -38,9 +38,7 @@ struct SmallRun {
         settings.max_samples = 64;
         settings.reference_samples = 1024;
     }
-    TransportScene run(const std::function<bool(const LabProgress&)>& keep_going = {}) {
-        return run_transport(queue, scene, camera, settings, keep_going);
-    }
+    TransportScene run(Sink&& sink = Sink()) { return run_transport(queue, scene, camera, settings, sink); }
 };
 
 /// Progress that a call for one sample reported of the precomputation.
@@ -51,12 +49,12 @@ struct Making {
 
 Making render_one(Session& session) {
     Making making;
-    session.render(1, [&](const RenderProgress& now) {
-        const bool is_made = now.seconds > now.made_seconds; // samples have taken time
-        if (!is_made) ++making.times_requested, making.last_request_s = now.seconds;
-        making.made_s = now.made_seconds, making.end_s = now.seconds;
-        return true;
-    });
+    session.render(1, ProgressSink([&](const Progress& now) {
+                       const bool is_made = now.seconds > now.made_seconds; // samples have taken time
+                       if (!is_made) ++making.times_requested, making.last_request_s = now.seconds;
+                       making.made_s = now.made_seconds, making.end_s = now.seconds;
+                       return true;
+                   }));
     return making;
 }
 
@@ -71,11 +69,11 @@ TEST_CASE("path tracing's error falls as one over its samples, and the reference
     small.settings.integrators = {"path", "hybrid", "cast"};
     double last_share = 0;
     bool shares_rise = true;
-    const TransportScene scene = small.run([&](const LabProgress& now) {
+    const TransportScene scene = small.run(ProgressSink([&](const Progress& now) {
         shares_rise &= now.share >= last_share && now.share <= 1;
         last_share = now.share;
         return true;
-    });
+    }));
     CHECK(shares_rise);
     CHECK(last_share > 0.5);
     CHECK_FALSE(scene.interrupted);
@@ -205,12 +203,12 @@ TEST_CASE("the time of a solution's picture includes solving and rendering, and 
     picture.integrator = IntegratorKind::Radiosity;
     const Stopwatch watch;
     double begun_s = -1, solving_s = 0;
-    const SolvedPicture solved =
-        solve_picture(small.queue, prepared, small.camera, picture, 0, 2, [&](const char* what, double) {
-            if (begun_s < 0) begun_s = watch.seconds();
-            if (what != std::string_view("rendering")) solving_s = watch.seconds() - begun_s;
-            return true;
-        });
+    ProgressSink sink([&](const Progress& now) {
+        if (begun_s < 0) begun_s = watch.seconds();
+        if (now.doing != "rendering") solving_s = watch.seconds() - begun_s;
+        return true;
+    });
+    const SolvedPicture solved = solve_picture(small.queue, prepared, small.camera, picture, 0, 2, sink);
     CHECK(solving_s > 0);
     CHECK(solved.figures.seconds > solving_s);
     CHECK(solved.figures.seconds < watch.seconds());
@@ -243,7 +241,7 @@ TEST_CASE("an interrupt during a solution keeps the previous one") {
     small.settings.reference_samples = 2;
     small.settings.seconds = 1e6;
     const TransportScene scene =
-        small.run([](const LabProgress& now) { return now.doing.find("solution 2") == std::string::npos; });
+        small.run(ProgressSink([](const Progress& now) { return now.doing.find("solution 2") == std::string::npos; }));
     CHECK(scene.interrupted);
     REQUIRE(scene.rows[0].repetitions.size() == 1);
     CHECK(scene.rows[0].repetitions[0].size() == 1);
@@ -255,17 +253,18 @@ TEST_CASE("an interrupt keeps the previous repetitions, or the finished part of 
     small.settings.max_samples = 8;
     int seen = 0; // calls of the third turn: as below, so that it has figures when it is dropped
     const TransportScene second =
-        small.run([&](const LabProgress& now) { return now.doing != "path, 3 of 4" || ++seen < 5; });
+        small.run(ProgressSink([&](const Progress& now) { return now.doing != "path, 3 of 4" || ++seen < 5; }));
     CHECK(second.interrupted);
     REQUIRE(second.rows[0].repetitions.size() == 2);
     CHECK(second.rows[0].repetitions[1].size() == 4);
     int calls = 0; // one before the session is made, one after the sample that is not timed, then one a pass
     const TransportScene first =
-        small.run([&](const LabProgress& now) { return now.doing != "path, 1 of 4" || ++calls < 5; });
+        small.run(ProgressSink([&](const Progress& now) { return now.doing != "path, 1 of 4" || ++calls < 5; }));
     CHECK(first.interrupted);
     REQUIRE(first.rows[0].repetitions.size() == 1);
     CHECK(first.rows[0].repetitions[0].size() == 2);
-    const TransportScene none = small.run([](const LabProgress& now) { return !now.doing.starts_with("reference"); });
+    const TransportScene none =
+        small.run(ProgressSink([](const Progress& now) { return !now.doing.starts_with("reference"); }));
     CHECK(none.interrupted);
     CHECK_FALSE(has_findings(none));
 }

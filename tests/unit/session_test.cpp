@@ -16,6 +16,7 @@
 #include "render/update_scene.h"
 #include "session/session.h"
 #include "session/session_bytes.h"
+#include "tests/support/asked_sink.h"
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
@@ -450,21 +451,34 @@ TEST_CASE("camera rays' nodes and triangles are counted for each pixel") {
     CHECK(std::ranges::any_of(work, [](const RayWork& ray) { return ray.nodes > 0 && ray.triangles > 0; }));
 }
 
-TEST_CASE("an abandoned render adds nothing, and the next picture equals a fresh session's") {
+TEST_CASE("a render that a sink stops adds nothing unfinished, and the next picture equals a fresh session's") {
     Queue queue = Queue::make_cpu(); // a GPU's samples are not broken off
     const Prepared mixed(test::make_mixed_scene());
     RenderSettings settings = queued_settings();
     settings.body = PathBody::Loop;
     Session session(queue, mixed.prepared, camera_at(0), settings);
-    std::atomic<bool> abandon{false};
-    session.abandon_when(&abandon);
-    session.render(2);
-    abandon = true;
-    CHECK(session.render(3) == 0);
+    CHECK(session.render(3, test::AskedSink(1)) == 0); // while the first pass is under way
     CHECK(session.history().samples == 0);
-    abandon = false;
-    CHECK(session.render(2) == 2);
+    CHECK(session.render(1) == 1);
+    settings.pass_samples = 1;
+    session.set_settings(settings);
+    CHECK(session.render(3, test::AskedSink(0)) == 1); // a pass is finished once there is a sample to lose
+    session.leave_passes(true);
+    CHECK(session.render(3, test::AskedSink(1)) == 0);
+    CHECK(session.history().samples == 2);
     Session fresh(queue, mixed.prepared, camera_at(0), settings);
     fresh.render(2);
     CHECK(picture_hash(session.picture()) == picture_hash(fresh.picture()));
+    session.cut();
+    struct InSecondPass final : Sink {
+        void progress(const Progress&) override { is_second = true; }
+        bool should_stop() override { return is_second && ++asked > 1; } // the first time the pass has not begun
+        std::atomic<bool> is_second = false;
+        std::atomic<int> asked = 0;
+    };
+    CHECK(session.render(9, InSecondPass()) == 0); // samples of the call are not kept
+    settings.denoise = Denoise::Svgf;
+    session.set_settings(settings);
+    CHECK(session.render(2, test::AskedSink(3)) == 0); // while surfaces are passed to the denoiser
+    CHECK(session.history().samples == 0);
 }

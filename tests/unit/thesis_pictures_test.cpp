@@ -70,7 +70,7 @@ std::vector<ThesisPicture> all_pictures(Queue& queue, PathBody body) {
     if (body == PathBody::Wavefront) settings.batch = 500;
     ThesisPictures pictures(queue, settings);
     std::vector<ThesisPicture> made;
-    for (const std::string& name : thesis_picture_names()) made.push_back(pictures.make(name, {}));
+    for (const std::string& name : thesis_picture_names()) made.push_back(pictures.make(name));
     return made;
 }
 
@@ -168,7 +168,7 @@ TEST_CASE("patches cover as many pixels in small pictures as in full ones, where
 TEST_CASE("the panels of figure 3.7 converge to the smooth solution") {
     Queue queue = test::requested_queue();
     ThesisPictures pictures(queue, small_picture(192, 144, 8));
-    const auto panel = [&](const char* name) { return pictures.make(name, {}).image; };
+    const auto panel = [&](const char* name) { return pictures.make(name).image; };
     const Rgba8Image dark = panel("figure-3.7a"), ambient = panel("figure-3.7b"), flat = panel("figure-3.7c"),
                      smooth = panel("figure-3.7d");
     // Light is added, everywhere but where lamps and the background are seen.
@@ -187,8 +187,8 @@ TEST_CASE("the panels of figure 3.7 converge to the smooth solution") {
 TEST_CASE("the photons of figure 3.9 lie on surfaces, and the map blurs what final gathering shows") {
     Queue queue = test::requested_queue();
     ThesisPictures pictures(queue, small_picture(256, 192, 8));
-    const ThesisPicture dots = pictures.make("figure-3.9a", {}), map = pictures.make("figure-3.9b", {}),
-                        gathered = pictures.make("figure-3.9c", {});
+    const ThesisPicture dots = pictures.make("figure-3.9a"), map = pictures.make("figure-3.9b"),
+                        gathered = pictures.make("figure-3.9c");
     // Nothing is next to the square box.
     CHECK(mean_green(dots.image, 0, 0, 0.1, 1) == 0);
     std::size_t lit = 0;
@@ -203,7 +203,7 @@ TEST_CASE("the photons of figure 3.9 lie on surfaces, and the map blurs what fin
 TEST_CASE("the caustic of figure 3.10 is more than three times as bright as its surroundings") {
     Queue queue = test::requested_queue();
     ThesisPictures pictures(queue, small_picture(256, 192, 16));
-    const ThesisPicture dots = pictures.make("figure-3.10a", {}), shown = pictures.make("figure-3.10b", {});
+    const ThesisPicture dots = pictures.make("figure-3.10a"), shown = pictures.make("figure-3.10b");
     CHECK(shown.stats.samples == 16);
     CHECK(dots.stats.samples == 1);
     // Brightness of light that is shown so, by the curve that shows it.
@@ -229,7 +229,7 @@ TEST_CASE("shadows are hard under a point light and soft under an area light, an
     ThesisPictures pictures(queue, settings);
     // Shares of neighbours in a row of which one is at least 1.5 times as bright as the other, and of white.
     const auto look_at_picture = [&](const char* number) {
-        const ThesisPicture picture = pictures.make(number, {});
+        const ThesisPicture picture = pictures.make(number);
         const auto& pixels = picture.image.pixels;
         int steps = 0, white = 0;
         for (uint32_t y = 0; y < settings.height; ++y) {

@@ -1,11 +1,14 @@
 // A finished picture's files: layers, display, metadata, and what happens when one of them cannot be written.
 
+#include <algorithm>
+
 #include <doctest/doctest.h>
 
 #include "image/picture_hash.h"
 #include "image/read_exr.h"
 #include "image/read_image.h"
 #include "image/tone_map_image.h"
+#include "session/degrees.h"
 #include "session/render_picture.h"
 #include "session/writing/write_picture.h"
 #include "tests/support/options.h"
@@ -163,6 +166,63 @@ TEST_CASE("metadata records how scene and camera were chosen") {
     CHECK(camera.fov_deg == 0);
     choice.fov_deg = 40.0f;
     CHECK(source_of(choice, {}).fov_deg == 40);
+}
+
+TEST_CASE("metadata of settings have the names and types of earlier versions, also of settings that nobody gave") {
+    PictureRecord record;
+    SceneSource& scene = record.scene;
+    scene.scene = "mixed";
+    scene.has_environment = true;
+    scene.environment_scale = 2;
+    scene.up_axis = "z", scene.unit = "cm", scene.animation = "go", scene.file_scene = "one", scene.ground = "on";
+    scene.emitters = {"a=1W", "b=2lm"};
+    scene.two_sided_lights = true;
+    scene.time_s = 0.5;
+    scene.shutter = Shutter{-0.25, 0.25};
+    Camera& camera = record.camera.camera;
+    camera.world_from_camera = look_at({0.1f, 0.9f, 3}, {0.1f, 0.9f, 1}, {0, 1, 0});
+    camera.aperture_radius = 0.25f, camera.focus_distance = 2, camera.fov_y = 40 * kRadiansPerDegree;
+    record.settings.filter = PixelFilter::Box;
+    record.display = Display{ToneMap::Aces, 1.25f};
+    const ExrMetadata expected = {{"pertev.scene", "mixed"},
+                                  {"pertev.environment", "made up"},
+                                  {"pertev.environment_scale", 2.0f},
+                                  {"pertev.environment_rotation", 0.0f},
+                                  {"pertev.up_axis", "z"},
+                                  {"pertev.unit", "cm"},
+                                  {"pertev.animation", "go"},
+                                  {"pertev.file_scene", "one"},
+                                  {"pertev.ground", "on"},
+                                  {"pertev.lamp", "a=1W\nb=2lm"},
+                                  {"pertev.two_sided_lights", 1},
+                                  {"pertev.show_back_faces", 0},
+                                  {"pertev.time", 0.5},
+                                  {"pertev.shutter", "-0.25,0.25"},
+                                  {"pertev.camera", ""},
+                                  {"pertev.eye", "0.1,0.9,3"},
+                                  {"pertev.target", "0.1,0.9,1"},
+                                  {"pertev.up", "0,1,0"},
+                                  {"pertev.aperture", 0.25f},
+                                  {"pertev.focus", 2.0f},
+                                  {"pertev.projection", "perspective"},
+                                  {"pertev.fov", 40.0f},
+                                  {"pertev.world_from_camera", "1,0,0 0,1,0 0,0,1 0.1,0.9,3"},
+                                  {"pertev.filter_radius", 0.5f},
+                                  {"pertev.seed", "0"},
+                                  {"pertev.max_depth", 16},
+                                  {"pertev.tone_map", "aces"},
+                                  {"pertev.exposure", 1.25f}};
+    const ExrMetadata metadata = settings_metadata(record);
+    for (const auto& entry : expected) {
+        CAPTURE(entry.first);
+        const auto found = std::ranges::find(metadata, entry.first, &ExrMetadata::value_type::first);
+        REQUIRE(found != metadata.end());
+        CHECK(found->second == entry.second);
+    }
+    for (const char* absent : {"pertev.view_height", "pertev.lpe", "pertev.flat_patches", "pertev.false_color"}) {
+        CAPTURE(absent);
+        CHECK(std::ranges::find(metadata, absent, &ExrMetadata::value_type::first) == metadata.end());
+    }
 }
 
 TEST_CASE("ids come with the names of the visible objects only, as JSON") {

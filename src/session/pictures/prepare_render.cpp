@@ -34,27 +34,6 @@ Ground ground_of(const PictureOptions& options) {
     return is_off ? Ground::Off : Ground::Auto;
 }
 
-/// Reports all given settings and their sources, with the resulting size and number of samples.
-void report_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source) {
-    const CameraChoice& choice = options.scene.camera;
-    const Camera* const own = scene_camera(choice.camera, scene);
-    const bool is_own = own != nullptr && !choice.eye && options.camera_path.empty();
-    auto origins = options.given; // the scene's own camera has no value that a settings file could contain
-    if (is_own) origins.try_emplace("camera", SettingOrigin::Scene);
-    if (own != nullptr && own->aspect > 0) origins.try_emplace("size", SettingOrigin::Scene);
-    for (const auto& [name, origin] : origins) {
-        std::string& names = origin == SettingOrigin::Caller ? source.by_flags
-                             : origin == SettingOrigin::File ? source.by_settings
-                                                             : source.by_scene;
-        names += (names.empty() ? "" : " ") + name;
-    }
-    options.size = PictureSize{settings.width, settings.height};
-    options.given.try_emplace("size", SettingOrigin::File);
-    options.given.try_emplace("spp", SettingOrigin::File);
-    source.hash = scene_hash(options.scene.scene);
-    source.settings = settings_json(options, source.hash);
-}
-
 } // namespace
 
 std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
@@ -73,6 +52,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
         options.render.integrator == IntegratorKind::Radiosity && !options.radiosity.solution.empty();
     const SceneUse use = shows_solution ? SceneUse::Measurement : SceneUse::Picture; // opened as for the solution
     Scene scene = open_scene(options.scene, messages, use, ground_of(options));
+    sink.check(); // the file was read to its end, and trees are built to theirs
     take_suggestions(scene, verbs, options, messages);
     if (options.strict) refuse_what_is_left_out(messages, "nothing is rendered");
     RenderSettings& settings = ready->settings;
@@ -90,6 +70,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     ready->sequence = frame_range(options).value_or(FrameRange{.time_s = options.time_s, .shutter = shutter(options)});
     ready->moving.emplace(std::move(scene), ready->sequence.time_of(ready->sequence.first), prepare, messages,
                           ready->sequence.shutter);
+    sink.check();
     ready->queue = machine.take();
     if (settings.integrator == IntegratorKind::Radiosity) {
         if (ready->moving->is_animated() && !options.frames.empty()) {
@@ -103,6 +84,31 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     return ready;
 }
 
+void record_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source) {
+    const CameraChoice& choice = options.scene.camera;
+    const Camera* const own = scene_camera(choice.camera, scene);
+    const bool is_own = own != nullptr && !choice.eye && options.camera_path.empty();
+    auto origins = options.given; // the scene's own camera has no value that a settings file could contain
+    if (is_own) origins.try_emplace("camera", SettingOrigin::Scene);
+    if (own != nullptr && own->aspect > 0) origins.try_emplace("size", SettingOrigin::Scene);
+    source.by_default = source.by_scene = source.by_settings = source.by_flags = "";
+    const auto add = [](std::string& names, const std::string& name) { names += (names.empty() ? "" : " ") + name; };
+    for (const auto& [name, origin] : origins) {
+        add(origin == SettingOrigin::Caller ? source.by_flags
+            : origin == SettingOrigin::File ? source.by_settings
+                                            : source.by_scene,
+            name);
+    }
+    if (!is_own && !choice.eye && options.camera_path.empty()) add(source.by_default, "camera");
+    if (source.has_environment && options.scene.environment.empty()) add(source.by_default, "environment");
+    if (!source.ground.empty() && !options.is_given("ground")) add(source.by_default, "ground");
+    options.size = PictureSize{settings.width, settings.height};
+    options.given.try_emplace("size", SettingOrigin::File);
+    options.given.try_emplace("spp", SettingOrigin::File);
+    if (source.hash.empty()) source.hash = scene_hash(options.scene.scene);
+    source.settings = settings_json(options, source.hash);
+}
+
 PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, const Messages& messages) {
     PictureRecord record = {.scene = source_of(options.scene, ready.scene()),
                             .camera = {},
@@ -111,7 +117,7 @@ PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, 
                             .frame = {},
                             .display = {}};
     if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
-    report_settings(options, ready.settings, ready.scene(), record.scene);
+    record_settings(options, ready.settings, ready.scene(), record.scene);
     record.scene.made_up = messages.made_up();
     record.scene.left_out = messages.left_out();
     record.scene.load_seconds = ready.load_s;

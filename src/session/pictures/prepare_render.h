@@ -7,11 +7,11 @@
 #include <memory>
 #include <optional>
 
+#include "base/sink.h"
 #include "device/queue.h"
 #include "session/moving_scene.h"
 #include "session/opening/moving_camera.h"
 #include "session/pictures/render_sequence.h"
-#include "session/sink.h"
 #include "session/writing/picture_metadata.h"
 
 namespace pertev {
@@ -32,9 +32,13 @@ struct RenderSetup {
 using SolveRadiosity = std::function<RadiosityDisplay(RenderSetup& ready)>;
 
 /// Prepares everything and reports progress to `sink`. Adds to `options` what the scene's file suggests for the
-/// settings of `verbs`. Calls `solve` if the integrator is radiosity. Throws Error.
+/// settings of `verbs`. Calls `solve` if the integrator is radiosity. Throws Error, and
+/// Error(Interrupted) if the sink stops it.
 std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
                                             const SolveRadiosity& solve);
+
+/// Records all given settings and their sources, with the resulting size and number of samples, in `source`.
+void record_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source);
 
 /// Returns the record of the first frame's picture, with its camera but without its display.
 PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, const Messages& messages);

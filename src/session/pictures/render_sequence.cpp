@@ -64,20 +64,22 @@ void go_to_frame(uint32_t frame, const FrameCamera& camera, MovingScene& moving,
     session.set_camera(record.camera.camera);
 }
 
-RenderedFrame render_frame(uint32_t frame, const SequenceOfFrames& frames, Messages& messages,
-                           const FilmRender::KeepGoing& keep_going) {
+RenderedFrame render_frame(uint32_t frame, const SequenceOfFrames& frames, Sink& sink) {
     auto& [camera, moving, record, session] = frames;
     const Stopwatch update;
-    if ((record.settings.aovs & kAovMotion) != 0) show_frame_before(frame, camera, moving, session, messages);
-    go_to_frame(frame, camera, moving, session, record, messages);
+    if ((record.settings.aovs & kAovMotion) != 0) show_frame_before(frame, camera, moving, session, sink.messages());
+    go_to_frame(frame, camera, moving, session, record, sink.messages());
     const double update_s = update.seconds();
     if (!record.frame) {
-        session.render(record.settings.samples, keep_going);
+        session.leave_passes(true); // a frame without all its samples is worth nothing
+        session.render(record.settings.samples, sink);
         return {session.result(), update_s};
     }
     record.frame->number = frame;
     const Stopwatch watch;
-    session.render_frame(FrameRange::sample_of(frame), record.frame->reconstruction, record.frame->restir);
+    if (!session.render_frame(FrameRange::sample_of(frame), record.frame->reconstruction, record.frame->restir, sink)) {
+        return {{}, update_s};
+    }
     RenderedFrame rendered = {session.frame_result(), update_s};
     rendered.result.render_seconds = watch.seconds();
     return rendered;

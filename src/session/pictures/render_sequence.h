@@ -36,12 +36,11 @@ struct SequenceOfFrames {
     Session& session;
 };
 struct RenderedFrame {
-    RenderResult result; // with fewer samples than requested if `keep_going` ended it
+    RenderResult result; // with fewer samples than requested if the sink stopped it
     double update_s = 0; // seconds for the update of the scene
 };
 /// Goes to `frame` and renders it: in real time if the record has a frame, else as a picture with its samples. Throws
 /// as go_to and Session::render.
-RenderedFrame render_frame(uint32_t frame, const SequenceOfFrames& frames, Messages& messages,
-                           const FilmRender::KeepGoing& keep_going);
+RenderedFrame render_frame(uint32_t frame, const SequenceOfFrames& frames, Sink& sink);
 
 } // namespace pertev

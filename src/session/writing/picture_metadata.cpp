@@ -13,6 +13,7 @@
 #include "integrators/reyes/reyes_settings.h"
 #include "render/light_paths/light_path_layers.h"
 #include "session/degrees.h"
+#include "session/position_text.h"
 #include "session/survey/ground.h"
 #include "settings/value_names.h"
 
@@ -21,24 +22,10 @@ namespace {
 
 using MetadataValue = ExrMetadata::value_type::second_type;
 
-std::string comma_separated(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
-
 std::string comma_separated(DoubleVec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
-
-/// A position in the coordinates of the file, with enough digits to convert back to the same bits.
-std::string position_in_file(Vec3 p, DoubleVec3 origin) {
-    return origin == DoubleVec3{0, 0, 0} ? comma_separated(p) : comma_separated(origin + to_double(p));
-}
 
 void append(ExrMetadata& metadata, const ExrMetadata& more) {
     metadata.insert(metadata.end(), more.begin(), more.end());
-}
-
-ExrMetadata environment_metadata(const SceneSource& source) {
-    const std::string not_asked_for = source.has_environment ? "made up" : "none";
-    return {{"pertev.environment", source.environment.empty() ? not_asked_for : source.environment},
-            {"pertev.environment_scale", source.environment_scale},
-            {"pertev.environment_rotation", source.environment_rotation_deg}};
 }
 
 std::string names_as_json(const std::set<uint32_t>& ids, const std::vector<std::string>& names) {
@@ -50,9 +37,9 @@ std::string names_as_json(const std::set<uint32_t>& ids, const std::vector<std::
     return text.empty() ? "{}" : text + "}";
 }
 
-/// A whole number is stored as text if it need not fit an int32_t.
+/// A whole number is stored as text if it need not fit an int32_t, and a list as lines.
 MetadataValue metadata_value(const PictureOptions& options, const Setting& setting) {
-    const std::string text = texts_of(options, setting).front();
+    const std::string text = fmt::format("{}", fmt::join(texts_of(options, setting), "\n"));
     const bool is_text = setting.high > double(INT32_MAX);
     return std::visit(
         [&]<class Field>(Field field) -> MetadataValue {
@@ -60,12 +47,55 @@ MetadataValue metadata_value(const PictureOptions& options, const Setting& setti
                 return static_cast<int32_t>(*field);
             else if constexpr (std::is_same_v<Field, float*>)
                 return *field;
+            else if constexpr (std::is_same_v<Field, std::optional<float>*> ||
+                               std::is_same_v<Field, std::optional<double>*>)
+                return field->value();
             else if constexpr (std::is_same_v<Field, uint32_t*>)
                 return is_text ? MetadataValue(text) : static_cast<int32_t>(*field);
             else
                 return text;
         },
         setting.field(const_cast<PictureOptions&>(options)));
+}
+
+/// Returns the settings of cameras, or all others.
+std::vector<Setting> rows_of(bool camera) {
+    std::vector<Setting> rows = all_settings();
+    std::erase_if(rows, [&](const Setting& row) { return (row.group == std::string_view("Camera")) != camera; });
+    return rows;
+}
+
+/// Returns the options that would give this picture, without its camera: those that were given, and what was chosen in
+/// place of others.
+PictureOptions used_options(const PictureRecord& record) {
+    const RenderSettings& settings = record.settings;
+    PictureOptions used;
+    used.render = settings;
+    used.render.filter_radius = filter_radius_of(settings);
+    used.scene = record.scene;
+    if (used.scene.environment.empty()) used.scene.environment = record.scene.has_environment ? "made up" : "none";
+    used.time_s = record.scene.time_s;
+    if (const auto& shutter = record.scene.shutter) {
+        used.shutter = fmt::format("{},{}", shutter->open_s, shutter->close_s);
+    }
+    if (settings.light_paths) {
+        for (const LightPathExpression& layer : settings.light_paths->expressions) {
+            used.lpe.push_back(fmt::format("{}={}", layer.name, layer.text));
+        }
+    }
+    if (settings.heights) {
+        std::set<std::string> heights; // several materials if a name matches more than one
+        for (const HeightMap& map : *settings.heights) heights.insert(map.text);
+        used.displacement.assign(heights.begin(), heights.end());
+    }
+    used.radiosity.flat_patches = settings.radiosity->is_flat;
+    if (!record.display) return used;
+    if (record.display->false_colors) {
+        used.false_color = record.display->false_colors->quantity;
+    } else {
+        used.tone_map = record.display->tone_map;
+    }
+    return used;
 }
 
 } // namespace
@@ -75,10 +105,12 @@ ExrMetadata recorded_settings(const PictureOptions& options, std::span<const Set
     const PictureOptions defaults;
     for (const Setting& setting : settings) {
         const std::vector<std::string> texts = texts_of(options, setting);
-        const bool is_used = setting.recorded != Recorded::WhereUsed || has_setting(options.render.integrator, setting);
-        const bool is_default = texts == texts_of(defaults, setting);
-        if (setting.recorded == Recorded::No || texts.empty() || !is_used) continue;
-        if (setting.recorded == Recorded::Changed && is_default) continue;
+        const Recorded recorded = setting.recorded;
+        const bool is_of_some = recorded == Recorded::WhereUsed || recorded == Recorded::AsUsed;
+        if (recorded == Recorded::No || texts.empty()) continue;
+        if (is_of_some && !has_setting(options.render.integrator, setting)) continue;
+        if (recorded == Recorded::AsUsed && texts.front().empty()) continue;
+        if (recorded == Recorded::Changed && texts == texts_of(defaults, setting)) continue;
         metadata.emplace_back(fmt::format("pertev.{}", setting.name), metadata_value(options, setting));
     }
     return metadata;
@@ -103,22 +135,15 @@ ExrMetadata id_metadata(const SceneSource& source, std::span<const PixelIds> ids
 }
 
 SceneSource source_of(const SceneOptions& options, const Scene& scene) {
-    std::string emitters;
-    for (const std::string& emitter : options.emitters) emitters += (emitters.empty() ? "" : "\n") + emitter;
-    return {.scene = options.scene,
-            .environment = environment_text(options),
-            .environment_scale = options.environment_scale,
-            .environment_rotation_deg = options.environment_rotation_deg,
-            .up_axis = options.up_axis,
-            .unit = options.unit,
-            .emitters = emitters,
-            .has_environment = scene.environment.has_value(),
-            .has_ground = has_ground(scene),
-            .two_sided_lights = options.two_sided_lights,
-            .show_back_faces = options.show_back_faces,
-            .animation = clip_choice(scene.clips),
-            .file_scene = file_scene_choice(scene),
-            .position_origin = scene.is_far ? std::optional(scene.origin_in_file) : std::nullopt};
+    SceneSource source;
+    static_cast<SceneOptions&>(source) = options;
+    source.environment = environment_text(options);
+    source.ground = has_ground(scene) ? "on" : "";
+    source.animation = clip_choice(scene.clips);
+    source.file_scene = file_scene_choice(scene);
+    source.has_environment = scene.environment.has_value();
+    if (scene.is_far) source.position_origin = scene.origin_in_file;
+    return source;
 }
 
 CameraSource source_of(const CameraChoice& choice, const Camera& camera, DoubleVec3 origin) {
@@ -130,91 +155,64 @@ CameraSource source_of(const CameraChoice& choice, const Camera& camera, DoubleV
             .origin = origin};
 }
 
-ExrMetadata camera_metadata(const CameraSource& source) {
+CameraChoice choice_of(const CameraSource& source) {
     const Camera& camera = source.camera;
     const Transform& from = camera.world_from_camera;
     const Vec3 eye = from.translation;
     const Vec3 target =
         source.target ? to_float(*source.target - source.origin) : eye - camera.focus_distance * column(from, 2);
-    Vec3 up = source.up.value_or(column(from, 1));
+    CameraChoice choice;
+    choice.camera = source.name;
+    choice.eye = stated_position(eye, source.origin);
+    choice.target = source.target.value_or(stated_position(target, source.origin));
+    choice.up = source.up.value_or(column(from, 1));
     for (const Vec3 unsaid : {Vec3{0, 0, -1}, Vec3{0, 1, 0}}) {
-        if (!source.up && look_at(eye, target, unsaid) == from) up = unsaid;
+        if (!source.up && look_at(eye, target, unsaid) == from) choice.up = unsaid;
     }
-    const std::string matrix =
-        fmt::format("{} {} {} {}", comma_separated(column(from, 0)), comma_separated(column(from, 1)),
-                    comma_separated(column(from, 2)), position_in_file(eye, source.origin));
-    const std::string looked_at =
-        source.target ? comma_separated(*source.target) : position_in_file(target, source.origin);
-    ExrMetadata metadata = {{"pertev.camera", source.name},
-                            {"pertev.world_from_camera", matrix},
-                            {"pertev.eye", position_in_file(eye, source.origin)},
-                            {"pertev.target", looked_at},
-                            {"pertev.up", comma_separated(up)},
-                            {"pertev.aperture", camera.aperture_radius}};
-    if (camera.aperture_radius > 0) metadata.emplace_back("pertev.focus", camera.focus_distance);
-    metadata.emplace_back("pertev.projection", std::string(name_of(camera.projection)));
-    const ViewSize view = view_size(camera);
-    const bool has_stated = view.setting == "fov" && source.fov_deg > 0;
-    metadata.emplace_back(fmt::format("pertev.{}", view.setting), has_stated ? source.fov_deg : view.value);
+    choice.projection = camera.projection;
+    choice.aperture = camera.aperture_radius;
+    if (camera.aperture_radius > 0) choice.focus = camera.focus_distance;
+    if (has_parallel_rays(camera.projection)) {
+        choice.view_height = camera.ortho_height;
+    } else {
+        choice.fov_deg = source.fov_deg > 0 ? source.fov_deg : degrees_for(camera.fov_y);
+    }
+    return choice;
+}
+
+ExrMetadata camera_metadata(const CameraSource& source) {
+    PictureOptions options;
+    options.scene.camera = choice_of(source);
+    ExrMetadata metadata = recorded_settings(options, rows_of(true));
+    const Transform& from = source.camera.world_from_camera;
+    const auto text = [](Vec3 axis) { return fmt::format("{},{},{}", axis.x, axis.y, axis.z); };
+    metadata.emplace_back("pertev.world_from_camera",
+                          fmt::format("{} {} {} {}", text(column(from, 0)), text(column(from, 1)),
+                                      text(column(from, 2)), comma_separated(*options.scene.camera.eye)));
     return metadata;
 }
 
 ExrMetadata settings_metadata(const PictureRecord& record) {
     const SceneSource& scene = record.scene;
     const RenderSettings& settings = record.settings;
-    ExrMetadata metadata = {{"pertev.version", fmt::format("{} {}", version(), git_commit())},
-                            {"pertev.scene", scene.scene},
-                            {"pertev.filter_radius", filter_radius_of(settings)},
-                            {"pertev.two_sided_lights", static_cast<int32_t>(scene.two_sided_lights)},
-                            {"pertev.show_back_faces", static_cast<int32_t>(scene.show_back_faces)}};
-    PictureOptions options;
-    options.render = settings;
-    append(metadata, recorded_settings(options, all_settings()));
-    if (settings.light_paths) {
-        std::string lines;
-        for (const LightPathExpression& layer : settings.light_paths->expressions) {
-            lines += fmt::format("{}{}={}", lines.empty() ? "" : "\n", layer.name, layer.text);
-        }
-        metadata.emplace_back("pertev.lpe", lines);
-    }
-    if (settings.integrator == IntegratorKind::Reyes) {
-        std::set<std::string> heights; // several materials if a name matches more than one
-        if (settings.heights) {
-            for (const HeightMap& map : *settings.heights) heights.insert(map.text);
-        }
-        if (!heights.empty()) metadata.emplace_back("pertev.displacement", fmt::format("{}", fmt::join(heights, "\n")));
-    }
+    ExrMetadata metadata = recorded_settings(used_options(record), rows_of(false));
+    append(metadata,
+           {{"pertev.version", fmt::format("{} {}", version(), git_commit())}, {"pertev.scene", scene.scene}});
+    if (scene.position_origin) metadata.emplace_back("pertev.position_origin", comma_separated(*scene.position_origin));
     if (settings.integrator == IntegratorKind::Radiosity && settings.radiosity->solution) {
         const RadiositySolution& solution = *settings.radiosity->solution;
-        append(metadata, {{"pertev.radiosity", solution.made},
-                          {"pertev.radiosity_hash", solution.hash().hex()},
-                          {"pertev.flat_patches", static_cast<int32_t>(settings.radiosity->is_flat)}});
+        append(metadata, {{"pertev.radiosity", solution.made}, {"pertev.radiosity_hash", solution.hash().hex()}});
     }
     if (record.frame) {
         append(metadata, {{"pertev.reconstruction", json_of(record.frame->reconstruction, record.frame->restir)},
                           {"pertev.frame", static_cast<int32_t>(record.frame->number)},
                           {"pertev.first_frame", static_cast<int32_t>(record.frame->cut)}});
     }
-    if (!scene.animation.empty()) metadata.emplace_back("pertev.animation", scene.animation);
-    if (!scene.file_scene.empty()) metadata.emplace_back("pertev.file_scene", scene.file_scene);
-    if (scene.time_s) metadata.emplace_back("pertev.time", *scene.time_s);
-    if (scene.shutter) {
-        metadata.emplace_back("pertev.shutter", fmt::format("{},{}", scene.shutter->open_s, scene.shutter->close_s));
-    }
-    append(metadata, camera_metadata(record.camera));
-    if (scene.position_origin) metadata.emplace_back("pertev.position_origin", comma_separated(*scene.position_origin));
-    append(metadata, environment_metadata(scene));
-    if (!scene.up_axis.empty()) metadata.emplace_back("pertev.up_axis", scene.up_axis);
-    if (!scene.unit.empty()) metadata.emplace_back("pertev.unit", scene.unit);
-    if (scene.has_ground) metadata.emplace_back("pertev.ground", std::string("on"));
-    if (!scene.emitters.empty()) metadata.emplace_back("pertev.lamp", scene.emitters);
     if (settings.irradiance) metadata.emplace_back("pertev.quantity", std::string("irradiance"));
-    if (record.display && record.display->false_colors) {
-        metadata.emplace_back("pertev.false_color", record.display->false_colors->quantity);
-    } else if (record.display) {
-        append(metadata, {{"pertev.tone_map", std::string(name_of(record.display->tone_map))},
-                          {"pertev.exposure", record.display->exposure_stops}});
+    if (record.display && !record.display->false_colors) { // metered or given
+        metadata.emplace_back("pertev.exposure", record.display->exposure_stops);
     }
+    append(metadata, camera_metadata(record.camera)); // last, because time moves it
     return metadata;
 }
 
@@ -233,6 +231,7 @@ ExrMetadata picture_metadata(const PictureRecord& record, const RenderStats& sta
     const SceneSource& scene = record.scene;
     for (const auto& [name, text] : {std::pair("pertev.scene_hash", &scene.hash),
                                      {"pertev.settings", &scene.settings},
+                                     {"pertev.by_default", &scene.by_default},
                                      {"pertev.by_scene", &scene.by_scene},
                                      {"pertev.by_settings", &scene.by_settings},
                                      {"pertev.by_flags", &scene.by_flags}}) {

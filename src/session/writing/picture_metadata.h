@@ -18,25 +18,16 @@
 
 namespace pertev {
 
-/// The source of a scene and the options of its opening.
-struct SceneSource {
-    std::string scene;           // file, or name of a built-in scene
-    std::string environment;     // requested file or colour; empty: none
-    float environment_scale = 1; // factor
-    float environment_rotation_deg = 0;
-    std::string up_axis, unit; // requested coordinate system; empty: default
-    std::string hash;          // scene_hash() of settings/settings_file.h; empty if unknown
-    std::string settings;      // all given settings, as JSON (settings/settings_file.h); empty if unknown
-    std::string by_scene, by_settings, by_flags; // names of settings from the scene's file, from a settings file, and
-                                                 // from flags
-    std::string emitters;                        // amounts of light, one per line; empty: none
-    bool has_environment = false;                // the scene has one: requested, its own or the default
-    bool has_ground = false;                     // a generated one
-    bool two_sided_lights = false, show_back_faces = false;
-    std::string animation, file_scene; // selections in the file (formats/files/file_choices.h); empty: it has no
-                                       // others
-    std::optional<double> time_s;      // time of the picture; none: at rest
-    std::optional<Shutter> shutter;    // open around that time; none: the picture shows one moment
+/// The options of a scene's opening, as they were used, and facts of the scene. Options that were chosen for the caller
+/// are filled in: the animation, the scene of the file, and `ground`, which is "on" or empty.
+struct SceneSource : SceneOptions {
+    bool has_environment = false;   // the scene has one, requested or default
+    std::optional<double> time_s;   // time of the picture; none: at rest
+    std::optional<Shutter> shutter; // open around that time; none: the picture shows one moment
+    std::string hash;               // scene_hash() of settings/settings_file.h; empty if unknown
+    std::string settings;           // all given settings, as JSON (settings/settings_file.h); empty if unknown
+    // Names of settings that were chosen for want of others, from the scene's file, from a settings file, from flags.
+    std::string by_default, by_scene, by_settings, by_flags;
     std::vector<std::string> instances, materials; // names by id, for pictures with ids; empty without them
     std::vector<std::string> made_up, left_out;    // messages: generated parts of the scene; parts of it left out
     std::optional<DoubleVec3> position_origin;     // origin of positions in a far scene; none: the file's origin
@@ -92,8 +83,10 @@ SceneSource source_of(const SceneOptions& options, const Scene& scene);
 /// Describes a camera that choose_camera() made of this choice, after aim_eye(). `origin` is the scene's.
 CameraSource source_of(const CameraChoice& choice, const Camera& camera, DoubleVec3 origin = {0, 0, 0});
 
-/// Entries that place this camera again: to the bit if its text placed it or it has none, else with the precision of
-/// the numbers. Also its matrix, column by column.
+/// Returns the settings that place this camera again: to the bit if its text placed it or it has none, else with the
+/// precision of the numbers.
+CameraChoice choice_of(const CameraSource& source);
+/// Returns entries of these settings, and its matrix, column by column.
 ExrMetadata camera_metadata(const CameraSource& source);
 
 /// Entries that determine the picture, except for the number of samples: version, scene as it was opened, camera,

@@ -1,0 +1,19 @@
+#pragma once
+
+// A sink that stops after it was asked a number of times, by whichever threads.
+
+#include <atomic>
+#include <climits>
+
+#include "base/sink.h"
+
+namespace pertev::test {
+
+struct AskedSink final : Sink {
+    explicit AskedSink(int times = INT_MAX) : most(times) {}
+    bool should_stop() override { return ++asked > most; }
+    int most;
+    std::atomic<int> asked = 0;
+};
+
+} // namespace pertev::test
