@@ -100,15 +100,15 @@ HD inline bool is_projected(const CameraView& camera, float depth) {
     return depth > 0 || has_parallel_rays(camera.projection);
 }
 
-/// Where a camera, moved from `now` to `before`, saw what is infinitely far away at `pixel`.
+/// Returns where a camera, moved from `now` to `before`, saw what is infinitely far away at `pixel`.
 HD inline Vec2 reproject_far(const CameraView& now, const CameraView& before, Vec2 pixel) {
     if (has_parallel_rays(now.projection)) return pixel;
     const Vec3 direction = make_camera_ray(now, pixel, {0, 0}).direction;
     return project_point(before, before.world_from_camera.translation + direction).pixel;
 }
 
-/// How far the direction in which a camera sees `point` turns from `before` to `now`, as the length of the difference
-/// of unit directions; negative if it sees all points in one direction.
+/// Returns how far the direction in which a camera sees `point` turns from `before` to `now`, as the length of the
+/// difference of unit directions; negative if it sees all points in one direction.
 HD inline float view_turn(const CameraView& now, const CameraView& before, Vec3 point) {
     if (has_parallel_rays(now.projection)) return -1;
     const Vec3 now_seen = normalize(point - now.world_from_camera.translation),

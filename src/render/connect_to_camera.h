@@ -17,7 +17,7 @@ struct CameraConnection {
     float distance_squared; // m2; 1 if the rays are parallel
 };
 
-/// Whether the density of camera rays at a point is that of CameraConnection over its squared distance.
+/// Returns whether the density of camera rays at a point is that of CameraConnection over its squared distance.
 HD inline bool falls_with_distance(const CameraRays& camera) { return !has_parallel_rays(camera.view.projection); }
 
 /// Density of camera rays along `direction` (unit), as in CameraConnection.
