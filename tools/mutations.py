@@ -281,7 +281,7 @@ MUTATIONS = TRANSPORT_MUTATIONS + [
                                                    "select(dot(direction, normal) > 0,")],
              ["unit/ray_origin"]),
     Mutation("lanes without the correction of the shadow terminator",
-             [edit("src/integrators/path/shade_lanes_body.h", "lower_direction(wi_local, s.tilt);",
+             [edit("src/integrators/path/shade_lanes.inl", "lower_direction(wi_local, s.tilt);",
                    "lower_direction(wi_local, 0.0f * s.tilt);")],
              ["consistency/one_picture"]),
     Mutation("rays that meet two triangles at one distance take the later one",

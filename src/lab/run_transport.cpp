@@ -274,7 +274,7 @@ private:
         const Stopwatch watch;
         const RenderSettings picture = settings_of(settings_, row.name, repetition_seed(settings_, number));
         const uint32_t samples = std::min(kSolutionSamples, settings_.max_samples);
-        ProgressSink tell([&](const Progress& now) {
+        ProgressSink report([&](const Progress& now) {
             progress(fmt::format("{}, solution {}: {}", doing, figures.size() + 1, now.doing), now.share,
                      left_of_turn_s(row, watch.seconds(), 0));
             return true;

@@ -38,8 +38,8 @@ struct Mask8 {
     }
     friend bool any(Mask8 a) { return bit_mask(a) != 0; }
     friend Words8 select(Mask8 condition, Words8 a, Words8 b) {
-        const Words8 bits = reinterpret_cast<Words8>(condition.bits);
-        return (a & bits) | (b & ~bits);
+        const Words8 chosen = reinterpret_cast<Words8>(condition.bits);
+        return (a & chosen) | (b & ~chosen);
     }
 };
 

@@ -6,6 +6,8 @@
 
 #include "math/lanes.h"
 
+#if defined(__AVX512F__)
+
 namespace pertev {
 
 using Words16 = uint32_t __attribute__((vector_size(64)));
@@ -115,3 +117,5 @@ inline void store_columns(const Floats16 (&columns)[8], const std::array<float*,
 }
 
 } // namespace pertev
+
+#endif

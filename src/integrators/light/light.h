@@ -9,25 +9,10 @@
 // end in S E, seen in a mirror or through clear glass, because the connection would have to take the only direction
 // in which such a surface scatters.
 
-#include "integrators/subpaths/particle_stages.h"
+#include "integrators/light/shade_seen.h"
 #include "integrators/subpaths/run_subpaths.h"
 
 namespace pertev {
-
-/// The stage that shades the hits of camera rays.
-struct ShadeSeen {
-    SubpathScene scene;
-    SubpathsView subpaths;
-    FilmView film;
-
-    HD void operator()(uint32_t i) const {
-        const Hit hit = subpaths.hits().load(i);
-        const Ray ray = load_ray(subpaths.rays[0] + i);
-        const SubpathState state = subpaths.states[i];
-        if (hit.instance == kNoHit) return add_seen_background(scene.picture, film, state, ray);
-        add_seen(scene.picture, film, state, ray, hit, make_surface(scene.picture.scene, hit, ray.direction));
-    }
-};
 
 /// The algorithm of particles alone, which runs the stages in order.
 struct ParticlesAlone {

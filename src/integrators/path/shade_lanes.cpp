@@ -11,7 +11,7 @@ using Floats = Floats8;
 } // namespace
 } // namespace pertev
 
-#include "integrators/path/shade_lanes_body.h"
+#include "integrators/path/shade_lanes.inl"
 
 namespace pertev {
 

@@ -12,7 +12,7 @@ using Floats = Floats16;
 } // namespace
 } // namespace pertev
 
-#include "integrators/path/shade_lanes_body.h"
+#include "integrators/path/shade_lanes.inl"
 
 namespace pertev {
 

@@ -1,5 +1,3 @@
-#pragma once
-
 // Body of shade_lanes.h. The file that includes it names the number type: `Floats` is Floats8 or Floats16. All of it is
 // in anonymous namespaces, so that each number of lanes has functions of its own.
 
