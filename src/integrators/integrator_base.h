@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "device/launch.h"
 #include "integrators/integrator.h"
 
 namespace pertev {
@@ -46,6 +47,14 @@ protected:
     void check_sums(const FilmView& film) const {
         PERTEV_CHECK(!film.frame.is_there());
         check_window(film);
+    }
+
+    /// Launches a stage, with one call per pixel, for the pixels of its film.
+    template <class Stage>
+    void launch_for_pixels(const char* name, const Stage& stage) {
+        const PixelWindow& window = stage.film.window;
+        if (window.picture_width == 0) return launch(queue_, name, window.count(), stage);
+        launch(queue_, name, window.count(), InWindow<Stage>{stage, window});
     }
 
     static constexpr uint32_t kLoopCount = 256; // minimum number of pixels that a thread of the loop takes at once

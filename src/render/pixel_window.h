@@ -32,10 +32,6 @@ struct PixelWindow {
         const auto slot = static_cast<uint32_t>(of);
         return picture_width == 0 ? slot : (y + slot / width) * picture_width + x + slot % width;
     }
-    HD bool holds(uint32_t pixel) const {
-        return picture_width == 0 ||
-               (pixel % picture_width - x < width && pixel / picture_width - y < height); // below x or y it wraps
-    }
     /// Slot of `pixel`, which must lie in the window.
     HD FilmSlot slot_of(uint32_t pixel) const {
         return FilmSlot{picture_width == 0 ? pixel : (pixel / picture_width - y) * width + pixel % picture_width - x};
@@ -44,6 +40,16 @@ struct PixelWindow {
     HD uint32_t pixel_in(uint32_t column, uint32_t row) const {
         return row * (picture_width == 0 ? width : picture_width) + column;
     }
+};
+
+/// Runs a stage for the pixels of a window: one call per slot. Large stages run for whole pictures without it, because
+/// it takes registers.
+template <class Stage>
+struct InWindow {
+    Stage stage; // one call per pixel
+    PixelWindow window;
+
+    HD void operator()(uint32_t slot) const { stage(window.pixel_at(FilmSlot{slot})); }
 };
 
 /// The rest of a picture of `height` rows around `window`: above, below, left and right. All are empty if the window

@@ -49,7 +49,7 @@ void RasterIntegrator::render(uint32_t first, uint32_t count, const FilmView& fi
             launch(queue_, "scan_triangles", triangles, ScanTriangles{pass});
             launch(queue_, "scan_rows", static_cast<uint32_t>(rows_.size()), ScanRows{pass});
         }
-        launch(queue_, "shade_pixels", camera_.width * camera_.height, ShadePixels{pass, film});
+        launch_for_pixels("shade_pixels", ShadePixels{pass, film});
     }
     queue_.wait();
 }

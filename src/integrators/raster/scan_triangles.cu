@@ -7,4 +7,5 @@ template void launch(Queue&, const char*, WorkCount, const ScanTriangles&);
 template void launch(Queue&, const char*, WorkCount, const ScanRows&);
 template void launch(Queue&, const char*, WorkCount, const DrawEdges&);
 template void launch(Queue&, const char*, WorkCount, const ShadePixels&);
+template void launch(Queue&, const char*, WorkCount, const InWindow<ShadePixels>&);
 } // namespace pertev

@@ -18,7 +18,6 @@ struct ShadePixels {
     FilmView film;
 
     HD void operator()(uint32_t pixel) const {
-        if (!film.window.holds(pixel)) return;
         const uint64_t nearest = pass.depths[pixel];
         const auto row = static_cast<int32_t>(pixel / pass.camera.width),
                    column = static_cast<int32_t>(pixel % pass.camera.width);

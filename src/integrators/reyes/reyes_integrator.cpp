@@ -182,7 +182,7 @@ uint32_t ReyesIntegrator::render_while(uint32_t first, uint32_t count, const Fil
             queue_.wait();
             return done;
         }
-        launch(queue_, "shade_samples", pixels, ShadeSamples{pass, film});
+        launch_for_pixels("shade_samples", ShadeSamples{pass, film});
     }
     queue_.wait();
     return count;

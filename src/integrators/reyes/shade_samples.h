@@ -102,7 +102,6 @@ struct ShadeSamples {
     FilmView film;
 
     HD void operator()(uint32_t pixel) const {
-        if (!film.window.holds(pixel)) return;
         const SampleLists& samples = pass.samples;
         Micropolygon seen;
         uint64_t way = kNoWay;

@@ -9,4 +9,5 @@ template void launch(Queue&, const char*, WorkCount, const TakePieces&);
 template void launch(Queue&, const char*, WorkCount, const SplitPieces<HidingPass::FindNearest>&);
 template void launch(Queue&, const char*, WorkCount, const SplitPieces<HidingPass::FindMicropolygon>&);
 template void launch(Queue&, const char*, WorkCount, const ShadeSamples&);
+template void launch(Queue&, const char*, WorkCount, const InWindow<ShadeSamples>&);
 } // namespace pertev
