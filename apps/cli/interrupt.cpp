@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "apps/cli/report_error.h"
 #include "base/error.h"
@@ -17,6 +18,7 @@ volatile std::sig_atomic_t g_interrupted = 0;
 // Made before the signal, whose handler may do little but write() and _exit().
 std::string g_last_line;
 int g_last_line_goes_to = STDERR_FILENO;
+bool g_has_reader = false; // at a terminal
 
 /// A second signal of either kind ends the process.
 void ignore_second() {
@@ -27,6 +29,9 @@ void ignore_second() {
 extern "C" void handle_interrupt(int) {
     g_interrupted = 1;
     ignore_second();
+    constexpr std::string_view hint = "\nends after the step under way; Ctrl-C again ends at once\n";
+    if (!g_has_reader) return;
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, hint.data(), hint.size());
 }
 
 extern "C" void end_process(int) {
@@ -46,6 +51,7 @@ void end_at_interrupt(bool json) {
 }
 
 void listen_for_interrupt() {
+    g_has_reader = g_last_line_goes_to == STDERR_FILENO && ::isatty(STDERR_FILENO) == 1;
     std::signal(SIGTERM, handle_interrupt);
     std::signal(SIGINT, handle_interrupt);
 }

@@ -323,7 +323,7 @@ class WhatIsWritten(LabTest):
         side = 100 if SANITIZED else 600
         write_grid(self.path("grid.ply"), side)
         line = self.lab("grid.ply", "--eye", "0.5,0.5,1", "--target", "0.5,0.4,0", *SMALL, "--threads", "1", "--json")
-        report = self.interrupt(line, "brute force", 0 if SANITIZED else 0.3)
+        report = self.interrupt(line, "brute force", 0 if SANITIZED else 0.1)
         self.assertEqual((report["sets"], report["structures"]), ([], []))
 
     def contents(self, folder):

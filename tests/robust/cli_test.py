@@ -6,9 +6,7 @@ import math
 import os
 import re
 import resource
-import signal
 import statistics
-import subprocess
 import time
 
 from cli_run import FLOOR, PROGRAM, SANITIZED, UNMETERED, CliTest, as_flag, gltf_with_cameras, main, read_exr, write
@@ -225,51 +223,6 @@ class WhatIsSaid(CliTest):
                          r"\r\[=+\] 100 %  8/8 spp  [\d.]+ Mrays/s  0 s left\x1b\[K\r\n8 spp in ")
         self.assertEqual(self.stderr_on_a_terminal([*arguments, "-q"]), "")
         self.assertEqual(self.stderr_on_a_terminal([*arguments, "--json"]), "")
-
-
-class WhenItEnds(CliTest):
-    def start(self, *arguments):
-        program = subprocess.Popen([PROGRAM, "render", "cornell-box", *arguments], cwd=self.folder,
-                                   env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        self.addCleanup(program.kill)
-        return program
-
-    def test_an_interrupt_writes_the_whole_samples_so_far_and_ends_with_75(self):
-        for kind in [signal.SIGINT, signal.SIGTERM]:
-            program = self.start("-o", "part.exr", "-o", "part.png", "--size", "48x48", "--spp", "8388607", "--json")
-            seen = 0
-            for line in program.stdout:
-                seen += json.loads(line)["event"] == "progress"
-                if seen == 2:
-                    break
-            program.send_signal(kind)
-            stdout, stderr = program.communicate(timeout=300)
-            self.assertEqual(program.returncode, 75, stderr)
-            done = json.loads(stdout.splitlines()[-1])
-            self.assertEqual((done["event"], done["interrupted"]), ("done", True))
-            self.assertGreaterEqual(done["samples"], 2)
-            part = self.info("part.exr")
-            self.assertEqual((part["hash"], part["pertev.spp"]), (done["hash"], done["samples"]))
-            self.assertEqual(self.render(size="48x48", spp=done["samples"], output="whole.exr")["hash"], done["hash"])
-            self.assertEqual(self.files(), ["part.exr", "part.png", "whole.exr"])
-
-    def test_a_second_interrupt_kills_and_nothing_is_left_behind(self):
-        program = self.start("-o", "x.png", "--size", "6000x6000", "--spp", "64", "--threads", "1")
-        while b"; rendering " not in program.stderr.readline():
-            self.assertIsNone(program.poll())
-        program.send_signal(signal.SIGINT)
-        self.wait_while(program, is_listening=True)  # until the first is heard
-        self.assertIsNone(program.poll(), "the first interrupt waits for the sample to be whole")
-        program.send_signal(signal.SIGINT)
-        program.communicate(timeout=300)
-        self.assertEqual(program.returncode, -signal.SIGINT)
-        self.assertEqual(self.files(), [])
-
-    def test_a_time_limit_ends_at_a_whole_sample_with_0(self):
-        done = self.render("--time-limit", "0.5", size="48x48", spp=8388607)
-        self.assertLess(done["seconds"], 60)
-        self.assertEqual(self.render(size="48x48", spp=done["samples"])["hash"], done["hash"])
-        self.assertEqual(self.render("--time-limit", "1e-9", size="48x48", spp=100)["samples"], 1)
 
 
 class WhatIsRendered(CliTest):
