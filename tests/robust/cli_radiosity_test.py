@@ -63,7 +63,7 @@ class Radiosity(CliTest):
         show = ["render", "cornell-box", *SMALL, "-o", "x.png", "--solution", "box.rad"]
         for light, says in [(["--lamp", "light=100lm"], "with other materials"),
                             (["--environment", "1,1,1"], "under other lights")]:
-            self.refuse(2, *show, *light, says=["box.rad: ", says, "pertev solve radiosity, with the same settings"])
+            self.refuse(2, *show, *light, says=["box.rad: ", says, "solve the scene again with the same settings"])
             self.solve(*COARSE, *light, output="other.rad")
             self.assertEqual(self.picture("--solution", "other.rad", *light), self.picture(*COARSE, *light), light)
             self.refuse(2, *show[:-1], "other.rad", says=["other.rad: ", says])
@@ -219,7 +219,7 @@ class Radiosity(CliTest):
             self.assertLess(told["peak_bytes"] - before["peak_bytes"], predicted, flags)
             self.assertLessEqual(told["shown"], before["most_shown"])
             self.refuse(4, "solve", "radiosity", "cornell-box", "-o", "m.rad", *flags, "--max-memory",
-                        predicted / 2**20 - 0.01, says=["radiosity: may take", "--max-memory", "largest parts",
+                        predicted / 2**20 - 0.01, says=["--max-memory: radiosity may take", "largest parts",
                                                         "--solver gauss-seidel" if "hierarchical" in flags else "--patch-rays"])
 
     def test_a_picture_for_which_there_is_no_room_is_refused_before_its_scene_is_solved(self):
@@ -233,7 +233,7 @@ class Radiosity(CliTest):
             box += f"f {a} {d} {c} {b}\n"  # inwards
         write(self.path("white.mtl"), "newmtl a\nKd 1 1 1\nKe 1 1 1\n")
         write(self.path("white.obj"), "mtllib white.mtl\nusemtl a\n" + box)
-        self.refuse(2, "solve", "radiosity", "white.obj", "-o", "w.rad", "--patch-size", "0.5", says=["radiosity: light never ends"])
+        self.refuse(2, "solve", "radiosity", "white.obj", "-o", "w.rad", "--patch-size", "0.5", says=["SCENE: light never ends"])
 
     def test_what_cannot_be_is_one_line(self):
         write(self.path("mirror.mtl"), MIRROR)
@@ -263,7 +263,7 @@ class Radiosity(CliTest):
                 ("render nowhere.obj -o x.png --integrator radiosity --lpe seen=LE -o x.exr", 2, "distinguish light paths"),
                 ("render nowhere.obj -o x.png --integrator radiosity --max-depth 256", 3, "--max-depth 256: the limit with --integrator radiosity is 255"),
                 ("render cornell-box -o x.png --integrator radiosity --shutter 0.1", 2, "--shutter"),
-                ("render cornell-box -o x.png --integrator radiosity --solution text.rad", 2, "text.rad: no radiosity solution"),
+                ("render cornell-box -o x.png --integrator radiosity --solution text.rad", 2, "text.rad: not a radiosity solution"),
                 ("render cornell-box -o x.png --integrator radiosity --solution cut.rad", 2, "cut.rad: a radiosity solution that is truncated"),
                 ("render floor.obj -o x.png --integrator radiosity --solution box.rad", 2, "box.rad: a radiosity solution of another scene")]:
             with self.subTest(arguments=arguments):

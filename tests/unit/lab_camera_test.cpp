@@ -40,9 +40,10 @@ TEST_CASE("combinations that cannot be measured are listed with the reason; if n
     CHECK_FALSE(list[3].refused.empty());
     CHECK_NOTHROW(check_any_can_run(list));
     settings.traversals = {TraversalKind::Kd};
-    CHECK_THROWS_WITH(check_any_can_run(list_combinations(settings, {})),
-                      "none of the combinations asked for can be measured:\n  binned kd rta near and 1 more: the kd "
-                      "traversal needs a kd-tree; choose the structure kd-median or kd-sah");
+    CHECK_THROWS_WITH(
+        check_any_can_run(list_combinations(settings, {})),
+        "`traversal`: none of the combinations asked for can be measured:\n  binned kd rta near and 1 more: the kd "
+        "traversal needs a kd-tree; choose the structure kd-median or kd-sah");
 }
 
 TEST_CASE("text of any bytes becomes UTF-8") {

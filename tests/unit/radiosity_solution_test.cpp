@@ -249,7 +249,7 @@ TEST_CASE("a solution's file of the previous version is read with a warning that
     CHECK(why_refused(path, scene).find("of another scene") != std::string::npos);
     bytes[15] = std::byte('4');
     write_bytes(path, bytes);
-    CHECK(why_refused(path, scene).find("no radiosity solution") != std::string::npos);
+    CHECK(why_refused(path, scene).find("not a radiosity solution") != std::string::npos);
 }
 
 TEST_CASE("an interrupted solution records its state and is rendered with a warning") {
