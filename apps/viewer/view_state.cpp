@@ -12,6 +12,7 @@
 #include "apps/viewer/window_shape.h"
 #include "base/error.h"
 #include "base/limits.h"
+#include "session/check_integrator.h"
 #include "settings/setting_table.h"
 #include "settings/value_names.h"
 
@@ -94,10 +95,15 @@ std::string why_no_layer(ShownLayer layer, const RenderSettings& settings) {
                        integrator_name(settings));
 }
 
-std::string why_too_deep(const RenderSettings& settings) {
-    const uint32_t most = most_depth(settings.integrator);
-    if (settings.path.max_depth <= most) return {};
-    return fmt::format("{}: at most {} scatterings", integrator_name(settings), most);
+/// Says what the integrator cannot do.
+std::string why_no_picture(const RenderSettings& settings, const Camera& camera) {
+    try {
+        check_integrator(settings);
+        check_camera(settings, camera);
+    } catch (const Error& error) {
+        return panel_phrase(error.remark());
+    }
+    return {};
 }
 
 std::vector<ViewSetting> make_settings() {
@@ -180,14 +186,10 @@ std::vector<ViewSetting> make_settings() {
             for (const auto& [kind, why_dark] : s.dark) {
                 if (kind == wanted.integrator) return why_dark;
             }
-            if (rasterises_camera(wanted.integrator) && s.lens.aperture_radius > 0) {
-                return fmt::format("{}: its camera has no lens; the lens radius must be 0", name);
-            }
-            const std::string why_not = why_no_layer(s.layer, wanted);
-            if (!why_not.empty()) return why_not;
-            const std::string too_deep = why_too_deep(wanted);
-            if (too_deep.empty()) s.picture = wanted;
-            return too_deep;
+            std::string why_not = why_no_picture(wanted, s.lens);
+            if (why_not.empty()) why_not = why_no_layer(s.layer, wanted);
+            if (why_not.empty()) s.picture = wanted;
+            return why_not;
         });
     shared_number(
         "max_depth", "Max depth", "Light", Kind::Whole, 1, [](const ViewState& s) { return s.picture.path.max_depth; },

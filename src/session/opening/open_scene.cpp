@@ -88,7 +88,7 @@ std::string in_a_row(const std::vector<std::string>& list) {
     constexpr std::size_t kMost = 8;
     std::string text;
     for (std::size_t i = 0; i < std::min(list.size(), kMost); ++i) text += (i > 0 ? ", " : "") + shortened(list[i]);
-    return list.size() > kMost ? fmt::format("{} and {} more (pertev info)", text, list.size() - kMost) : text;
+    return list.size() > kMost ? fmt::format("{} and {} more", text, list.size() - kMost) : text;
 }
 
 /// Says which animation plays if the file has several and none was chosen.

@@ -23,6 +23,9 @@ struct WrittenPicture {
     std::vector<WrittenFile> files;
 };
 
+/// Why files could not be written, in one text; empty if all were.
+std::string failures_of(const WrittenPicture& written);
+
 /// If a result has been denoised, files show that; EXR keeps the film's picture as the layer `noisy`.
 
 /// Encodes a PNG or EXR file. Takes the layers out of `result`.
