@@ -432,4 +432,13 @@ MUTATIONS = TRANSPORT_MUTATIONS + [
     Mutation("the sum of a PNG's last part alone",
              [edit("src/image/write_png.cpp", "adler32_combine(sum, parts[i].sum", "adler32_combine(1, parts[i].sum")],
              ["unit/image_png"]),
+    Mutation("a rule for one value of a setting holds for all",
+             [edit("src/settings/check_settings.cpp", "if (!value.empty() && !is_so(", "if (value.empty() && !is_so(")],
+             ["unit/check_options", "unit/settings"]),
+    Mutation("a setting that no file shows is accepted",
+             [edit("src/session/writing/check_outputs.cpp", "(written & formats) != 0) return;", "formats != 0) return;")],
+             ["unit/check_options"]),
+    Mutation("a frame records the settings of its whole sequence",
+             [edit("src/session/pictures/frame_settings.cpp", "if (!options.frames.empty()) keep_frame(", "if (false) keep_frame(")],
+             ["unit/write_sequence"]),
 ]

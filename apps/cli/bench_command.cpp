@@ -116,8 +116,8 @@ std::vector<std::string> default_scenes() {
         if (!root.empty() && std::filesystem::exists(root / name)) scenes.push_back((root / name).string());
     }
     if (scenes.empty()) {
-        throw Error(ErrorCode::BadInput,
-                    "bench: name scene files, or set PERTEV_SCENES to the folder that holds crytek-sponza/sponza.obj "
+        throw Error(ErrorCode::BadInput, "scene", "",
+                    "name scene files, or set PERTEV_SCENES to the folder that holds crytek-sponza/sponza.obj "
                     "and sibenik/sibenik.obj (docs/scenes.md)");
     }
     return scenes;
@@ -128,7 +128,7 @@ int bench_scenes(PictureFlags& flags) {
     Messages& messages = reporter.messages();
     flags.settings.read(flags, messages);
     RenderSettings settings;
-    std::tie(settings.width, settings.height) = parse_size("--size", flags.size_text.empty() ? kSize : flags.size_text);
+    std::tie(settings.width, settings.height) = parse_size("size", flags.size_text.empty() ? kSize : flags.size_text);
     const std::vector<std::string> scenes = flags.scenes.empty() ? default_scenes() : flags.scenes;
     for (const std::string& scene : scenes) check_bench_scene(scene);
     listen_for_interrupt();

@@ -7,7 +7,6 @@
 #include "apps/cli/bench_parts.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_flags.h"
 #include "base/error.h"
 #include "device/device_timer.h"
@@ -15,6 +14,7 @@
 #include "math/portable_math.h"
 #include "session/session.h"
 #include "settings/parse_values.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -40,7 +40,7 @@ struct FrameFigures {
 
 FrameFigures measure(Session& session, Queue& queue, const FramesFlags& flags, float scene_size, float exposure,
                      ToneMap tone_map, Reporter& reporter) {
-    const ReconstructionSettings settings = reconstruction_settings(flags.render.reconstruction);
+    const ReconstructionSettings settings = flags.render.reconstruction.used();
     const RestirSettings& restir = flags.render.reconstruction.sharing;
     const Camera first = session.camera();
     std::vector<double> whole, reconstruction, copy;
@@ -81,14 +81,11 @@ Image last_picture(Session& session) {
 
 int bench_frames(FramesFlags& flags) {
     Reporter reporter(flags.render.report);
-    const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, reporter);
+    const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, kBenchFrames, reporter);
     const auto& [queue, scene, settings, camera, prepared] = *benched;
-    if (!makes_frames(settings.integrator) && has_frame_options(flags.render.reconstruction)) {
-        throw Error(
-            ErrorCode::BadInput,
-            fmt::format("--integrator {}: its frames are samples as they are; --restir and --resolution-scale are "
-                        "for path and hybrid",
-                        integrator_name(settings)));
+    if (!makes_frames(settings.integrator) && flags.render.reconstruction.has_frame_options()) {
+        throw Error(ErrorCode::BadInput, "integrator", std::string(integrator_name(settings)),
+                    "its frames are samples as they are; `restir` and `resolution_scale` are for path and hybrid");
     }
     BenchReport report(reporter, flags.render.report, *queue, "Frames in real time");
     Session session(*queue, prepared, camera, settings);
@@ -100,24 +97,25 @@ int bench_frames(FramesFlags& flags) {
     const std::string hash = picture_hash(last_picture(session)).hex();
     reporter.end_progress();
     const double rays_a_second = millions_a_second(figures.rays.total(), figures.seconds);
-    report.add_alone("frames",
-                     {{"scene", "scene", flags.render.scene.scene},
-                      {"device", "device", queue->device_name()},
-                      {"integrator", "integrator", integrator_name(settings)},
-                      {"width", "width", settings.width},
-                      {"height", "height", settings.height},
-                      {"max_depth", "scatterings", settings.path.max_depth},
-                      {"frames", "frames", flags.frames},
-                      {"still", "camera stands still", flags.still},
-                      {"reconstruction", "reconstruction", ResultCell::raw(json_of(flags.render.reconstruction))},
-                      {"median_seconds", "a frame, median", figures.whole.median, "s", "{:.6f}"},
-                      {"least_seconds", "least", figures.whole.least, "s", "{:.6f}"},
-                      {"greatest_seconds", "greatest", figures.whole.greatest, "s", "{:.6f}"},
-                      {"frames_per_second", "frames a second", 1 / figures.whole.median, "", "{:.1f}"},
-                      {"reconstruction_seconds", "of it reconstruction", figures.reconstruction.median, "s", "{:.6f}"},
-                      {"copy_seconds", "of it copying to the host", figures.copy.median, "s", "{:.6f}"},
-                      {"mrays_per_s", "Mrays/s", rays_a_second, "", "{:.1f}"},
-                      {"picture", "last frame", hash}});
+    report.add_alone(
+        "frames",
+        {{"scene", "scene", flags.render.scene.scene},
+         {"device", "device", queue->device_name()},
+         {"integrator", "integrator", integrator_name(settings)},
+         {"width", "width", settings.width},
+         {"height", "height", settings.height},
+         {"max_depth", "scatterings", settings.path.max_depth},
+         {"frames", "frames", flags.frames},
+         {"still", "camera stands still", flags.still},
+         {"reconstruction", "reconstruction", ResultCell::raw(reconstruction_json(flags.render.reconstruction))},
+         {"median_seconds", "a frame, median", figures.whole.median, "s", "{:.6f}"},
+         {"least_seconds", "least", figures.whole.least, "s", "{:.6f}"},
+         {"greatest_seconds", "greatest", figures.whole.greatest, "s", "{:.6f}"},
+         {"frames_per_second", "frames a second", 1 / figures.whole.median, "", "{:.1f}"},
+         {"reconstruction_seconds", "of it reconstruction", figures.reconstruction.median, "s", "{:.6f}"},
+         {"copy_seconds", "of it copying to the host", figures.copy.median, "s", "{:.6f}"},
+         {"mrays_per_s", "Mrays/s", rays_a_second, "", "{:.1f}"},
+         {"picture", "last frame", hash}});
     report.write();
     return 0;
 }

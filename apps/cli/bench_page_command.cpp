@@ -24,8 +24,8 @@ struct PageFlags {
 std::string read_measurement(const std::string& file) {
     const JsonFile json(file);
     if (json.root().string_or("format", "") != "pertev-measurement" || json.root().unsigned_or("version", 0) != 1) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("{}: is not a measurement of pertev (format pertev-measurement, version 1)", file));
+        throw Error(ErrorCode::BadInput, FileLocation{file},
+                    "not a measurement of pertev (format pertev-measurement, version 1)");
     }
     return json.root().to_json();
 }

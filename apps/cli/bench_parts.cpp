@@ -5,6 +5,7 @@
 
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
+#include "apps/cli/report_radiosity.h"
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/write_file_atomically.h"
@@ -14,18 +15,25 @@
 #include "lab/report_page.h"
 #include "math/portable_math.h"
 #include "session/check_integrator.h"
+#include "session/machine.h"
+#include "session/opening/choose_camera.h"
+#include "session/opening/open_scene.h"
+#include "session/opening/picture_settings.h"
 #include "session/opening/strictness.h"
+#include "session/pictures/check_options.h"
+#include "session/pictures/prepare_render.h"
 #include "settings/parse_values.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 
 void check_bench_scene(const std::string& name, std::string_view others) {
     if (!is_scene_name(name)) {
-        throw Error(ErrorCode::BadInput, fmt::format("--scene {}: neither {}{}", name, others, scene_kinds()));
+        throw Error(ErrorCode::BadInput, FileLocation{name}, fmt::format("neither {}{}", others, scene_kinds()));
     }
     std::error_code no_such_name; // a name may be too long for a file
     if (!builtin_scene(name) && !std::filesystem::exists(name, no_such_name)) {
-        throw Error(ErrorCode::BadInput, fmt::format("--scene {}: no such file", name));
+        throw Error(ErrorCode::BadInput, FileLocation{name}, "there is no such file");
     }
 }
 
@@ -34,6 +42,7 @@ void add_record_scenes(CLI::App& verb, std::vector<std::string>& names) {
                     "sponza, bunny, forest, a scene file or a built-in scene;\nmay be given again (the first three, "
                     "the files under PERTEV_SCENES)")
         ->type_name("NAME|FILE")
+        ->check(file_name())
         ->allow_extra_args(false);
 }
 
@@ -62,15 +71,15 @@ Scene read_lab_scene(const SceneOptions& options, Messages& messages) {
     const std::string& name = options.scene;
     if (const RecordScene* record = find_named(the_record().scenes, name)) {
         refuse(!options.file_scene.empty(),
-               fmt::format("--file-scene: {} has no scenes of its own to choose from", name));
+               {"file_scene", options.file_scene, fmt::format("{} has no scenes of its own to choose from", name)});
         return make_record_scene(*record, public_scenes_folder(), messages);
     }
     std::error_code no_such_name; // a name may be too long for a file
     if (!builtin_scene(name) && !std::filesystem::exists(name, no_such_name)) {
         std::vector<std::string_view> known = builtin_scene_names();
         for (const RecordScene& record : the_record().scenes) known.emplace_back(record.name);
-        throw Error(ErrorCode::BadInput, fmt::format("{}: neither a file nor a scene of this name; there are {}", name,
-                                                     fmt::join(known, ", ")));
+        throw Error(ErrorCode::BadInput, "scene", name,
+                    fmt::format("neither a file nor a scene of this name; there are {}", fmt::join(known, ", ")));
     }
     return read_any_scene(options, messages);
 }
@@ -85,10 +94,10 @@ double mean_of(const Image& image) {
     return sum / static_cast<double>(image.pixels.size());
 }
 
-std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, Reporter& reporter) {
+std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerbs verb, Reporter& reporter) {
     Messages& messages = reporter.messages();
     flags.settings.read(flags, messages); // before anything is read
-    check_scene_options(flags.scene);
+    check_options(flags, verb);
     listen_for_interrupt();
     auto benched = std::make_unique<BenchedScene>();
     benched->queue = take_machine(flags.machine, messages);
@@ -97,7 +106,6 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, Reporter& r
     benched->scene = open_scene(flags.scene, messages, SceneUse::Benchmark);
     if (flags.strict) refuse_what_is_left_out(messages, "nothing is measured");
     const RenderSettings& settings = benched->settings = render_settings(flags, benched->scene);
-    check_radiosity_flags(flags.radiosity, settings, flags.limits_memory);
     check_light(settings, benched->scene, messages);
     benched->camera =
         choose_camera(flags.scene.camera, benched->scene, aspect_of(settings.width, settings.height), messages);
@@ -107,10 +115,15 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, Reporter& r
     benched->prepared = prepare_scene(benched->scene, {}, messages);
     reporter.report_messages();
     if (settings.integrator == IntegratorKind::Radiosity) {
-        benched->settings.radiosity =
-            radiosity_display(flags.radiosity, benched->prepared, settings.path.seed, reporter);
+        benched->settings.radiosity = radiosity_display(benched->prepared, flags.radiosity, settings.path.seed,
+                                                        reporter, report_solving(reporter));
     }
+    bytes_to_render(flags, benched->prepared, settings, *benched->queue);
     return benched;
+}
+
+std::string reconstruction_json(const ReconstructionOptions& options) {
+    return json_of(options.used(), options.sharing);
 }
 
 void add_picture_flags(CLI::App& verb, PictureFlags& flags, const std::string& sizes, const std::string& samples) {
@@ -142,7 +155,7 @@ BenchReport::BenchReport(Reporter& reporter, const ReportFlags& flags, const Que
     if (file_.empty()) return;
     const std::string extension = std::filesystem::path(file_).extension().string();
     refuse(extension != ".json" && extension != ".html" && extension != ".csv",
-           fmt::format("--report {}: wants a name that ends in .json, .html or .csv", file_));
+           {"report", file_, "wants a name that ends in .json, .html or .csv"});
     check_writable(file_);
 }
 

@@ -66,7 +66,10 @@ struct BenchedScene {
 
 /// The device, then the scene that flags name, seen and lit as they say, with its trees. Says what there is to say on
 /// the way, and listens for Ctrl-C from then on. Throws Error: of the line before anything is read.
-std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, Reporter& reporter);
+std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerbs verb, Reporter& reporter);
+
+/// How frames in real time are made, as JSON.
+std::string reconstruction_json(const ReconstructionOptions& options);
 
 /// Flags of benchmarks of whole pictures.
 struct PictureFlags : PictureOptions {

@@ -21,7 +21,9 @@
 #include "lab/record_scenes.h"
 #include "lab/stored_figures.h"
 #include "session/machine.h"
+#include "session/writing/check_outputs.h"
 #include "settings/parse_values.h"
+#include "settings/tracer_options.h"
 
 namespace pertev {
 namespace {
@@ -36,7 +38,7 @@ struct JobFlags {
 RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
     RenderSettings settings = job_settings(job);
     if (!flags.picture.size_text.empty()) {
-        std::tie(settings.width, settings.height) = parse_size("--size", flags.picture.size_text);
+        std::tie(settings.width, settings.height) = parse_size("size", flags.picture.size_text);
     }
     if (flags.picture.samples > 0) settings.samples = flags.picture.samples;
     settings.path.seed = flags.seed;
@@ -79,7 +81,7 @@ int bench_job(JobFlags& flags) {
     RenderSettings settings = settings_of(job, flags);
     if (!flags.output.empty()) {
         refuse_list(flags.output);
-        note_number_signs(flags.output, "with pertev render --frames A-B alone", messages);
+        note_number_signs(flags.output, messages);
         check_image_output(flags.output, settings.width, settings.height);
     }
     check_bench_scene(file);

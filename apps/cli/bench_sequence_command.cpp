@@ -11,14 +11,13 @@
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
 #include "apps/cli/pfm_file.h"
-#include "apps/cli/prepare_render.h"
-#include "apps/cli/reconstruction_flags.h"
-#include "apps/cli/render_frames.h"
+#include "apps/cli/report_radiosity.h"
 #include "base/limits.h"
 #include "image/flip.h"
 #include "image/picture_hash.h"
 #include "image/tone_map_image.h"
 #include "session/opening/strictness.h"
+#include "session/pictures/prepare_render.h"
 #include "settings/parse_values.h"
 
 namespace pertev {
@@ -90,7 +89,7 @@ constexpr const char* kWays[] = {"samples", "frames", "peer"};
 
 Scores measure(RenderSetup& ready, Session& session, PictureRecord& record, const SequenceFlags& flags, float exposure,
                ToneMap tone_map, BenchReport& report, Reporter& reporter) {
-    const ReconstructionSettings settings = reconstruction_settings(flags.render.reconstruction);
+    const ReconstructionSettings settings = flags.render.reconstruction.used();
     const RestirSettings restir = flags.render.reconstruction.sharing;
     Scores scores;
     if (!flags.peer.empty()) scores.peer.emplace();
@@ -151,14 +150,13 @@ int bench_sequence(SequenceFlags& flags) {
     Reporter reporter(flags.render.report);
     flags.render.settings.read(flags.render, reporter.messages());
     if (!frame_range(flags.render)) {
-        throw Error(ErrorCode::BadInput, "bench sequence: the frames are missing; add --frames A-B or --turntable N");
+        throw Error(ErrorCode::BadInput, "frames", "", "the frames are missing; set `frames` or `turntable`");
     }
     if (flags.reference == 0 && !flags.peer.empty()) {
-        throw Error(ErrorCode::BadInput, "--peer: the reference is missing; add --reference SPP");
+        throw Error(ErrorCode::BadInput, "peer", "", "the reference is missing; add --reference SPP");
     }
-    check_motion_flags(flags.render);
-    check_radiosity_flags(flags.render.radiosity, flags.render.render, flags.render.limits_memory);
-    const std::unique_ptr<RenderSetup> ready = prepare_render(flags.render, kBenchSequence, reporter);
+    const std::unique_ptr<RenderSetup> ready =
+        prepare_render(flags.render, kBenchSequence, reporter, report_solving(reporter));
     reporter.report_messages();
     listen_for_interrupt();
     BenchReport report(reporter, flags.render.report, *ready->queue, "Frames of a moving picture");
@@ -178,7 +176,7 @@ int bench_sequence(SequenceFlags& flags) {
                       {"height", "height", ready->settings.height},
                       {"frames", "frames", ready->sequence.count()},
                       {"max_depth", "scatterings", ready->settings.path.max_depth},
-                      {"reconstruction", "", ResultCell::raw(json_of(flags.render.reconstruction))},
+                      {"reconstruction", "", ResultCell::raw(reconstruction_json(flags.render.reconstruction))},
                       {"reference_spp", "samples of the references", flags.reference},
                       {"reference_noise", "HDR-FLIP of their halves", scores.noise, "", "{:.4f}"},
                       {"reference_flicker", "flicker of their own noise", scores.half.mean_flicker(), "", "{:.5f}"},

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/cli/flag_phrases.h"
 #include "apps/cli/suggest_name.h"
 #include "settings/parse_values.h"
 
@@ -108,18 +109,30 @@ std::string describe_repetition(const CLI::App& verb) {
 
 } // namespace
 
+namespace {
+
+/// "--spp: why" as a remark about the setting `spp`, if that has this flag.
+Remark by_setting(const std::string& text) {
+    const std::size_t end = std::min(text.find(": "), text.size());
+    const std::string flag = text.substr(0, end);
+    std::string setting = flag.substr(std::min<std::size_t>(flag.size(), 2));
+    std::ranges::replace(setting, '-', '_');
+    return end < text.size() && flag_of(setting) == flag ? Remark(setting, "", text.substr(end + 2)) : text;
+}
+
+} // namespace
+
 UsageError describe_usage_error(const CLI::App& app, const CLI::ParseError& error) {
     const std::vector<const CLI::App*> verbs = verbs_of(app);
     std::vector<std::string> path;
     for (const CLI::App* verb : verbs) path.push_back(verb->get_name());
-    UsageError described = {describe_strangers(verbs), fmt::format("{} --help", fmt::join(path, " "))};
+    std::string text = describe_strangers(verbs);
     if (verbs.size() == 1) { // no verb there is has been named
-        described.text += fmt::format("{}a verb is required: {}", described.text.empty() ? "" : "; ",
-                                      fmt::join(names_below(app), ", "));
+        text += fmt::format("{}a verb is required: {}", text.empty() ? "" : "; ", fmt::join(names_below(app), ", "));
     }
-    if (described.text.empty()) described.text = describe_repetition(*verbs.back());
-    if (described.text.empty()) described.text = error.what();
-    return described;
+    if (text.empty()) text = describe_repetition(*verbs.back());
+    if (text.empty()) text = error.what();
+    return {by_setting(text), fmt::format("{} --help", fmt::join(path, " "))};
 }
 
 } // namespace pertev

@@ -7,10 +7,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/remark.h"
+
 namespace pertev {
 
 struct UsageError {
-    std::string text;
+    Remark remark;    // about a flag, if it begins with one
     std::string help; // the command line that lists the possibilities: "pertev render --help"
 };
 

@@ -10,20 +10,16 @@
 #include <CLI/CLI.hpp>
 
 #include "base/error.h"
-#include "base/messages.h"
 
 namespace pertev {
 
 /// Throws Error(BadInput) if `is_wrong`.
-inline void refuse(bool is_wrong, const std::string& why) {
+inline void refuse(bool is_wrong, const Remark& why) {
     if (is_wrong) throw Error(ErrorCode::BadInput, why);
 }
 
 /// Refuses "a.png,b.exr", one file name that hardly anybody means. Throws Error(BadInput).
 void refuse_list(const std::string& output);
-
-/// Notes that # in the name of a single output file stands for a number `when` there are several.
-void note_number_signs(const std::string& output, const char* when, Messages& messages);
 
 /// Accepts a finite number above 0 and at most `high`.
 CLI::Validator number_above_zero(float high = std::numeric_limits<float>::max());

@@ -50,19 +50,6 @@ std::string named_settings_json(const std::string& reason) {
     return json;
 }
 
-/// The command line's own remarks begin with the flag that they are about, "--lpe NAME: why": those by its setting.
-Remark by_setting(const Remark& remark) {
-    const std::size_t end = remark.reason.find(": ");
-    if (remark.location || !remark.setting.empty() || !remark.reason.starts_with("--") || end == std::string::npos) {
-        return remark;
-    }
-    const std::string flag = remark.reason.substr(2, end - 2), name = flag.substr(0, flag.find(' '));
-    if (name.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") != std::string::npos) return remark;
-    Remark parts(name, flag.substr(std::min(flag.size(), name.size() + 1)), remark.reason.substr(end + 2));
-    std::ranges::replace(parts.setting, '-', '_');
-    return parts;
-}
-
 } // namespace
 
 std::string flag_of(std::string_view setting) {
@@ -83,8 +70,7 @@ std::string phrase(const Remark& remark) {
     return text + phrase_settings(remark.reason, flag_and_value);
 }
 
-std::string json_parts(const Remark& of) {
-    const Remark remark = by_setting(of);
+std::string json_parts(const Remark& remark) {
     std::string json;
     if (remark.location) json += fmt::format(R"(,"place":{})", location_json(*remark.location));
     if (!remark.setting.empty()) json += fmt::format(R"(,"setting":{})", json_string(remark.setting));

@@ -153,8 +153,8 @@ std::string take_help_group(std::vector<std::string>& words) {
     const std::string group = small_letters(help[1]);
     if (!groups.contains(group)) {
         if (help == words.begin()) return ""; // a verb, for example
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("{} {}: no such group; there are {}", *help, help[1], fmt::join(groups, ", ")));
+        throw Error(ErrorCode::BadInput, "help", help[1],
+                    fmt::format("no such group; there are {}", fmt::join(groups, ", ")));
     }
     words.erase(help + 1);
     return group;

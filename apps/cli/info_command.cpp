@@ -129,8 +129,8 @@ std::string settings_of(const std::string& picture) {
     const auto value_of = [&](std::string_view name) {
         const auto entry = std::ranges::find(metadata, name, &ExrMetadata::value_type::first);
         if (entry == metadata.end()) {
-            throw Error(ErrorCode::BadInput,
-                        fmt::format("{}: it holds no settings ({}); EXR files of pertev render do", picture, name));
+            throw Error(ErrorCode::BadInput, FileLocation{picture},
+                        fmt::format("it holds no settings ({}); EXR files of pertev render do", name));
         }
         return std::visit([](const auto& value) { return fmt::format("{}", value); }, entry->second);
     };
@@ -223,7 +223,7 @@ int info(InfoFlags& flags) {
     Facts facts;
     facts.add("file", name);
     refuse(!flags.scene.file_scene.empty() && (is_picture_name(name) || !is_scene_name(name)),
-           fmt::format("--file-scene: applies to scenes; {} is none", name));
+           {"file_scene", flags.scene.file_scene, fmt::format("applies to scenes; {} is none", name)});
     if (is_picture_name(name)) {
         describe_image(flags, facts, messages);
     } else if (is_scene_name(flags.scene.scene)) {
@@ -231,8 +231,8 @@ int info(InfoFlags& flags) {
     } else if (is_solution(flags.scene.scene)) {
         describe_solution(flags, facts);
     } else {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("{}: neither a picture ({}) nor {}, nor a radiosity solution", flags.scene.scene,
+        throw Error(ErrorCode::BadInput, FileLocation{flags.scene.scene},
+                    fmt::format("neither a picture ({}) nor {}, nor a radiosity solution",
                                 fmt::join(kPictureExtensions, " "), scene_kinds()));
     }
     reporter.report_messages();

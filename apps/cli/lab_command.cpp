@@ -74,9 +74,8 @@ std::pair<int, int> parse_depths(const std::string& text) {
     const auto first =
         dash == std::string::npos ? std::optional<uint64_t>(1) : parse_whole_number(text.substr(0, dash));
     if (!first || !last || *first < 1 || *first > *last || *last > kMaxFrameDepth + 1) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--depths {}: wants a largest depth or a range such as 1-8, within 1-{}", text,
-                                kMaxFrameDepth + 1));
+        throw Error(ErrorCode::BadInput, "depths", text,
+                    fmt::format("wants a largest depth or a range such as 1-8, within 1-{}", kMaxFrameDepth + 1));
     }
     return {static_cast<int>(*first), static_cast<int>(*last)};
 }
@@ -102,7 +101,8 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
     settings.options = traversal_options(flags);
     settings.distributions.clear();
     if (!is_cuda && flags.persistent == "on") {
-        throw Error(ErrorCode::BadInput, "--persistent on: applies to GPUs; CPU threads always take rays from a pool");
+        throw Error(ErrorCode::BadInput, "persistent", "on",
+                    "applies to GPUs; CPU threads always take rays from a pool");
     }
     if (!is_cuda || flags.persistent != "on") settings.distributions.push_back(Distribution::OneAThread);
     if (is_cuda && flags.persistent != "off") {
@@ -110,21 +110,21 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
         settings.distributions.push_back(Distribution::DynamicFetch);
     }
     std::tie(settings.width, settings.height) =
-        parse_size("--size", flags.size_text.empty() ? "1024x768" : flags.size_text);
+        parse_size("size", flags.size_text.empty() ? "1024x768" : flags.size_text);
     const std::string depths = !flags.depths.empty() ? flags.depths : flags.thesis ? "1-8" : "1-3";
     std::tie(settings.first_depth, settings.depth) = parse_depths(depths);
     const auto traces = [&](const char* kind) { return std::ranges::find(flags.rays, kind) != flags.rays.end(); };
     settings.primary = traces("primary"), settings.shadow = traces("shadow"), settings.diffuse = traces("diffuse");
     if (traces("record")) {
         if (flags.rays.size() > 1 || !flags.size_text.empty() || !flags.depths.empty()) {
-            throw Error(ErrorCode::BadInput,
-                        "--rays record: its sets are fixed; leave out other kinds, --size and --depths");
+            throw Error(ErrorCode::BadInput, "rays", "record",
+                        "its sets are fixed; leave out other kinds, --size and --depths");
         }
         settings.record_rays = flags.count > 0 ? flags.count : kRecordRays;
         const FrameSize frame = record_frame(settings.record_rays);
         settings.width = frame.width, settings.height = frame.height;
     } else if (flags.count > 0) {
-        throw Error(ErrorCode::BadInput, "--count: applies to --rays record; --size sets the rays of a frame");
+        throw Error(ErrorCode::BadInput, "count", "", "applies to --rays record; --size sets the rays of a frame");
     }
     settings.runs = static_cast<int>(flags.runs);
     settings.warm_ups = is_cuda ? 3 : 1;
@@ -137,7 +137,7 @@ int run(LabFlags& flags) {
     Messages& messages = reporter.messages();
     flags.settings.read(flags, messages);
     if (!flags.thesis && !flags.transport && flags.scene.scene.empty()) {
-        throw Error(ErrorCode::BadInput, "lab: SCENE is required (or --thesis, or --transport)");
+        throw Error(ErrorCode::BadInput, "scene", "", "it is required (or --thesis, or --transport)");
     }
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
     if (flags.transport) {
@@ -255,7 +255,7 @@ void add_lab_command(CLI::App& app, int& status) {
     add_report_flags(verb, flags->report);
     verb.callback([flags, output, &status] {
         if (output->count() > 0 && flags->output.empty()) {
-            throw Error(ErrorCode::BadInput, "-o: the name of the folder is empty");
+            throw Error(ErrorCode::BadInput, "output", "", "the name of the folder is empty");
         }
         status = run(*flags);
     });

@@ -12,7 +12,8 @@ void check_lab_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) {
-        throw Error(ErrorCode::FileWrite, fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+        throw Error(ErrorCode::FileWrite, FileLocation{folder.string()},
+                    fmt::format("cannot be made: {}", error.message()));
     }
     check_writable(folder / "report.csv");
 }

@@ -109,7 +109,7 @@ int run(std::vector<std::string> words, bool json) {
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // help or version
         const UsageError usage = describe_usage_error(app, error);
-        return report_error(json, ErrorCode::BadInput, usage.text, usage.help);
+        return report_error(json, ErrorCode::BadInput, usage.remark, usage.help);
     } catch (const Error& error) {
         return report_error(json, error.code(), error.remark());
     } catch (const std::bad_alloc&) {

@@ -29,12 +29,8 @@ struct MeasureFlags : PictureOptions {
 };
 
 MeterPoint point_of(const MeasureFlags& flags) {
-    const MeterPoint point = {parse_position("--at", flags.at), parse_vec3("--normal", flags.normal)};
-    const float squared = length_squared(point.normal);
-    if (!(squared > 0) || !is_finite(normalize(point.normal))) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--normal {}: is no direction; expected a length above 0", flags.normal));
-    }
+    const MeterPoint point = {parse_position("at", flags.at), parse_vec3("normal", flags.normal)};
+    check_meter(point, flags.render.path.seed);
     return point;
 }
 
@@ -75,8 +71,6 @@ int measure(MeasureFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
     flags.settings.read(flags, messages);
-    const uint32_t seed = flags.render.path.seed;
-    refuse(seed > kMaxMeterSeed, fmt::format("--seed {}: at most {}", seed, kMaxMeterSeed));
     const MeterPoint point = point_of(flags); // before anything is read
     ComingMachine machine(flags.machine, messages);
     reporter.report_messages();

@@ -43,9 +43,9 @@ Image read_pfm(const std::filesystem::path& file, uint32_t width, uint32_t heigh
     const std::string expected = fmt::format("PF\n{} {}\n-", width, height);
     const std::size_t row_bytes = std::size_t(width) * 3 * sizeof(float);
     if (!head.starts_with(expected) || bytes.size() != start + height * row_bytes) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("{}: expected a portable float map of {}x{} pixels, three little-endian floats each",
-                                file.string(), width, height));
+        throw Error(ErrorCode::BadInput, FileLocation{file.string()},
+                    fmt::format("expected a portable float map of {}x{} pixels, three little-endian floats each", width,
+                                height));
     }
     Image picture{width, height, 3, std::vector<float>(std::size_t(width) * height * 3)};
     for (uint32_t row = 0; row < height; ++row) {

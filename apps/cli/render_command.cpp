@@ -9,18 +9,18 @@
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/prepare_render.h"
-#include "apps/cli/reconstruction_flags.h"
 #include "apps/cli/render_frames.h"
-#include "apps/cli/report_display.h"
+#include "apps/cli/report_radiosity.h"
 #include "apps/cli/report_result.h"
 #include "base/byte_units.h"
 #include "base/error.h"
 #include "base/message_text.h"
 #include "base/stopwatch.h"
-#include "session/render_memory.h"
-#include "session/session_bytes.h"
+#include "session/opening/strictness.h"
+#include "session/pictures/choose_display.h"
+#include "session/pictures/prepare_render.h"
 #include "session/survey/ground.h"
+#include "session/writing/check_outputs.h"
 #include "settings/value_names.h"
 
 namespace pertev {
@@ -29,41 +29,42 @@ namespace {
 void report_hidden_backs(double share, Messages& messages) {
     if (!(share > 0.01)) return;
     messages.note(fmt::format("the camera looks through the backs of surfaces at {:.0f} % of the picture, as they are "
-                              "not double sided (--show-back-faces shows them)",
+                              "not double sided (`show_back_faces` shows them)",
                               100 * share));
 }
 
-/// Reports what will be rendered, and on which device. Throws Error(OutOfMemory) if that is too much.
-void report_start(const RenderFlags& flags, const Scene& scene, const PreparedScene& prepared,
-                  const RenderSettings& settings, const Queue& queue, double load_s, Reporter& reporter) {
-    const std::size_t bytes =
-        flags.real_time ? predicted_frame_bytes(prepared, settings, reconstruction_settings(flags.reconstruction),
-                                                flags.reconstruction.sharing, queue.is_cuda())
-                        : predicted_bytes(prepared, settings, queue.is_cuda());
+/// Reports what will be rendered, and on which device.
+void report_start(const RenderFlags& flags, const RenderSetup& ready, Reporter& reporter) {
+    const Scene& scene = ready.scene();
+    const PreparedScene& prepared = ready.prepared();
+    const RenderSettings& settings = ready.settings;
+    const std::string device = ready.queue->device_name();
     const bool has_more = has_ground(scene); // the file is counted, not what is made up
     const uint64_t triangles = prepared.triangles - (has_more ? scene.meshes.back().triangle_count() : 0);
     const uint64_t instances = scene.instances.size() - (has_more ? 1 : 0);
-    reporter.print(fmt::format(
-        "{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
-        "rendering {}x{}, {} spp{} on {}, which takes {:.0f} MiB there",
-        flags.scene.scene, counted(triangles, "triangle"), counted(instances, "instance"),
-        counted(prepared.lights.count(), "light"), load_s, prepared.build_seconds, settings.width, settings.height,
-        settings.samples, flags.real_time ? " a frame, reconstructed," : "", queue.device_name(), mebibytes(bytes)));
+    reporter.print(fmt::format("{}: {}, {}, {}; loaded in {:.2f} s, trees in {:.2f} s; "
+                               "rendering {}x{}, {} spp{} on {}, which takes {:.0f} MiB there",
+                               flags.scene.scene, counted(triangles, "triangle"), counted(instances, "instance"),
+                               counted(prepared.lights.count(), "light"), ready.load_s, prepared.build_seconds,
+                               settings.width, settings.height, settings.samples,
+                               flags.real_time ? " a frame, reconstructed," : "", device, mebibytes(ready.bytes)));
     reporter.event(fmt::format(
         R"({{"event":"scene","scene":{},"triangles":{},"instances":{},"lights":{},"load_seconds":{:.6f},"build_seconds":{:.6f}}})",
-        json_string(flags.scene.scene), triangles, instances, prepared.lights.count(), load_s, prepared.build_seconds));
+        json_string(flags.scene.scene), triangles, instances, prepared.lights.count(), ready.load_s,
+        prepared.build_seconds));
     reporter.event(
         fmt::format(R"({{"event":"picture","width":{},"height":{},"spp":{},"device":{},"predicted_bytes":{}}})",
-                    settings.width, settings.height, settings.samples, json_string(queue.device_name()), bytes));
-    check_render_memory(bytes, settings, memory_to_render_in(queue, settings, max_memory_bytes(flags.radiosity)));
+                    settings.width, settings.height, settings.samples, json_string(device), ready.bytes));
 }
 
 /// Error for a picture that was interrupted before its first sample.
 Error ended_before_samples(const RenderSettings& settings) {
     if (interrupted()) return {ErrorCode::Interrupted, "interrupted before there was anything to keep"};
-    return {ErrorCode::Interrupted, fmt::format("--time-limit {:g}: no sample was finished in this time, so nothing is "
-                                                "written; --integrator {} prepares more than samples first",
-                                                settings.time_limit_s, integrator_name(settings))};
+    return {
+        ErrorCode::Interrupted, "time_limit", fmt::format("{:g}", settings.time_limit_s),
+        fmt::format("no sample was finished in this time, so nothing is written; `integrator={}` prepares more than "
+                    "samples first",
+                    integrator_name(settings))};
 }
 
 int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureRecord& record,
@@ -82,36 +83,39 @@ int write_one(const RenderFlags& flags, const RenderSettings& settings, PictureR
     reporter.report_messages();
     reporter.set_work("writing");
     const WrittenPicture written = write_picture(flags.outputs, record, result);
-    const std::string failures = report_files(written, reporter);
+    report_files(written, reporter);
     report_result(result, written, queue, watch.seconds(), cut_short, reporter);
-    if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
-    if (flags.strict && result.invalid_samples > 0) throw not_finite(result.invalid_samples);
+    if (const std::string failures = failures_of(written); !failures.empty())
+        throw Error(ErrorCode::FileWrite, failures);
+    if (flags.strict) refuse_invalid_samples(result.invalid_samples);
     return cut_short ? exit_status(ErrorCode::Interrupted) : 0;
 }
 
 int render(RenderFlags& flags) {
     Reporter reporter(flags.report);
     flags.settings.read(flags, reporter.messages());
-    if (flags.real_time && !flags.is_given("spp")) flags.render.samples = 1;
-    check_render_flags(flags, reporter.messages());
+    for (const std::string& output : flags.outputs) refuse_list(output);
+    check_outputs(flags, flags.outputs, reporter.messages());
     const Stopwatch watch;
-    const std::unique_ptr<RenderSetup> ready = prepare_render(flags, kRender, reporter);
+    const std::unique_ptr<RenderSetup> ready = prepare_render(flags, kRender, reporter, report_solving(reporter));
     report_motion(flags, *ready->moving, reporter.messages());
     const RenderSettings& settings = ready->settings;
     Queue& queue = *ready->queue;
     reporter.report_messages();
     listen_for_interrupt();
-    report_start(flags, ready->scene(), ready->prepared(), settings, queue, ready->load_s, reporter);
+    report_start(flags, *ready, reporter);
     PictureRecord record = picture_record(flags, *ready, reporter.messages());
     report_camera(record.camera, reporter);
     reporter.set_work("handing the scene to the device");
     std::optional<Session> session(std::in_place, queue, ready->prepared(), record.camera.camera, settings);
-    if (writes_tone_mapped(flags)) record.display = choose_and_report_display(flags, *session, reporter);
+    if (writes_tone_mapped(flags.outputs)) {
+        record.display = choose_display(flags, *session, reporter);
+        report_display(*record.display, is_metered(flags), reporter);
+    }
     reporter.set_work("rendering");
-    if (flags.real_time) record.frame = reconstructed_frame(flags, ready->sequence);
     if (frame_range(flags)) {
         const FrameCamera camera = {*ready->camera, ready->sequence};
-        return render_frames(flags, camera, *ready->moving, record, *session, reporter);
+        return render_frames(flags, {camera, *ready->moving, record, *session}, reporter);
     }
     return write_one(flags, settings, record, session, queue, watch, reporter);
 }
@@ -121,7 +125,6 @@ int render(RenderFlags& flags) {
 void add_render_command(CLI::App& app, int& status) {
     CLI::App& verb = *app.add_subcommand("render", "Render a picture of a scene");
     const auto flags = std::make_shared<RenderFlags>();
-    flags->limits_memory = true;
     add_scene_name(verb, flags->scene);
     verb.add_option("-o,--output", flags->outputs,
                     "A picture file to write: .exr .png .jpg .hdr. It may be given again.")

@@ -5,10 +5,10 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "base/byte_units.h"
 #include "base/message_text.h"
+#include "image/tone_map_image.h"
 #include "session/writing/metadata_json.h"
 
 namespace pertev {
@@ -27,24 +27,23 @@ void report_camera(const CameraSource& camera, Reporter& reporter) {
     reporter.event(object + '}');
 }
 
-std::string report_files(const WrittenPicture& written, Reporter& reporter) {
-    std::vector<std::string> failures;
-    for (const WrittenFile& file : written.files) {
-        reporter.output(file.path, file.failure);
-        if (!file.failure.empty()) failures.push_back(file.failure);
+void report_display(const Display& display, bool is_metered, Reporter& reporter) {
+    if (!display.false_colors) {
+        reporter.event(fmt::format(R"({{"event":"exposure","stops":{},"auto":{},"tone_map":"{}"}})",
+                                   json_number(static_cast<double>(display.exposure_stops)), is_metered,
+                                   name_of(display.tone_map)));
     }
-    return fmt::format("{}", fmt::join(failures, "; "));
+    reporter.report_messages();
+}
+
+void report_files(const WrittenPicture& written, Reporter& reporter) {
+    for (const WrittenFile& file : written.files) reporter.output(file.path, file.failure);
 }
 
 std::string hashes_json(const WrittenPicture& written) {
     const auto or_null = [](const std::string& hash) { return hash.empty() ? "null" : json_string(hash); };
     return fmt::format(R"("hash":"{}","layers_hash":{},"denoised_hash":{})", written.hash, or_null(written.layers_hash),
                        or_null(written.denoised_hash));
-}
-
-Error not_finite(uint64_t invalid_samples) {
-    return Error(ErrorCode::BadInput,
-                 fmt::format("--strict: {} not finite; the picture is written", counted(invalid_samples, "sample")));
 }
 
 void report_result(const RenderResult& result, const WrittenPicture& written, const Queue& queue, double total_seconds,

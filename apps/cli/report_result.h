@@ -6,7 +6,6 @@
 #include <string>
 
 #include "apps/cli/reporter.h"
-#include "base/error.h"
 #include "session/writing/write_picture.h"
 
 namespace pertev {
@@ -18,14 +17,14 @@ uint64_t peak_memory_bytes();
 /// metadata, where vectors are texts and here arrays.
 void report_camera(const CameraSource& camera, Reporter& reporter);
 
-/// Reports the files that were written. Returns what went wrong with the others; empty if nothing did.
-std::string report_files(const WrittenPicture& written, Reporter& reporter);
+/// With --json, writes an object with the exposure of PNG and JPEG, which the light meter may have chosen.
+void report_display(const Display& display, bool is_metered, Reporter& reporter);
+
+/// Reports the files that were written, and those that were not.
+void report_files(const WrittenPicture& written, Reporter& reporter);
 
 /// Members of a JSON object: `hash`, `layers_hash` and `denoised_hash`, null if there are none.
 std::string hashes_json(const WrittenPicture& written);
-
-/// Error of --strict for samples that are not finite.
-Error not_finite(uint64_t invalid_samples);
 
 /// Reports time, rates, memory, invalid samples and hashes. `total_seconds` counts from the start of loading the
 /// scene; `queue` is the one it was rendered on; `interrupted` means before all samples were done.

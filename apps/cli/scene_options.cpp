@@ -7,15 +7,8 @@
 #include "apps/cli/flag_checks.h"
 #include "formats/builtin_scenes.h"
 #include "session/opening/open_scene.h"
-#include "settings/parse_values.h"
 
 namespace pertev {
-
-void check_scene_options(const SceneOptions& options) {
-    check_camera_choice(options.camera);
-    read_options(options);
-    for (const std::string& emitter : options.emitters) parse_emitter(emitter);
-}
 
 std::string builtin_scene_list() { return fmt::format("{}", fmt::join(builtin_scene_names(), ", ")); }
 

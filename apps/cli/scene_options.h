@@ -5,8 +5,7 @@
 #include <string>
 
 #include "base/messages.h"
-#include "session/opening/choose_camera.h"
-#include "session/opening/open_scene.h"
+#include "scene/scene.h"
 #include "settings/picture_options.h"
 
 namespace CLI {
@@ -20,9 +19,6 @@ namespace pertev {
 CLI::Option* add_scene_name(CLI::App& verb, SceneOptions& options);
 /// Names of all built-in scenes, for help.
 std::string builtin_scene_list();
-
-/// Checks what can be checked before the scene is read. Throws Error(BadInput) for a flag that another one overrides.
-void check_scene_options(const SceneOptions& options);
 
 /// Reads a file, or a built-in scene by its name, and adds nothing (session/opening/open_scene.h's
 /// read_scene_and_emitters). Throws Error.

@@ -7,8 +7,6 @@
 #include <fmt/ranges.h>
 
 #include "apps/cli/flag_checks.h"
-#include "base/error.h"
-#include "settings/check_settings.h"
 #include "settings/settings_file.h"
 
 namespace pertev {
@@ -28,28 +26,6 @@ std::string described(const Setting& setting, bool has_own_default) {
 /// "--traversal,--walk": help and documents show the first alone.
 std::string flag_names(const Setting& setting) {
     return flag_of(setting.name) + (*setting.old_name != '\0' ? "," + flag_of(setting.old_name) : "");
-}
-
-/// "--solver southwell" for solver=southwell.
-std::string words_of(std::string condition) {
-    const std::size_t equals = std::min(condition.find('='), condition.size());
-    return flag_of(condition.substr(0, equals)) + (equals < condition.size() ? " " + condition.substr(equals + 1) : "");
-}
-
-std::string words_of(const SettingConflict& conflict, const PictureOptions& options) {
-    std::vector<std::string> others = conflict.others;
-    std::string flag = flag_of(conflict.setting->name);
-    switch (conflict.kind) {
-    case SettingConflict::Kind::Integrator:
-        return fmt::format("{}: applies to --integrator {}, not to {}", flag, fmt::join(others, ", "),
-                           texts_of(options, *find_setting("integrator")).front());
-    case SettingConflict::Kind::Needs:
-        std::ranges::transform(others, others.begin(), [](const std::string& other) { return words_of(other); });
-        return fmt::format("{}: needs {}", flag, fmt::join(others, " or "));
-    case SettingConflict::Kind::Excludes:
-        return fmt::format("{}: cannot be combined with {}; leave out one of them", flag, words_of(others.front()));
-    }
-    return flag;
 }
 
 } // namespace
@@ -80,8 +56,7 @@ void SettingFlags::add(CLI::App& verb, uint32_t verbs, const PictureOptions& opt
         }
         flag.option->group(setting.group);
         if (is_switch(setting)) continue;
-        flag.option->type_name(setting.form)
-            ->check(CLI::Validator([&setting](const std::string& value) { return why_no_value(setting, value); }, ""));
+        flag.option->type_name(setting.form); // set_value checks the text
         if ((has_own_default || *setting.otherwise == '\0') && !is_list(setting) && !now.empty())
             flag.option->default_str(now.front());
     }
@@ -94,19 +69,8 @@ void SettingFlags::add_file(CLI::App& verb) {
 }
 
 void SettingFlags::read(PictureOptions& options, Messages& messages) const {
-    const PictureOptions start = options;
-    std::vector<std::string> overruled; // settings of the file that do not go with flags
-    Messages already_reported;
-    while (true) {
-        if (!file_.empty())
-            read_settings(file_, verbs_, overruled, options, overruled.empty() ? messages : already_reported);
-        read_flags(options);
-        const auto conflict = find_conflict(options, verbs_);
-        if (!conflict) return;
-        overruled.push_back(overruled_setting(*conflict, options));
-        if (overruled.back().empty()) throw Error(ErrorCode::BadInput, words_of(*conflict, options));
-        options = start;
-    }
+    combine_settings(
+        file_, verbs_, [&](PictureOptions& others) { read_flags(others); }, options, messages);
 }
 
 void SettingFlags::read_flags(PictureOptions& options) const {

@@ -31,8 +31,7 @@ public:
     /// Adds --settings FILE.
     void add_file(CLI::App& verb);
 
-    /// Sets `options` from the settings file, then from the flags. Throws Error for invalid values and for
-    /// incompatible settings.
+    /// Sets `options` from the settings file, then from the flags, by combine_settings. Throws Error.
     void read(PictureOptions& options, Messages& messages) const;
 
 private:

@@ -8,7 +8,7 @@
 #include "accel/builders/bvh_cache.h"
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
-#include "apps/cli/radiosity_flags.h"
+#include "apps/cli/report_radiosity.h"
 #include "apps/cli/report_result.h"
 #include "apps/cli/scene_options.h"
 #include "apps/cli/setting_flags.h"
@@ -20,6 +20,7 @@
 #include "session/check_integrator.h"
 #include "session/moving_scene.h"
 #include "session/opening/strictness.h"
+#include "session/writing/check_outputs.h"
 
 namespace pertev {
 namespace {
@@ -39,14 +40,14 @@ int solve(SolveFlags& flags) {
     Reporter reporter(flags.report);
     Messages& messages = reporter.messages();
     flags.settings.read(flags, messages);
-    radiosity_settings(flags.radiosity, flags.render.path.seed); // refused before anything is read
-    refuse(
-        is_picture_name(flags.output),
-        fmt::format("--output {}: a solution is no picture; -o {} keeps it, and pertev render --integrator radiosity "
-                    "--solution {} shows it",
-                    flags.output, solution_name(flags.output), solution_name(flags.output)));
+    if (is_picture_name(flags.output)) {
+        throw Error(ErrorCode::BadInput, "output", flags.output,
+                    fmt::format("a solution is no picture; -o {0} keeps it, and pertev render --integrator radiosity "
+                                "--solution {0} shows it",
+                                solution_name(flags.output)));
+    }
     refuse_list(flags.output);
-    note_number_signs(flags.output, "only in names of pictures", messages);
+    note_number_signs(flags.output, messages);
     check_writable(flags.output);
     set_thread_count(static_cast<int>(flags.machine.threads));
     const Stopwatch total_time;
@@ -61,7 +62,7 @@ int solve(SolveFlags& flags) {
     const MovingScene moving(std::move(scene), flags.time_s, prepare, messages);
     reporter.report_messages();
     const SolvedRadiosity solved =
-        solve_and_report(moving.prepared(), flags.radiosity, flags.render.path.seed, reporter);
+        solve_scene(moving.prepared(), flags.radiosity, flags.render.path.seed, reporter, report_solving(reporter));
     reporter.set_work("writing");
     reporter.write_output(flags.output, [&] { write_solution(flags.output, solved.solution); });
     const bool cut_short = solved.stats.was_interrupted;

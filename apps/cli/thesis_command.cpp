@@ -19,6 +19,7 @@
 #include "lab/describe_camera.h"
 #include "lab/lab_tables.h"
 #include "lab/thesis.h"
+#include "session/opening/choose_camera.h"
 #include "session/session.h"
 #include "session/survey/default_light.h"
 

@@ -56,7 +56,7 @@ Subject read_subject(SceneOptions options, const TransportPreset* preset, float 
 /// Null stands for the scene of the command line.
 std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const TransportFlags& flags) {
     if (flags.preset.empty() && !scene.scene.empty()) return {nullptr};
-    refuse(!scene.scene.empty(), "--preset: has its own scene; leave out SCENE or --preset");
+    refuse(!scene.scene.empty(), {"preset", flags.preset, "has its own scene; leave out SCENE or --preset"});
     std::vector<const TransportPreset*> presets;
     for (const TransportPreset& preset : the_record().presets) {
         const std::string wanted = flags.preset.empty() ? "cornell" : flags.preset;
@@ -65,8 +65,9 @@ std::vector<const TransportPreset*> presets_of(const SceneOptions& scene, const 
     const CameraChoice& camera = scene.camera;
     refuse(!camera.camera.empty() || camera.eye || camera.target || camera.up || camera.fov_deg || camera.projection ||
                camera.view_height,
-           "--preset: has its own camera; name a SCENE to use another");
-    refuse(presets.size() > 1 && !flags.reference.empty(), "--reference: belongs to one scene; name one preset");
+           {"preset", flags.preset, "has its own camera; name a SCENE to use another"});
+    refuse(presets.size() > 1 && !flags.reference.empty(),
+           {"reference", flags.reference, "belongs to one scene; name one preset"});
     return presets;
 }
 
@@ -81,9 +82,9 @@ Image read_linear_image(const std::string& file, Messages& messages) {
     const std::vector<std::byte> bytes = read_file(file);
     const std::optional<ImageFormat> format = recognise_image(bytes);
     refuse(format == ImageFormat::Png || format == ImageFormat::Jpeg,
-           fmt::format("--reference {}: a picture for displays, tone-mapped and of few bits; errors are of radiance, "
-                       "which an EXR or HDR file has (pertev render -o reference.exr)",
-                       file));
+           {"reference", file,
+            "a picture for displays, tone-mapped and of few bits; errors are of radiance, which an EXR or HDR file has "
+            "(pertev render -o reference.exr)"});
     return read_image(bytes, file, &messages);
 }
 
@@ -97,7 +98,7 @@ TransportSettings settings_of(const TransportFlags& flags, const std::string& si
     if (settings.integrators.empty()) settings.integrators = transport_integrators();
     settings.repetitions = flags.repetitions, settings.seconds = flags.seconds;
     settings.max_samples = flags.max_samples;
-    std::tie(settings.picture.width, settings.picture.height) = parse_size("--size", size.empty() ? "256x256" : size);
+    std::tie(settings.picture.width, settings.picture.height) = parse_size("size", size.empty() ? "256x256" : size);
     settings.picture.path.max_depth = flags.max_depth;
     settings.picture.path.seed = flags.seed;
     settings.picture.photon_map.edit().search =

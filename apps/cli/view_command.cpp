@@ -16,10 +16,9 @@
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/interrupt.h"
-#include "apps/cli/prepare_render.h"
-#include "apps/cli/reconstruction_flags.h"
-#include "apps/cli/render_frames.h"
-#include "apps/cli/report_display.h"
+#include "apps/cli/render_flags.h"
+#include "apps/cli/report_radiosity.h"
+#include "apps/cli/report_result.h"
 #include "apps/viewer/panel_phrases.h"
 #include "apps/viewer/session_frames.h"
 #include "apps/viewer/viewer.h"
@@ -31,7 +30,10 @@
 #include "integrators/radiosity/radiosity_display_settings.h"
 #include "scene/scene_origin.h"
 #include "session/check_integrator.h"
-#include "session/opening/strictness.h"
+#include "session/machine.h"
+#include "session/pictures/choose_display.h"
+#include "session/pictures/prepare_render.h"
+#include "settings/value_names.h"
 
 extern char** environ;
 
@@ -57,11 +59,8 @@ bool is_this_machine_alone(const std::string& host) {
 
 void check_host(const std::string& host) {
     if (host == "0.0.0.0" || host == "::" || host == "[::]" || host == "*") {
-        throw Error(
-            ErrorCode::BadInput,
-            fmt::format(
-                "--host {}: expected the one name or address that browsers will use; requests for another are refused",
-                host));
+        throw Error(ErrorCode::BadInput, "host", host,
+                    "expected the one name or address that browsers will use; requests for another are refused");
     }
 }
 
@@ -208,15 +207,15 @@ int view(ViewFlags& flags) {
     Reporter reporter(flags.render.report);
     flags.render.settings.read(flags.render, reporter.messages());
     check_host(flags.host);
-    check_shown_picture_flags(flags.render);
-    const std::unique_ptr<RenderSetup> ready = prepare_render(flags.render, kView, reporter);
-    if (!makes_frames(ready->settings.integrator) && has_frame_options(flags.render.reconstruction)) {
-        reporter.messages().note(fmt::format("--integrator {}: its frames are not reconstructed; --restir and "
-                                             "--resolution-scale apply once the panel's integrator is path or hybrid",
-                                             integrator_name(ready->settings)));
+    const std::unique_ptr<RenderSetup> ready = prepare_render(flags.render, kView, reporter, report_solving(reporter));
+    if (!makes_frames(ready->settings.integrator) && flags.render.reconstruction.has_frame_options()) {
+        reporter.messages().note({"integrator", std::string(integrator_name(ready->settings)),
+                                  "its frames are not reconstructed; `restir` and `resolution_scale` apply once the "
+                                  "panel's integrator is path or hybrid"});
     }
     if (flags.render.time_s) report_motion(flags.render, *ready->moving, reporter.messages());
-    check_jpeg_size("--size", ready->settings.width, ready->settings.height); // that is how pictures are sent
+    const uint32_t width = ready->settings.width, height = ready->settings.height;
+    check_jpeg_size({"size", fmt::format("{}x{}", width, height), ""}, width, height); // that is how pictures are sent
     reporter.report_messages();
     listen_for_interrupt();
     reporter.set_work("handing the scene to the device");
@@ -234,8 +233,9 @@ int view(ViewFlags& flags) {
     if (!flags.render.size) {
         start.view.window_pixels = uint64_t(ready->settings.width) * ready->settings.height;
     }
-    start.view.display = choose_and_report_display(flags.render, session, reporter);
+    start.view.display = choose_display(flags.render, session, reporter);
     start.view.finds_exposure = is_metered(flags.render);
+    report_display(start.view.display, start.view.finds_exposure, reporter);
     start.view.dark = dark_integrators(ready->settings, ready->scene());
     start.view.lens = camera;
     start.view.on_cuda = on_cuda;
@@ -255,8 +255,9 @@ int view(ViewFlags& flags) {
     report_choices(ready->scene(), start);
     let_time_move(flags, *ready, start);
     if (!start.why_still.empty()) {
-        reporter.messages().note(fmt::format("{}: the scene {}; --time S shows it at another, --integrator path moving",
-                                             flags.render.scene.scene, start.why_still));
+        reporter.messages().note(
+            {FileLocation{flags.render.scene.scene},
+             fmt::format("the scene {}; `time` shows it at another, `integrator=path` moving", start.why_still)});
         reporter.report_messages();
     }
     const std::unique_ptr<Queue> jpeg_queue = on_cuda ? queue_for_jpeg(flags) : nullptr;

@@ -199,7 +199,7 @@ std::string man_page(const CLI::App& app) {
 
 std::string completion(const CLI::App& app, const std::string& shell) {
     if (shell != "bash" && shell != "zsh" && shell != "fish") {
-        throw Error(ErrorCode::BadInput, fmt::format("--completion {}: expected bash, zsh or fish", shell));
+        throw Error(ErrorCode::BadInput, "completion", shell, "expected bash, zsh or fish");
     }
     if (shell == "fish") return fish_completion(app);
     const std::string bash = bash_completion(app);
@@ -223,7 +223,9 @@ std::string settings_document() {
         "Unknown entries are\n"
         "left out with a warning, and `--strict` refuses them. Settings marked \"not kept\" are not "
         "stored there, because they\n"
-        "belong to the machine and the run: threads, folders to read from, or a time limit.\n";
+        "belong to the machine and the run: threads, folders to read from, or a time limit. \"Not with: "
+        "svgf:max_depth=0\" is a rule\n"
+        "for the value svgf alone.\n";
     std::string_view group;
     std::string verbs;
     for (const Setting& setting : all_settings()) {

@@ -13,6 +13,7 @@
 #include "apps/viewer/window_shape.h"
 #include "base/error.h"
 #include "base/limits.h"
+#include "session/check_integrator.h"
 #include "session/degrees.h"
 #include "settings/parse_values.h"
 #include "settings/setting_table.h"
@@ -97,18 +98,23 @@ std::string why_no_layer(ShownLayer layer, const RenderSettings& settings) {
                        integrator_name(settings));
 }
 
+/// Returns what the integrator cannot do; empty if nothing.
+std::string why_no_picture(const RenderSettings& settings, const Camera& camera) {
+    try {
+        check_integrator(settings);
+        check_camera(settings, camera);
+    } catch (const Error& error) {
+        return panel_phrase(error.remark());
+    }
+    return {};
+}
+
 std::string why_no_integrator(const ViewState& state) {
-    const RenderSettings& wanted = state.picture;
     for (const auto& [kind, why_dark] : state.dark) {
-        if (kind == wanted.integrator) return why_dark;
+        if (kind == state.picture.integrator) return why_dark;
     }
-    if (rasterises_camera(wanted.integrator) && state.lens.aperture_radius > 0) {
-        return fmt::format("{}: its camera has no lens; the lens radius must be 0", integrator_name(wanted));
-    }
-    const std::string why_not = why_no_layer(state.layer, wanted);
-    const uint32_t most = max_depth(wanted.integrator);
-    if (!why_not.empty() || wanted.path.max_depth <= most) return why_not;
-    return fmt::format("{}: at most {} scatterings", integrator_name(wanted), most);
+    const std::string why_not = why_no_picture(state.picture, state.lens);
+    return why_not.empty() ? why_no_layer(state.layer, state.picture) : why_not;
 }
 
 /// Sets a setting of pictures. Returns why nothing was changed; empty on success.
@@ -201,7 +207,8 @@ std::vector<ViewSetting> make_settings() {
 
     choice(
         "layer", "Show", "Picture",
-        "The picture or another quantity of each pixel in false colours. Heat: the number of tests of its camera ray",
+        "The picture or another quantity of each pixel in false colours. Heat: the number of tests of its camera "
+        "ray",
         strings(kLayers), [](const ViewState& s) { return name_of(s.layer); },
         [](ViewState& s, const std::string& name) {
             const auto layer = static_cast<ShownLayer>(std::ranges::find(kLayers, name) - std::begin(kLayers));

@@ -303,8 +303,8 @@ void WebServer::Inside::listen(const std::string& host, uint16_t port) {
     const std::string plain = host.starts_with('[') && host.ends_with(']') ? host.substr(1, host.size() - 2) : host;
     const auto found = tcp::resolver(context).resolve(plain, std::to_string(port), tcp::resolver::passive, fault);
     const auto fail = [&] {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("--host {} --port {}: cannot listen there: {}", host, port, fault.message()));
+        throw Error(ErrorCode::BadInput, "host", host,
+                    fmt::format("cannot listen there with `port={}`: {}", port, fault.message()));
     };
     if (fault || found.empty()) fail();
     const tcp::endpoint endpoint = found.begin()->endpoint();

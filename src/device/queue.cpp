@@ -156,7 +156,9 @@ std::string why_no_cuda(int) {
 }
 bool may_have_cuda() { return false; }
 int cuda_device_count() { return 0; }
-std::unique_ptr<DeviceBackend> make_cuda_backend(int index) { throw Error(ErrorCode::BadInput, why_no_cuda(index)); }
+std::unique_ptr<DeviceBackend> make_cuda_backend(int index) {
+    throw Error(ErrorCode::BadInput, "device", fmt::format("cuda:{}", index), why_no_cuda(index));
+}
 
 #endif
 

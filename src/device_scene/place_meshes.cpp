@@ -25,7 +25,7 @@ void add_triangles(const Mesh& mesh, const Transform& world_from_local, uint32_t
 }
 
 Error too_many_copies(const MeshPlacement& placement, std::size_t i, const Instance& instance, uint64_t limit) {
-    return {ErrorCode::OverLimit,
+    return {ErrorCode::OverLimit, "scene", "",
             fmt::format("{}: its transform squeezes one direction by more than {} times another, so that its mesh is "
                         "copied into world space; the {} copies have {} triangles, and the limit for this scene is {}; "
                         "squeeze the mesh itself, or use copies of fewer triangles",
@@ -73,9 +73,9 @@ std::vector<BvhTriangle> baked_triangles(const Scene& scene, const MeshPlacement
         if (placement.is_baked[i]) count += scene.meshes[scene.instances[i].mesh].triangle_count();
     }
     if (count > kMaxBvhTriangles) {
-        throw Error(ErrorCode::OverLimit, fmt::format("the scene has {} triangles outside shared meshes; at most {} "
-                                                      "fit one tree",
-                                                      count, kMaxBvhTriangles));
+        throw Error(
+            ErrorCode::OverLimit, "scene", "",
+            fmt::format("it has {} triangles outside shared meshes; at most {} fit one tree", count, kMaxBvhTriangles));
     }
     std::vector<BvhTriangle> triangles(count);
     std::size_t first = 0;

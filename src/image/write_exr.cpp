@@ -89,9 +89,10 @@ void add_metadata(Imf::Header& header, const ExrMetadata& metadata) {
 
 void check_exr_row(uint32_t width, std::size_t channels) {
     if (row_bytes(width, channels) <= kMaxRowBytes) return;
-    throw Error(ErrorCode::OverLimit, fmt::format("{} channels of {} pixels per row exceed an EXR's limit of 1 GiB per "
-                                                  "row, which are {} channels of that width",
-                                                  channels, width, kMaxRowBytes / row_bytes(width, 1)));
+    throw Error(ErrorCode::OverLimit, "size", "",
+                fmt::format("{} channels of {} pixels per row exceed an EXR's limit of 1 GiB per row, which are {} "
+                            "channels of that width",
+                            channels, width, kMaxRowBytes / row_bytes(width, 1)));
 }
 
 std::vector<std::byte> encode_exr(const Image& picture, std::span<const ExrLayer> layers, const ExrMetadata& metadata) {

@@ -25,7 +25,7 @@ ImageFormat image_format_for(const std::filesystem::path& path) {
 }
 
 void check_image_output(const std::filesystem::path& path, uint32_t width, uint32_t height) {
-    if (image_format_for(path) == ImageFormat::Jpeg) check_jpeg_size(path.string(), width, height);
+    if (image_format_for(path) == ImageFormat::Jpeg) check_jpeg_size({FileLocation{path.string()}, ""}, width, height);
     check_writable(path);
 }
 

@@ -83,7 +83,7 @@ void check_picture(const Rgba8Image& picture, int quality) {
     const std::size_t row_bytes = std::size_t(picture.width) * 4;
     PERTEV_CHECK(row_bytes > 0 && picture.height > 0 && picture.pixels.size() == row_bytes * picture.height);
     PERTEV_CHECK(quality >= 1 && quality <= 100);
-    check_jpeg_size("picture", picture.width, picture.height);
+    check_jpeg_size("", picture.width, picture.height);
 }
 
 constexpr int kStartOfFrame = 0xc0, kStartOfScan = 0xda; // second bytes of markers
@@ -112,11 +112,11 @@ void put_16(std::byte* at, uint32_t value) {
 
 } // namespace
 
-void check_jpeg_size(const std::string& name, uint32_t width, uint32_t height) {
-    if (width > JPEG_MAX_DIMENSION || height > JPEG_MAX_DIMENSION)
-        throw Error(ErrorCode::OverLimit, FileLocation{name},
-                    fmt::format("{} x {} pixels are too many for JPEG, whose limit is {} along a side; use .png", width,
-                                height, JPEG_MAX_DIMENSION));
+void check_jpeg_size(Remark what, uint32_t width, uint32_t height) {
+    if (width <= JPEG_MAX_DIMENSION && height <= JPEG_MAX_DIMENSION) return;
+    what.reason = fmt::format("{} x {} pixels are too many for JPEG, whose limit is {} along a side; use .png", width,
+                              height, JPEG_MAX_DIMENSION);
+    throw Error(ErrorCode::OverLimit, std::move(what));
 }
 
 std::vector<std::byte> encode_jpeg(const Rgba8Image& picture, int quality) {

@@ -5,15 +5,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <string>
 #include <vector>
 
+#include "base/remark.h"
 #include "image/image.h"
 
 namespace pertev {
 
-/// Throws Error(OverLimit) that starts with `name` for a side of more than 65500 pixels, the format's limit.
-void check_jpeg_size(const std::string& name, uint32_t width, uint32_t height);
+/// Throws Error(OverLimit) about `what`, a file or a setting, for a side of more than 65500 pixels, the format's limit.
+void check_jpeg_size(Remark what, uint32_t width, uint32_t height);
 
 /// `quality`: libjpeg's scale, 1 to 100. Throws as check_jpeg_size.
 std::vector<std::byte> encode_jpeg(const Rgba8Image& picture, int quality = 95);

@@ -48,9 +48,10 @@ Scene make_grey_scene(const std::string& file, Messages& messages) {
 std::filesystem::path record_file(const RecordScene& scene, const std::filesystem::path& folder) {
     const std::filesystem::path path = folder / scene.file;
     if (folder.empty() || !std::filesystem::exists(path)) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("the scene {} needs {} under the folder that PERTEV_SCENES names (docs/scenes.md){}",
-                                scene.name, scene.file, folder.empty() ? "; it is not set" : ""));
+        throw Error(ErrorCode::BadInput, FileLocation{path.string()},
+                    fmt::format("the scene {} needs this file under the folder that PERTEV_SCENES names "
+                                "(docs/scenes.md){}",
+                                scene.name, folder.empty() ? "; it is not set" : ""));
     }
     return path;
 }

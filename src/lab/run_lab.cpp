@@ -57,7 +57,8 @@ public:
                    .first_depth = settings.first_depth,
                    .runs = settings.runs,
                    .warm_ups = settings.warm_ups};
-        if (report_.triangles == 0) throw Error(ErrorCode::BadInput, "the scene has no triangles: nothing to trace");
+        if (report_.triangles == 0)
+            throw Error(ErrorCode::BadInput, "scene", "", "it has no triangles: nothing to trace");
     }
 
     LabReport run() {
@@ -142,10 +143,12 @@ private:
             set.rays = {}; // the rays that are needed are on the device
         }
         if (sets_.empty()) {
-            throw Error(ErrorCode::BadInput,
-                        settings_.depth == 1 && settings_.diffuse && !settings_.primary
-                            ? "diffuse rays are the second of a path: they want a depth of 2 or more"
-                            : "no ray of the camera meets the scene, so there are none to bounce");
+            if (settings_.depth == 1 && settings_.diffuse && !settings_.primary) {
+                throw Error(ErrorCode::BadInput, "depths", "1",
+                            "diffuse rays are the second of a path: they want a depth of 2 or more");
+            }
+            throw Error(ErrorCode::BadInput, "camera", "",
+                        "none of its rays meets the scene, so there are none to bounce");
         }
     }
 
@@ -177,11 +180,10 @@ private:
         const uint64_t bytes = rays * (sizeof(Ray) + sizeof(RayHit));
         const int sets = record ? 5 : settings_.depth + 1;
         const auto complain = [&](const std::string& what) {
-            return Error(ErrorCode::OutOfMemory,
+            return Error(ErrorCode::OutOfMemory, record ? "count" : "size", "",
                          fmt::format("out of memory{}: {} rays and what they meet take {:.1f} GiB a set, for up to {} "
-                                     "sets, and this machine has {:.1f} GiB; {} gives fewer",
-                                     what, rays, gibibytes(bytes), sets, gibibytes(host_memory_bytes()),
-                                     record ? "a smaller `count`" : "a smaller `size`"));
+                                     "sets, and this machine has {:.1f} GiB; a smaller one gives fewer",
+                                     what, rays, gibibytes(bytes), sets, gibibytes(host_memory_bytes())));
         };
         if (bytes > host_memory_bytes()) throw complain("");
         try {

@@ -117,8 +117,8 @@ private:
         if (!settings_.reference) {
             reference.integrator = settings_.reference_integrator;
             if (const std::string why = why_not(reference.integrator); !why.empty()) {
-                throw Error(ErrorCode::BadInput,
-                            fmt::format("the reference cannot be made by {}: {}", reference.integrator, why));
+                throw Error(ErrorCode::BadInput, "reference", reference.integrator,
+                            fmt::format("it cannot make the reference: {}", why));
             }
             reference.lacks = light_lacking(reference.integrator, scene_);
             return;

@@ -54,8 +54,8 @@ void check_light_ends(const RadiositySystem& system) {
     for (int k = 0; k < 3; ++k) {
         const uint64_t endless = count_endless(system, k);
         if (endless == 0) continue;
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("radiosity: light never ends: {} of {} patches reflect all light to each other (lower "
+        throw Error(ErrorCode::BadInput, "scene", "",
+                    fmt::format("light never ends: {} of {} patches reflect all light to each other (lower "
                                 "their reflectances below 1; `integrator=path` follows light up to `max_depth`)",
                                 endless, system.patches.size()));
     }

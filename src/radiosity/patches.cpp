@@ -185,8 +185,8 @@ PatchTree make_patches(const SceneView& scene, float patch_size, WorkWatch* watc
         }
     });
     if (!any_reflects) {
-        throw Error(ErrorCode::BadInput,
-                    "radiosity: no surface of this scene reflects diffusely, so that there is nothing to solve "
+        throw Error(ErrorCode::BadInput, "scene", "",
+                    "no surface of this scene reflects diffusely, so that there is nothing to solve "
                     "(`integrator=path` supports mirrors, glass and unlit surfaces)");
     }
     return tree;

@@ -140,20 +140,20 @@ void check_scene(const std::filesystem::path& path, const RadiositySolution& sol
     for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangle_count();
     if (solution.geometry != geometry_hash(scene) || solution.roots.size() != 2 * triangles) {
         refuse_file(path, "a radiosity solution of another scene, of this one before its surfaces were changed, or of "
-                          "another `time` (pertev solve radiosity makes a new one)");
+                          "another `time`; solve the scene again");
     }
     if (!solution.light) return;
     const SolvedLight light = solved_light(scene);
     if (solution.light->surfaces != light.surfaces) {
         refuse_file(path, "a radiosity solution of this scene with other materials: what surfaces reflect, let through "
-                          "or emit has changed since, or by `lamp`, `efficacy` or `two_sided_lights` (pertev solve "
-                          "radiosity, with the same settings, makes a new one)");
+                          "or emit has changed since, or by `lamp`, `efficacy` or `two_sided_lights`; solve the scene "
+                          "again with the same settings");
     }
     if (solution.light->lights != light.lights) {
         refuse_file(path,
                     "a radiosity solution of this scene under other lights: a point, spot or directional light or "
-                    "the environment has changed since, or by `lamp`, `environment` and the like, or `time` "
-                    "(pertev solve radiosity, with the same settings, makes a new one)");
+                    "the environment has changed since, or by `lamp`, `environment` and the like, or `time`; solve the "
+                    "scene again with the same settings");
     }
 }
 
@@ -195,12 +195,10 @@ RadiositySolution read_any_solution(const std::filesystem::path& path) {
     const std::vector<std::byte> file = read_file(path);
     std::span<const std::byte> bytes = file;
     Header header;
-    if (bytes.size() < sizeof header) refuse_file(path, "no radiosity solution (pertev solve radiosity makes one)");
+    if (bytes.size() < sizeof header) refuse_file(path, "not a radiosity solution");
     take(bytes, std::span(&header, 1));
     const int version = version_of(header);
-    if (version == 0) {
-        refuse_file(path, "no radiosity solution (pertev solve radiosity makes one)");
-    }
+    if (version == 0) refuse_file(path, "not a radiosity solution");
     constexpr uint64_t kMaxCount = uint64_t(1) << 40; // so that no sum below passes 64 bits
     const bool has_sizes = std::max({header.text, header.roots, header.quads, header.patches}) < kMaxCount;
     const bool has_light = version >= kFirstWithLight, has_extent = version >= kFirstWithExtent;
@@ -238,12 +236,12 @@ RadiositySolution read_solution(const std::filesystem::path& path, const Scene& 
     if (!solution.light) {
         messages.warn({FileLocation{path.string()},
                        "an earlier version made it and did not record its light; if lights or materials have changed "
-                       "since, it shows the old ones (pertev solve radiosity makes a new one)"});
+                       "since, it shows the old ones; solve the scene again"});
     }
     if (solution.extent.part != SolvedPart::All) {
-        messages.warn({FileLocation{path.string()},
-                       fmt::format("it is unfinished and holds {} (pertev solve radiosity makes a complete one)",
-                                   describe(solution.extent))});
+        messages.warn(
+            {FileLocation{path.string()},
+             fmt::format("it is unfinished and holds {}; solve the scene again for all", describe(solution.extent))});
     }
     return solution;
 }

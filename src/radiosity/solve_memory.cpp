@@ -132,11 +132,10 @@ void check_memory(const SolveMemory& memory, const RadiositySettings& settings, 
     if (settings.solver == RadiositySolver::Hierarchical) {
         fewer = memory.by_rows > 0 && memory.by_rows <= limit ? ", and `solver=gauss-seidel` takes less" : "";
     }
-    throw Error(
-        ErrorCode::OutOfMemory,
-        fmt::format("radiosity: may take {:.1f} MiB of this machine's memory; the limit is {:.1f} MiB (`max_memory`); "
-                    "a larger `patch_size` or fewer `subdivisions` make fewer patches{}. The largest parts:{}",
-                    mebibytes(memory.bytes), mebibytes(limit), fewer, list));
+    throw Error(ErrorCode::OutOfMemory, "max_memory", "",
+                fmt::format("radiosity may take {:.1f} MiB of this machine's memory; the limit is {:.1f} MiB; a larger "
+                            "`patch_size` or fewer `subdivisions` make fewer patches{}. The largest parts:{}",
+                            mebibytes(memory.bytes), mebibytes(limit), fewer, list));
 }
 
 } // namespace pertev

@@ -48,13 +48,16 @@ std::optional<Shutter> shutter(const PictureOptions& options) {
     const std::size_t comma = options.shutter.find(',');
     const std::optional<double> close = seconds_in(std::string_view(options.shutter).substr(comma + 1)); // npos + 1: 0
     const auto open = comma == std::string::npos ? 0.0 : seconds_in(std::string_view(options.shutter).substr(0, comma));
-    if (open && close) {
-        if (std::fabs(*open) <= kMaxShutter && std::fabs(*close) <= kMaxShutter) return Shutter{*open, *close};
-        throw Error(ErrorCode::BadInput, "shutter", options.shutter,
-                    fmt::format("OPEN and CLOSE must be within {:g} s of the picture's time", kMaxShutter));
-    }
-    throw Error(ErrorCode::BadInput, "shutter", options.shutter,
-                "expected SECONDS, or OPEN,CLOSE, both counted from the picture's time");
+    const auto refuse = [&](std::string why) {
+        throw Error(ErrorCode::BadInput, "shutter", options.shutter, std::move(why));
+    };
+    if (!open || !close) refuse("expected SECONDS, or OPEN,CLOSE, both counted from the picture's time");
+    if (std::fabs(*open) > kMaxShutter || std::fabs(*close) > kMaxShutter)
+        refuse(fmt::format("OPEN and CLOSE must be within {:g} s of the picture's time", kMaxShutter));
+    if (*close < *open) refuse("it closes before it opens");
+    if (options.turntable > 0 && options.frames.empty())
+        refuse("with `turntable` the duration of a turn is needed; set `frames` and `fps`");
+    return Shutter{*open, *close};
 }
 
 std::optional<FrameRange> frame_range(const PictureOptions& options) {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <span>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "math/frame.h"
 #include "scene/scene_origin.h"
@@ -37,6 +39,16 @@ Measured mean_of(std::span<const double> estimates) {
 
 } // namespace
 
+void check_meter(const MeterPoint& meter, uint32_t seed) {
+    const Vec3 n = meter.normal;
+    if (!(length_squared(n) > 0) || !is_finite(normalize(n))) {
+        throw Error(ErrorCode::BadInput, "normal", fmt::format("{},{},{}", n.x, n.y, n.z),
+                    "it is no direction; expected a length above 0");
+    }
+    if (seed > kMaxMeterSeed)
+        throw Error(ErrorCode::BadInput, "seed", fmt::format("{}", seed), fmt::format("at most {}", kMaxMeterSeed));
+}
+
 Camera meter_camera(const Scene& scene, const MeterPoint& meter) {
     PERTEV_CHECK(length_squared(meter.normal) > 0);
     const Bounds3 bounds = bounds_of(scene);
@@ -55,7 +67,7 @@ Camera meter_camera(const Scene& scene, const MeterPoint& meter) {
 
 Irradiance measure_irradiance(Queue& queue, const PreparedScene& scene, const MeterPoint& meter,
                               const RenderSettings& requested, Sink& sink) {
-    PERTEV_CHECK(requested.path.seed <= kMaxMeterSeed);
+    check_meter(meter, requested.path.seed);
     RenderSettings settings = probe_settings(requested);
     Session session(queue, scene, meter_camera(*scene.scene, meter), settings);
     Irradiance result;

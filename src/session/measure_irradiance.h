@@ -36,14 +36,16 @@ struct MeterPoint {
     Vec3 normal; // outward normal of the lit surface; any length but 0
 };
 
+/// Throws Error(BadInput) for a normal that is no direction, and for a seed beyond kMaxMeterSeed.
+void check_meter(const MeterPoint& meter, uint32_t seed);
+
 /// A camera that measures irradiance (Projection::Cosine). It is offset from the surface by 2^-19 of the largest
 /// coordinate of `scene` and `meter`, which is more than rounding moves them.
 Camera meter_camera(const Scene& scene, const MeterPoint& meter);
 
-/// Measures irradiance. Of `settings` it uses path settings, samples (paths through each pixel) and tracers. The seed
-/// is at most kMaxMeterSeed. Light with up to settings.path.max_depth scatterings counts. Culled backs do not block
-/// rays; to include them, make materials double sided first. If `sink` stops it, Error(Interrupted)
-/// is thrown. Throws as Session.
+/// Measures irradiance. Of `settings` it uses path settings, samples (paths through each pixel) and tracers. Light with
+/// up to settings.path.max_depth scatterings counts. Culled backs do not block rays; to include them, make materials
+/// double sided first. If `sink` stops it, Error(Interrupted) is thrown. Throws as check_meter and Session.
 Irradiance measure_irradiance(Queue& queue, const PreparedScene& scene, const MeterPoint& meter,
                               const RenderSettings& settings, Sink& sink = nobody());
 

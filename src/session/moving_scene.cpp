@@ -82,10 +82,9 @@ std::shared_ptr<const MotionKeys> MovingScene::motions_at(double time_s) {
             const std::optional<Transform>& placement = placements.instances[i];
             if (placement && !lies_near(*placement, bounds_of(now.meshes[now.instances[i].mesh]))) {
                 throw Error(
-                    ErrorCode::OverLimit,
-                    fmt::format(
-                        "instance {} lies beyond 2^40 metres at {} s, while the shutter is open; scale the scene down",
-                        i, then_s));
+                    ErrorCode::OverLimit, "shutter", "",
+                    fmt::format("instance {} lies beyond 2^40 metres at {} s, while it is open; scale the scene down",
+                                i, then_s));
             }
             of_things.push_back(placement ? std::optional(moved_to(*placement, *options_.centre)) : std::nullopt);
         }

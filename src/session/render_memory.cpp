@@ -29,7 +29,7 @@ std::string amount(std::size_t bytes, std::size_t other = 0) {
 }
 
 std::string limit_text(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit) {
-    if (limit.is_requested) return fmt::format("`max_memory` allows {}", amount(limit.bytes, bytes));
+    if (limit.is_requested) return fmt::format("it allows {}", amount(limit.bytes, bytes));
     return fmt::format("{} has {}, and the finished picture takes {}",
                        is_memory_of_group() ? "this container or service" : "this machine",
                        amount(machine_memory_bytes(), bytes), amount(result_bytes(settings)));
@@ -74,7 +74,7 @@ MemoryLimit memory_to_render_in(const Queue& queue, const RenderSettings& settin
 
 void check_render_memory(std::size_t bytes, const RenderSettings& settings, const MemoryLimit& limit) {
     if (bytes <= limit.bytes) return;
-    throw Error(ErrorCode::OutOfMemory,
+    throw Error(ErrorCode::OutOfMemory, limit.is_requested ? "max_memory" : "", "",
                 fmt::format("the render takes {} of {}memory; {}. {}", amount(bytes, limit.bytes),
                             limit.is_cuda ? "the GPU's " : "", limit_text(bytes, settings, limit),
                             advice(settings, limit.is_cuda)));

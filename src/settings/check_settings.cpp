@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "settings/value_names.h"
@@ -11,10 +12,12 @@
 namespace pertev {
 
 std::vector<std::string> integrators_with(const Setting& setting) {
-    std::vector<std::string> names;
-    for (const IntegratorDescriptor& integrator : integrators()) {
-        if (has_setting(integrator.value, setting)) names.emplace_back(integrator.name);
-    }
+    std::vector<std::string> names = integrator_names();
+    std::erase_if(names, [&](const std::string& name) {
+        RenderSettings settings;
+        set_integrator(settings, name);
+        return !has_setting(settings.integrator, setting);
+    });
     return names;
 }
 
@@ -52,8 +55,12 @@ std::optional<SettingConflict> conflict_of(const PictureOptions& options, const 
     std::erase_if(needs, [&](const std::string& other) { return (setting_of(other)->verbs & verbs) == 0; });
     const auto is_so = [&](const std::string& other) { return holds(options, other); };
     if (!needs.empty() && std::ranges::none_of(needs, is_so)) return SettingConflict{&setting, Kind::Needs, needs};
-    for (const std::string& other : words_of(setting.excludes)) {
-        if (is_so(other)) return SettingConflict{&setting, Kind::Excludes, {other}};
+    for (std::string& other : words_of(setting.excludes)) {
+        const std::size_t colon = other.find(':'); // VALUE:OTHER is a rule for this value alone
+        const std::string value = other.substr(0, colon == std::string::npos ? 0 : colon);
+        if (!value.empty() && !is_so(fmt::format("{}={}", setting.name, value))) continue;
+        other.erase(0, colon + 1); // npos + 1: 0
+        if (is_so(other)) return SettingConflict{&setting, Kind::Excludes, {other}, value};
     }
     return std::nullopt;
 }
@@ -66,6 +73,29 @@ std::optional<SettingConflict> find_conflict(const PictureOptions& options, uint
         if (auto conflict = conflict_of(options, setting, verbs)) return conflict;
     }
     return std::nullopt;
+}
+
+Remark remark_of(const SettingConflict& conflict, const PictureOptions& options) {
+    const std::vector<std::string>& others = conflict.others;
+    std::string why;
+    switch (conflict.kind) {
+    case SettingConflict::Kind::Integrator:
+        why = fmt::format("applies to `integrator={}`{}{}, not to {}", others.front(), others.size() > 1 ? ", " : "",
+                          fmt::join(others.begin() + 1, others.end(), ", "), integrator_name(options.render));
+        break;
+    case SettingConflict::Kind::Needs:
+        why = fmt::format("needs `{}`", fmt::join(others, "` or `"));
+        break;
+    case SettingConflict::Kind::Excludes:
+        why = fmt::format("cannot be combined with `{}`; leave out one of them", others.front());
+        break;
+    }
+    return {conflict.setting->name, conflict.value, why};
+}
+
+void check_settings(const PictureOptions& options, uint32_t verbs) {
+    if (const auto conflict = find_conflict(options, verbs))
+        throw Error(ErrorCode::BadInput, remark_of(*conflict, options));
 }
 
 std::string overruled_setting(const SettingConflict& conflict, const PictureOptions& options) {
@@ -96,15 +126,17 @@ void take_suggestions(const Scene& scene, uint32_t verbs, PictureOptions& option
         const Setting* const setting = find_setting(suggested.name);
         try {
             if (setting == nullptr || !setting->is_kept || setting->opens_scene) {
-                throw Error(ErrorCode::BadInput, "not a setting that a scene file can suggest");
+                throw Error(ErrorCode::BadInput, suggested.name, suggested.text,
+                            "not a setting that a scene file can suggest");
             }
             if ((setting->verbs & verbs) == 0) continue;
             PictureOptions with = options;
             set_value(with, *setting, std::span(&suggested.text, 1), SettingOrigin::Scene);
             if (!find_conflict(with, verbs)) options = with;
         } catch (const Error& error) {
-            messages.leave_out(
-                fmt::format("{}: {} {}: {}", options.scene.scene, suggested.name, suggested.text, error.reason()));
+            Remark why = error.remark();
+            why.location = FileLocation{options.scene.scene};
+            messages.leave_out(std::move(why));
         }
     }
 }

@@ -23,11 +23,18 @@ struct SettingConflict {
     Kind kind;
     /// Names of settings, or NAME=VALUE; for Integrator the names of those that have the setting.
     std::vector<std::string> others;
+    std::string value = ""; // the setting's value, if only that is in conflict
 };
 
 /// Returns the first conflict in the order of the table; nothing if there is none. Settings that `verbs` do not have
 /// are ignored.
 std::optional<SettingConflict> find_conflict(const PictureOptions& options, uint32_t verbs);
+
+/// Describes a conflict: the setting, and why it cannot be as the options have it.
+Remark remark_of(const SettingConflict& conflict, const PictureOptions& options);
+
+/// Throws Error(BadInput) for the first conflict.
+void check_settings(const PictureOptions& options, uint32_t verbs);
 
 /// Returns the name of the setting that is dropped if settings conflict: one from a file gives way to one given
 /// otherwise, and so does one with the default value, which a file may contain too. Empty if neither does.

@@ -85,9 +85,8 @@ std::vector<Setting> integrator_settings() {
         row("contrast", "Radiosity", "X", FIELD(radiosity.solving.contrast),
             "The relative change of light at which a patch is subdivided.", Above{0},
             Excludes{"solution subdivisions=0"}),
-        row("form_factors", "Radiosity", "NAME", FIELD(radiosity.solving.form_factors),
-            "The method for form factors: rays, or hemicubes, which the solver hierarchical does not support.",
-            Excludes{"solution"}),
+        row("form_factors", "Radiosity", "NAME", FIELD(radiosity.solving.form_factors), "The method for form factors.",
+            Excludes{"solution hemicube:solver=hierarchical"}),
         row("patch_rays", "Radiosity", "N", FIELD(radiosity.solving.rays),
             "The number of rays for a patch's form factors.", Range{kMinPatchRays, kMaxPatchRays},
             Excludes{"solution"}),
@@ -106,7 +105,7 @@ std::vector<Setting> integrator_settings() {
             "The largest error of a link, relative to the mean light.", Above{0}, Needs{"solver=hierarchical"},
             Excludes{"solution"}),
         row("solution", "Radiosity", "FILE", FIELD(radiosity.solution),
-            "A solution that pertev solve radiosity wrote, to be rendered.", Otherwise{"the scene is solved first"},
+            "A solution that was solved and written before, to be rendered.", Otherwise{"the scene is solved first"},
             Mark::Name, Mark::OpensScene),
         row("flat_patches", "Radiosity", "", FIELD(radiosity.flat_patches),
             "Patches have constant radiosity, without interpolation.", Recorded::AsUsed),
@@ -159,9 +158,9 @@ std::vector<Setting> frame_settings() {
         row.needs = "real_time";
     }
     rows.insert(rows.begin(), row("real_time", "Frames", "", FIELD(real_time),
-                                  "Frames are rendered as pertev view does in motion: one sample per pixel each, "
+                                  "Frames are rendered as the viewer does in motion: one sample per pixel each, "
                                   "reconstructed with earlier frames. The settings below apply only to such frames.",
-                                  Needs{"frames turntable"},
+                                  Of{integrators_that(makes_frames)}, Needs{"frames turntable"},
                                   Excludes{"denoise=svgf transparent shutter lpe false_color=illuminance aov=motion"}));
     return rows;
 }

@@ -15,8 +15,6 @@ namespace {
 
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
-std::string named(const std::string& what, const std::string& text) { return what.empty() ? text : what + ' ' + text; }
-
 /// Parses three numbers, each within the range of floats.
 std::optional<DoubleVec3> three_doubles(std::string_view text) {
     double values[3];
@@ -36,11 +34,10 @@ std::optional<Vec3> three_numbers(std::string_view text) {
     return values ? std::optional(to_float(*values)) : std::nullopt;
 }
 
-DoubleVec3 parse_doubles(const std::string& what, const std::string& text) {
+DoubleVec3 parse_doubles(const std::string& setting, const std::string& text) {
     if (const auto value = three_doubles(text)) return *value;
-    throw Error(ErrorCode::BadInput,
-                fmt::format("{}: expected three numbers X,Y,Z of size {} at most, such as 1,0.5,-2", named(what, text),
-                            kMaxFloat));
+    throw Error(ErrorCode::BadInput, setting, text,
+                fmt::format("expected three numbers X,Y,Z of size {} at most, such as 1,0.5,-2", kMaxFloat));
 }
 
 /// Returns whether there is a digit other than 0 before the exponent.
@@ -51,29 +48,26 @@ bool has_digits(const std::string& number) { return number.find_first_of("123456
 std::string why_no_number(const std::string& text, double low, double high) {
     const auto value = number_in(text);
     const bool is_one = value && *value >= static_cast<float>(low) && *value <= static_cast<float>(high);
-    return is_one ? ""
-                  : fmt::format("{} is not a number from {} to {}", text, static_cast<float>(low),
-                                static_cast<float>(high));
+    return is_one ? "" : fmt::format("not a number from {} to {}", static_cast<float>(low), static_cast<float>(high));
 }
 
 std::string why_not_above(const std::string& text, double low, double high) {
     const auto value = number_in(text);
     if (value && *value > static_cast<float>(low) && *value <= static_cast<float>(high)) return "";
     const bool is_rounded = value && *value == 0 && has_digits(text);
-    return fmt::format("{} is {}not a number above {} and at most {}", text,
-                       is_rounded ? "so near 0 that it counts as 0, which is " : "", static_cast<float>(low),
-                       static_cast<float>(high));
+    return fmt::format("not a number above {} and at most {}{}", static_cast<float>(low), static_cast<float>(high),
+                       is_rounded ? "; it is so near 0 that it counts as 0" : "");
 }
 
 std::string why_not_whole(const std::string& text, uint32_t low, uint32_t high) {
     const auto value = parse_whole_number(text);
     const bool is_one = value && *value >= low && *value <= high;
-    return is_one ? "" : fmt::format("{} is not a whole number from {} to {}", text, low, high);
+    return is_one ? "" : fmt::format("not a whole number from {} to {}", low, high);
 }
 
 std::string why_no_choice(const std::string& text, const std::vector<std::string>& choices) {
     const bool is_one = std::ranges::find(choices, text) != choices.end();
-    return is_one ? "" : fmt::format("{} is not one of {}", text, fmt::join(choices, ", "));
+    return is_one ? "" : fmt::format("not one of {}", fmt::join(choices, ", "));
 }
 
 std::optional<float> number_in(std::string_view text) {
@@ -81,34 +75,32 @@ std::optional<float> number_in(std::string_view text) {
     return value && is_finite(*value) ? value : std::nullopt;
 }
 
-std::pair<uint32_t, uint32_t> parse_size(const std::string& what, const std::string& text) {
+std::pair<uint32_t, uint32_t> parse_size(const std::string& setting, const std::string& text) {
     const std::size_t cross = std::min(text.find('x'), text.size());
     const auto width = parse_whole_number(std::string_view(text).substr(0, cross));
     const auto height = parse_whole_number(std::string_view(text).substr(std::min(cross + 1, text.size())));
     if (!width || !height || *width == 0 || *height == 0) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("{}: expected WIDTHxHEIGHT in pixels, such as 1280x720", named(what, text)));
+        throw Error(ErrorCode::BadInput, setting, text, "expected WIDTHxHEIGHT in pixels, such as 1280x720");
     }
     if (*width > kMaxImageSide || *height > kMaxImageSide || *width * *height > kMaxImagePixels) {
-        throw Error(ErrorCode::OverLimit, fmt::format("{}: over the limit of {} pixels a side and {} in all",
-                                                      named(what, text), kMaxImageSide, kMaxImagePixels));
+        throw Error(ErrorCode::OverLimit, setting, text,
+                    fmt::format("over the limit of {} pixels a side and {} in all", kMaxImageSide, kMaxImagePixels));
     }
     return {static_cast<uint32_t>(*width), static_cast<uint32_t>(*height)};
 }
 
-float parse_number(const std::string& what, const std::string& text) {
+float parse_number(const std::string& setting, const std::string& text) {
     if (const auto value = number_in(text)) return *value;
-    throw Error(ErrorCode::BadInput,
-                fmt::format("{}: expected a number of size {} at most", named(what, text), kMaxFloat));
+    throw Error(ErrorCode::BadInput, setting, text, fmt::format("expected a number of size {} at most", kMaxFloat));
 }
 
-Vec3 parse_vec3(const std::string& what, const std::string& text) { return to_float(parse_doubles(what, text)); }
+Vec3 parse_vec3(const std::string& setting, const std::string& text) { return to_float(parse_doubles(setting, text)); }
 
-DoubleVec3 parse_position(const std::string& what, const std::string& text) {
-    const DoubleVec3 position = parse_doubles(what, text);
+DoubleVec3 parse_position(const std::string& setting, const std::string& text) {
+    const DoubleVec3 position = parse_doubles(setting, text);
     if (max_component(abs(to_float(position))) <= kMaxCoordinate) return position;
-    throw Error(ErrorCode::OverLimit,
-                fmt::format("{}: beyond the limit of {:.4g} m from the origin", named(what, text), kMaxCoordinate));
+    throw Error(ErrorCode::OverLimit, setting, text,
+                fmt::format("beyond the limit of {:.4g} m from the origin", kMaxCoordinate));
 }
 
 bool parse_rgb(const std::string& text, Rgb& color) {
@@ -117,7 +109,7 @@ bool parse_rgb(const std::string& text, Rgb& color) {
     return value.has_value();
 }
 
-Rgb parse_radiance(const std::string& what, const std::string& text) {
+Rgb parse_radiance(const std::string& setting, const std::string& text) {
     Rgb radiance;
     bool is_one = parse_rgb(text, radiance);
     if (const auto value = is_one ? std::nullopt : number_in(text)) {
@@ -125,9 +117,8 @@ Rgb parse_radiance(const std::string& what, const std::string& text) {
         is_one = true;
     }
     if (is_one && radiance.r >= 0 && radiance.g >= 0 && radiance.b >= 0) return radiance;
-    throw Error(
-        ErrorCode::BadInput,
-        fmt::format("{}: expected a radiance, R,G,B or one number for all three, each at least 0", named(what, text)));
+    throw Error(ErrorCode::BadInput, setting, text,
+                "expected a radiance, R,G,B or one number for all three, each at least 0");
 }
 
 } // namespace pertev

@@ -1,8 +1,7 @@
 #pragma once
 
-// Parses values such as 1280x720, 1,2,3 and names. Functions that throw, throw Error(BadInput) that shows the format,
-// or Error(OverLimit). The message begins with `what`, the name of the value, and the text, or with the text alone if
-// `what` is empty.
+// Parses values such as 1280x720, 1,2,3 and names. Functions that throw, throw Error(BadInput) whose reason shows the
+// format, or Error(OverLimit), with the name of the `setting` and the text.
 
 #include <cstdint>
 #include <optional>
@@ -19,23 +18,23 @@ namespace pertev {
 /// Parses the whole text as a finite number. A value too small for a float is 0.
 std::optional<float> number_in(std::string_view text);
 
-// Each returns why the text is no such value; empty if it is one.
+// Each returns why the text is no such value, without the text: "not a number from 0 to 1". Empty if it is one.
 std::string why_no_number(const std::string& text, double low, double high); // from low to high
 std::string why_not_above(const std::string& text, double low, double high); // above low, up to high
 std::string why_not_whole(const std::string& text, uint32_t low, uint32_t high);
 std::string why_no_choice(const std::string& text, const std::vector<std::string>& choices);
 
 /// Parses "1280x720": both in [1, kMaxImageSide], their product at most kMaxImagePixels.
-std::pair<uint32_t, uint32_t> parse_size(const std::string& what, const std::string& text);
+std::pair<uint32_t, uint32_t> parse_size(const std::string& setting, const std::string& text);
 /// Parses a finite number such as "-1.5".
-float parse_number(const std::string& what, const std::string& text);
+float parse_number(const std::string& setting, const std::string& text);
 /// Parses three finite numbers such as "1,-2.5,3e1".
-Vec3 parse_vec3(const std::string& what, const std::string& text);
+Vec3 parse_vec3(const std::string& setting, const std::string& text);
 /// Parses a position in the scene: three numbers of size at most kMaxCoordinate.
-DoubleVec3 parse_position(const std::string& what, const std::string& text);
+DoubleVec3 parse_position(const std::string& setting, const std::string& text);
 /// Parses the three numbers of "r,g,b". Returns false if `text` does not look like numbers.
 bool parse_rgb(const std::string& text, Rgb& color);
 /// Parses a radiance, "0.5" or "r,g,b", finite and at least 0.
-Rgb parse_radiance(const std::string& what, const std::string& text);
+Rgb parse_radiance(const std::string& setting, const std::string& text);
 
 } // namespace pertev

@@ -65,6 +65,11 @@ struct ReconstructionOptions {
     ReconstructionSettings settings;
     RestirSettings sharing;
     bool none = false; // frames show their raw samples
+
+    /// The settings of the reconstruction; without it of_samples_alone.
+    ReconstructionSettings used() const { return none ? of_samples_alone(settings) : settings; }
+    /// Whether an option is set that only integrators with frames have (makes_frames).
+    bool has_frame_options() const { return sharing.light != RestirLight::Off || settings.resolution_scale != 1; }
 };
 
 struct PictureSize {

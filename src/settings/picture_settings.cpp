@@ -1,6 +1,7 @@
 // Settings of pictures by any integrator: what is rendered, how, and how it is shown.
 
 #include "base/limits.h"
+#include "image/image_format.h"
 #include "render/film_channels.h"
 #include "settings/setting_table.h"
 #include "settings/value_names.h"
@@ -23,26 +24,29 @@ SettingField integrator_field(PictureOptions& options) {
 std::vector<Setting> picture_settings() {
     constexpr uint32_t kShown = kRender | kView,
                        kMachines = kLooking | kMeasure | kLab | kBench | kBenchBuild | kBenchRays;
+    constexpr uint32_t kExr = 1u << uint32_t(ImageFormat::Exr), kPng = 1u << uint32_t(ImageFormat::Png),
+                       kToned = kPng | 1u << uint32_t(ImageFormat::Jpeg);
     constexpr uint32_t kTracing = kShown | kBench | kBenchRays;
     return {
         row("size", "Picture", "WIDTHxHEIGHT", FIELD(size), "The width and height of the picture in pixels.",
             Otherwise{"1280x720, or the shape of the scene's camera"}, On{kLooking}, Mark::Common),
         row("tone_map", "Picture", "NAME", FIELD(tone_map), "The tone mapping of PNG and JPEG output.",
-            Otherwise{"agx"}, On{kShown}, Mark::Common, Recorded::AsUsed),
+            Otherwise{"agx"}, On{kShown}, In{kToned}, Mark::Common, Recorded::AsUsed),
         row("exposure", "Picture", "STOPS|auto", FIELD(exposure),
             "The exposure of PNG and JPEG output in stops. auto meters a small preview.", Unit{"stops"},
-            Otherwise{"auto"}, On{kShown}, Excludes{"f_number"}, Mark::Common),
+            Otherwise{"auto"}, On{kShown}, In{kToned}, Excludes{"f_number"}, Mark::Common),
         row("f_number", "Picture", "N", FIELD(f_number),
             "The f-number of a physical exposure of PNG and JPEG output (aperture sets the depth of field).",
-            Above{0, 1e4}, On{kShown}, Needs{"shutter_time"}),
+            Above{0, 1e4}, On{kShown}, In{kToned}, Needs{"shutter_time"}),
         row("shutter_time", "Picture", "SECONDS", FIELD(shutter_s), "The shutter time of a physical exposure.",
             Above{0, 1e6}, Unit{"s"}, On{kShown}, Needs{"f_number"}),
         row("iso", "Picture", "S", FIELD(iso), "The film speed of a physical exposure.", Above{0, 1e8},
             Otherwise{"100"}, On{kShown}, Needs{"f_number"}),
         row("transparent", "Picture", "", FIELD(render.transparent),
-            "The background is transparent; alpha is the covered part of a pixel.", Mark::OpensScene),
+            "The background is transparent; alpha is the covered part of a pixel.", In{kExr | kPng},
+            Excludes{"ground=on"}, Mark::OpensScene),
         row("aov", "Picture", "NAME,...", FIELD(aovs), "Additional layers of EXR output.", Choices{aov_names()},
-            Mark::Common),
+            In{kExr}, Mark::Common),
         row("false_color", "Picture", "NAME", FIELD(false_color),
             "The quantity that PNG and JPEG show in false colours with a scale: luminance in cd/m2, or illuminance of "
             "visible surfaces in lx. For illuminance, EXR and HDR hold irradiance in W/m2.",
@@ -53,7 +57,7 @@ std::vector<Setting> picture_settings() {
         row("lpe", "Picture", "NAME=EXPRESSION", FIELD(lpe),
             "An EXR layer with the light of paths that match an expression, written from the light to the eye: LD+E, "
             "caustics LS+DE, or L<'lamp'>.*E. It may be given again (docs/transport.md).",
-            Recorded::AsUsed),
+            In{kExr}, Recorded::AsUsed),
 
         row("spp", "Quality", "N", FIELD(render.samples),
             "The number of samples per pixel; four times as many halve the noise.", Range{1, kMaxSamplesPerPixel},
@@ -89,18 +93,19 @@ std::vector<Setting> picture_settings() {
         row("denoise", "Quality", "NAME", FIELD(render.denoise),
             "The denoiser of pictures with few samples. It is biased; EXR output also has the picture before denoising "
             "as the layer noisy.",
-            Recorded::Changed, Mark::Common),
+            Excludes{"svgf:max_depth=0"}, Recorded::Changed, Mark::Common),
 
         row("build", "Tracing", "WHICH", FIELD(tracer.build),
             "The quality of the acceleration structure: fast builds in the least time, best traces in the least time. "
             "No setting of this group changes the picture.",
             Otherwise{"balanced"}, Choices{names_of<TreeBuild>()}, On{kTracing}, Mark::NotKept),
         row("structure", "Tracing", "[KIND=]NAME", FIELD(tracer.structures),
-            "The acceleration structure, by its name in pertev lab; it overrules build. It may be given for one kind "
+            "The acceleration structure, by its name in the laboratory; it overrules build. It may be given for one "
+            "kind "
             "of ray: camera=, bounce= or shadow=NAME.",
             On{kTracing}, Mark::NotKept),
         row("traversal", "Tracing", "[KIND=]NAME", FIELD(tracer.traversals),
-            "The traversal algorithm, by its name in pertev lab.", On{kTracing}, Mark::NotKept, OldName{"walk"}),
+            "The traversal algorithm, by its name in the laboratory.", On{kTracing}, Mark::NotKept, OldName{"walk"}),
         row("rta", "Tracing", "[KIND=]WHICH", FIELD(tracer.rta), "Redundant traversal avoidance: on, nodes or off.",
             On{kTracing}, Mark::NotKept),
         row("order", "Tracing", "[KIND=]WHICH", FIELD(tracer.order), "Traversal of nearer children first: on or off.",
@@ -118,8 +123,8 @@ std::vector<Setting> picture_settings() {
             "The acceleration structure is built anew, even if it is in the cache.", On{kShown | kMeasure | kSolve},
             Mark::NotKept),
         row("max_memory", "Machine", "MIB", FIELD(radiosity.max_memory),
-            "The largest amount of memory that may be used; larger tasks are refused. radiosity limits host memory, "
-            "pertev render device memory as well.",
+            "The largest amount of memory that may be used: of the device for a picture, and of the machine for "
+            "solving radiosity. Larger tasks are refused.",
             Above{0}, Unit{"MiB"}, Otherwise{"all there is"}, On{kLooking | kSolve}, Mark::NotKept),
         row("strict", "Machine", "", FIELD(strict),
             "Warnings are errors: the verb fails before rendering if a part of the scene is left out or a file "

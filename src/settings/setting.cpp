@@ -54,27 +54,19 @@ std::string text_of(Number number) {
     return fmt::format("{}", number);
 }
 
-/// Makes an error about a setting from the reason of a parser, which knows no setting and begins with the text.
-Error about(const Setting& setting, const std::string& text, ErrorCode code, std::string_view why) {
-    for (const std::string& start : {text + " is ", text + ": "}) {
-        if (why.starts_with(start)) why.remove_prefix(start.size());
-    }
-    return {code, setting.name, text, std::string(why)};
-}
-
 void put_value(PictureOptions& options, const Setting& setting, std::span<const std::string> texts) {
     PERTEV_CHECK(is_list(setting) || texts.size() == 1);
     const SettingField field = setting.field(options);
-    const std::string& text = texts.empty() ? setting.name : texts.front();
+    const std::string name = setting.name, text = texts.empty() ? "" : texts.front();
     std::visit(Overloaded{[&](bool* f) { *f = text == "true"; }, [&](InverseSwitch f) { *f.field = text != "true"; },
                           [&](std::string* f) { *f = text; },
                           [&](std::vector<std::string>* f) { f->assign(texts.begin(), texts.end()); },
                           [&](std::vector<std::filesystem::path>* f) { f->assign(texts.begin(), texts.end()); },
-                          [&](std::optional<Vec3>* f) { *f = parse_vec3("", text); },
-                          [&](std::optional<DoubleVec3>* f) { *f = parse_position("", text); },
-                          [&](std::optional<Rgb>* f) { *f = parse_radiance("", text); },
+                          [&](std::optional<Vec3>* f) { *f = parse_vec3(name, text); },
+                          [&](std::optional<DoubleVec3>* f) { *f = parse_position(name, text); },
+                          [&](std::optional<Rgb>* f) { *f = parse_radiance(name, text); },
                           [&](std::optional<PictureSize>* f) {
-                              const auto [width, height] = parse_size("", text);
+                              const auto [width, height] = parse_size(name, text);
                               *f = PictureSize{width, height};
                           },
                           [&](NamedField f) { f.set(f.field, text); },
@@ -141,14 +133,10 @@ void set_value(PictureOptions& options, const Setting& setting, std::span<const 
                SettingOrigin origin) {
     for (const std::string& text : texts) {
         if (const std::string why = why_no_value(setting, text); !why.empty()) {
-            throw about(setting, text, ErrorCode::BadInput, why);
+            throw Error(ErrorCode::BadInput, setting.name, text, why);
         }
     }
-    try {
-        put_value(options, setting, texts);
-    } catch (const Error& error) {
-        throw about(setting, texts.front(), error.code(), error.reason());
-    }
+    put_value(options, setting, texts);
     options.given[setting.name] = origin;
 }
 

@@ -107,7 +107,9 @@ struct Setting {
     uint32_t verbs = kRender;
     uint32_t integrators = 0;       // bits by IntegratorKind of those that have it; 0: all
     std::string_view needs = "";    // names of settings, or NAME=VALUE, at least one of which must be satisfied
-    std::string_view excludes = ""; // names of settings, or NAME=VALUE, that must not be satisfied
+    std::string_view excludes = ""; // names of settings, or NAME=VALUE, that must not be satisfied; VALUE:NAME is a
+                                    // rule for one value of this setting
+    uint32_t formats = 0;           // bits by ImageFormat of files that show it; 0: all
     Recorded recorded = Recorded::No;
     bool is_kept = true;      // settings files contain it, because the picture depends on it
     bool opens_scene = false; // takes effect before the scene's file is read, which thus cannot suggest it

@@ -22,4 +22,12 @@ const Setting* find_setting(std::string_view name) {
     return found != all_settings().end() ? &*found : nullptr;
 }
 
+uint32_t integrators_that(bool (*has)(IntegratorKind)) {
+    uint32_t bits = 0;
+    for (const IntegratorDescriptor& integrator : integrators()) {
+        if (has(integrator.value)) bits |= 1u << static_cast<uint32_t>(integrator.value);
+    }
+    return bits;
+}
+
 } // namespace pertev

@@ -22,6 +22,9 @@ std::vector<Setting> frame_settings();      // settings of real-time frames
 inline constexpr uint32_t kLooking = kRender | kView | kBenchNoise | kBenchFrames | kBenchSequence;
 inline constexpr uint32_t kScenes = kLooking | kMeasure | kSolve;
 
+/// Bits of the integrators for which `has` returns true.
+uint32_t integrators_that(bool (*has)(IntegratorKind));
+
 /// The field at a path in PictureOptions.
 #define PERTEV_SETTING_FIELD(place) [](PictureOptions& all) { return field_of(all.place); }
 
@@ -59,6 +62,9 @@ struct Needs {
 struct Excludes {
     const char* text;
 };
+struct In {
+    uint32_t formats;
+};
 enum class Mark { Name, NotKept, Common, OpensScene };
 
 inline void put(Setting& s, Range range) { s.low = range.low, s.high = range.high; }
@@ -72,6 +78,7 @@ inline void put(Setting& s, On on) { s.verbs = on.verbs; }
 inline void put(Setting& s, Of of) { s.integrators = of.integrators; }
 inline void put(Setting& s, Needs needs) { s.needs = needs.text; }
 inline void put(Setting& s, Excludes excludes) { s.excludes = excludes.text; }
+inline void put(Setting& s, In in) { s.formats = in.formats; }
 inline void put(Setting& s, Recorded recorded) { s.recorded = recorded; }
 inline void put(Setting& s, Mark mark) {
     if (mark == Mark::Name) s.is_name = true;

@@ -10,6 +10,7 @@
 #include "base/read_file.h"
 #include "formats/builtin_scenes.h"
 #include "formats/json/json_file.h"
+#include "settings/check_settings.h"
 
 namespace pertev {
 namespace {
@@ -103,14 +104,30 @@ void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<
         try {
             set_value(options, *setting, texts_of(*setting, value), SettingOrigin::File);
         } catch (const Error& error) {
-            const std::string why = fmt::format("{}{}{}", error.value(), before_reason(error.reason()), error.reason());
-            throw value.error(Error(error.code(), why)); // its place names the setting
+            throw value.error(error);
         }
     }
     for (const auto& [name, value] : root.members()) {
         if (name != "version" && name != "scene" && name != "settings") {
             messages.leave_out(fmt::format("{}: unknown name in a file of settings", text_of(value.location())));
         }
+    }
+}
+
+void combine_settings(const std::filesystem::path& file, uint32_t verbs, const SetOthers& set_others,
+                      PictureOptions& options, Messages& messages) {
+    const PictureOptions start = options;
+    std::vector<std::string> overruled; // settings of the file that do not go with the others
+    Messages already_reported;
+    while (true) {
+        if (!file.empty())
+            read_settings(file, verbs, overruled, options, overruled.empty() ? messages : already_reported);
+        set_others(options);
+        const auto conflict = find_conflict(options, verbs);
+        if (!conflict) return;
+        overruled.push_back(overruled_setting(*conflict, options));
+        if (overruled.back().empty()) throw Error(ErrorCode::BadInput, remark_of(*conflict, options));
+        options = start;
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -27,5 +28,14 @@ std::string settings_json(const PictureOptions& options, const std::string& hash
 /// Error(BadInput) for a file that is invalid or has another version, and for an invalid value.
 void read_settings(const std::filesystem::path& file, uint32_t verbs, std::span<const std::string> overruled,
                    PictureOptions& options, Messages& messages);
+
+/// Sets some of the options.
+using SetOthers = std::function<void(PictureOptions&)>;
+
+/// Adds the settings of a file, if there is one, and then the others, which overrule it: a setting of the file that
+/// does not go with them is dropped. Throws Error(BadInput) for a conflict between the others (check_settings), and as
+/// read_settings and `set_others`.
+void combine_settings(const std::filesystem::path& file, uint32_t verbs, const SetOthers& set_others,
+                      PictureOptions& options, Messages& messages);
 
 } // namespace pertev

@@ -73,7 +73,7 @@ void add_triangles(const Scene& scene, Vec3 centre, LightSetData& data) {
             {.first_triangle = static_cast<uint32_t>(count), .triangle_count = static_cast<uint32_t>(triangles)});
         count += triangles;
         if (count + scene.lights.size() + 1 > kMaxLights) {
-            throw Error(ErrorCode::OverLimit, "scene: more than 2^30 lights; each emissive triangle is one");
+            throw Error(ErrorCode::OverLimit, "scene", "", "more than 2^30 lights; each emissive triangle is one");
         }
     }
     data.triangles.resize(count);

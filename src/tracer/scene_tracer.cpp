@@ -16,9 +16,9 @@ namespace {
 std::shared_ptr<const BuiltStructure> structure_for(const Combination& c, SceneStructures& structures) {
     const uint64_t triangles = structures.triangle_count();
     if (c.traversal != TraversalKind::BruteForce || triangles <= kMaxBruteForceTriangles) return structures.get(c);
-    throw Error(ErrorCode::OverLimit,
-                fmt::format("{}: each ray would test all {} triangles of the scene; the limit for pictures is {}",
-                            name_of(c), triangles, kMaxBruteForceTriangles));
+    throw Error(ErrorCode::OverLimit, "traversal", std::string(name_of(c.traversal)),
+                fmt::format("each ray would test all {} triangles of the scene; the limit for pictures is {}",
+                            triangles, kMaxBruteForceTriangles));
 }
 
 } // namespace

@@ -60,11 +60,13 @@ void check_choice(const TracerChoice& choice, bool on_cuda) {
     for (const RayKind kind : kValuesOf<RayKind>) {
         const Combination& c = choice[kind];
         if (const auto reason = why_no_tracer(c, on_cuda)) {
-            throw Error(ErrorCode::BadInput, fmt::format("{}: {}", name_of(c), *reason));
+            throw Error(ErrorCode::BadInput, "traversal", std::string(name_of(c.traversal)),
+                        fmt::format("{}: {}", name_of(c), *reason));
         }
         if (!c.options.is_exact()) {
-            throw Error(ErrorCode::BadInput, fmt::format("{}: {} tests miss hits at edges; renders use exact tests",
-                                                         name_of(c), name_of(c.options.tests)));
+            throw Error(ErrorCode::BadInput, "traversal", std::string(name_of(c.traversal)),
+                        fmt::format("{}: {} tests miss hits at edges; renders use exact tests", name_of(c),
+                                    name_of(c.options.tests)));
         }
     }
 }

@@ -14,6 +14,7 @@
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/stress_meshes.h"
+#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 using namespace pertev::test;
@@ -178,5 +179,6 @@ TEST_CASE("the laboratory can be stopped inside each stage of long work and repo
 TEST_CASE("a scene without triangles is refused with a clear message") {
     Queue queue = Queue::make_cpu();
     const LabSettings settings = all_combinations(false, false);
-    CHECK_THROWS_WITH(run_lab(queue, Scene{}, Camera{}, settings), "the scene has no triangles: nothing to trace");
+    const auto error = test::thrown_error([&] { run_lab(queue, Scene{}, Camera{}, settings); });
+    CHECK(test::is_about(error, ErrorCode::BadInput, "scene"));
 }

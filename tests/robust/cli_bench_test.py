@@ -95,11 +95,11 @@ class Bench(CliTest):
     def test_errors_of_the_line_come_before_anything_is_measured_or_printed(self):
         rays = ["bench", "rays", "--count", "100", "--device", "cpu"]
         lines = [(["bench", "--scene", "cornell-box", "--size", "0x0"], "--size 0x0"),
-                 (["bench", "--scene", "cornell-box", "--scene", "nowhere.obj"], "--scene nowhere.obj"),
-                 (["bench", "--scene", "cornell-box", "--scene", "spnza"], "--scene spnza"),
-                 (["bench", "render", "--scene", "nowhere.obj", "-o", "x.exr"], "--scene nowhere.obj"),
+                 (["bench", "--scene", "cornell-box", "--scene", "nowhere.obj"], "nowhere.obj: there is no such file"),
+                 (["bench", "--scene", "cornell-box", "--scene", "spnza"], "spnza: neither"),
+                 (["bench", "render", "--scene", "nowhere.obj", "-o", "x.exr"], "nowhere.obj: there is no such file"),
                  (["bench", "render", "--scene", "cornell-box", "-o", "x.bmp"], "x.bmp"),
-                 ([*rays, "--scene", "cornell-box", "--scene", "nowhere.obj"], "--scene nowhere.obj"),
+                 ([*rays, "--scene", "cornell-box", "--scene", "nowhere.obj"], "nowhere.obj: there is no such file"),
                  ([*rays, "--scene", "cornell-box", "--scene", "spnza"], "sponza, bunny or forest"),
                  ([*rays, "--scene", "cornell-box", "--scene", "sponza"], "PERTEV_SCENES")]
         environment = dict(self.environment, PERTEV_SCENES=self.folder)

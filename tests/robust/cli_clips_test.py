@@ -80,8 +80,8 @@ class Clips(CliTest):
     def test_an_animation_that_the_file_lacks_is_refused_with_a_list_of_those_it_has(self):
         write(self.path("still.gltf"), gltf([]))
         write(self.path("floor.obj"), "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n")
-        for words, says in [("jump", ['no animation "jump"', "go", "rise", "2 (twin)", "3 (twin)", "4"]), ("7", ['"7"']),
-                            ("twin", ['2 animations are called "twin"', "number", "2 (twin)"]), ("-1", ['"-1"'])]:
+        for words, says in [("jump", ["--animation jump: no such",  "go", "rise", "2 (twin)", "3 (twin)", "4"]), ("7", ["--animation 7: no such"]),
+                            ("twin", ["--animation twin: 2 animations are called so", "number", "2 (twin)"]), ("-1", ["--animation -1: no such"])]:
             self.refuse(2, "render", "m.gltf", "-o", "x.png", *TINY, "--time", "1", f"--animation={words}", says=["m.gltf", *says])
         for scene in ["still.gltf", "floor.obj", "cornell-box"]:
             for words in ["go", "0", "all"]:
@@ -183,8 +183,8 @@ class FileScenes(CliTest):
         shown = self.succeed("render", "second.gltf", "-o", "x.png", *TINY).stderr
         self.assertRegex(shown, "3 scenes.*--file-scene .* one, two, 2")
         self.assertNotIn("--file-scene", self.succeed("render", "m.gltf", "-o", "x.png", *TINY, "--file-scene", "0").stderr)
-        self.refuse(2, "render", "m.gltf", "-o", "y.png", "--file-scene", "three", says=["m.gltf", 'no scene "three"', "one", "two"])
-        self.refuse(2, "render", "cornell-box", "-o", "y.png", "--file-scene", "three", says=["cornell-box", 'no scene "three"'])
+        self.refuse(2, "render", "m.gltf", "-o", "y.png", "--file-scene", "three", says=["m.gltf: --file-scene three: no such scene", "one", "two"])
+        self.refuse(2, "render", "cornell-box", "-o", "y.png", "--file-scene", "three", says=["cornell-box: --file-scene three: no such scene"])
         write(self.path("floor.obj"), "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n")
         self.refuse(2, "info", "floor.obj", "--file-scene", "0", says=["floor.obj", "has no scenes"])
         self.refuse(2, "info", "x.png", "--file-scene", "0", says=["--file-scene", "x.png"])

@@ -65,11 +65,12 @@ class MovingPictures(CliTest):
         self.assertEqual(info["pertev.time"], 1)
         self.assertEqual(info["pertev.eye"], [0, 0.5, 4])
 
-    def test_notices_report_motion_without_a_time_and_a_time_without_motion(self):
-        said = self.succeed("render", "m.gltf", "-o", "x.png", *TINY)
-        self.assertIn("--time S shows it at a time of its 1 animation (0 to 2 s)", said.stderr)
-        said = self.succeed("render", "cornell-box", "-o", "x.png", *TINY, "--time", "1")
-        self.assertIn("--time: nothing moves in this scene", said.stderr)
+    def test_what_moves_is_said_where_it_is_not_shown_and_the_other_way_round(self):
+        said = self.succeed("render", "m.gltf", "-o", "x.png", *TINY, "--json").events("notice")
+        (still,) = [notice for notice in said if notice.get("place") == {"file": "m.gltf"} and "time" in notice.get("settings", {})]
+        self.assertIn("0 to 2 s", still["reason"])
+        said = self.succeed("render", "cornell-box", "-o", "x.png", *TINY, "--time", "1", "--json").events("warning")
+        self.assertEqual([warning["setting"] for warning in said], ["time"])
         self.assertEqual(self.info("m.gltf")["animations"], ["slide (2 s)"])
 
     def test_each_frame_is_the_picture_at_its_time(self):
@@ -84,6 +85,21 @@ class MovingPictures(CliTest):
         self.assertEqual(len({event["hash"] for event in frames}), 4)
         end = said.events("sequence")[0]
         self.assertEqual((end["frames"], end["written"], end["kept"], end["interrupted"]), (4, 4, 0, False))
+
+    def test_a_frame_is_rendered_again_by_its_own_settings(self):
+        small = ["--size", "24x16", "--spp", "2", "--device", "cpu"]
+        for motion, output in [(["--frames", "3-4", "--fps", "7", "--shutter", "0.1"], "one.exr"),
+                               (["--frames", "3-4", "--fps", "7", "--turntable", "90"], "one-#.exr"),
+                               (["--frames", "3-4", "--fps", "7", "--real-time"], "one-#.exr")]:
+            with self.subTest(motion=motion):
+                once = [flag for flag in small if "--real-time" not in motion or flag not in ("--spp", "2")]
+                frames = self.succeed("render", "m.gltf", "-o", "f-#.exr", *once, *motion, "--json").events("frame")
+                self.assertNotEqual(frames[0]["hash"], frames[1]["hash"])
+                for event in frames:
+                    write(self.path("s.json"), self.succeed("info", f"f-{event['frame']}.exr", "--settings").stdout)
+                    again = self.succeed("render", "m.gltf", "-o", output, "--settings", "s.json", "--device", "cpu", "--json")
+                    last = [made for made in again.events() if made["event"] in ("done", "frame")][-1]
+                    self.assertEqual(last["hash"], event["hash"])
 
     def test_motion_and_names_of_ids_are_layers_of_frames(self):
         def render(frames, *more):
@@ -139,12 +155,12 @@ class MovingPictures(CliTest):
             refuse("--time", "1", "--shutter=" + text, says=["--shutter"])
         refuse("--time", "1", "--shutter", "1e400", says=["--shutter 1e400: "])
         self.assertEqual(self.hash_at("--time", "1", "--shutter", "1e-400"), self.hash_at("--time", "1", "--shutter", "0"))
-        refuse("--time", "1", "--shutter=1e-400,-1", says=["--shutter 1e-400,-1: "])
-        refuse("--time", "1", "--shutter", "0.2,0.1", says=["--shutter 0.2,0.1: "])
-        refuse("--time", "1", "--shutter", "0.1", "--turntable", "9", says=["--frames"])
+        refuse("--time", "1", "--shutter=1e-400,-1", says=["--shutter 1e-400,-1: it closes before it opens"])
+        refuse("--time", "1", "--shutter", "0.2,0.1", says=["--shutter 0.2,0.1: it closes before it opens"])
+        refuse("--time", "1", "--shutter", "0.1", "--turntable", "9", says=["--shutter 0.1: ", "--frames"])
         for integrator in ("hybrid", "raster", "light", "bidirectional"):
             refuse("--time", "1", "--shutter", "0.1", "--integrator", integrator, says=["--shutter", integrator])
-        refuse("--time", "1", "--shutter", "0.1", "--denoise", "svgf", says=["--shutter: --denoise svgf"])
+        refuse("--time", "1", "--shutter", "0.1", "--denoise", "svgf", says=["--shutter: ", "--denoise svgf"])
 
     def test_all_frames_are_exposed_as_the_first(self):
         said = self.succeed("render", "m.gltf", "-o", "f-#.png", "--size", "24x16", "--spp", "2", "--device", "cpu",
@@ -170,11 +186,11 @@ class MovingPictures(CliTest):
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "3", "--continue",
                     says=["f-###.json: /settings", "--fps"])
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--seed", "1",
-                    "--continue", says=["pertev.seed"])
+                    "--continue", says=['--seed "0"'])
         self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY, "--frames", "0-4", "--fps", "2", "--integrator",
-                    "distributed", "--continue", says=["pertev.integrator"])
+                    "distributed", "--continue", says=['--integrator "path"'])
         for flags, named in ((["--exposure", "0", "--efficacy", "200"], "--efficacy"),
-                             (["--false-color", "luminance", "--false-color-range", "1,10"], "--exposure")):
+                             (["--false-color", "luminance", "--false-color-range", "1,10"], "--tone-map")):
             self.refuse(2, "render", "m.gltf", "-o", "f-###.png", *TINY[:TINY.index("--exposure")], *flags, "--frames", "0-4",
                         "--fps", "2", "--continue", says=[f'{named} "'])
         write(self.path("m.gltf"), moving_gltf() + " ")
@@ -301,7 +317,7 @@ class MovingPictures(CliTest):
                            ("--camera-path p --turntable 2", "--turntable"), ("--camera-path p --eye 0,0,1", "--eye")]:
             with self.subTest(line=line):
                 self.refuse(2, "render", "m.gltf", "-o", "f-#.png", *TINY, *line.split(), says=[flag])
-        self.refuse(2, "render", "m.gltf", "-o", "f.png", *TINY, "--frames", "0-1", says=["-o frame-####.png"])
+        self.refuse(2, "render", "m.gltf", "-o", "f.png", *TINY, "--frames", "0-1", says=["-o f.png: each frame needs", "frame-####.png"])
 
 
 if __name__ == "__main__":

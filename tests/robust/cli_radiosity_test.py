@@ -63,7 +63,7 @@ class Radiosity(CliTest):
         show = ["render", "cornell-box", *SMALL, "-o", "x.png", "--solution", "box.rad"]
         for light, says in [(["--lamp", "light=100lm"], "with other materials"),
                             (["--environment", "1,1,1"], "under other lights")]:
-            self.refuse(2, *show, *light, says=["box.rad: ", says, "pertev solve radiosity, with the same settings"])
+            self.refuse(2, *show, *light, says=["box.rad: ", says, "solve the scene again with the same settings"])
             self.solve(*COARSE, *light, output="other.rad")
             self.assertEqual(self.picture("--solution", "other.rad", *light), self.picture(*COARSE, *light), light)
             self.refuse(2, *show[:-1], "other.rad", says=["other.rad: ", says])
@@ -262,7 +262,7 @@ class Radiosity(CliTest):
                 ("render nowhere.obj -o x.png --integrator radiosity --lpe seen=LE -o x.exr", 2, "distinguish light paths"),
                 ("render nowhere.obj -o x.png --integrator radiosity --max-depth 256", 3, "--max-depth 256: the limit with --integrator radiosity is 255"),
                 ("render cornell-box -o x.png --integrator radiosity --shutter 0.1", 2, "--shutter"),
-                ("render cornell-box -o x.png --integrator radiosity --solution text.rad", 2, "text.rad: no radiosity solution"),
+                ("render cornell-box -o x.png --integrator radiosity --solution text.rad", 2, "text.rad: not a radiosity solution"),
                 ("render cornell-box -o x.png --integrator radiosity --solution cut.rad", 2, "cut.rad: a radiosity solution that is truncated"),
                 ("render floor.obj -o x.png --integrator radiosity --solution box.rad", 2, "box.rad: a radiosity solution of another scene")]:
             with self.subTest(arguments=arguments):

@@ -17,7 +17,7 @@ class RaysOnTheRecord(CliTest):
 
     def test_a_scene_that_is_not_there_ends_with_2_and_is_named(self):
         for name in ["spnza", "nowhere.obj", "", "a" * 300 + ".obj"]:
-            self.refuse(2, "bench", "rays", "--device", "cpu", "--scene", name, says=["--scene " + name])
+            self.refuse(2, "bench", "rays", "--device", "cpu", "--scene", name, says=[name or "--scene"])
         write(self.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
         self.refuse(2, "bench", "rays", "--device", "cpu", "--scene", "flat.obj", says=["flat.obj", "no visible triangle"])
 

@@ -111,7 +111,7 @@ class RealTime(CliTest):
             self.refuse_to_render("x", *motion, "--continue", *flags, says=[flags[0], "--continue"])
         self.refuse(2, "render", "m.gltf", "-o", "x/f-##.png", *SMALL, "--spp", "1", *motion, "--continue",
                     says=['made with --real-time "true"'])
-        self.refuse_to_render("x", "--fps", "4", "--frames", "1-2", "--continue", says=['made with pertev.time "0"'])
+        self.refuse_to_render("x", "--fps", "4", "--frames", "1-2", "--continue", says=['made with first frame "0"'])
 
     def test_ctrl_c_ends_after_a_whole_frame_and_continuing_gives_the_same_bytes(self):
         os.mkdir(self.path("x")), os.mkdir(self.path("anew"))

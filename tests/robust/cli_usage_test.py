@@ -104,7 +104,7 @@ class Flags(CliTest):
 
     def test_a_frame_number_in_a_name_without_frames_is_reported(self):
         outcome = self.succeed("render", "cornell-box", "-o", "a-###.png", *SMALL)
-        self.assertIn("-o a-###.png: # stands for a frame's number only with --frames", outcome.stderr)
+        self.assertIn("-o 'a-###.png': # stands for a frame's number only with --frames", outcome.stderr)
         self.assertEqual(self.files(), ["a-###.png"])
         for name, flags in [("a.png", []), ("b-#.png", ["--frames", "0-0"]), ("c-#.png", ["--turntable", "1"])]:
             self.assertNotIn("# stands", self.succeed("render", "cornell-box", "-o", name, *SMALL, *flags).stderr)

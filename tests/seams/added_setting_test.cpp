@@ -6,6 +6,7 @@
 #include "apps/cli/setting_flags.h"
 #include "session/writing/picture_metadata.h"
 #include "settings/settings_file.h"
+#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 
@@ -22,9 +23,11 @@ TEST_CASE("a setting added by one row appears as a flag and in help, JSON and me
     CHECK(verb.help().find("--roulette-depth N") != std::string::npos);
     CHECK(verb.help().find("begins at this vertex") != std::string::npos);
     CHECK(verb.help().find("(3)") != std::string::npos); // its default
-    CHECK_THROWS_AS(app.parse("render --roulette-depth 0"), CLI::ValidationError);
-    app.parse("render --roulette-depth 5");
     Messages messages;
+    app.parse("render --roulette-depth 0");
+    CHECK(test::is_about(test::thrown_error([&] { flags.read(options, messages); }), ErrorCode::BadInput,
+                         "roulette_depth", "0"));
+    app.parse("render --roulette-depth 5");
     flags.read(options, messages);
     CHECK(options.render.path.roulette_depth == 5);
     CHECK(settings_json(options, "", table).find(R"("settings":{"roulette_depth":5})") != std::string::npos);

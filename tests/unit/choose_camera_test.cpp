@@ -70,14 +70,6 @@ TEST_CASE("an orthographic view of a perspective camera shows as much at its tar
     CHECK(choose(choice).ortho_height == 3);
 }
 
-TEST_CASE("camera settings that exclude each other are refused before a scene is read") {
-    CHECK_NOTHROW(check_camera_choice({}));
-    CameraChoice choice = {.view_height = 2.0f};
-    choice.projection = Projection::Perspective;
-    CHECK_THROWS_AS(check_camera_choice(choice), Error);
-    CHECK_THROWS_AS(check_camera_choice({.aperture = 0.0f, .focus = 1.0f}), Error);
-}
-
 TEST_CASE("open_scene gives a scene without light a sky or the requested environment") {
     const std::filesystem::path file =
         test::write_text(test::scratch_folder() / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

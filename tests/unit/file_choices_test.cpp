@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "formats/files/file_choices.h"
+#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 
@@ -65,13 +66,17 @@ TEST_CASE("each of several can be chosen, even if the number of one is the name 
 }
 
 TEST_CASE("a choice that matches none or two is an error that lists all") {
-    CHECK(refusal({"walk", "run"}, "jump") == "a.glb: no animation \"jump\"; the file has:\n  walk\n  run");
-    CHECK(refusal({"walk", "", "walk"}, "walk") ==
-          "a.glb: 2 animations are called \"walk\"; choose one by its number:\n  0 (walk)\n  1\n  2 (walk)");
-    CHECK(refusal({}, "all") == "a.glb: no animation \"all\"; the file has no animations");
+    CHECK(refusal({"walk", "run"}, "jump") ==
+          "a.glb: `animation=jump`: no such animation; the file has:\n  walk\n  run");
+    CHECK(
+        refusal({"walk", "", "walk"}, "walk") ==
+        "a.glb: `animation=walk`: 2 animations are called so; choose one by its number:\n  0 (walk)\n  1\n  2 (walk)");
+    CHECK(refusal({}, "all") == "a.glb: `animation=all`: no such animation; the file has no animations");
     for (const char* choice : {"2", "-1", "1.0", " 1", "+1", "99999999999999999999"})
         CHECK(!refusal({"a", "b"}, choice).empty());
-    CHECK_THROWS_WITH_AS(choose_file_scene("a.glb", {}, "x"), "a.glb: no scene \"x\"; the file has no scenes", Error);
+    const auto error = test::thrown_error([] { choose_file_scene("a.glb", {}, "x"); });
+    REQUIRE(test::is_about(error, ErrorCode::BadInput, "file_scene", "x"));
+    CHECK(error->location()->file == "a.glb");
 }
 
 TEST_CASE("the animation and scene in use are reported by words that choose them again") {

@@ -133,6 +133,9 @@ TEST_CASE("a JPEG with very many scans is refused, because each scan costs the w
 TEST_CASE("the writer refuses a JPEG wider than the format allows") {
     Rgba8Image image{65535, 1, std::vector<uint8_t>(65535 * 4)};
     CHECK_THROWS_AS(encode_jpeg(image), Error);
+    const auto error = test::thrown_error([] { check_jpeg_size({"size", "1x65501", ""}, 1, 65501); });
+    CHECK(test::is_about(error, ErrorCode::OverLimit, "size", "1x65501"));
+    CHECK_NOTHROW(check_jpeg_size("", 65500, 65500));
 }
 
 TEST_CASE("strips encoded in parallel decode to the pixels of the picture encoded at once") {

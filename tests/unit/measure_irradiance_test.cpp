@@ -10,6 +10,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/options.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/thrown_error.h"
 
 using namespace pertev;
 
@@ -143,6 +144,16 @@ TEST_CASE("in a glowing room a meter reads all scattered light up to the max dep
         settings.path.max_depth = depth;
         check_measured(room.measure(point, settings).luminance, wanted * kPiExact, 5e-3);
     }
+}
+
+TEST_CASE("a meter refuses a normal without direction and a seed whose estimates another one has") {
+    const auto refusal = [](Vec3 normal, uint32_t seed) {
+        return test::thrown_error([&] { check_meter({{0, 0, 0}, normal}, seed); });
+    };
+    CHECK(!refusal({0, 2, 0}, kMaxMeterSeed));
+    CHECK(test::is_about(refusal({0, 0, 0}, 0), ErrorCode::BadInput, "normal", "0,0,0"));
+    CHECK(test::is_about(refusal({0, 1e-30f, 0}, 0), ErrorCode::BadInput, "normal", "0,1e-30,0"));
+    CHECK(test::is_about(refusal({0, 1, 0}, kMaxMeterSeed + 1), ErrorCode::BadInput, "seed"));
 }
 
 TEST_CASE("the error of a measurement matches the deviation of measurements with other seeds") {

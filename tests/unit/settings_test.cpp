@@ -129,6 +129,52 @@ TEST_CASE("conflicting settings are found") {
     CHECK(conflict->kind == SettingConflict::Kind::Excludes);
 }
 
+TEST_CASE("a conflict is an error about the setting, whose reason names the others") {
+    const auto refusal = [](const PictureOptions& options) {
+        return test::thrown_error([&] { check_settings(options, kRender); });
+    };
+    PictureOptions options;
+    CHECK(!refusal(options));
+    set(options, "clamp", {"1"});
+    set(options, "integrator", {"light"});
+    auto error = refusal(options);
+    REQUIRE(test::is_about(error, ErrorCode::BadInput, "clamp"));
+    CHECK(error->reason() == "applies to `integrator=path`, direct, indirect, hybrid, not to light");
+    set(options, "integrator", {"path"});
+    set(options, "denoise", {"svgf"});
+    CHECK(!refusal(options));
+    set(options, "max_depth", {"0"}); // excludes one value of `denoise` alone
+    error = refusal(options);
+    REQUIRE(test::is_about(error, ErrorCode::BadInput, "denoise", "svgf"));
+    CHECK(error->reason() == "cannot be combined with `max_depth=0`; leave out one of them");
+    set(options, "denoise", {"none"});
+    set(options, "fps", {"9"});
+    error = refusal(options);
+    REQUIRE(test::is_about(error, ErrorCode::BadInput, "fps"));
+    CHECK(error->reason() == "needs `frames`");
+}
+
+TEST_CASE("settings of a file give way to others that do not go with them") {
+    const std::filesystem::path file = std::filesystem::temp_directory_path() / "pertev-settings-to-combine.json";
+    test::write_text(file, R"({"version":1,"settings":{"integrator":"photon_map","photons":5,"spp":3,"time":1}})");
+    const auto combine = [&](const SetOthers& others) {
+        PictureOptions options;
+        Messages messages;
+        combine_settings(file, kRender, others, options, messages);
+        return options;
+    };
+    const PictureOptions options = combine([](PictureOptions& all) {
+        set(all, "integrator", {"path"});
+        set(all, "frames", {"0-1"});
+    });
+    CHECK(options.render.samples == 3);
+    CHECK(!options.is_given("photons"));
+    CHECK(!options.is_given("time"));
+    CHECK(options.frames == "0-1");
+    const auto error = test::thrown_error([&] { combine([](PictureOptions& all) { set(all, "accuracy", {"0.5"}); }); });
+    CHECK(test::is_about(error, ErrorCode::BadInput, "accuracy")); // which no file set
+}
+
 TEST_CASE("settings survive writing to JSON and reading back") {
     const std::filesystem::path file = std::filesystem::temp_directory_path() / "pertev-settings-test.json";
     PictureOptions options;
@@ -181,6 +227,10 @@ TEST_CASE("settings survive writing to JSON and reading back") {
             test::write_text(file, text);
             CHECK_THROWS_AS(read_settings(file, kRender, {}, read, messages), Error);
         }
+        test::write_text(file, R"({"version":1,"settings":{"spp":"many"}})");
+        const auto error = test::thrown_error([&] { read_settings(file, kRender, {}, read, messages); });
+        REQUIRE(test::is_about(error, ErrorCode::BadInput, "spp", "many"));
+        CHECK(error->location()->pointer == "/settings/spp");
     }
 }
 
@@ -214,7 +264,9 @@ TEST_CASE("a scene file's suggestions hold unless a given setting excludes them"
     CHECK(options.render.path.seed == 3);
     CHECK(options.given.at("seed") == SettingOrigin::Caller);
     CHECK_FALSE(options.is_given("ambient")); // photon mapping has none
-    CHECK(messages.left_out().size() == 3);   // no such sampler, no such setting, and one that comes too late
+    REQUIRE(messages.left_out().size() == 3); // no such sampler, no such setting, and one that comes too late
+    CHECK(messages.all()[0].remark.setting == "sampler");
+    CHECK(messages.all()[0].remark.value == "none such");
     CHECK_FALSE(options.render.transparent);
 
     PictureOptions real_time;

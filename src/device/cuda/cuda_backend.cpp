@@ -262,7 +262,8 @@ std::string why_no_cuda(int index) {
 }
 
 std::unique_ptr<DeviceBackend> make_cuda_backend(int index) {
-    if (const std::string reason = why_no_cuda(index); !reason.empty()) throw Error(ErrorCode::BadInput, reason);
+    if (const std::string reason = why_no_cuda(index); !reason.empty())
+        throw Error(ErrorCode::BadInput, "device", fmt::format("cuda:{}", index), reason);
     return std::make_unique<CudaBackend>(index);
 }
 

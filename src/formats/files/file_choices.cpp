@@ -20,9 +20,10 @@ constexpr std::string_view kAll = "all"; // selects all clips
 /// The kind of item that is chosen.
 struct Kind {
     const char* name;
-    bool has_all; // "all" is no name of one of them
+    const char* setting; // that chooses one
+    bool has_all;        // "all" is no name of one of them
 };
-constexpr Kind kClip = {"animation", true}, kFileScene = {"scene", false};
+constexpr Kind kClip = {"animation", "animation", true}, kFileScene = {"scene", "file_scene", false};
 
 bool is_name(const Kind& kind, const std::string& text) { return !text.empty() && !(kind.has_all && text == kAll); }
 
@@ -66,7 +67,7 @@ std::string text_of(const Kind& kind, std::span<const std::string> names) {
     std::string text;
     const std::vector<std::string> list = list_of(kind, names);
     for (std::size_t i = 0; i < std::min(list.size(), kMaxShown); ++i) text += "\n  " + shortened(list[i]);
-    if (names.size() > kMaxShown) text += fmt::format("\n  and {} more (pertev info)", names.size() - kMaxShown);
+    if (names.size() > kMaxShown) text += fmt::format("\n  and {} more", names.size() - kMaxShown);
     return text;
 }
 
@@ -78,18 +79,15 @@ std::size_t choose(const Kind& kind, const std::string& file, std::span<const st
     const auto same = is_name(kind, choice) ? std::ranges::count(names, choice) : 0;
     const auto number = parse_whole_number<std::size_t>(choice);
     if (number && *number < names.size()) return *number;
-    const std::string wanted = fmt::format("{} \"{}\"", kind.name, shortened(choice));
-    if (names.empty()) {
-        throw Error(ErrorCode::BadInput, FileLocation{file},
-                    fmt::format("no {}; the file has no {}s", wanted, kind.name));
-    }
+    Remark why(kind.setting, choice, fmt::format("no such {}; the file has no {}s", kind.name, kind.name));
     if (same > 1) {
-        throw Error(ErrorCode::BadInput, FileLocation{file},
-                    fmt::format("{} {}s are called \"{}\"; choose one by its number:{}", same, kind.name,
-                                shortened(choice), text_of(kind, names)));
+        why.reason =
+            fmt::format("{} {}s are called so; choose one by its number:{}", same, kind.name, text_of(kind, names));
+    } else if (!names.empty()) {
+        why.reason = fmt::format("no such {}; the file has:{}", kind.name, text_of(kind, names));
     }
-    throw Error(ErrorCode::BadInput, FileLocation{file},
-                fmt::format("no {}; the file has:{}", wanted, text_of(kind, names)));
+    why.location = FileLocation{file};
+    throw Error(ErrorCode::BadInput, std::move(why));
 }
 
 std::vector<std::string> names_of(std::span<const Clip> clips) {

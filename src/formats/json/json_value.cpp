@@ -51,7 +51,9 @@ std::string escape(std::string_view key) {
 Error JsonValue::error(const std::string& what) const { return Error(ErrorCode::BadInput, location(), what); }
 
 Error JsonValue::error(const Error& cause) const {
-    return cause.location() == location() ? cause : Error(cause.code(), location(), cause.what());
+    Remark remark = cause.location() && cause.location() != location() ? Remark(cause.what()) : cause.remark();
+    remark.location = location();
+    return {cause.code(), std::move(remark)};
 }
 
 JsonValue JsonValue::child(std::string_view key, simdjson::dom::element element) const {

@@ -57,8 +57,8 @@ public:
     /// Reads the file's mesh. Its faces are described by sizes() and of_faces().
     Mesh run(Messages& messages) {
         if (std::none_of(header_.elements.begin(), header_.elements.end(), is_surface)) {
-            throw Error(ErrorCode::BadInput,
-                        file_ + ": it has no faces; a surface has an element face with a list vertex_indices");
+            throw Error(ErrorCode::BadInput, FileLocation{file_},
+                        "it has no faces; a surface has an element face with a list vertex_indices");
         }
         for (const PlyElement& element : header_.elements) {
             body_.set_location(element.name, 0);

@@ -89,7 +89,7 @@ bool PosedScene::is_animated() const {
 
 SceneUpdate PosedScene::set_time(double time_s) {
     if (!std::isfinite(time_s)) {
-        throw Error(ErrorCode::BadInput, fmt::format("time {} is not finite; expected seconds", time_s));
+        throw Error(ErrorCode::BadInput, "time", fmt::format("{}", time_s), "not finite; expected seconds");
     }
     if (!is_animated()) return {};
     read_channels(time_s);
@@ -244,9 +244,9 @@ void PosedScene::check_placements(double time_s) const {
         if (!instance_moves_[i] || instance.is_hidden || is_left[instance.mesh]) continue;
         const Bounds3& local = bounds_[instance.mesh];
         if (local.is_empty() || lies_near(instance.world_from_local, local)) continue;
-        throw Error(ErrorCode::OverLimit,
-                    fmt::format("{} lies beyond 2^40 metres at {} s; scale the scene down",
-                                numbered("instance", i, instance.name, origin_of(instance)), time_s));
+        throw Error(ErrorCode::OverLimit, "time", fmt::format("{}", time_s),
+                    fmt::format("{} lies beyond 2^40 metres then; scale the scene down",
+                                numbered("instance", i, instance.name, origin_of(instance))));
     }
 }
 

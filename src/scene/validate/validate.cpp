@@ -115,7 +115,7 @@ private:
         }
         for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
             Mesh& mesh = scene_.meshes[i];
-            const std::string of = fmt::format("{}: {}", file_, name_of(i, mesh));
+            const MeshName of = {file_, name_of(i, mesh)};
             MeshShape* shape = shapes[i];
             repairs_ += repair_mesh(mesh, shape != nullptr && moves[i], of);
             if (shape == nullptr) continue;

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
 #include "base/limits.h"
 #include "base/parallel_for.h"
 #include "math/double_vec3.h"
@@ -35,11 +34,11 @@ uint64_t count_in_parallel(uint64_t count, const Body& body) {
     return total;
 }
 
-void check_sizes(const Mesh& mesh, const std::string& of) {
+void check_sizes(const Mesh& mesh, const MeshName& of) {
     const std::size_t count = mesh.positions.size();
     const auto check = [&](std::size_t size, const char* what) {
         if (size != 0 && size != count) {
-            throw Error(ErrorCode::BadInput, fmt::format("{}: {} {} for {} vertices", of, size, what, count));
+            throw of.error(ErrorCode::BadInput, fmt::format("{} {} for {} vertices", size, what, count));
         }
     };
     check(mesh.normals.size(), "normals");
@@ -48,18 +47,17 @@ void check_sizes(const Mesh& mesh, const std::string& of) {
     check(mesh.uv[1].size(), "texture coordinates (second set)");
     check(mesh.colors.size(), "colours");
     if (mesh.indices.size() % 3 != 0) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("{}: {} indices; expected a multiple of 3", of, mesh.indices.size()));
+        throw of.error(ErrorCode::BadInput, fmt::format("{} indices; expected a multiple of 3", mesh.indices.size()));
     }
     if (mesh.indices.size() / 3 > kMaxTrianglesPerMesh) {
-        throw Error(ErrorCode::OverLimit, fmt::format("{}: {} triangles; the limit is {}", of, mesh.indices.size() / 3,
-                                                      kMaxTrianglesPerMesh));
+        throw of.error(ErrorCode::OverLimit,
+                       fmt::format("{} triangles; the limit is {}", mesh.indices.size() / 3, kMaxTrianglesPerMesh));
     }
     parallel_for(mesh.indices.size(), kGrain, [&](uint64_t i) {
         if (mesh.indices[i] < count) return;
-        throw Error(ErrorCode::BadInput, fmt::format("{}: triangle {}: vertex index {} is out of range; there are {} "
-                                                     "vertices",
-                                                     of, i / 3, mesh.indices[i], count));
+        throw of.error(ErrorCode::BadInput, fmt::format("triangle {}: vertex index {} is out of range; there are {} "
+                                                        "vertices",
+                                                        i / 3, mesh.indices[i], count));
     });
 }
 
@@ -141,7 +139,7 @@ uint64_t repair_tangents(Mesh& mesh) {
     });
 }
 
-void check_shape_sizes(const MeshShape& shape, const Mesh& mesh, const std::string& of) {
+void check_shape_sizes(const MeshShape& shape, const Mesh& mesh, const MeshName& of) {
     const std::size_t vertices = mesh.positions.size(), influences = vertices * shape.joints_per_vertex;
     const auto fits = [&](std::size_t size, bool wanted) { return size == (wanted ? vertices : 0); };
     bool fit = fits(shape.positions.size(), true) && fits(shape.normals.size(), !mesh.normals.empty()) &&
@@ -152,8 +150,8 @@ void check_shape_sizes(const MeshShape& shape, const Mesh& mesh, const std::stri
         }
     }
     if (!fit || shape.joints.size() != influences || shape.weights.size() != influences) {
-        throw Error(ErrorCode::BadInput,
-                    fmt::format("{}: the vertices of its morph targets or skin do not match its {}", of, vertices));
+        throw of.error(ErrorCode::BadInput,
+                       fmt::format("the vertices of its morph targets or skin do not match its {}", vertices));
     }
 }
 
@@ -171,6 +169,10 @@ void put_zeros_for_not_finite(std::vector<Vec3>& values) {
 
 } // namespace
 
+Error MeshName::error(ErrorCode code, const std::string& why) const {
+    return {code, FileLocation{file}, fmt::format("{}: {}", name, why)};
+}
+
 MeshRepairs& MeshRepairs::operator+=(const MeshRepairs& other) {
     too_far += other.too_far;
     not_finite += other.not_finite;
@@ -182,7 +184,7 @@ MeshRepairs& MeshRepairs::operator+=(const MeshRepairs& other) {
     return *this;
 }
 
-MeshRepairs repair_mesh(Mesh& mesh, bool reshaped, const std::string& of) {
+MeshRepairs repair_mesh(Mesh& mesh, bool reshaped, const MeshName& of) {
     check_sizes(mesh, of);
     MeshRepairs repairs;
     drop_triangles(mesh, reshaped, repairs);
@@ -206,14 +208,14 @@ MeshRepairs repair_mesh(Mesh& mesh, bool reshaped, const std::string& of) {
     return repairs;
 }
 
-MeshRepairs repair_shape(MeshShape& shape, const Mesh& mesh, std::size_t joint_count, const std::string& of) {
+MeshRepairs repair_shape(MeshShape& shape, const Mesh& mesh, std::size_t joint_count, const MeshName& of) {
     check_shape_sizes(shape, mesh, of);
     for (std::size_t i = 0; i < shape.joints.size(); ++i) {
         if (!is_finite(shape.weights[i])) shape.weights[i] = 0;
         if (shape.joints[i] < joint_count) continue;
-        throw Error(ErrorCode::BadInput, fmt::format("{}: vertex {} has joint {}; expected less than {}, the number of "
-                                                     "the skin's joints",
-                                                     of, i / shape.joints_per_vertex, shape.joints[i], joint_count));
+        throw of.error(ErrorCode::BadInput, fmt::format("vertex {} has joint {}; expected less than {}, the number of "
+                                                        "the skin's joints",
+                                                        i / shape.joints_per_vertex, shape.joints[i], joint_count));
     }
     zero_invalid_positions(shape.positions);
     for (MorphTarget& target : shape.targets) {

@@ -100,17 +100,6 @@ void warn_of_useless_parts(const CameraChoice& choice, const Camera& camera, boo
 
 } // namespace
 
-void check_camera_choice(const CameraChoice& choice) {
-    if (choice.view_height && choice.projection && !has_parallel_rays(*choice.projection)) {
-        throw Error(ErrorCode::BadInput, "view_height", "",
-                    "a perspective view has none; set `fov`, or `projection=orthographic`");
-    }
-    if (choice.focus && choice.aperture == 0.0f) {
-        throw Error(ErrorCode::BadInput, "focus", "",
-                    "with `aperture=0` everything is in focus; set a radius of the lens");
-    }
-}
-
 const Camera* scene_camera(const std::string& name, const Scene& scene) {
     if (name.empty()) return scene.cameras.empty() ? nullptr : &scene.cameras.front();
     for (const Camera& camera : scene.cameras) {

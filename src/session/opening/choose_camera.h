@@ -11,10 +11,6 @@
 
 namespace pertev {
 
-/// Checks what can be checked before the scene is read. Throws Error(BadInput) for a part of the choice that another
-/// one overrides.
-void check_camera_choice(const CameraChoice& choice);
-
 /// The scene's own camera: the named one, else the first, else null. Throws Error(BadInput) with a list of the
 /// cameras if none has that name.
 const Camera* scene_camera(const std::string& name, const Scene& scene);

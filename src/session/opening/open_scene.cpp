@@ -89,7 +89,7 @@ std::string in_a_row(const std::vector<std::string>& list) {
     constexpr std::size_t kMaxShown = 8;
     std::string text;
     for (std::size_t i = 0; i < std::min(list.size(), kMaxShown); ++i) text += (i > 0 ? ", " : "") + shortened(list[i]);
-    return list.size() > kMaxShown ? fmt::format("{} and {} more (pertev info)", text, list.size() - kMaxShown) : text;
+    return list.size() > kMaxShown ? fmt::format("{} and {} more", text, list.size() - kMaxShown) : text;
 }
 
 /// Adds a notice of the animation that plays if the file has several and none was chosen.

@@ -16,4 +16,10 @@ void refuse_what_is_left_out(const Messages& messages, const char* outcome) {
                             others > 0 ? fmt::format(" (and {} like it)", counted(others, "warning")) : "", outcome));
 }
 
+void refuse_invalid_samples(uint64_t count) {
+    if (count == 0) return;
+    throw Error(ErrorCode::BadInput, "strict", "",
+                fmt::format("{} not finite; the picture is written", counted(count, "sample")));
+}
+
 } // namespace pertev

@@ -1,11 +1,15 @@
 #include "session/pictures/choose_display.h"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "settings/parse_values.h"
+#include "settings/value_names.h"
 
 namespace pertev {
 namespace {
@@ -48,21 +52,37 @@ std::optional<FalseColors> false_colors(const PictureOptions& options) {
     return colors;
 }
 
-bool is_metered(const PictureOptions& options) {
-    return options.false_color.empty() && !physical_exposure(options) &&
-           (options.exposure.empty() || options.exposure == "auto");
+std::optional<float> requested_exposure(const PictureOptions& options) {
+    if (options.exposure.empty() || options.exposure == "auto") return std::nullopt;
+    if (const auto stops = number_in(options.exposure)) return stops;
+    throw Error(ErrorCode::BadInput, "exposure", options.exposure,
+                fmt::format("expected auto, or stops: a number of size {} at most", std::numeric_limits<float>::max()));
 }
 
-Display choose_display(const PictureOptions& options, Session& session) {
+bool is_metered(const PictureOptions& options) {
+    return options.false_color.empty() && !physical_exposure(options) && !requested_exposure(options);
+}
+
+Display choose_display(const PictureOptions& options, Session& session, Sink& sink) {
     if (const auto colors = false_colors(options)) return Display{.false_colors = colors};
     Display display;
     display.tone_map = options.tone_map.value_or(display.tone_map);
-    if (is_metered(options)) {
-        display.exposure_stops = session.meter(display.tone_map);
-    } else if (const auto physical = physical_exposure(options)) {
-        display.exposure_stops = exposure_stops(*physical, efficacy_of(options.scene));
+    float& stops = display.exposure_stops;
+    if (const auto physical = physical_exposure(options)) {
+        const double efficacy = efficacy_of(options.scene);
+        stops = exposure_stops(*physical, efficacy);
+        sink.messages().note(fmt::format("EV {:.2f} at ISO 100: exposed by {:+.2f} stops ({:g} lm/W)",
+                                         exposure_value(*physical), stops, efficacy));
+    } else if (const auto requested = requested_exposure(options)) {
+        stops = *requested;
     } else {
-        display.exposure_stops = parse_number("exposure", options.exposure);
+        sink.set_work("metering");
+        stops = session.meter(display.tone_map);
+        const std::string_view name = name_of(display.tone_map);
+        sink.messages().note(
+            fmt::format("exposed by {:+.2f} stops, shown by {} (`exposure={:.2f}` `tone_map={}` fixes that; "
+                        "`exposure=0` `tone_map=srgb` shows plain values)",
+                        stops, name, stops, name));
     }
     return display;
 }

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "base/sink.h"
 #include "session/photometry.h"
 #include "session/session.h"
 #include "session/writing/picture_metadata.h"
@@ -19,9 +20,12 @@ std::optional<PhysicalExposure> physical_exposure(const PictureOptions& options)
 /// Returns the quantity shown in false colours; none if tones are shown. A scale without a range fits the picture.
 /// Throws Error(BadInput).
 std::optional<FalseColors> false_colors(const PictureOptions& options);
+/// Returns the stops of `exposure`; none for auto. Throws Error(BadInput).
+std::optional<float> requested_exposure(const PictureOptions& options);
 /// Returns whether the light meter sets the exposure because nothing else does.
 bool is_metered(const PictureOptions& options);
-/// Returns the display of the current picture. Throws Error(BadInput), and what Session::meter throws.
-Display choose_display(const PictureOptions& options, Session& session);
+/// Returns how the current picture is shown, and says by which exposure, with the settings that fix a metered one.
+/// Throws Error(BadInput), and what Session::meter throws.
+Display choose_display(const PictureOptions& options, Session& session, Sink& sink);
 
 } // namespace pertev

@@ -1,17 +1,23 @@
 #include "session/pictures/prepare_render.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "accel/builders/bvh_cache.h"
 #include "base/error.h"
+#include "base/message_text.h"
 #include "base/stopwatch.h"
 #include "formats/read_camera_path.h"
-#include "integrators/radiosity/radiosity_display_settings.h"
 #include "session/check_integrator.h"
 #include "session/machine.h"
 #include "session/opening/open_scene.h"
 #include "session/opening/picture_settings.h"
 #include "session/opening/strictness.h"
+#include "session/pictures/check_options.h"
+#include "session/pictures/frame_settings.h"
+#include "session/render_memory.h"
+#include "session/session_bytes.h"
 #include "settings/check_settings.h"
 #include "settings/settings_file.h"
 #include "settings/tracer_options.h"
@@ -22,10 +28,6 @@ namespace {
 /// Returns Auto if the view is a default one too and shows a background. An alpha channel removes the ground, and
 /// integrators with only a part of the light would show a ground that differs from the studio's floor.
 Ground ground_of(const PictureOptions& options) {
-    if (options.scene.ground == "on" && options.render.transparent) {
-        throw Error(ErrorCode::BadInput, "ground", "on",
-                    "the ground is part of the background, which `transparent` removes; leave out one of them");
-    }
     if (options.scene.ground == "on") return Ground::On;
     const CameraChoice& camera = options.scene.camera;
     const bool has_camera = camera.eye || !camera.camera.empty() || !options.camera_path.empty();
@@ -34,10 +36,19 @@ Ground ground_of(const PictureOptions& options) {
     return is_off ? Ground::Off : Ground::Auto;
 }
 
+/// Refuses a picture for which there is no room before its scene is solved.
+void check_film(const PictureOptions& options, const RenderSettings& settings, const Queue& queue) {
+    const std::size_t film =
+        Film::predicted_bytes(settings.width, settings.height, settings.aovs, light_layers_of(settings));
+    check_render_memory(film, settings, memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity)));
+}
+
 } // namespace
 
 std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
-                                            const SolveRadiosity& solve) {
+                                            const SolveReport& report) {
+    if (options.real_time && !options.is_given("spp")) options.render.samples = 1;
+    check_options(options, verbs);
     Messages& messages = sink.messages();
     std::optional<CameraPath> path;
     if (!options.camera_path.empty()) path = read_camera_path(options.camera_path);
@@ -79,8 +90,10 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
                         "`turntable` work with the scene at rest)");
         }
         sink.report_messages();
-        settings.radiosity = solve(*ready);
+        check_film(options, settings, *ready->queue);
+        settings.radiosity = radiosity_display(ready->prepared(), options.radiosity, settings.path.seed, sink, report);
     }
+    ready->bytes = bytes_to_render(options, ready->prepared(), settings, *ready->queue);
     return ready;
 }
 
@@ -109,6 +122,33 @@ void record_settings(PictureOptions options, const RenderSettings& settings, con
     source.settings = settings_json(options, source.hash);
 }
 
+std::size_t bytes_to_render(const PictureOptions& options, const PreparedScene& prepared,
+                            const RenderSettings& settings, const Queue& queue) {
+    const ReconstructionOptions& frames = options.reconstruction;
+    const std::size_t bytes =
+        options.real_time ? predicted_frame_bytes(prepared, settings, frames.used(), frames.sharing, queue.is_cuda())
+                          : predicted_bytes(prepared, settings, queue.is_cuda());
+    check_render_memory(bytes, settings, memory_to_render_in(queue, settings, max_memory_bytes(options.radiosity)));
+    return bytes;
+}
+
+void report_motion(const PictureOptions& options, const MovingScene& moving, Messages& messages) {
+    const bool has_time = options.time_s || !options.frames.empty();
+    if (moving.is_animated() && !has_time) {
+        messages.note({FileLocation{options.scene.scene},
+                       fmt::format("shown at rest; `time` shows it at a time of its {} (0 to {:.4g} s)",
+                                   counted(moving.scene().animations.size(), "animation"), moving.end_s())});
+    }
+    if (std::ranges::count(options.aovs, "motion") > 0 && options.frames.empty()) {
+        messages.note({"aov", "motion", "0 without `frames`, as there is no frame before"});
+    }
+    const bool camera_moves = !options.camera_path.empty() || options.turntable > 0;
+    if (!moving.is_animated() && has_time && !camera_moves && !options.real_time) { // which gather light at rest
+        messages.warn({options.time_s ? "time" : "frames", "",
+                       "nothing moves in this scene (`time_limit` ends a render after a time)"});
+    }
+}
+
 PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, const Messages& messages) {
     PictureRecord record = {.scene = source_of(options.scene, ready.scene()),
                             .camera = {},
@@ -122,7 +162,11 @@ PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, 
     record.scene.left_out = messages.left_out();
     record.scene.load_seconds = ready.load_s;
     record.scene.build_seconds = ready.prepared().build_seconds;
-    place_frame(ready.sequence.first, *ready.moving, {*ready.camera, ready.sequence}, record);
+    const uint32_t first = ready.sequence.first;
+    if (options.real_time)
+        record.frame = ReconstructedFrame{first, first, options.reconstruction.used(), options.reconstruction.sharing};
+    place_frame(first, *ready.moving, {*ready.camera, ready.sequence}, record);
+    record.scene.settings = settings_of_frame(options, record, first);
     return record;
 }
 

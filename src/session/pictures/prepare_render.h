@@ -3,7 +3,7 @@
 // Prepares everything that a picture needs before its first sample: reads the scene and sets its time, chooses its
 // camera, builds its trees, takes the device's queue.
 
-#include <functional>
+#include <cstddef>
 #include <memory>
 #include <optional>
 
@@ -12,6 +12,7 @@
 #include "session/moving_scene.h"
 #include "session/opening/moving_camera.h"
 #include "session/pictures/render_sequence.h"
+#include "session/pictures/solve_scene.h"
 #include "session/writing/picture_metadata.h"
 
 namespace pertev {
@@ -21,26 +22,34 @@ struct RenderSetup {
     FrameRange sequence;                // the requested frames, else a single one; the scene is at the first
     std::optional<MovingCamera> camera; // Never empty after prepare_render().
     std::optional<MovingScene> moving;
-    double load_s = 0; // seconds of reading
+    double load_s = 0;     // seconds of reading
+    std::size_t bytes = 0; // that rendering takes on the device, as predicted
     std::unique_ptr<Queue> queue;
 
     const Scene& scene() const { return moving->scene(); }
     const PreparedScene& prepared() const { return moving->prepared(); }
 };
 
-/// A function that computes the radiosity solution of a scene.
-using SolveRadiosity = std::function<RadiosityDisplay(RenderSetup& ready)>;
-
-/// Prepares everything and reports progress to `sink`. Adds to `options` what the scene's file suggests for the
-/// settings of `verbs`. Calls `solve` if the integrator is radiosity. Throws Error, and
-/// Error(Interrupted) if the sink stops it.
+/// Checks the options (check_options), prepares everything and reports progress to `sink`. Adds to `options` what the
+/// scene's file suggests for the settings of `verbs`. If the integrator is radiosity, the scene is solved, of which
+/// `report` tells more. Throws Error, especially Error(OutOfMemory) if there is no room for the picture, or less than
+/// the options allow, and Error(Interrupted) if the sink stops it.
 std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
-                                            const SolveRadiosity& solve);
+                                            const SolveReport& report = {});
 
 /// Records all given settings and their sources, with the resulting size and number of samples, in `source`.
 void record_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source);
 
-/// Returns the record of the first frame's picture, with its camera but without its display.
+/// Returns the bytes that the picture, or a frame in real time, takes on the device. Throws Error(OutOfMemory).
+std::size_t bytes_to_render(const PictureOptions& options, const PreparedScene& prepared,
+                            const RenderSettings& settings, const Queue& queue);
+
+/// Says at which times the scene moves if the options show it at rest, and which options have no effect because
+/// nothing moves.
+void report_motion(const PictureOptions& options, const MovingScene& moving, Messages& messages);
+
+/// Returns the record of the first frame's picture, with its camera but without its display. Frames in real time begin
+/// with it.
 PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, const Messages& messages);
 
 } // namespace pertev

@@ -10,6 +10,7 @@
 #include "base/write_file_atomically.h"
 #include "formats/json/json_file.h"
 #include "session/frame_range.h"
+#include "settings/setting_table.h"
 
 namespace pertev {
 namespace {
@@ -38,11 +39,11 @@ bool SequenceRecord::load() {
     for (const auto& [name, value] : settings_) {
         const std::string then = before.string_or(name, "");
         if (then == value) continue;
-        Remark why(before.location(), fmt::format("the existing frames were made with {} \"{}\", not \"{}\"; render "
-                                                  "them again without `continue`, or elsewhere",
-                                                  name, then, value));
+        Remark why(before.location(), fmt::format("the existing frames were made with {0}{1}{0} \"{2}\", not \"{3}\"; "
+                                                  "render them again without `continue`, or elsewhere",
+                                                  find_setting(name) != nullptr ? "`" : "", name, then, value));
         why.setting = "continue";
-        throw Error(ErrorCode::BadInput, why);
+        throw Error(ErrorCode::BadInput, std::move(why));
     }
     for (const gltf::JsonValue& frame : file.root().elements_of("files")) {
         hashes_[std::string(frame.at("name").to_string())] = frame.at("hash").to_string();

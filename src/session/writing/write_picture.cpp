@@ -76,6 +76,13 @@ ExrMetadata metadata_of(const PictureRecord& record, const RenderResult& result,
 
 } // namespace
 
+std::string failures_of(const WrittenPicture& written) {
+    std::string text;
+    for (const WrittenFile& file : written.files)
+        text += (text.empty() || file.failure.empty() ? "" : "; ") + file.failure;
+    return text;
+}
+
 std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& record, RenderResult& result) {
     const Display display = record.display.value_or(Display{});
     if (format == ImageFormat::Png) {

@@ -23,7 +23,10 @@ struct WrittenPicture {
     std::vector<WrittenFile> files;
 };
 
-// If a result has been denoised, files show that; EXR keeps the film's picture as the layer `noisy`.
+/// Why files could not be written, in one text; empty if all were.
+std::string failures_of(const WrittenPicture& written);
+
+/// If a result has been denoised, files show that; EXR keeps the film's picture as the layer `noisy`.
 
 /// Encodes a PNG or EXR file. Takes the layers out of `result`.
 std::vector<std::byte> encode_picture(ImageFormat format, const PictureRecord& record, RenderResult& result);

@@ -1,0 +1,46 @@
+#include "session/pictures/check_options.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "session/check_integrator.h"
+#include "session/frame_range.h"
+#include "session/opening/open_scene.h"
+#include "session/opening/picture_settings.h"
+#include "session/pictures/choose_display.h"
+#include "settings/check_settings.h"
+
+namespace pertev {
+namespace {
+
+void check_real_time(const PictureOptions& options) {
+    if (!options.real_time || options.render.samples == 1) return;
+    throw Error(ErrorCode::BadInput, "spp", fmt::format("{}", options.render.samples),
+                "a frame of `real_time` has one sample per pixel");
+}
+
+void check_solution(const std::string& file) {
+    if (std::error_code fault; file.empty() || std::filesystem::exists(file, fault)) return;
+    throw Error(ErrorCode::BadInput, "solution", file, "there is no such file");
+}
+
+} // namespace
+
+void check_options(const PictureOptions& options, uint32_t verbs) {
+    check_settings(options, verbs);
+    frame_range(options);
+    check_real_time(options);
+    requested_exposure(options);
+    false_colors(options);
+    const RenderSettings settings = light_settings(options);
+    Camera requested; // a camera of the scene may have a lens too
+    requested.aperture_radius = std::max(options.scene.camera.aperture.value_or(0), 0.0f);
+    check_camera(settings, requested);
+    read_options(options.scene);
+    for (const std::string& emitter : options.scene.emitters) parse_emitter(emitter);
+    check_solution(options.radiosity.solution);
+}
+
+} // namespace pertev

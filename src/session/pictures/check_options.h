@@ -1,0 +1,15 @@
+#pragma once
+
+// Checks the options of a picture before anything is read, whoever set them.
+
+#include <cstdint>
+
+#include "settings/picture_options.h"
+
+namespace pertev {
+
+/// Throws Error, with the setting and its value, for the first option that cannot be: by the rules of the table
+/// (settings/check_settings.h), by its text, or because the integrator cannot do it.
+void check_options(const PictureOptions& options, uint32_t verbs);
+
+} // namespace pertev

@@ -1,0 +1,169 @@
+#include "session/pictures/write_sequence.h"
+
+#include <algorithm>
+#include <variant>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/read_file.h"
+#include "base/stopwatch.h"
+#include "image/picture_hash.h"
+#include "session/pictures/frame_settings.h"
+#include "session/writing/sequence_record.h"
+
+namespace pertev {
+namespace {
+
+/// Everything that decides the pictures: all settings but the frames, which may be others of the same sequence, and
+/// what the first frame's metadata say of them, which is the same however they were written.
+SequenceRecord::Settings settings_of(const PictureOptions& options, const FrameRange& sequence,
+                                     const PictureRecord& record) {
+    SequenceRecord::Settings settings = {{"first frame", fmt::format("{}", sequence.first)}};
+    const auto put = [&](const std::string& name, const std::string& value) {
+        const auto known = std::ranges::find(settings, name, &std::pair<std::string, std::string>::first);
+        known != settings.end() ? void(known->second = value) : void(settings.emplace_back(name, value));
+    };
+    for (const Setting& setting : all_settings()) {
+        if (setting.is_kept && (setting.verbs & kRender) != 0 && setting.name != std::string_view("frames"))
+            put(setting.name, fmt::format("{}", fmt::join(texts_of(options, setting), " ")));
+    }
+    put("animation", record.scene.animation); // a file with only one may be told to play it
+    put("file_scene", record.scene.file_scene);
+    constexpr std::string_view kPrefix = "pertev.";
+    for (const auto& [name, value] : settings_metadata(record))
+        put(name.substr(kPrefix.size()), std::visit([](const auto& v) { return fmt::format("{}", v); }, value));
+    put("size", fmt::format("{}x{}", record.settings.width, record.settings.height));
+    put("hash of camera_path", hash_of_file(options.camera_path));
+    put("hash of the scene's file", hash_of_file(options.scene.scene));
+    put("hash of environment", hash_of_file(options.scene.environment));
+    return settings;
+}
+
+/// The frames and their record.
+class SequenceWriter {
+public:
+    SequenceWriter(const SequenceOfFrames& frames, const PictureOptions& options,
+                   const std::vector<std::string>& outputs, Sink& sink)
+        : frames_(frames), options_(options), outputs_(outputs), sink_(sink), sequence_(frames.camera.sequence),
+          done_(outputs, settings_of(options, sequence_, frames.record)) {
+        if (options.goes_on) done_.load();
+        if (frames.record.frame) with_history_ = count_frames_to_render();
+    }
+
+    void run(const std::function<void(const FrameReport&)>& report, SequenceTally& tally) {
+        tally.frames = sequence_.count();
+        if (frames_.record.frame) frames_.session.cut();
+        report_history();
+        sink_.set_work("rendering");
+        for (uint32_t number = 0; number < sequence_.count() && !sink_.should_stop(); ++number) {
+            if (!make(sequence_.first + number, report, tally)) return;
+        }
+    }
+
+private:
+    bool is_there(uint32_t frame) const { return options_.goes_on && done_.has(frame); }
+
+    /// Number of frames in real time that must be rendered: all up to the last one that is missing.
+    uint32_t count_frames_to_render() const {
+        uint32_t count = sequence_.count();
+        while (count > 0 && is_there(sequence_.first + count - 1)) --count;
+        return count;
+    }
+
+    void report_history() {
+        uint32_t there = 0;
+        while (there < with_history_ && is_there(sequence_.first + there)) ++there;
+        if (there == 0) return;
+        sink_.messages().note(
+            there == 1 ? fmt::format("renders frame {} again for the history of those after it", sequence_.first)
+                       : fmt::format("renders frames {} to {} again for the history of those after "
+                                     "them",
+                                     sequence_.first, sequence_.first + there - 1));
+        sink_.report_messages();
+    }
+
+    /// `share` of the frame is finished.
+    void report_progress(const FrameReport& made, double share) {
+        const uint32_t number = made.frame - sequence_.first;
+        sink_.progress({.doing = fmt::format("frame {} ({} of {}){}", made.frame, number + 1, sequence_.count(),
+                                             made.is_kept ? " again" : ""),
+                        .share = (number + share) / sequence_.count(),
+                        .seconds = watch_.seconds(),
+                        .share_of_step = share});
+    }
+
+    /// Returns false if it was cancelled: then the frame is not whole, and not written.
+    bool make(uint32_t frame, const std::function<void(const FrameReport&)>& report, SequenceTally& tally) {
+        FrameReport made;
+        made.frame = frame;
+        made.time_s = sequence_.time_of(frame);
+        made.is_kept = is_there(frame);
+        const bool is_rendered = !made.is_kept || frame - sequence_.first < with_history_;
+        if (is_rendered) {
+            if (frames_.record.frame) report_progress(made, 0);
+            auto [result, update_s] = render(made);
+            if (result.samples < frames_.record.settings.samples) return false;
+            tally.has_begun = true;
+            made.hash = picture_hash(result.picture).hex();
+            if (frames_.record.frame) done_.check_picture(frame, made.hash);
+            made.samples = result.samples;
+            made.update_s = update_s;
+            made.render_s = result.render_seconds;
+            if (!made.is_kept) write(result, report, made, tally);
+        }
+        tally.kept += made.is_kept;
+        tally.again += made.is_kept && is_rendered;
+        if (made.is_kept) report(made);
+        return true;
+    }
+
+    RenderedFrame render(const FrameReport& made) {
+        ProgressSink part(
+            [&](const Progress& now) {
+                report_progress(made, now.made_share >= 1 ? now.share : 0);
+                return true;
+            },
+            &sink_);
+        return render_frame(made.frame, frames_, part);
+    }
+
+    void write(RenderResult& result, const std::function<void(const FrameReport&)>& report, FrameReport& made,
+               SequenceTally& tally) {
+        SceneSource& source = frames_.record.scene;
+        source.build_seconds = made.update_s;
+        source.settings = settings_of_frame(options_, frames_.record, made.frame);
+        std::vector<std::string> files;
+        for (const std::string& output : outputs_) files.push_back(frame_file(output, made.frame));
+        made.written = write_picture(files, frames_.record, result);
+        const std::string failures = failures_of(made.written);
+        if (failures.empty()) {
+            ++tally.written;
+            tally.update_s += made.update_s;
+            tally.invalid_samples += result.invalid_samples;
+        }
+        report(made);
+        if (!failures.empty()) throw Error(ErrorCode::FileWrite, failures);
+        done_.add(made.frame, made.hash);
+    }
+
+    const SequenceOfFrames& frames_;
+    const PictureOptions& options_;
+    const std::vector<std::string>& outputs_;
+    Sink& sink_;
+    const FrameRange& sequence_;
+    SequenceRecord done_;
+    const Stopwatch watch_;
+    uint32_t with_history_ = 0; // in real time: the number of first frames that are all rendered, for the history
+};
+
+} // namespace
+
+void write_sequence(const SequenceOfFrames& frames, const PictureOptions& options,
+                    const std::vector<std::string>& outputs, Sink& sink,
+                    const std::function<void(const FrameReport&)>& report, SequenceTally& tally) {
+    SequenceWriter(frames, options, outputs, sink).run(report, tally);
+}
+
+} // namespace pertev

@@ -1,0 +1,23 @@
+#pragma once
+
+// Checks the names of a picture's files before it is rendered.
+
+#include <span>
+#include <string>
+
+#include "base/messages.h"
+#include "settings/picture_options.h"
+
+namespace pertev {
+
+/// Whether one of the files is tone-mapped: PNG or JPEG.
+bool writes_tone_mapped(std::span<const std::string> outputs);
+
+/// Notes that # in the name of a single output stands for a number where there are several.
+void note_number_signs(const std::string& output, Messages& messages);
+
+/// Throws Error for a name that cannot be written, for two names of one file, for a name that frames would share, and
+/// for a setting of the caller that no file shows (Setting::formats). Warns of alpha that a file cannot have.
+void check_outputs(const PictureOptions& options, std::span<const std::string> outputs, Messages& messages);
+
+} // namespace pertev
