@@ -68,7 +68,7 @@ struct BenchedScene {
 /// the way, and listens for Ctrl-C from then on. Throws Error: of the line before anything is read.
 std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerbs verb, Reporter& reporter);
 
-/// How frames in real time are made, as JSON.
+/// Returns how frames in real time are made, as JSON.
 std::string reconstruction_json(const ReconstructionOptions& options);
 
 /// Flags of benchmarks of whole pictures.

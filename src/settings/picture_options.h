@@ -68,7 +68,7 @@ struct ReconstructionOptions {
 
     /// The settings of the reconstruction; without it of_samples_alone.
     ReconstructionSettings used() const { return none ? of_samples_alone(settings) : settings; }
-    /// Whether an option is set that only integrators with frames have (makes_frames).
+    /// Returns whether an option is set that only integrators with frames have (makes_frames).
     bool has_frame_options() const { return sharing.light != RestirLight::Off || settings.resolution_scale != 1; }
 };
 

@@ -99,12 +99,12 @@ TEST_CASE("post steps refuse a film of a window") {
     const Camera camera = test::mixed_scene_camera();
     Parts parts(queue, world, settings);
     PostSteps steps(parts.pictures);
-    steps.begin(camera, settings);
+    steps.begin(camera, settings, nullptr);
     Integrator& integrator = parts.pictures.begin(camera, settings, 1);
     Film film(queue, settings.width, settings.height, settings.aovs);
-    CHECK_NOTHROW(steps.add(integrator, 0, 1, film));
+    CHECK_NOTHROW(steps.add(integrator, 0, 1, film, nullptr));
     film.set_window({.picture_width = 64, .width = settings.width, .height = settings.height});
-    CHECK_THROWS_AS(steps.add(integrator, 1, 1, film), std::logic_error);
+    CHECK_THROWS_AS(steps.add(integrator, 1, 1, film, nullptr), std::logic_error);
 }
 
 TEST_CASE("two sessions with different thread counts run at once on two threads, and give the same bytes") {

@@ -10,7 +10,7 @@
 
 namespace pertev {
 
-/// Whether one of the files is tone-mapped: PNG or JPEG.
+/// Returns whether one of the files is tone-mapped: PNG or JPEG.
 bool writes_tone_mapped(std::span<const std::string> outputs);
 
 /// Notes that # in the name of a single output stands for a number where there are several.

@@ -23,7 +23,7 @@ struct WrittenPicture {
     std::vector<WrittenFile> files;
 };
 
-/// Why files could not be written, in one text; empty if all were.
+/// Returns why files could not be written, in one text; empty if all were.
 std::string failures_of(const WrittenPicture& written);
 
 /// If a result has been denoised, files show that; EXR keeps the film's picture as the layer `noisy`.
