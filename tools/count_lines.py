@@ -13,7 +13,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = ["src", "apps", "bench", "tools", "python"]
 HASH_COMMENTS = {".py", ".sh", ".cmake", ".txt"}
-SLASH_COMMENTS = {".h", ".cpp", ".cu", ".c", ".in", ".js"}
+SLASH_COMMENTS = {".h", ".inl", ".cpp", ".cu", ".c", ".in", ".js"}
 STRINGS_OR_COMMENTS = re.compile(r'R"\((?:.|\n)*?\)"|"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*(?:.|\n)*?\*/')
 DOCSTRING = re.compile(r'^[ \t]*(?:"""(?:.|\n)*?""")[ \t]*$', re.MULTILINE)
 

@@ -18,7 +18,7 @@ enum class ErrorCode {
     BadInput = 2,     // a file or a setting is wrong; the parts name which
     OverLimit = 3,    // valid, but larger than a limit in base/limits.h
     OutOfMemory = 4,  // host or device; the message lists the largest buffers and what would fit
-    DeviceFault = 5,  // the GPU failed; the context is dead, the last checkpoint is good
+    DeviceFault = 5,  // the GPU failed; its context is dead, so that only a new process can use it
     FileWrite = 6,    // nothing was replaced
     Interrupted = 75, // samples rendered so far are written
 };

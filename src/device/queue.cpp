@@ -152,7 +152,7 @@ void Queue::free(void* memory) noexcept {
 #if !defined(PERTEV_HAS_CUDA)
 
 std::string why_no_cuda(int) {
-    return "this binary was built without CUDA (./setup.sh builds with it where it is asked for CUDA)";
+    return "this binary was built without CUDA (./setup.sh --cuda builds with it)";
 }
 bool may_have_cuda() { return false; }
 int cuda_device_count() { return 0; }

@@ -139,9 +139,11 @@ HD INLINE_ON_DEVICE bool sample_direct(const PathJob& job, const PathState& path
     return true;
 }
 
-HD inline float survival_probability(Roulette roulette, float throughput) {
+/// Returns the probability that Russian roulette lets a path go on, for the largest channel of its throughput.
+template <class T>
+HD inline T survival_probability(Roulette roulette, T throughput) {
     if (roulette == Roulette::Throughput) return throughput;
-    const float fourth = sqrt(sqrt(throughput));
+    const T fourth = sqrt(sqrt(throughput));
     return roulette == Roulette::FourthRoot ? fourth : fourth * sqrt(sqrt(fourth));
 }
 

@@ -344,13 +344,6 @@ unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, c
     return wanted;
 }
 
-/// Survival probability of Russian roulette, as survival_probability of a path.
-Floats survival_of(Roulette roulette, Floats throughput) {
-    if (roulette == Roulette::Throughput) return throughput;
-    const Floats fourth = sqrt(sqrt(throughput));
-    return roulette == Roulette::FourthRoot ? fourth : fourth * sqrt(sqrt(fourth));
-}
-
 /// sample_scattering; returns the lanes whose paths go on, and moves these.
 unsigned sample_scattering(const PathSettings& settings, unsigned lanes, const Paths& paths, const Surfaces& surfaces,
                            Vec3s wo, Vec3s wo_local, const LaneVertices& vertices, const VertexWords<Words>& words) {
@@ -372,7 +365,7 @@ unsigned sample_scattering(const PathSettings& settings, unsigned lanes, const P
         by_chance |= (may_end_by_chance(settings, vertices.paths[lane]->depth + 1) ? 1u : 0u) << lane;
     }
     if ((by_chance & going) != 0) {
-        const Floats survival = survival_of(settings.roulette, max_component(throughput));
+        const Floats survival = survival_probability(settings.roulette, max_component(throughput));
         const Mask may_end = Mask::of_bits(by_chance) && survival < 1.0f;
         going &= bit_mask(!may_end || unit_interval<Floats>(words.choices.y) < survival);
         throughput = select(may_end, (1.0f / survival) * throughput, throughput);
