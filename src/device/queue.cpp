@@ -152,7 +152,7 @@ void Queue::free(void* memory) noexcept {
 #if !defined(PERTEV_HAS_CUDA)
 
 std::string why_no_cuda(int) {
-    return "this binary was built without CUDA (./setup.sh --cuda builds with it)";
+    return "this binary was built without CUDA (./setup.sh can build with it)";
 }
 bool may_have_cuda() { return false; }
 int cuda_device_count() { return 0; }
