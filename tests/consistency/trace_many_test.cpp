@@ -98,7 +98,7 @@ TEST_CASE("testing every triangle of a small scene matches brute force bit for b
 #endif
     for (StressMesh c : stress_meshes()) {
         CAPTURE(c.name);
-        c.triangles.resize(std::min<std::size_t>(c.triangles.size(), kMaxTestedTriangles));
+        c.triangles.resize(std::min<std::size_t>(c.triangles.size(), kMaxTrianglesPerLane * 8));
         const WideBvh<8> tree = make_wide_bvh<8>(build_bvh(c.triangles), kSimdCollapse);
         const HostTrees scene = scene_of(view_of(tree));
         CHECK(is_small(scene) == !c.triangles.empty());

@@ -15,13 +15,14 @@
 
 namespace pertev {
 
-/// Scenes with more triangles use their trees; docs/performance.md has the measurement.
-inline constexpr uint32_t kMaxTestedTriangles = 96;
+/// Scenes with more triangles for each ray at a time use their trees: with sixteen lanes, rooms of 96 triangles are
+/// traced about as fast either way.
+inline constexpr uint32_t kMaxTrianglesPerLane = 6;
 
 /// Returns whether EveryTriangle may trace the scene's rays.
 inline bool is_small(const HostTrees& scene) {
     return scene.tlas_root == kNoLink && scene.baked.nodes != nullptr &&
-           scene.baked.triangle_count <= kMaxTestedTriangles;
+           scene.baked.triangle_count <= kMaxTrianglesPerLane * triangle_tests().lanes;
 }
 
 /// Tests rays against all triangles of `bvh`; kAny says that any hit will do. Other parameters are those of
