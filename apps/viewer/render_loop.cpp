@@ -353,7 +353,7 @@ PictureRecord RenderLoop::record() const {
     }
     if (!camera_.is_at_start() || camera_.is_own()) record.camera.name = camera_.name();
     record.camera.fov_deg = degrees_for(view_.lens.fov_y);
-    record_settings(options_for(record), view_.picture, *start_.scene, record.scene);
+    record_settings(options_for(record), *start_.scene, 0, record);
     record.scene.settings = without_folders(std::move(record.scene.settings), record.scene.scene);
     record.scene.scene = file_name(record.scene.scene);
     record.scene.environment = file_name(record.scene.environment);

@@ -43,7 +43,21 @@ struct Mask8 {
     }
 };
 
-struct Floats8 {
+/// Functions that Floats8 and Floats16 (math/lanes16.h) share, by the operators of their vectors.
+template <class F>
+struct LaneArithmetic {
+    friend F operator+(F a, F b) { return a.v + b.v; }
+    friend F operator-(F a, F b) { return a.v - b.v; }
+    friend F operator*(F a, F b) { return a.v * b.v; }
+    friend F operator/(F a, F b) { return a.v / b.v; }
+    friend F operator-(F a) { return -a.v; }
+    friend F clamp(F x, F lo, F hi) { return select(x > lo, select(x < hi, x, hi), lo); }
+    friend F safe_sqrt(F a) { return sqrt(select(a > 0.0f, a, F(0.0f))); }
+    friend F square(F a) { return a * a; }
+    friend auto is_finite(F a) { return MaskOf<F>((bits_of(a) & 0x7f800000u) != 0x7f800000u); }
+};
+
+struct Floats8 : LaneArithmetic<Floats8> {
     static constexpr uint32_t kLanes = 8;
     __m256 v;
 
@@ -55,12 +69,6 @@ struct Floats8 {
     float operator[](uint32_t lane) const { return v[lane]; }
     static Floats8 load(const float* p) { return _mm256_loadu_ps(p); }
     void store(float* p) const { _mm256_storeu_ps(p, v); }
-
-    friend Floats8 operator+(Floats8 a, Floats8 b) { return a.v + b.v; }
-    friend Floats8 operator-(Floats8 a, Floats8 b) { return a.v - b.v; }
-    friend Floats8 operator*(Floats8 a, Floats8 b) { return a.v * b.v; }
-    friend Floats8 operator/(Floats8 a, Floats8 b) { return a.v / b.v; }
-    friend Floats8 operator-(Floats8 a) { return -a.v; }
 
     friend Mask8 operator<(Floats8 a, Floats8 b) { return Mask8::Bits(a.v < b.v); }
     friend Mask8 operator>(Floats8 a, Floats8 b) { return Mask8::Bits(a.v > b.v); }
@@ -75,7 +83,6 @@ struct Floats8 {
     // minps returns its second operand unless the first is less, as min() does with exchanged operands; NaN likewise.
     friend Floats8 min(Floats8 a, Floats8 b) { return _mm256_min_ps(b.v, a.v); }
     friend Floats8 max(Floats8 a, Floats8 b) { return _mm256_max_ps(b.v, a.v); }
-    friend Floats8 clamp(Floats8 x, Floats8 lo, Floats8 hi) { return select(x > lo, select(x < hi, x, hi), lo); }
 
     friend Words8 bits_of(Floats8 a) { return reinterpret_cast<Words8>(a.v); }
     friend Floats8 abs(Floats8 a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a.v); }
@@ -83,11 +90,8 @@ struct Floats8 {
         const __m256 bit = _mm256_set1_ps(-0.0f);
         return _mm256_or_ps(_mm256_andnot_ps(bit, magnitude.v), _mm256_and_ps(bit, sign.v));
     }
-    friend Mask8 is_finite(Floats8 a) { return Mask8::Bits((bits_of(a) & 0x7f800000u) != 0x7f800000u); }
     friend Floats8 sqrt(Floats8 a) { return _mm256_sqrt_ps(a.v); }
-    friend Floats8 safe_sqrt(Floats8 a) { return sqrt(select(a > 0.0f, a, 0.0f)); }
     friend Floats8 fma(Floats8 a, Floats8 b, Floats8 c) { return _mm256_fmadd_ps(a.v, b.v, c.v); }
-    friend Floats8 square(Floats8 a) { return a * a; }
     /// Truncates to integers, whose bits are words; |a| < 2^31.
     friend Words8 truncate_to_word(Floats8 a) { return reinterpret_cast<Words8>(_mm256_cvttps_epi32(a.v)); }
 };

@@ -35,7 +35,7 @@ struct Mask16 {
     }
 };
 
-struct Floats16 {
+struct Floats16 : LaneArithmetic<Floats16> {
     static constexpr uint32_t kLanes = 16;
     __m512 v;
 
@@ -49,12 +49,6 @@ struct Floats16 {
     static Floats16 load(const float* p) { return _mm512_loadu_ps(p); }
     void store(float* p) const { _mm512_storeu_ps(p, v); }
 
-    friend Floats16 operator+(Floats16 a, Floats16 b) { return a.v + b.v; }
-    friend Floats16 operator-(Floats16 a, Floats16 b) { return a.v - b.v; }
-    friend Floats16 operator*(Floats16 a, Floats16 b) { return a.v * b.v; }
-    friend Floats16 operator/(Floats16 a, Floats16 b) { return a.v / b.v; }
-    friend Floats16 operator-(Floats16 a) { return -a.v; }
-
     friend Mask16 operator<(Floats16 a, Floats16 b) { return compare<_CMP_LT_OQ>(a, b); }
     friend Mask16 operator>(Floats16 a, Floats16 b) { return compare<_CMP_GT_OQ>(a, b); }
     friend Mask16 operator<=(Floats16 a, Floats16 b) { return compare<_CMP_LE_OQ>(a, b); }
@@ -67,7 +61,6 @@ struct Floats16 {
     }
     friend Floats16 min(Floats16 a, Floats16 b) { return _mm512_min_ps(b.v, a.v); }
     friend Floats16 max(Floats16 a, Floats16 b) { return _mm512_max_ps(b.v, a.v); }
-    friend Floats16 clamp(Floats16 x, Floats16 lo, Floats16 hi) { return select(x > lo, select(x < hi, x, hi), lo); }
 
     friend Words16 bits_of(Floats16 a) { return reinterpret_cast<Words16>(a.v); }
     friend Floats16 abs(Floats16 a) { return _mm512_andnot_ps(_mm512_set1_ps(-0.0f), a.v); }
@@ -75,11 +68,8 @@ struct Floats16 {
         const __m512 bit = _mm512_set1_ps(-0.0f);
         return _mm512_or_ps(_mm512_andnot_ps(bit, magnitude.v), _mm512_and_ps(bit, sign.v));
     }
-    friend Mask16 is_finite(Floats16 a) { return (bits_of(a) & 0x7f800000u) != 0x7f800000u; }
     friend Floats16 sqrt(Floats16 a) { return _mm512_sqrt_ps(a.v); }
-    friend Floats16 safe_sqrt(Floats16 a) { return sqrt(select(a > 0.0f, a, 0.0f)); }
     friend Floats16 fma(Floats16 a, Floats16 b, Floats16 c) { return _mm512_fmadd_ps(a.v, b.v, c.v); }
-    friend Floats16 square(Floats16 a) { return a * a; }
     friend Words16 truncate_to_word(Floats16 a) { return reinterpret_cast<Words16>(_mm512_cvttps_epi32(a.v)); }
 
 private:

@@ -55,7 +55,7 @@ private:
         const uint32_t lanes = lanes_.lanes;
         for (uint32_t first = 0; first < count; first += lanes) {
             LaneVertices vertices = {.count = min(count - first, lanes), .paths = {}, .hits = {}};
-            std::array<ShadowRay*, kMaxShadingLanes> shadows;
+            std::array<ShadowRay*, kMaxLanes> shadows;
             for (uint32_t lane = 0; lane < lanes; ++lane) {
                 const uint32_t i = which[first + min(lane, vertices.count - 1)];
                 vertices.paths[lane] = paths_ + i, vertices.hits[lane] = hits_ + i;
@@ -63,7 +63,7 @@ private:
                 prefetch_indices(which, first + lane + 2 * lanes, count);
                 prefetch_vertices(which, first + lane + lanes, count);
             }
-            VertexWords<Words8> words[kMaxShadingLanes / kWords];
+            VertexWords<Words8> words[kMaxLanes / kWords];
             for (uint32_t k = 0; kWords * k < vertices.count; ++k) {
                 words[k] = draw_for(which + first + kWords * k, min(vertices.count - kWords * k, kWords));
             }
@@ -204,7 +204,7 @@ private:
     Hit hits_[kPaths];
     bool goes_on_[kPaths];
     ShadowData shadow_data_[kPaths + 1]; // one more, because an element is written before it is known to be needed
-    ShadowRay lane_shadows_[kMaxShadingLanes];
+    ShadowRay lane_shadows_[kMaxLanes];
     bool occluded_[kPaths];
 };
 

@@ -1,6 +1,5 @@
 #include "integrators/path/shade_lanes.h"
 
-#include "base/processor.h"
 #include "math/lanes.h"
 
 namespace pertev {

@@ -6,6 +6,7 @@
 
 #include <array>
 
+#include "base/processor.h"
 #include "integrators/path/drawn_numbers.h"
 #include "integrators/path/path_job.h"
 #include "integrators/path/path_state.h"
@@ -13,14 +14,12 @@
 
 namespace pertev {
 
-inline constexpr uint32_t kMaxShadingLanes = 16;
-
 /// Paths that have hit surfaces, in a caller's arrays; at most as many as there are lanes. Lanes from `count` on repeat
 /// a path.
 struct LaneVertices {
     uint32_t count;
-    std::array<PathState*, kMaxShadingLanes> paths;
-    std::array<const Hit*, kMaxShadingLanes> hits;
+    std::array<PathState*, kMaxLanes> paths;
+    std::array<const Hit*, kMaxLanes> hits;
 };
 
 /// Results of vertices; one bit for each lane, that of lane 0 first.
@@ -35,7 +34,7 @@ struct VertexShading {
     /// Shades vertices of a job for which can_shade_lanes holds. `words`: eight lanes' in each element, as DrawnNumbers
     /// has them.
     LaneResults (*shade)(const PathJob& job, const LaneVertices& vertices, const VertexWords<Words8>* words,
-                         const std::array<ShadowRay*, kMaxShadingLanes>& shadows);
+                         const std::array<ShadowRay*, kMaxLanes>& shadows);
 };
 
 extern const VertexShading kShadingOf8;

@@ -70,7 +70,8 @@ void load_transforms(const std::array<const InstanceView*, kLanes>& instances, T
     Floats columns[3][8];
     for (int part = 0; part < 3; ++part) {
         std::array<const float*, kLanes> rows;
-        for (uint32_t lane = 0; lane < kLanes; ++lane) rows[lane] = &instances[lane]->world_from_local.row0.x + 8 * part;
+        for (uint32_t lane = 0; lane < kLanes; ++lane)
+            rows[lane] = &instances[lane]->world_from_local.row0.x + 8 * part;
         load_columns(rows, columns[part]);
     }
     const auto vector_at = [&](int first) {
@@ -308,7 +309,7 @@ struct Paths {
 /// sample_direct; returns the lanes that want a shadow ray.
 unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces, Vec3s wo,
                        Vec3s wo_local, const LaneVertices& vertices, const SampleBitsOf<Words>& u,
-                       const std::array<ShadowRay*, kMaxShadingLanes>& shadows) {
+                       const std::array<ShadowRay*, kMaxLanes>& shadows) {
     Lights lights;
     sample_lights(job.picture.scene.lights, lanes, surfaces.position, u, lights);
     const Values scattered = evaluate(surfaces, wo, wo_local, lights.wi);
@@ -433,7 +434,7 @@ Paths load_paths(const LaneVertices& vertices) {
 
 [[gnu::flatten]] LaneResults shade_lanes(const PathJob& job, const LaneVertices& vertices,
                                          const VertexWords<Words8>* drawn,
-                                         const std::array<ShadowRay*, kMaxShadingLanes>& shadows) {
+                                         const std::array<ShadowRay*, kMaxLanes>& shadows) {
     const SceneView& scene = job.picture.scene;
     const unsigned all = (1u << vertices.count) - 1;
     const Paths paths = load_paths(vertices);

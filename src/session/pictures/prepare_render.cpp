@@ -97,7 +97,8 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     return ready;
 }
 
-void record_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source) {
+void record_settings(const PictureOptions& options, const Scene& scene, uint32_t frame, PictureRecord& record) {
+    SceneSource& source = record.scene;
     const CameraChoice& choice = options.scene.camera;
     const Camera* const own = scene_camera(choice.camera, scene);
     const bool is_own = own != nullptr && !choice.eye && options.camera_path.empty();
@@ -115,11 +116,8 @@ void record_settings(PictureOptions options, const RenderSettings& settings, con
     if (!is_own && !choice.eye && options.camera_path.empty()) add(source.by_default, "camera");
     if (source.has_environment && options.scene.environment.empty()) add(source.by_default, "environment");
     if (!source.ground.empty() && !options.is_given("ground")) add(source.by_default, "ground");
-    options.size = PictureSize{settings.width, settings.height};
-    options.given.try_emplace("size", SettingOrigin::File);
-    options.given.try_emplace("spp", SettingOrigin::File);
     if (source.hash.empty()) source.hash = scene_hash(options.scene.scene);
-    source.settings = settings_json(options, source.hash);
+    source.settings = settings_of_frame(options, record, frame);
 }
 
 std::size_t bytes_to_render(const PictureOptions& options, const PreparedScene& prepared,
@@ -157,7 +155,6 @@ PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, 
                             .frame = {},
                             .display = {}};
     if ((ready.settings.aovs & kAovIds) != 0) name_ids(ready.scene(), record.scene);
-    record_settings(options, ready.settings, ready.scene(), record.scene);
     record.scene.made_up = messages.made_up();
     record.scene.left_out = messages.left_out();
     record.scene.load_seconds = ready.load_s;
@@ -166,7 +163,7 @@ PictureRecord picture_record(const PictureOptions& options, RenderSetup& ready, 
     if (options.real_time)
         record.frame = ReconstructedFrame{first, first, options.reconstruction.used(), options.reconstruction.sharing};
     place_frame(first, *ready.moving, {*ready.camera, ready.sequence}, record);
-    record.scene.settings = settings_of_frame(options, record, first);
+    record_settings(options, ready.scene(), first, record);
     return record;
 }
 

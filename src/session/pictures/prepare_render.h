@@ -37,8 +37,8 @@ struct RenderSetup {
 std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t verbs, Sink& sink,
                                             const SolveReport& report = {});
 
-/// Records all given settings and their sources, with the resulting size and number of samples, in `source`.
-void record_settings(PictureOptions options, const RenderSettings& settings, const Scene& scene, SceneSource& source);
+/// Records all given settings and their sources in a record that is otherwise complete; `frame` as settings_of_frame.
+void record_settings(const PictureOptions& options, const Scene& scene, uint32_t frame, PictureRecord& record);
 
 /// Returns the bytes that the picture, or a frame in real time, takes on the device. Throws Error(OutOfMemory).
 std::size_t bytes_to_render(const PictureOptions& options, const PreparedScene& prepared,

@@ -19,12 +19,17 @@ struct RayShear4 {
     __m128 ox, oy, oz; // origin, in that order of axes
 };
 
-/// Makes the shear of make_ray_shear, also as vectors. It does not branch on the direction, because the largest
-/// component is unpredictable, and a misprediction costs a quarter of a node.
-inline RayShear4 make_ray_shear_4(const Ray& ray, RayShear& shear) {
-    const Vec3 size = abs(ray.direction);
+/// Returns the axis along which a direction has its largest component, kz of make_ray_shear. It does not branch,
+/// because that axis is unpredictable, and a misprediction costs a quarter of a node.
+inline int dominant_axis(Vec3 direction) {
+    const Vec3 size = abs(direction);
     const int x_y = size.x >= size.y, x_z = size.x >= size.z, y_z = size.y >= size.z;
-    const int kz = 2 - 2 * (x_y & x_z) - ((x_y ^ 1) & y_z);
+    return 2 - 2 * (x_y & x_z) - ((x_y ^ 1) & y_z);
+}
+
+/// Makes the shear of make_ray_shear, also as vectors, without a branch.
+inline RayShear4 make_ray_shear_4(const Ray& ray, RayShear& shear) {
+    const int kz = dominant_axis(ray.direction);
     const int kx = (0b00'10'01 >> 2 * kz) & 3, ky = (0b01'00'10 >> 2 * kz) & 3; // the next two axes in cyclic order
     const __m128i order = _mm_setr_epi32(kx, ky, kz, 3);
     const __m128 direction = _mm_permutevar_ps(_mm_loadu_ps(&ray.direction.x), order);

@@ -3,6 +3,9 @@
 // intersect_triangle of one triangle for several rays with the same dominant axis, host only: the same operations in
 // the same order give the same bits. `F` is Floats8 (math/lanes.h).
 
+#include <array>
+#include <cstdint>
+
 #include "accel/bvh/bvh.h"
 #include "math/lanes.h"
 #include "trace/intersect/intersect_triangle.h"
@@ -16,6 +19,24 @@ struct RayShearOf {
     F sx, sy, sz;
     F ox, oy, oz; // origins, in that order of axes
 };
+
+/// Loads F::kLanes rays: origin, t_min, direction, t_max.
+template <class F>
+[[gnu::always_inline]] inline void load_rays(const Ray* rays, F (&columns)[8]) {
+    static_assert(sizeof(Ray) == 8 * sizeof(float));
+    std::array<const float*, F::kLanes> rows;
+    for (uint32_t k = 0; k < F::kLanes; ++k) rows[k] = &rays[k].origin.x;
+    load_columns(rows, columns);
+}
+
+/// Makes the shear of rays, as load_rays loads them, whose directions have their largest component along axis `kz`, as
+/// make_ray_shear does for each.
+template <class F>
+[[gnu::always_inline]] inline RayShearOf<F> make_shear_of_rays(const F (&columns)[8], int kz) {
+    const int kx = kz == 2 ? 0 : kz + 1, ky = kz == 0 ? 2 : kz - 1;
+    const F dz = columns[4 + kz];
+    return {kx, ky, kz, columns[4 + kx] / dz, columns[4 + ky] / dz, 1.0f / dz, columns[kx], columns[ky], columns[kz]};
+}
 
 /// Rays of a packet, and how far a hit may be: t_min < t < t_max and t <= t_limit.
 template <class F>

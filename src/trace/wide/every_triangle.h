@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "trace/intersect/intersect_triangle.h"
+#include "trace/intersect/intersect_4_triangles.h"
 #include "trace/scene_trees.h"
 #include "trace/wide/nearest_triangles.h"
 
@@ -41,9 +41,7 @@ public:
     void run(uint32_t count) {
         for (uint32_t i = 0; i < count; ++i) {
             const Ray ray = ray_of_(i);
-            const Vec3 size = abs(ray.direction);
-            const int x_y = size.x >= size.y, x_z = size.x >= size.z, y_z = size.y >= size.z;
-            const int kz = 2 - 2 * (x_y & x_z) - ((x_y ^ 1) & y_z); // the axis of make_ray_shear, without a branch
+            const int kz = dominant_axis(ray.direction);
             Group& group = groups_[kz];
             group.rays[group.size] = ray;
             group.numbers[group.size] = i;

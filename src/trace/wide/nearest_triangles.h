@@ -7,11 +7,11 @@
 #include <cstdint>
 
 #include "accel/bvh/bvh.h"
+#include "base/processor.h"
 #include "trace/intersect/ray.h"
 
 namespace pertev {
 
-inline constexpr uint32_t kMaxLanes = 16;
 inline constexpr uint32_t kNoTriangle = 0xffffffffu;
 
 /// The nearest triangle of each ray, or any if that will do.

@@ -6,16 +6,8 @@
 #include "trace/wide/nearest_triangles_body.h"
 
 namespace pertev {
-namespace {
 
-void find_nearest_of_16(const TriangleList& list, const Ray* rays, int kz, unsigned active, bool any,
-                        NearestTriangles& nearest) {
-    find_nearest<Floats16>(list, rays, kz, active, any, nearest);
-}
-
-} // namespace
-
-const TriangleTests kTestsOf16Rays = {16, find_nearest_of_16};
+const TriangleTests kTestsOf16Rays = {Floats16::kLanes, find_nearest<Floats16>};
 
 } // namespace pertev
 

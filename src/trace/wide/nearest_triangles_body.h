@@ -9,22 +9,11 @@
 
 namespace pertev {
 
-/// Makes the shear of rays whose directions have their largest component along axis `kz`, as make_ray_shear does.
 template <class F>
-[[gnu::always_inline]] inline RayShearOf<F> make_shear_of_rays(const F (&columns)[8], int kz) {
-    const int kx = kz == 2 ? 0 : kz + 1, ky = kz == 0 ? 2 : kz - 1;
-    const F dz = columns[4 + kz];
-    return {kx, ky, kz, columns[4 + kx] / dz, columns[4 + ky] / dz, 1.0f / dz, columns[kx], columns[ky], columns[kz]};
-}
-
-template <class F>
-[[gnu::always_inline]] inline void find_nearest(const TriangleList& list, const Ray* rays, int kz, unsigned active,
-                                                bool any, NearestTriangles& nearest) {
-    static_assert(sizeof(Ray) == 8 * sizeof(float));
-    std::array<const float*, F::kLanes> rows;
-    for (uint32_t k = 0; k < F::kLanes; ++k) rows[k] = &rays[k].origin.x;
-    F columns[8]; // origin, t_min, direction, t_max
-    load_columns(rows, columns);
+void find_nearest(const TriangleList& list, const Ray* rays, int kz, unsigned active, bool any,
+                  NearestTriangles& nearest) {
+    F columns[8];
+    load_rays(rays, columns);
     const RayShearOf<F> shear = make_shear_of_rays(columns, kz);
     const F t_min = columns[3], t_max = columns[7];
     F t = t_max, u = 0.0f, v = 0.0f;

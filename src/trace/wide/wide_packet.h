@@ -36,17 +36,19 @@ public:
             extents_[axis] = {kInfinity, 0, -kInfinity, kInfinity};
         }
         for (int g = 0; g < kPacketEights; ++g) {
-            const Lanes lanes(rays + 8 * g);
-            __m256 growth = _mm256_max_ps(_mm256_max_ps(size_of(lanes.origin[0]), size_of(lanes.origin[1])),
-                                          size_of(lanes.origin[2]));
+            Floats8 columns[8];
+            load_rays(rays + 8 * g, columns);
+            const Floats8 *const origin = columns, *const direction = columns + 4;
+            __m256 growth =
+                _mm256_max_ps(_mm256_max_ps(size_of(origin[0].v), size_of(origin[1].v)), size_of(origin[2].v));
             growth = _mm256_mul_ps(_mm256_set1_ps(0x1p-20f), _mm256_add_ps(growth, _mm256_set1_ps(bvh.bounds_max_abs)));
             Eight& eight = eights_[g];
             for (int axis = 0; axis < 3; ++axis) {
-                set_axis(eight, axis, lanes.origin[axis], lanes.direction[axis], growth);
+                set_axis(eight, axis, origin[axis].v, direction[axis].v, growth);
             }
-            set_shear(eight, lanes, first);
-            eight.t_min = lanes.t_min, eight.t_max = lanes.t_max;
-            min_t_ = min(min_t_, min_of(lanes.t_min));
+            set_shear(eight, columns, first);
+            eight.t_min = columns[3].v, eight.t_max = columns[7].v;
+            min_t_ = min(min_t_, min_of(eight.t_min));
         }
     }
 
@@ -127,39 +129,19 @@ private:
         }
     }
 
-    struct Lanes {
-        __m256 origin[3], t_min, direction[3], t_max;
-
-        explicit Lanes(const Ray* rays) {
-            static_assert(sizeof(Ray) == 8 * sizeof(float));
-            std::array<const float*, 8> rows;
-            for (int k = 0; k < 8; ++k) rows[k] = &rays[k].origin.x;
-            Floats8 columns[8];
-            load_columns(rows, columns);
-            for (int k = 0; k < 3; ++k) origin[k] = columns[k].v, direction[k] = columns[4 + k].v;
-            t_min = columns[3].v, t_max = columns[7].v;
-        }
-    };
-
     /// Bounds of all rays along an axis: |1/direction|, and the origins that enter_together subtracts from planes.
     struct Extent {
         float min_inv, max_inv, max_near, min_far;
     };
 
     /// Makes the shears of eight rays that share the first one's order of axes, like make_ray_shear.
-    void set_shear(Eight& eight, const Lanes& lanes, const RayShear& first) {
-        RayShearOf<Floats8>& shear = eight.shear;
-        shear.kx = first.kx, shear.ky = first.ky, shear.kz = first.kz;
-        const __m256 x = size_of(lanes.direction[0]), y = size_of(lanes.direction[1]), z = size_of(lanes.direction[2]);
+    void set_shear(Eight& eight, const Floats8 (&columns)[8], const RayShear& first) {
+        const __m256 x = size_of(columns[4].v), y = size_of(columns[5].v), z = size_of(columns[6].v);
         const unsigned xy = mask_of(_mm256_cmp_ps(x, y, _CMP_GE_OQ)), xz = mask_of(_mm256_cmp_ps(x, z, _CMP_GE_OQ)),
                        yz = mask_of(_mm256_cmp_ps(y, z, _CMP_GE_OQ));
         const unsigned with_x = xy & xz, with_y = ~xy & yz & 0xffu;
         const unsigned with = first.kz == 0 ? with_x : first.kz == 1 ? with_y : ~(with_x | with_y) & 0xffu;
-        const __m256 dz = lanes.direction[first.kz];
-        shear.sx = _mm256_div_ps(lanes.direction[first.kx], dz);
-        shear.sy = _mm256_div_ps(lanes.direction[first.ky], dz);
-        shear.sz = _mm256_div_ps(_mm256_set1_ps(1.0f), dz);
-        shear.ox = lanes.origin[first.kx], shear.oy = lanes.origin[first.ky], shear.oz = lanes.origin[first.kz];
+        const RayShearOf<Floats8>& shear = eight.shear = make_shear_of_rays(columns, first.kz);
         const __m256 spread = _mm256_add_ps(size_of(_mm256_sub_ps(shear.sx.v, _mm256_set1_ps(first.sx))),
                                             size_of(_mm256_sub_ps(shear.sy.v, _mm256_set1_ps(first.sy))));
         const unsigned near_first = mask_of(_mm256_cmp_ps(spread, _mm256_set1_ps(kMaxSpread), _CMP_LT_OQ));
