@@ -148,13 +148,11 @@ class Transport(CliTest):
         return json.loads(stdout.splitlines()[-1])
 
     def test_ctrl_c_keeps_what_was_measured_and_ends_with_75(self):
-        line = self.transport("--integrators", "path,whitted", "--spp", "65536", "--seconds", "20", "-o", "out",
-                              "--json")
-        report = self.interrupt(line, "reference")
+        line = ["--integrators", "path,whitted", "--spp", "65536", "-o", "out", "--json"]
+        report = self.interrupt(self.transport(*line, "--reference-spp", 1 << 24), "reference")
         self.assertEqual((report["event"], report["interrupted"], rows_of(report, "scenes")), ("transport", True, []))
         self.assertFalse(os.path.exists(self.path("out/transport.html")))
-        line[line.index("--seconds") + 1] = "3"
-        report = self.interrupt(line, "path, 2 of 3")
+        report = self.interrupt(self.transport(*line, "--seconds", 3), "path, 2 of 3")
         self.assertTrue(report["interrupted"])
         self.assertEqual({row["repetition"] for row in rows_of(report, "repetitions") if row["integrator"] == "path"}, {0})
         kept = json.loads(self.read("out/transport.json"))
