@@ -4,7 +4,7 @@ from mutation import Mutation, edit
 
 TRANSPORT_MUTATIONS = [
     Mutation("shadow rays without a time",
-             [edit("src/integrators/path/path_loop.cpp", "paths_[shadow_data_[i].path].time}", "kAtRest}")],
+             [edit("src/integrators/path/path_loop.cpp", "paths_[shadow_paths_[i]].time}", "kAtRest}")],
              ["consistency/shutter"]),
     Mutation("weights without the ways that end earlier",
              [edit("src/integrators/subpaths/subpath_memory.h", "last + earlier * squared_density(reverse_pdf)",

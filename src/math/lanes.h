@@ -92,6 +92,7 @@ struct Floats8 : LaneArithmetic<Floats8> {
     }
     friend Floats8 sqrt(Floats8 a) { return _mm256_sqrt_ps(a.v); }
     friend Floats8 fma(Floats8 a, Floats8 b, Floats8 c) { return _mm256_fmadd_ps(a.v, b.v, c.v); }
+    friend Floats8 floor(Floats8 a) { return _mm256_floor_ps(a.v); }
     /// Truncates to integers, whose bits are words; |a| < 2^31.
     friend Words8 truncate_to_word(Floats8 a) { return reinterpret_cast<Words8>(_mm256_cvttps_epi32(a.v)); }
 };
@@ -104,6 +105,10 @@ struct NumberTraits<Floats8> {
 template <>
 inline Floats8 float_of<Floats8>(Words8 bits) {
     return reinterpret_cast<__m256>(bits);
+}
+template <>
+inline Floats8 gather<Floats8>(const float* from, Words8 indices) {
+    return _mm256_i32gather_ps(from, reinterpret_cast<__m256i>(indices), 4);
 }
 
 /// Loads eight rows of eight floats and stores them transposed: columns[i] has element i of each row.

@@ -12,6 +12,17 @@ namespace pertev {
 
 using Words16 = uint32_t __attribute__((vector_size(64)));
 
+template <>
+inline Words16 reverse_bits(Words16 x) { // math/words8.h explains it
+    const __m512i word = _mm512_broadcast_i32x4(_mm_setr_epi8(3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12));
+    const __m512i table = _mm512_broadcast_i32x4(_mm_setr_epi8(0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15));
+    const __m512i low = _mm512_set1_epi8(15);
+    const __m512i bytes = _mm512_shuffle_epi8(reinterpret_cast<__m512i>(x), word);
+    const __m512i first = _mm512_shuffle_epi8(table, _mm512_and_si512(bytes, low));
+    const __m512i second = _mm512_shuffle_epi8(table, _mm512_and_si512(_mm512_srli_epi32(bytes, 4), low));
+    return reinterpret_cast<Words16>(_mm512_or_si512(_mm512_slli_epi32(first, 4), second));
+}
+
 struct Mask16 {
     __mmask16 bits;
 

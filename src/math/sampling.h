@@ -35,8 +35,9 @@ HD inline PolarPointOf<T> sample_disk_polar(Vec2Of<T> u) {
 }
 
 /// A uniform point of the unit disk; density 1/pi by area.
-HD inline Vec2 sample_uniform_disk_concentric(Vec2 u) {
-    const PolarPoint p = sample_disk_polar(u);
+template <class T = float>
+HD inline Vec2Of<T> sample_uniform_disk_concentric(Vec2Of<T> u) {
+    const PolarPointOf<T> p = sample_disk_polar(u);
     return {p.radius * p.cosine, p.radius * p.sine};
 }
 
@@ -82,7 +83,12 @@ HD inline Vec2Of<T> sample_uniform_triangle(Vec2Of<T> u) {
 }
 
 /// A number in (-1, 1) with density 1 - |x|.
-HD inline float sample_tent(float u) { return u < 0.5f ? sqrt(2.0f * u) - 1.0f : 1.0f - sqrt(2.0f - 2.0f * u); }
+template <class T = float>
+HD inline T sample_tent(T u) {
+    const MaskOf<T> is_left = u < 0.5f;
+    const T root = sqrt(select(is_left, 2.0f * u, 2.0f - 2.0f * u));
+    return select(is_left, root - 1.0f, 1.0f - root);
+}
 HD inline float pdf_tent(float x) { return max(1.0f - abs(x), 0.0f); }
 
 } // namespace pertev

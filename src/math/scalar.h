@@ -89,8 +89,16 @@ HD inline float safe_sqrt(float x) { return ::sqrtf(x > 0 ? x : 0.0f); }
 HD inline float floor(float x) { return ::floorf(x); }
 HD inline float fma(float a, float b, float c) { return ::fmaf(a, b, c); }
 HD inline float square(float x) { return x * x; }
-HD inline float lerp(float a, float b, float t) { return a + t * (b - a); }
+template <class T>
+HD inline T lerp(T a, T b, T t) {
+    return a + t * (b - a);
+}
 
+/// Element of an array; for several indices at once, of each.
+template <class T = float>
+HD inline T gather(const float* from, WordOf<T> index) {
+    return from[index];
+}
 /// Truncates to an integer, whose bits are the word; |x| < 2^31.
 HD inline uint32_t truncate_to_word(float x) { return static_cast<uint32_t>(static_cast<int>(x)); }
 /// Truncates a float to an integer, clamped to [lo, hi]; `lo` for NaN. lo and hi are within +-2^30.

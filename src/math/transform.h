@@ -18,6 +18,12 @@ struct TransformOf {
 };
 using Transform = TransformOf<float>;
 
+/// Returns `m` for each lane of T.
+template <class T>
+HD inline TransformOf<T> for_lanes(const Transform& m) {
+    const auto lanes = [](Vec3 v) { return Vec3Of<T>{v.x, v.y, v.z}; };
+    return {lanes(m.row0), lanes(m.row1), lanes(m.row2), lanes(m.translation)};
+}
 template <class T = float>
 HD inline Vec3Of<T> transform_vector(const TransformOf<T>& m, Vec3Of<T> v) {
     return {dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)};

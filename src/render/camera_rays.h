@@ -24,24 +24,27 @@ struct CameraRays {
     bool is_open = false;   // whether the shutter is open and something moves
     MotionTrack motion;     // motion of the camera
 
-    /// Ray of the sample at `in_filter` and `on_lens`, in unit squares. Its direction is unit.
-    HD Ray ray(uint32_t pixel, Vec2 in_filter, Vec2 on_lens) const {
-        const Vec2 offset = sample_filter(filter, in_filter);
+    /// Upper left corner of a pixel, in pixels.
+    HD Vec2 corner_of(uint32_t pixel) const {
         const uint32_t row = pixel / width;
-        const Vec2 position = {static_cast<float>(pixel % width) + 0.5f + offset.x,
-                               static_cast<float>(row) + 0.5f + offset.y};
-        return make_camera_ray(view, position, on_lens);
+        return {static_cast<float>(pixel % width), static_cast<float>(row)};
     }
-    /// Ray of the sample at `time`, as time() draws it.
-    HD Ray ray(uint32_t pixel, Vec2 in_filter, Vec2 on_lens, float time) const {
-        const Ray still = ray(pixel, in_filter, on_lens);
+    /// Ray of the sample at `in_filter` and `on_lens`, in unit squares, before the camera's motion.
+    template <class T>
+    HD RayLineOf<T> line(Vec2Of<T> corner, Vec2Of<T> in_filter, Vec2Of<T> on_lens) const {
+        const Vec2Of<T> offset = sample_filter(filter, in_filter);
+        return make_camera_line(view, Vec2Of<T>{corner.x + 0.5f + offset.x, corner.y + 0.5f + offset.y}, on_lens);
+    }
+    /// That ray at `time`, as time() draws it. Its direction is unit.
+    HD Ray ray(const RayLine& line, float time) const {
+        const Ray still = {line.origin, 0.0f, line.direction, kInfinity};
         return motion.moves() ? moved(still, time) : still;
     }
     /// Ray of a sample of `pixel` with the random numbers of `key`.
     HD Ray ray(uint32_t pixel, SamplerKind sampler, SampleKey key) const {
         const Vec2 in_filter = sample_2d(sampler, key, kGroupCamera);
         const Vec2 on_lens = has_lens() ? sample_2d(sampler, key, kGroupLens) : Vec2{};
-        return ray(pixel, in_filter, on_lens, motion.moves() ? time(sampler, key) : kAtRest);
+        return ray(line(corner_of(pixel), in_filter, on_lens), motion.moves() ? time(sampler, key) : kAtRest);
     }
     /// Time of the sample with the random numbers of `key`, uniform over the open shutter, in [0, 1).
     HD float time(SamplerKind sampler, SampleKey key) const {

@@ -32,7 +32,8 @@ float half_view_height(const Camera& camera);
 CameraView make_camera_view(const Camera& camera, uint32_t width, uint32_t height, Vec3 centre = {0, 0, 0});
 
 /// Position of `pixel` in the view, x to the right and y up, in the unit of half_width.
-HD inline Vec2 view_position(const CameraView& camera, Vec2 pixel) {
+template <class T = float>
+HD inline Vec2Of<T> view_position(const CameraView& camera, Vec2Of<T> pixel) {
     return {(2.0f * (pixel.x * camera.inv_width) - 1.0f) * camera.half_width,
             (1.0f - 2.0f * (pixel.y * camera.inv_height)) * camera.half_height};
 }
@@ -45,10 +46,11 @@ struct ViewGrowth {
 HD inline ViewGrowth growth_of(const CameraView& camera) { return {has_parallel_rays(camera.projection)}; }
 HD inline float growth_at(const CameraView& camera, float depth) { return growth_of(camera).at(depth); }
 
-/// Ray through `pixel` from the point `lens` (unit square) of the lens. Its direction is unit.
-HD inline Ray make_camera_ray(const CameraView& camera, Vec2 pixel, Vec2 lens) {
-    const Vec2 at = view_position(camera, pixel);
-    Vec3 origin = {0, 0, 0}, direction = {at.x, at.y, -1};
+/// Start and direction of the ray through `pixel` from the point `lens` (unit square) of the lens.
+template <class T>
+HD inline RayLineOf<T> make_camera_line(const CameraView& camera, Vec2Of<T> pixel, Vec2Of<T> lens) {
+    const Vec2Of<T> at = view_position(camera, pixel);
+    Vec3Of<T> origin = {0, 0, 0}, direction = {at.x, at.y, -1};
     switch (camera.projection) {
     case Projection::Perspective:
         break;
@@ -57,18 +59,25 @@ HD inline Ray make_camera_ray(const CameraView& camera, Vec2 pixel, Vec2 lens) {
         direction = {0, 0, -1};
         break;
     case Projection::Cosine: {
-        const Vec3 about_z = sample_cosine_hemisphere(Vec2{pixel.x * camera.inv_width, pixel.y * camera.inv_height});
+        const Vec3Of<T> about_z =
+            sample_cosine_hemisphere(Vec2Of<T>{pixel.x * camera.inv_width, pixel.y * camera.inv_height});
         direction = {about_z.x, about_z.y, -about_z.z};
     }
     }
     if (camera.aperture_radius > 0) {
-        const Vec2 on_lens = camera.aperture_radius * sample_uniform_disk_concentric(lens);
-        const Vec3 focus = origin + camera.focus_distance * direction; // z = -focus_distance
+        const Vec2Of<T> on_lens = camera.aperture_radius * sample_uniform_disk_concentric(lens);
+        const Vec3Of<T> focus = origin + camera.focus_distance * direction; // z = -focus_distance
         origin = {origin.x + on_lens.x, origin.y + on_lens.y, 0};
         direction = focus - origin;
     }
-    return {transform_point(camera.world_from_camera, origin), 0.0f,
-            normalize(transform_vector(camera.world_from_camera, direction)), kInfinity};
+    const auto world_from_camera = for_lanes<T>(camera.world_from_camera);
+    return {transform_point(world_from_camera, origin), normalize(transform_vector(world_from_camera, direction))};
+}
+
+/// That ray, without an end.
+HD inline Ray make_camera_ray(const CameraView& camera, Vec2 pixel, Vec2 lens) {
+    const RayLine line = make_camera_line(camera, pixel, lens);
+    return {line.origin, 0.0f, line.direction, kInfinity};
 }
 
 /// Projection of a point: pixels from the picture's upper left corner, and metres along the camera's axis.

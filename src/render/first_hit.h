@@ -8,11 +8,6 @@
 
 namespace pertev {
 
-/// Start and direction of a camera ray.
-struct RayLine {
-    Vec3 origin, direction; // unit
-};
-
 /// Adds the channels of a camera ray that hit nothing.
 HD inline void add_no_first_hit(const FilmView& film, uint32_t pixel, uint32_t sample) {
     if ((film.aovs & kAovIds) != 0 && sample == 0) film.set_ids(pixel, {kNoHit, kNoHit, kNoHit});

@@ -36,7 +36,8 @@ struct PixelFilterView {
 std::vector<float> make_filter_table(PixelFilter filter);
 
 /// Offset from the pixel's centre along one axis, in pixels. u in (0, 1).
-HD inline float sample_filter_axis(const PixelFilterView& filter, float u) {
+template <class T = float>
+HD inline T sample_filter_axis(const PixelFilterView& filter, T u) {
     switch (filter.kind) {
     case PixelFilter::Box:
         return filter.radius * (2.0f * u - 1.0f);
@@ -46,12 +47,14 @@ HD inline float sample_filter_axis(const PixelFilterView& filter, float u) {
     case PixelFilter::BlackmanHarris:
         break;
     }
-    const float x = (0.5f + 0.5f * sample_tent(u)) * static_cast<float>(kFilterTableSize);
-    const int i = to_int(x, 0, kFilterTableSize - 1);
-    return filter.radius * lerp(filter.table[i], filter.table[i + 1], x - static_cast<float>(i));
+    const T x = (0.5f + 0.5f * sample_tent(u)) * static_cast<float>(kFilterTableSize);
+    const T i = floor(clamp(x, T(0.0f), T(static_cast<float>(kFilterTableSize - 1))));
+    const WordOf<T> at = truncate_to_word(i);
+    return filter.radius * lerp(gather<T>(filter.table, at), gather<T>(filter.table + 1, at), x - i);
 }
 
-HD inline Vec2 sample_filter(const PixelFilterView& filter, Vec2 u) {
+template <class T = float>
+HD inline Vec2Of<T> sample_filter(const PixelFilterView& filter, Vec2Of<T> u) {
     return {sample_filter_axis(filter, u.x), sample_filter_axis(filter, u.y)};
 }
 

@@ -177,20 +177,26 @@ struct EnvironmentSample {
 };
 
 /// The direction with sin^2(theta / 2) = `s` from a pole and a longitude of `turns` full turns.
-HD inline Vec3 environment_direction(float s, bool is_south, float turns) {
-    const float c = 1.0f - s; // square of the cosine of theta / 2
-    const float sin_theta = 2.0f * safe_sqrt(s * c), cos_theta = is_south ? s - c : c - s;
-    float sin_longitude, cos_longitude;
+template <class T = float>
+HD inline Vec3Of<T> environment_direction(T s, bool is_south, T turns) {
+    const T c = 1.0f - s; // square of the cosine of theta / 2
+    const T sin_theta = 2.0f * safe_sqrt(s * c), cos_theta = is_south ? s - c : c - s;
+    T sin_longitude, cos_longitude;
     sin_cos_2pi(turns, sin_longitude, cos_longitude);
     return {sin_theta * sin_longitude, cos_theta, -(sin_theta * cos_longitude)};
+}
+
+/// Samples a direction of a constant environment, with density 1 / (4 pi), by `u`.
+template <class T = float>
+HD inline Vec3Of<T> sample_constant_environment(const EnvironmentView& view, SampleBitsOf<WordOf<T>> u) {
+    return environment_direction<T>(unit_interval<T>(u.y), false, unit_interval<T>(u.x) - 0.5f - view.rotation_turns);
 }
 
 /// Samples a direction by `u`. Returns false and writes nothing for a black environment.
 HD inline bool sample_environment(const EnvironmentView& view, SampleBits u, EnvironmentSample& sample) {
     if (view.rows.starts == nullptr) return false;
     if (view.is_constant) {
-        const float turns = unit_interval(u.x) - 0.5f - view.rotation_turns;
-        sample = {environment_direction(unit_interval(u.y), false, turns), view.constant, 0.25f * kInvPi};
+        sample = {sample_constant_environment(view, u), view.constant, 0.25f * kInvPi};
         return true;
     }
     const uint32_t more = bits_behind(u);

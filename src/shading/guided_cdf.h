@@ -60,10 +60,13 @@ HD inline CdfDraw draw_ordered(const GuidedCdfView& table, uint32_t number, uint
     return {index, table.starts[index + 1] - start, number - start, more};
 }
 
-/// Position of the number within those of its index, uniform in (0, 1).
+/// Position of a number within those of its index, uniform in (0, 1); arguments as in CdfDraw.
+template <class T>
+HD inline T rest_of(T rest, T owned, WordOf<T> more) {
+    return min((rest + unit_interval<T>(more)) / owned, T(0x1.fffffep-1f));
+}
 HD inline float rest_of(const CdfDraw& draw) {
-    const float number = static_cast<float>(draw.rest) + unit_interval(draw.more);
-    return min(number / static_cast<float>(draw.owned), 0x1.fffffep-1f);
+    return rest_of(static_cast<float>(draw.rest), static_cast<float>(draw.owned), draw.more);
 }
 
 /// That position as 32 bits, with exactly the same probability for each of the 2^32 values, to select from another

@@ -185,6 +185,30 @@ HD inline bool sample_punctual_light(const PunctualLight& light, float pmf, Vec3
 /// Positions of emitters for sample_light, all at rest.
 struct EmittersAtRest {};
 
+/// A light that is selected by its power.
+struct LightDraw {
+    SourceKind kind;
+    uint32_t light = 0;       // light number of a triangle
+    CdfDraw source, triangle; // the latter for a triangle
+
+    /// A point of the triangle, by the rest of both numbers: weights of its second and third vertex.
+    HD Vec2 weights() const { return sample_uniform_triangle(Vec2{rest_of(source), rest_of(triangle)}); }
+};
+
+/// Selects a light by its power by `u`. There are lights.
+HD inline LightDraw select_light(const LightSetView& view, SampleBits u) {
+    const uint32_t more = bits_behind(u);
+    LightDraw draw;
+    draw.source = draw_ordered(view.choice, u.x, more);
+    draw.kind = view.kind_of(draw.source.index);
+    if (draw.kind == SourceKind::Triangle) {
+        draw.triangle = draw_ordered(view.triangles_of(draw.source.index), u.y, more);
+        const uint32_t first = view.emitters[draw.source.index].first_triangle;
+        draw.light = first + view.triangle_order[first + draw.triangle.index];
+    }
+    return draw;
+}
+
 /// Selects a light by its power by `u` and returns the result of the function of `to` for its kind. Each function
 /// gets the probability of the light, and the rest of `u`. Returns false if there are no lights.
 ///   triangle(light, point, pmf)   point: weights of its second and third vertex
@@ -193,22 +217,16 @@ struct EmittersAtRest {};
 template <class ToKind>
 HD INLINE_ON_DEVICE bool draw_light(const LightSetView& view, SampleBits u, const ToKind& to) {
     if (!view.has_lights()) return false;
-    const uint32_t more = bits_behind(u);
-    const CdfDraw source = draw_ordered(view.choice, u.x, more);
-    switch (view.kind_of(source.index)) {
-    case SourceKind::Triangle: {
-        const CdfDraw triangle = draw_ordered(view.triangles_of(source.index), u.y, more);
-        const uint32_t first = view.emitters[source.index].first_triangle;
-        const uint32_t light = first + view.triangle_order[first + triangle.index];
-        return to.triangle(light, sample_uniform_triangle(Vec2{rest_of(source), rest_of(triangle)}),
-                           view.triangles[light].pmf);
-    }
+    const LightDraw draw = select_light(view, u);
+    switch (draw.kind) {
+    case SourceKind::Triangle:
+        return to.triangle(draw.light, draw.weights(), view.triangles[draw.light].pmf);
     case SourceKind::Punctual:
-        return to.punctual(source.index - view.emitter_count, cdf_pmf(source.owned));
+        return to.punctual(draw.source.index - view.emitter_count, cdf_pmf(draw.source.owned));
     case SourceKind::Environment:
         break;
     }
-    return to.environment(cdf_pmf(source.owned), SampleBits{number_of_rest(source), u.y});
+    return to.environment(cdf_pmf(draw.source.owned), SampleBits{number_of_rest(draw.source), u.y});
 }
 
 /// Selects lights by their power, independently of the context. `draw` is draw_light for a context. The other

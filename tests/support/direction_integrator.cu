@@ -21,7 +21,7 @@ struct AddDirections {
         const uint32_t pixel = film.window.pixel_at(FilmSlot{slot});
         for (uint32_t sample = first; sample < first + count; ++sample) {
             const Vec2 in_filter = sample_2d(SamplerKind::Sobol, {pixel, sample, 0}, 0);
-            const Vec3 d = camera.ray(pixel, in_filter, {0.5f, 0.5f}).direction;
+            const Vec3 d = camera.line(camera.corner_of(pixel), in_filter, Vec2{0.5f, 0.5f}).direction;
             add_radiance(film, pixel, {0.5f + 0.5f * d.x, 0.5f + 0.5f * d.y, 0.5f + 0.5f * d.z});
         }
     }

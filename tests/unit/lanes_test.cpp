@@ -10,6 +10,7 @@
 #include "math/lanes.h"
 #include "math/sampling.h"
 #include "math/transform.h"
+#include "shading/environment_light.h"
 #include "shading/power_heuristic.h"
 #include "shading/shading_frame.h"
 #include "shading/shadow_terminator.h"
@@ -141,6 +142,14 @@ TEST_CASE("sampling of eight lanes has the bits of one") {
         check_lanes(sample_uniform_triangle(u).y, [&](uint32_t k) { return sample_uniform_triangle(one(k)).y; });
         check_lanes(sample_disk_polar(u).cosine, [&](uint32_t k) { return sample_disk_polar(one(k)).cosine; });
         check_lanes(sample_disk_polar(u).sine, [&](uint32_t k) { return sample_disk_polar(one(k)).sine; });
+        check_lanes(sample_tent(x.all()), [&](uint32_t k) { return sample_tent(x.one[k]); });
+        check_lanes(floor(other.all()), [&](uint32_t k) { return floor(other.one[k]); });
+        check_lanes(lerp(x.all(), y.all(), other.all()),
+                    [&](uint32_t k) { return lerp(x.one[k], y.one[k], other.one[k]); });
+        check_lanes(environment_direction<Floats8>(x.all(), true, y.all()),
+                    [&](uint32_t k) { return environment_direction(x.one[k], true, y.one[k]); });
+        check_lanes(rest_of<Floats8>(other.all(), other.all() + 1.0f, bits_of(x.all())),
+                    [&](uint32_t k) { return rest_of(other.one[k], other.one[k] + 1.0f, bits_of(x.one[k])); });
         check_lanes(power_heuristic(x.all(), other.all()),
                     [&](uint32_t k) { return power_heuristic(x.one[k], other.one[k]); });
         const PointOnTriangleOf<Floats8> inside = keep_off_edges(x.all(), y.all(), other.all() * 0.05f);

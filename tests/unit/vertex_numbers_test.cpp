@@ -6,6 +6,9 @@
 #include <doctest/doctest.h>
 
 #include "integrators/path/eight_samples.h"
+#include "math/transform.h"
+#include "render/pixel_filter.h"
+#include "tests/support/random.h"
 
 using namespace pertev;
 
@@ -64,6 +67,43 @@ TEST_CASE("vertex numbers: numbers drawn for eight paths at once equal those dra
                     CHECK(drawn.direction(settings, path) == one.direction(settings, path));
                     CHECK(drawn.lobe(settings, path) == one.lobe(settings, path));
                     CHECK(drawn.roulette(settings, path) == one.roulette(settings, path));
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("rays of eight lanes through any filter and of any camera have the bits of one") {
+    const uint32_t pixels[kWords] = {
+        0, 1, kWidth - 1, kWidth, 5 * kWidth + 7, 1000000, 1079 * kWidth, 1080 * kWidth - 1};
+    const Transform turned = look_at({1, 2, 3}, {-4, 0.5f, 2}, {0, 1, 0});
+    test::Random random(3);
+    for (const PixelFilter filter :
+         {PixelFilter::Box, PixelFilter::Tent, PixelFilter::Gaussian, PixelFilter::BlackmanHarris}) {
+        const std::vector<float> table = make_filter_table(filter);
+        CameraRays camera =
+            make_camera_rays(Camera{}, {filter, default_filter_radius(filter), table.data()}, kWidth, 1080, {0, 0, 0});
+        camera.view.world_from_camera = turned;
+        for (const Projection projection : {Projection::Perspective, Projection::Orthographic, Projection::Cosine}) {
+            camera.view.projection = projection;
+            for (uint32_t round = 0; round < 200; ++round) {
+                camera.view.aperture_radius = round % 2 == 0 ? 0.0f : 0.1f;
+                float in_x[kWords], in_y[kWords], lens_x[kWords], lens_y[kWords], corner_x[kWords], corner_y[kWords];
+                for (uint32_t k = 0; k < kWords; ++k) {
+                    in_x[k] = random.unit(), in_y[k] = random.below(9) == 0 ? 0x1.fffffep-1f : random.unit();
+                    lens_x[k] = random.unit(), lens_y[k] = random.unit();
+                    corner_x[k] = camera.corner_of(pixels[k]).x, corner_y[k] = camera.corner_of(pixels[k]).y;
+                }
+                const auto pair = [](const float* x, const float* y) {
+                    return Vec2Of<Floats8>{Floats8::load(x), Floats8::load(y)};
+                };
+                const RayLineOf<Floats8> all =
+                    camera.line(pair(corner_x, corner_y), pair(in_x, in_y), pair(lens_x, lens_y));
+                for (uint32_t k = 0; k < kWords; ++k) {
+                    const RayLine one =
+                        camera.line(Vec2{corner_x[k], corner_y[k]}, Vec2{in_x[k], in_y[k]}, Vec2{lens_x[k], lens_y[k]});
+                    CHECK(Vec3{all.origin.x[k], all.origin.y[k], all.origin.z[k]} == one.origin);
+                    CHECK(Vec3{all.direction.x[k], all.direction.y[k], all.direction.z[k]} == one.direction);
                 }
             }
         }

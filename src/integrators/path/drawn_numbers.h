@@ -14,10 +14,6 @@ inline void set_lane(SampleKeyOf<Words8>& keys, uint32_t lane, SampleKey key) {
     keys.seed = key.seed;
 }
 
-inline Vec2 unit_square(const SampleBitsOf<Words8>& bits, uint32_t lane) {
-    return {unit_interval(bits.x[lane]), unit_interval(bits.y[lane])};
-}
-
 /// Numbers of one of eight paths, with the interface that shade_vertex uses (vertex_numbers.h). `lobe` and `roulette`
 /// are valid only if the words were drawn with choices.
 class DrawnNumbers {
@@ -27,7 +23,9 @@ public:
     SampleBits light(const PathSettings&, const PathState&) const {
         return {words_.light.x[lane_], words_.light.y[lane_]};
     }
-    Vec2 direction(const PathSettings&, const PathState&) const { return unit_square(words_.direction, lane_); }
+    Vec2 direction(const PathSettings&, const PathState&) const {
+        return {unit_interval(words_.direction.x[lane_]), unit_interval(words_.direction.y[lane_])};
+    }
     float lobe(const PathSettings&, const PathState&) const { return unit_interval(words_.choices.x[lane_]); }
     float roulette(const PathSettings&, const PathState&) const { return unit_interval(words_.choices.y[lane_]); }
 

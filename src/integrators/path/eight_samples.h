@@ -4,6 +4,7 @@
 
 #include "integrators/path/drawn_numbers.h"
 #include "integrators/path/generate_path.h"
+#include "math/lanes.h"
 
 namespace pertev {
 
@@ -15,32 +16,51 @@ public:
     bool is_full() const { return count_ == kWords; }
     void add(uint32_t pixel, uint32_t sample) {
         set_lane(keys_, count_, sample_key(settings_, pixel, sample));
+        const Vec2 corner = camera_.corner_of(pixel);
+        corners_x_[count_] = corner.x, corners_y_[count_] = corner.y;
         pixels_[count_++] = pixel;
     }
 
     /// Passes each path to `take`, in the order in which they were added, and becomes empty.
     template <class Take>
     void begin(const Take& take) {
-        const SamplerKind kind = settings_.sampler;
-        SampleBitsOf<Words8> on_lens = {};
+        alignas(32) float rows[kWords][8];
+        store_lines(rows);
         Words8 times = {};
-        const auto in_filter = sample_bits<Words8>(kind, keys_, Words8{} + uint32_t{kGroupCamera});
-        if (camera_.has_lens()) on_lens = sample_bits<Words8>(kind, keys_, Words8{} + uint32_t{kGroupLens});
         static_assert(kNumberTime == 2);
-        if (camera_.is_open) times = sample_bits<Words8>(kind, keys_, Words8{} + uint32_t{kGroupLens}, Pair::Last).x;
+        if (camera_.is_open) times = draw(kGroupLens, Pair::Last).x;
         for (uint32_t i = 0; i < count_; ++i) {
             const float time = camera_.is_open ? unit_interval(times[i]) : kAtRest;
-            const Vec2 lens = camera_.has_lens() ? unit_square(on_lens, i) : Vec2{};
-            const Ray ray = camera_.ray(pixels_[i], unit_square(in_filter, i), lens, time);
+            const float* const row = rows[i];
+            const Ray ray = camera_.ray({{row[0], row[1], row[2]}, {row[3], row[4], row[5]}}, time);
             take(begin_path(camera_, pixels_[i], keys_.sample[i], ray, time));
         }
         count_ = 0;
     }
 
 private:
+    SampleBitsOf<Words8> draw(CameraGroup group, Pair pair = Pair::First) const {
+        return sample_bits<Words8>(settings_.sampler, keys_, Words8{} + uint32_t{group}, pair);
+    }
+    static Vec2Of<Floats8> unit_square(const SampleBitsOf<Words8>& bits) {
+        return {unit_interval<Floats8>(bits.x), unit_interval<Floats8>(bits.y)};
+    }
+
+    /// Stores origins and directions of the camera's rays, before its motion, in rows.
+    void store_lines(float (&rows)[kWords][8]) const {
+        const Vec2Of<Floats8> corners = {Floats8::load(corners_x_), Floats8::load(corners_y_)};
+        Vec2Of<Floats8> on_lens = {0.0f, 0.0f};
+        if (camera_.has_lens()) on_lens = unit_square(draw(kGroupLens));
+        const RayLineOf<Floats8> line = camera_.line(corners, unit_square(draw(kGroupCamera)), on_lens);
+        const Vec3Of<Floats8>&from = line.origin, &to = line.direction;
+        store_columns({from.x, from.y, from.z, to.x, to.y, to.z, to.z, to.z},
+                      {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7]});
+    }
+
     const CameraRays& camera_;
     const PathSettings& settings_;
-    SampleKeyOf<Words8> keys_; // lanes beyond `count_` hold previous samples or 0, whose numbers are not used
+    SampleKeyOf<Words8> keys_; // lanes beyond `count_` hold previous samples or 0, whose rays are not used
+    float corners_x_[kWords] = {}, corners_y_[kWords] = {};
     uint32_t pixels_[kWords];
     uint32_t count_ = 0;
 };

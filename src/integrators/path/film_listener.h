@@ -19,6 +19,10 @@ public:
         add_first_hit(job_.film, path.pixel, path.sample, {path.origin, path.direction}, hit, surface, job_.picture,
                       path.time);
     }
+    static uint32_t depth_of_lanes(const PathJob& job) { return job.film.aovs == 0 ? 0 : 1; }
+    void vertex_in_lanes(const PathState& path, const Hit& hit) {
+        if (path.depth == 0) add_first_hit(job_.film, path.pixel, path.sample, hit, job_.picture);
+    }
     HD void ended(uint32_t pixel, Rgb radiance, const Kept&) const { add_radiance(job_.film, pixel, radiance); }
 
 private:

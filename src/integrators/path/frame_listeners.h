@@ -22,7 +22,11 @@ public:
     }
     HD void vertex(const PathState& path, const Hit& hit, Surface& surface) {
         if (path.depth == 0) store(path, hit, surface);
-        if (path.depth == 1) film_.frame.gloss[path.pixel].w = hit.t;
+        if (path.depth == 1) store_reflected(path, hit);
+    }
+    static uint32_t depth_of_lanes(const PathJob&) { return 1; }
+    void vertex_in_lanes(const PathState& path, const Hit& hit) {
+        if (path.depth == 1) store_reflected(path, hit);
     }
     HD void emitted(const PathState& path, Rgb light) {
         if (path.depth == 0) film_.frame.emission[path.pixel] = {light.r, light.g, light.b, transmittance_};
@@ -30,6 +34,7 @@ public:
     HD void ended(uint32_t pixel, Rgb radiance, const Kept&) const { store_sample(film_, pixel, radiance, {}); }
 
 private:
+    HD void store_reflected(const PathState& path, const Hit& hit) const { film_.frame.gloss[path.pixel].w = hit.t; }
     HD void store(const PathState& path, const Hit& hit, const Surface& surface) {
         const NoisyFrameView& frame = film_.frame;
         const Vec3 normal = surface.frame.normal;
@@ -61,6 +66,7 @@ public:
 
     HD explicit LightSplit(const PathJob& job) : frame_(job.film.frame) {}
 
+    static uint32_t depth_of_lanes(const PathJob& job) { return job.film.frame.splits_light() ? kNoLaneDepth : 0; }
     HD void begins(const PathState&) { kept_ = {}; }
     HD void take_up(const Kept& kept) {
         kept_ = kept;
@@ -142,6 +148,10 @@ public:
 
     HD explicit FirstBounce(const PathJob& job) : frame_(job.film.frame) {}
 
+    static uint32_t depth_of_lanes(const PathJob& job) {
+        const FirstBounceView& first = job.film.frame.first_bounce;
+        return first.leaves_direct_light() || first.records_bounce() ? kNoLaneDepth : 0;
+    }
     HD void begins(const PathState& path) {
         if (leaves()) left().light[path.pixel] = {};
         if (records()) begin_bounce(path, {}, false);

@@ -10,18 +10,18 @@
 
 namespace pertev {
 
-/// Results of a vertex besides its path.
+/// Storage for a vertex's shadow ray, if it wants one, and for the listener's data of it.
 template <class Listener>
-struct VertexShadowRay {
-    ShadowRay ray; // if a shadow ray is traced
-    [[no_unique_address]] typename Listener::ShadowData shadow_data;
+struct VertexShadow {
+    ShadowRay& ray;
+    typename Listener::ShadowData& data;
 };
 
 /// Shades a vertex of a path and updates the listener's data of it. Sets whether the path continues and returns
 /// whether it needs a shadow ray.
 template <class Listener>
 using ShadeOnHost = bool (*)(const PathJob&, PathState&, typename Listener::Kept&, const Hit&, const DrawnNumbers&,
-                             VertexShadowRay<Listener>&, bool& goes_on);
+                             VertexShadow<Listener>, bool& goes_on);
 
 /// Returns the version with the least code that the job needs.
 template <class Listener>

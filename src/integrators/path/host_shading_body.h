@@ -11,7 +11,7 @@ namespace pertev {
 
 template <Features kFeatures, class Listener>
 inline bool shade_on_host(const PathJob& job, PathState& path, typename Listener::Kept& kept, const Hit& hit,
-                          const DrawnNumbers& numbers, VertexShadowRay<Listener>& shadow_data, bool& goes_on) {
+                          const DrawnNumbers& numbers, VertexShadow<Listener> shadow, bool& goes_on) {
     Listener listener(job);
     if (path.depth == 0) {
         listener.begins(path);
@@ -19,9 +19,9 @@ inline bool shade_on_host(const PathJob& job, PathState& path, typename Listener
         listener.take_up(kept);
     }
     bool wants_shadow = false;
-    goes_on = shade_vertex<kFeatures>(job, path, hit, numbers, shadow_data.ray, wants_shadow, listener);
+    goes_on = shade_vertex<kFeatures>(job, path, hit, numbers, shadow.ray, wants_shadow, listener);
     listener.put_down(kept);
-    if (wants_shadow) listener.hand_over(shadow_data.shadow_data);
+    if (wants_shadow) listener.hand_over(shadow.data);
     return wants_shadow;
 }
 
@@ -39,9 +39,9 @@ constexpr bool is_flattened([[maybe_unused]] Features features) {
 
 template <Features kFeatures, class Listener>
 [[gnu::flatten]] bool shade_flattened(const PathJob& job, PathState& path, typename Listener::Kept& kept,
-                                      const Hit& hit, const DrawnNumbers& numbers,
-                                      VertexShadowRay<Listener>& shadow_data, bool& goes_on) {
-    return shade_on_host<kFeatures, Listener>(job, path, kept, hit, numbers, shadow_data, goes_on);
+                                      const Hit& hit, const DrawnNumbers& numbers, VertexShadow<Listener> shadow,
+                                      bool& goes_on) {
+    return shade_on_host<kFeatures, Listener>(job, path, kept, hit, numbers, shadow, goes_on);
 }
 
 template <class Listener, class Compiled>

@@ -194,7 +194,8 @@ PathJob PathIntegrator::job_for(const FilmView& film) const {
 
 void PathIntegrator::render_loop(uint32_t first, uint32_t count, const FilmView& film, const HostTrees& trees) {
     const BeginOrder samples = {film.window, first, count};
-    const PathJob job = job_for(film);
+    PathJob job = job_for(film);
+    job.film.is_exclusive = true; // all samples of a pixel are one thread's
     const TileRasterView* const raster = raster_ ? &raster_->view() : nullptr;
     share_out(film.window.count(), kLoopCount, [&](uint64_t begin, uint64_t end) {
         RayCounts counts;

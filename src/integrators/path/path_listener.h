@@ -50,6 +50,9 @@ struct SurfaceVertex {
     HD TriangleId triangle() const { return surface.triangle; }
 };
 
+/// The depth of lanes for jobs that have none.
+inline constexpr uint32_t kNoLaneDepth = 0xffffffffu;
+
 /// Base class of every listener, with the listener's class as parameter. A listener is constructed from the job for
 /// one vertex of one path.
 template <class Self>
@@ -63,6 +66,10 @@ struct PathListener {
     HD void take_up(const K&) {}
     /// Called when the path's ray has hit a surface after path.depth scatterings.
     HD void vertex(const PathState&, const Hit&, Surface&) {}
+    /// Least depth at which the host may shade vertices in lanes (shade_lanes.h): the listener then needs no more of
+    /// one than vertex_in_lanes, and nothing of its shadow ray.
+    static uint32_t depth_of_lanes(const PathJob&) { return kNoLaneDepth; }
+    void vertex_in_lanes(const PathState&, const Hit&) {}
     /// Called when the ray has hit no surface: it leaves the scene, or a medium scatters it first.
     HD void missed(const PathState&) {}
     /// Called before light at `point`, which the ray hit, is added; next-event estimation would have sampled it with
@@ -118,6 +125,12 @@ struct Listeners : Ls... {
     HD void begins(const PathState& path) { (Ls::begins(path), ...); }
     HD void take_up(const Kept& kept) { (Ls::take_up(static_cast<const typename Ls::Kept&>(kept)), ...); }
     HD void vertex(const PathState& path, const Hit& hit, Surface& surface) { (Ls::vertex(path, hit, surface), ...); }
+    static uint32_t depth_of_lanes(const PathJob& job) {
+        uint32_t depth = 0;
+        ((depth = max(depth, Ls::depth_of_lanes(job))), ...);
+        return depth;
+    }
+    void vertex_in_lanes(const PathState& path, const Hit& hit) { (Ls::vertex_in_lanes(path, hit), ...); }
     HD void missed(const PathState& path) { (Ls::missed(path), ...); }
     HD bool takes(const PathState& path, const EmitterPoint& point, [[maybe_unused]] float pdf) {
         return (Ls::takes(path, point, pdf) || ...);

@@ -7,7 +7,6 @@
 #include <array>
 
 #include "base/processor.h"
-#include "integrators/path/drawn_numbers.h"
 #include "integrators/path/path_job.h"
 #include "integrators/path/path_state.h"
 #include "trace/intersect/ray.h"
@@ -25,16 +24,15 @@ struct LaneVertices {
 /// Results of vertices; one bit for each lane, that of lane 0 first.
 struct LaneResults {
     unsigned goes_on = 0;      // the path continues; it has been moved to its next ray
-    unsigned wants_shadow = 0; // shadows[lane] is to be traced
+    unsigned wants_shadow = 0; // has a shadow ray
 };
 
 /// A function that shades vertices, and how many it takes at a time.
 struct VertexShading {
     uint32_t lanes;
-    /// Shades vertices of a job for which can_shade_lanes holds. `words`: eight lanes' in each element, as DrawnNumbers
-    /// has them.
-    LaneResults (*shade)(const PathJob& job, const LaneVertices& vertices, const VertexWords<Words8>* words,
-                         const std::array<ShadowRay*, kMaxLanes>& shadows);
+    /// Shades vertices of a job for which can_shade_lanes holds. Stores the shadow rays of lanes that want one, one
+    /// after the other, from `shadows` on.
+    LaneResults (*shade)(const PathJob& job, const LaneVertices& vertices, ShadowRay* shadows);
 };
 
 extern const VertexShading kShadingOf8;

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstring>
 
-#include "integrators/path/film_listener.h"
 #include "integrators/path/path_vertex.h"
 #include "integrators/path/shade_lanes.h"
+#include "integrators/path/vertex_numbers.h"
 
 namespace pertev {
 namespace {
@@ -39,19 +39,29 @@ std::array<float*, kLanes> rows_of(float (&table)[kLanes][8]) {
     return rows;
 }
 
-/// The words of all lanes.
-VertexWords<Words> all_of(const VertexWords<Words8>* words) {
-    VertexWords<Words> all;
-    const auto gather = [&](auto part) {
-        for (uint32_t k = 0; k < kLanes / kWords; ++k)
-            std::memcpy(reinterpret_cast<char*>(&part(all)) + 32 * k, &part(words[k]), 32);
-    };
-    gather([](auto& w) -> auto& { return w.light.x; });
-    gather([](auto& w) -> auto& { return w.light.y; });
-    gather([](auto& w) -> auto& { return w.direction.x; });
-    gather([](auto& w) -> auto& { return w.direction.y; });
-    gather([](auto& w) -> auto& { return w.choices.y; }); // roulette
-    return all;
+/// A word of each lane.
+struct WordTable {
+    alignas(64) uint32_t at[kLanes];
+
+    Words get() const {
+        Words words;
+        std::memcpy(&words, at, sizeof words);
+        return words;
+    }
+};
+
+/// Random numbers of the vertices.
+VertexWords<Words> draw_numbers(const PathSettings& settings, const LaneVertices& vertices) {
+    WordTable streams, samples, depths;
+    bool has_choices = false; // roulette
+    for (uint32_t lane = 0; lane < kLanes; ++lane) {
+        const PathState& path = *vertices.paths[lane];
+        const SampleKey key = sample_key(settings, path.pixel, path.sample);
+        streams.at[lane] = key.stream, samples.at[lane] = key.sample, depths.at[lane] = path.depth;
+        has_choices = has_choices || may_end_by_chance(settings, path.depth + 1);
+    }
+    const SampleKeyOf<Words> keys = {streams.get(), samples.get(), settings.seed};
+    return draw_vertex(settings.sampler, keys, depths.get(), has_choices);
 }
 
 /// Triangles that rays have hit, as they lie in memory.
@@ -208,56 +218,81 @@ struct Lights {
     TriangleId targets[kLanes];
 };
 
-/// Selected lights: a triangle's data, or the whole sample of another kind.
+/// Selected lights: the data of a triangle and of the draws that select its point, the numbers for a constant
+/// environment, or the whole sample of another kind.
 struct LightTable {
-    enum Field { kA = 0, kAb = 3, kAc = 6, kRadiance = 9, kPdf = 12, kB1, kB2, kFields }; // a triangle
-    static constexpr int kPoint = kA, kWi = kAb;                                          // another kind of light
+    enum Field { kA = 0, kAb = 3, kAc = 6, kRadiance = 9, kPdf = 12, kRestX, kOwnedX, kRestY, kOwnedY, kFields };
+    static constexpr int kPoint = kA, kWi = kAb; // another kind of light
     Table<kFields> table;
+    WordTable x, y; // triangle: the binary places of both rests; constant environment: its pair of numbers
     TriangleId targets[kLanes];
     unsigned arrive = 0, are_triangles = 0, are_mirrored = 0, are_two_sided = 0, are_delta = 0, have_distance = 0;
+    unsigned are_constant = 0; // constant environment
 };
 
-/// Enters the light that draw_light selects for a lane.
+/// Enters the lights that lanes select.
 struct LightOfLane {
     const LightSetView& view;
     LightTable& to;
     uint32_t lane;
-    Vec3 position; // the receiver's
 
-    bool triangle(uint32_t light, Vec2 b, float pmf) const {
-        using F = LightTable;
-        const EmissiveTriangle& from = view.triangles[light];
+    void enter(Vec3 receiver, SampleBits u) const {
+        const LightDraw draw = select_light(view, u);
+        const float pmf = cdf_pmf(draw.source.owned);
+        const LightContext context(receiver);
+        const EmittersAtRest at_rest;
+        LightSample sample;
+        const SampleOfKind<false, EmittersAtRest> at_receiver = {view, context, at_rest, sample};
+        switch (draw.kind) {
+        case SourceKind::Triangle:
+            return enter_triangle(draw);
+        case SourceKind::Punctual:
+            if (at_receiver.punctual(draw.source.index - view.emitter_count, pmf)) enter(sample);
+            return;
+        case SourceKind::Environment:
+            const SampleBits rest = {number_of_rest(draw.source), u.y};
+            if (view.environment.is_constant) return enter_constant_environment(pmf, rest);
+            if (at_receiver.environment(pmf, rest)) enter(sample);
+        }
+    }
+
+private:
+    using F = LightTable;
+
+    void enter_triangle(const LightDraw& draw) const {
+        const EmissiveTriangle& from = view.triangles[draw.light];
         const Rgb radiance = view.emissions[from.material].emission;
         const unsigned bit = 1u << lane;
         to.table.set(F::kA, lane, from.a), to.table.set(F::kAb, lane, from.ab), to.table.set(F::kAc, lane, from.ac);
         to.table.set(F::kRadiance, lane, radiance);
-        to.table.set(F::kPdf, lane, pmf), to.table.set(F::kB1, lane, b.x), to.table.set(F::kB2, lane, b.y);
+        to.table.set(F::kPdf, lane, from.pmf);
+        to.table.set(F::kRestX, lane, static_cast<float>(draw.source.rest));
+        to.table.set(F::kOwnedX, lane, static_cast<float>(draw.source.owned));
+        to.table.set(F::kRestY, lane, static_cast<float>(draw.triangle.rest));
+        to.table.set(F::kOwnedY, lane, static_cast<float>(draw.triangle.owned));
+        to.x.at[lane] = draw.source.more, to.y.at[lane] = draw.triangle.more;
         to.targets[lane] = {from.instance, from.primitive};
         to.are_triangles |= bit, to.have_distance |= bit;
         if (from.is_mirrored != 0) to.are_mirrored |= bit;
         if (from.is_two_sided != 0) to.are_two_sided |= bit;
         if (!is_black(radiance)) to.arrive |= bit;
-        return true;
     }
-    bool punctual(uint32_t number, float pmf) const {
-        LightSample sample;
-        return SampleOfKind<false, EmittersAtRest>{view, position, {}, sample}.punctual(number, pmf) && enter(sample);
+    void enter_constant_environment(float pmf, SampleBits rest) const {
+        const float pdf = pmf * (0.25f * kInvPi);
+        if (view.environment.rows.starts == nullptr || !(pdf > 0)) return; // black
+        to.table.set(F::kRadiance, lane, view.environment.constant), to.table.set(F::kPdf, lane, pdf);
+        to.x.at[lane] = rest.x, to.y.at[lane] = rest.y;
+        to.targets[lane] = {kNoLight, kNoLight};
+        to.arrive |= 1u << lane, to.are_constant |= 1u << lane;
     }
-    bool environment(float pmf, SampleBits rest) const {
-        LightSample sample;
-        return SampleOfKind<false, EmittersAtRest>{view, position, {}, sample}.environment(pmf, rest) && enter(sample);
-    }
-
-private:
-    bool enter(const LightSample& sample) const {
+    void enter(const LightSample& sample) const {
         const unsigned bit = 1u << lane;
-        to.table.set(LightTable::kPoint, lane, sample.light_point), to.table.set(LightTable::kWi, lane, sample.wi);
-        to.table.set(LightTable::kRadiance, lane, sample.radiance), to.table.set(LightTable::kPdf, lane, sample.pdf);
+        to.table.set(F::kPoint, lane, sample.light_point), to.table.set(F::kWi, lane, sample.wi);
+        to.table.set(F::kRadiance, lane, sample.radiance), to.table.set(F::kPdf, lane, sample.pdf);
         to.targets[lane] = {sample.instance, sample.primitive};
         to.arrive |= bit;
         if (sample.is_delta) to.are_delta |= bit;
         if (sample.distance < kInfinity) to.have_distance |= bit;
-        return true;
     }
 };
 
@@ -268,7 +303,7 @@ void sample_lights(const LightSetView& view, unsigned lanes, Vec3s position, con
     for (; lanes != 0; lanes &= lanes - 1) {
         const auto lane = static_cast<uint32_t>(__builtin_ctz(lanes));
         const Vec3 receiver = {position.x[lane], position.y[lane], position.z[lane]};
-        draw_light(view, {u.x[lane], u.y[lane]}, LightOfLane{view, drawn, lane, receiver});
+        LightOfLane{view, drawn, lane}.enter(receiver, {u.x[lane], u.y[lane]});
     }
     const auto& table = drawn.table;
     lights.arrives = Mask::of_bits(drawn.arrive);
@@ -280,10 +315,20 @@ void sample_lights(const LightSetView& view, unsigned lanes, Vec3s position, con
     lights.pdf = table.get(LightTable::kPdf);
     lights.normal = {0, 0, 0};
     for (uint32_t lane = 0; lane < kLanes; ++lane) lights.targets[lane] = drawn.targets[lane];
+    if (drawn.are_constant != 0) {
+        const Vec3s wi = sample_constant_environment<Floats>(view.environment, {drawn.x.get(), drawn.y.get()});
+        lights.wi = select(Mask::of_bits(drawn.are_constant), wi, lights.wi);
+    }
     if (drawn.are_triangles == 0) return;
+    // LightDraw::weights.
+    const auto rest_at = [&](int rest, const WordTable& more) {
+        return rest_of<Floats>(table.get(rest), table.get(rest + 1), more.get());
+    };
+    const Vec2Of<Floats> b = sample_uniform_triangle(
+        Vec2Of<Floats>{rest_at(LightTable::kRestX, drawn.x), rest_at(LightTable::kRestY, drawn.y)});
     // triangle_light_at.
     const Vec3s ab = table.vec3(LightTable::kAb), ac = table.vec3(LightTable::kAc);
-    const Vec3s point = lights.point + (table.get(LightTable::kB1) * ab + table.get(LightTable::kB2) * ac);
+    const Vec3s point = lights.point + (b.x * ab + b.y * ac);
     const Vec3s to_light = point - position;
     const Floats distance_squared = length_squared(to_light), distance = sqrt(distance_squared);
     const Vec3s wi = to_light / distance;
@@ -308,8 +353,7 @@ struct Paths {
 
 /// sample_direct; returns the lanes that want a shadow ray.
 unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, const Surfaces& surfaces, Vec3s wo,
-                       Vec3s wo_local, const LaneVertices& vertices, const SampleBitsOf<Words>& u,
-                       const std::array<ShadowRay*, kMaxLanes>& shadows) {
+                       Vec3s wo_local, const LaneVertices& vertices, const SampleBitsOf<Words>& u, ShadowRay* shadows) {
     Lights lights;
     sample_lights(job.picture.scene.lights, lanes, surfaces.position, u, lights);
     const Values scattered = evaluate(surfaces, wo, wo_local, lights.wi);
@@ -335,12 +379,12 @@ unsigned sample_direct(const PathJob& job, unsigned lanes, const Paths& paths, c
     for (unsigned rest = wanted; rest != 0; rest &= rest - 1) {
         const int lane = __builtin_ctz(rest);
         const float* const row = first[lane];
-        *shadows[lane] = {.origin = {row[0], row[1], row[2]},
-                          .direction = {row[3], row[4], row[5]},
-                          .t_max = row[6],
-                          .start = {vertices.hits[lane]->instance, vertices.hits[lane]->primitive},
-                          .target = lights.targets[lane],
-                          .contribution = {light[0][lane], light[1][lane], light[2][lane]}};
+        *shadows++ = {.origin = {row[0], row[1], row[2]},
+                      .direction = {row[3], row[4], row[5]},
+                      .t_max = row[6],
+                      .start = {vertices.hits[lane]->instance, vertices.hits[lane]->primitive},
+                      .target = lights.targets[lane],
+                      .contribution = {light[0][lane], light[1][lane], light[2][lane]}};
     }
     return wanted;
 }
@@ -405,16 +449,8 @@ void add_emission(const PathJob& job, unsigned lanes, const LaneVertices& vertic
         surface.position = {surfaces.position.x[lane], surfaces.position.y[lane], surfaces.position.z[lane]};
         surface.triangle = {hit.instance, hit.primitive};
         surface.emission = surface_emission<false>(scene.lights, material, {});
-        FilmListeners listener(job);
+        Listeners<> listener(job);
         add_surface_emission<kPlainDiffuse>(job, path, hit, surface, listener);
-    }
-}
-
-/// Adds the first hits of the paths that come from the camera.
-void add_first_hits(const PathJob& job, const LaneVertices& vertices) {
-    for (uint32_t lane = 0; lane < vertices.count; ++lane) {
-        const PathState& path = *vertices.paths[lane];
-        if (path.depth == 0) add_first_hit(job.film, path.pixel, path.sample, *vertices.hits[lane], job.picture);
     }
 }
 
@@ -432,14 +468,11 @@ Paths load_paths(const LaneVertices& vertices) {
     return {{columns[0], columns[1], columns[2]}, {columns[3], columns[4], columns[5]}, Mask::of_bits(are_clamped)};
 }
 
-[[gnu::flatten]] LaneResults shade_lanes(const PathJob& job, const LaneVertices& vertices,
-                                         const VertexWords<Words8>* drawn,
-                                         const std::array<ShadowRay*, kMaxLanes>& shadows) {
+[[gnu::flatten]] LaneResults shade_lanes(const PathJob& job, const LaneVertices& vertices, ShadowRay* shadows) {
     const SceneView& scene = job.picture.scene;
     const unsigned all = (1u << vertices.count) - 1;
     const Paths paths = load_paths(vertices);
-    const VertexWords<Words> words = all_of(drawn);
-    add_first_hits(job, vertices);
+    const VertexWords<Words> words = draw_numbers(job.settings, vertices);
     const Vec3s wo = -paths.direction;
     const Triangles triangles = load_triangles(scene, vertices);
     const Surfaces surfaces = make_surfaces(triangles, wo);

@@ -16,6 +16,13 @@ struct Ray {
     float t_max = kInfinity; // exclusive
 };
 
+/// Start and direction of a ray.
+template <class T>
+struct RayLineOf {
+    Vec3Of<T> origin, direction; // unit
+};
+using RayLine = RayLineOf<float>;
+
 inline constexpr uint32_t kNoHit = 0xffffffffu;
 
 struct Hit {
