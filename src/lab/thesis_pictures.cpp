@@ -98,10 +98,9 @@ std::string command_text(const ThesisRecipe& recipe, const RenderSettings& setti
     for (const std::string& setting : recipe.settings) others += fmt::format(" `{}`", setting);
     if (recipe.way == ThesisWay::Radiosity) others += settings_of(recipe.panel, solution_of(recipe.panel, settings));
     if (recipe.has_photons_by_size) others += fmt::format(" `photons={}`", settings.photon_map->photons);
-    return fmt::format(
-        "pertev render {} `integrator={}`{} `size={}x{}` `spp={}` `max_depth={}` `exposure={:g}` `output={}.png`",
-        scene, recipe.integrator, others, settings.width, settings.height, settings.samples, settings.path.max_depth,
-        recipe.stops, recipe.name);
+    return fmt::format("{} `integrator={}`{} `size={}x{}` `spp={}` `max_depth={}` `exposure={:g}` `output={}.png`",
+                       scene, recipe.integrator, others, settings.width, settings.height, settings.samples,
+                       settings.path.max_depth, recipe.stops, recipe.name);
 }
 
 } // namespace
