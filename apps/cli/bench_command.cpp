@@ -19,13 +19,10 @@
 #include "session/opening/choose_camera.h"
 #include "session/opening/open_scene.h"
 #include "session/session.h"
-#include "settings/parse_values.h"
 #include "settings/tracer_options.h"
 
 namespace pertev {
 namespace {
-
-constexpr const char* kSize = "1920x1080";
 
 struct SceneFigures {
     std::string scene, device;
@@ -128,7 +125,8 @@ int bench_scenes(PictureFlags& flags) {
     Messages& messages = reporter.messages();
     flags.settings.read(flags, messages);
     RenderSettings settings;
-    std::tie(settings.width, settings.height) = parse_size("size", flags.size_text.empty() ? kSize : flags.size_text);
+    const PictureSize size = flags.size.value_or(PictureSize{1920, 1080});
+    settings.width = size.width, settings.height = size.height;
     const std::vector<std::string> scenes = flags.scenes.empty() ? default_scenes() : flags.scenes;
     for (const std::string& scene : scenes) check_bench_scene(scene);
     listen_for_interrupt();
@@ -141,7 +139,7 @@ int bench_scenes(PictureFlags& flags) {
         for (const auto& queue : queues) {
             reporter.set_work(fmt::format("measuring {} on {}", scene, queue->device_name()));
             settings.tracers = tracer_choice(flags.tracer, queue->is_cuda());
-            settings.samples = flags.samples > 0 ? flags.samples : (queue->is_cuda() ? 64 : 4);
+            settings.samples = flags.is_given("spp") ? flags.render.samples : (queue->is_cuda() ? 64 : 4);
             report.add("bench", fields_of(measure(scene, *queue, settings)));
         }
     }
@@ -158,7 +156,7 @@ void add_bench_command(CLI::App& app, int& status) {
                     "a scene file or a built-in scene; may be given again\n(Sponza and Sibenik under PERTEV_SCENES)")
         ->type_name("FILE")
         ->allow_extra_args(false);
-    add_picture_flags(verb, *flags, kSize, "64 in CUDA, 4 on the CPU");
+    add_picture_flags(verb, kBench, *flags, "1920x1080", "64 in CUDA, 4 on the CPU");
     add_bench_render_command(verb, status);
     add_bench_rays_command(verb, status);
     add_bench_frames_command(verb, status);

@@ -114,7 +114,7 @@ std::unique_ptr<BenchedScene> read_benched_scene(RenderFlags& flags, SettingVerb
     reporter.set_work("building trees");
     benched->prepared = prepare_scene(benched->scene, {}, messages);
     reporter.report_messages();
-    if (settings.integrator == IntegratorKind::Radiosity) {
+    if (is_solved(settings.integrator)) {
         benched->settings.radiosity = radiosity_display(benched->prepared, flags.radiosity, settings.path.seed,
                                                         reporter, report_solving(reporter));
     }
@@ -126,12 +126,9 @@ std::string reconstruction_json(const ReconstructionOptions& options) {
     return json_of(options.used(), options.sharing);
 }
 
-void add_picture_flags(CLI::App& verb, PictureFlags& flags, const std::string& sizes, const std::string& samples) {
-    verb.add_option("--size", flags.size_text, fmt::format("of the picture ({})", sizes))
-        ->type_name("WIDTHxHEIGHT")
-        ->check(picture_size());
-    add_whole(verb, "--spp", flags.samples, fmt::format("samples a pixel ({})", samples), 1, kMaxSamplesPerPixel);
-    flags.settings.add(verb, kBench, flags);
+void add_picture_flags(CLI::App& verb, SettingVerbs verbs, PictureFlags& flags, const std::string& sizes,
+                       const std::string& samples) {
+    flags.settings.add(verb, verbs, flags, all_settings(), {{"size", sizes}, {"spp", samples}});
     add_bench_report_flags(verb, flags.report);
 }
 

@@ -74,14 +74,13 @@ std::string reconstruction_json(const ReconstructionOptions& options);
 /// Flags of benchmarks of whole pictures.
 struct PictureFlags : PictureOptions {
     std::vector<std::string> scenes;
-    std::string size_text; // empty: the benchmark's own, as of `samples` 0
-    uint32_t samples = 0;  // samples per pixel
     SettingFlags settings;
     ReportFlags report;
 };
 
-/// All but --scene. `sizes` and `samples`: what they are where none are named, for people.
-void add_picture_flags(CLI::App& verb, PictureFlags& flags, const std::string& sizes, const std::string& samples);
+/// Adds all but --scene. `sizes` and `samples` say what they are where none are named, for people.
+void add_picture_flags(CLI::App& verb, SettingVerbs verbs, PictureFlags& flags, const std::string& sizes,
+                       const std::string& samples);
 
 /// The binary trees that pictures with these settings need; what they are turned into is made by the session.
 PrepareOptions trees_for(const RenderSettings& settings, const Queue& queue);

@@ -22,7 +22,6 @@
 #include "lab/stored_figures.h"
 #include "session/machine.h"
 #include "session/writing/check_outputs.h"
-#include "settings/parse_values.h"
 #include "settings/tracer_options.h"
 
 namespace pertev {
@@ -31,17 +30,15 @@ namespace {
 struct JobFlags {
     PictureFlags picture;
     std::string job = "S8", output;
-    uint32_t seed = 0, moves = 0;
+    uint32_t moves = 0;
     bool isolated = false;
 };
 
 RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
     RenderSettings settings = job_settings(job);
-    if (!flags.picture.size_text.empty()) {
-        std::tie(settings.width, settings.height) = parse_size("size", flags.picture.size_text);
-    }
-    if (flags.picture.samples > 0) settings.samples = flags.picture.samples;
-    settings.path.seed = flags.seed;
+    if (const auto& size = flags.picture.size) settings.width = size->width, settings.height = size->height;
+    if (flags.picture.is_given("spp")) settings.samples = flags.picture.render.samples;
+    settings.path.seed = flags.picture.render.path.seed;
     return settings;
 }
 
@@ -168,13 +165,12 @@ void add_bench_render_command(CLI::App& bench, int& status) {
         ->type_name("FILE")
         ->required()
         ->expected(1);
-    add_whole(verb, "--seed", flags->seed, "seed of the random number generator", 0, UINT32_MAX)->capture_default_str();
     add_whole(verb, "--moves", flags->moves,
               "also move the camera this often and time one sample per pixel\nafter each move (0)", 0, 100000);
     verb.add_flag("--isolated", flags->isolated,
                   "also trace the sets of `bench rays` in isolation and report\nthe job's rate relative to theirs");
     verb.add_option("-o,--output", flags->output, "keep the picture")->type_name("FILE");
-    add_picture_flags(verb, flags->picture, "the job's", "the job's");
+    add_picture_flags(verb, kBenchRender, flags->picture, "the job's", "the job's");
 }
 
 } // namespace pertev

@@ -8,7 +8,6 @@
 #include "apps/cli/commands.h"
 #include "apps/cli/flag_checks.h"
 #include "apps/cli/reporter.h"
-#include "image/block_means.h"
 #include "image/flip.h"
 #include "image/metrics.h"
 #include "image/picture_hash.h"

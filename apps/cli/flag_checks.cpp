@@ -37,10 +37,6 @@ CLI::Validator file_name() {
     return {[](const std::string& text) { return std::string(text.empty() ? "the name is empty" : ""); }, ""};
 }
 
-CLI::Validator picture_size() {
-    return {[](const std::string& text) { return std::string(text.empty() ? "expected WIDTHxHEIGHT" : ""); }, ""};
-}
-
 CLI::Validator one_of(std::vector<std::string> names) {
     return refused_by([names = std::move(names)](const std::string& text) { return why_no_choice(text, names); });
 }

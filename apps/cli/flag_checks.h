@@ -36,9 +36,6 @@ CLI::Option* add_whole(CLI::App& verb, const std::string& name, Whole& value, co
 /// Accepts a file name that is not empty.
 CLI::Validator file_name();
 
-/// Accepts a text that is not empty; picture sizes are parsed where they are used.
-CLI::Validator picture_size();
-
 /// Accepts one of these names.
 CLI::Validator one_of(std::vector<std::string> names);
 

@@ -48,11 +48,12 @@ std::string names_of(const CLI::Option& option) {
 /// Returns all that there is to say of a flag, or of a setting its first sentence.
 std::string text_of(const CLI::Option& option, bool is_short) {
     const Setting* const setting = setting_of(option);
-    std::string text = option.get_description();
+    const std::string full = option.get_description();
+    std::string text = full;
     if (setting != nullptr && is_short) text = text.substr(0, std::min(text.find(". "), text.size() - 1)) + ".";
     const bool has_default = !option.get_default_str().empty();
-    if (setting != nullptr && is_short && !has_default && *setting->otherwise != '\0')
-        text += fmt::format(" ({})", setting->otherwise);
+    if (const std::size_t at = full.find(kWithoutIt); setting != nullptr && is_short && at != std::string::npos)
+        text += fmt::format(" ({})", full.substr(at + kWithoutIt.size(), full.size() - at - kWithoutIt.size() - 1));
     if (setting != nullptr && !is_short && *setting->more != '\0') text += fmt::format(" {}", setting->more);
     if (has_default) text += fmt::format(" ({})", option.get_default_str());
     return option.get_required() ? text + " Required." : text;

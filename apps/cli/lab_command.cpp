@@ -27,7 +27,6 @@
 #include "lab/run_lab.h"
 #include "session/machine.h"
 #include "session/opening/strictness.h"
-#include "settings/parse_values.h"
 
 namespace pertev {
 namespace {
@@ -35,7 +34,7 @@ namespace {
 struct LabFlags : PictureOptions {
     std::vector<std::string> structures, traversals, rays = {"primary", "shadow", "diffuse"}, tests = {"exact"};
     std::vector<std::string> rta = {"both"};
-    std::string order = "on", persistent = "both", size_text, depths;
+    std::string order = "on", persistent = "both", depths;
     std::string output;
     uint32_t runs = 20, count = 0;
     bool no_heat_maps = false, thesis = false, transport = false;
@@ -109,14 +108,14 @@ LabSettings lab_settings(const LabFlags& flags, bool is_cuda) {
         settings.distributions.push_back(Distribution::Persistent);
         settings.distributions.push_back(Distribution::DynamicFetch);
     }
-    std::tie(settings.width, settings.height) =
-        parse_size("size", flags.size_text.empty() ? "1024x768" : flags.size_text);
+    const PictureSize size = flags.size.value_or(PictureSize{1024, 768});
+    settings.width = size.width, settings.height = size.height;
     const std::string depths = !flags.depths.empty() ? flags.depths : flags.thesis ? "1-8" : "1-3";
     std::tie(settings.first_depth, settings.depth) = parse_depths(depths);
     const auto traces = [&](const char* kind) { return std::ranges::find(flags.rays, kind) != flags.rays.end(); };
     settings.primary = traces("primary"), settings.shadow = traces("shadow"), settings.diffuse = traces("diffuse");
     if (traces("record")) {
-        if (flags.rays.size() > 1 || !flags.size_text.empty() || !flags.depths.empty()) {
+        if (flags.rays.size() > 1 || flags.size || !flags.depths.empty()) {
             throw Error(ErrorCode::BadInput, "rays", "record",
                         "its sets are fixed; leave out other kinds, --size and --depths");
         }
@@ -142,7 +141,7 @@ int run(LabFlags& flags) {
     const std::unique_ptr<Queue> queue = take_machine(flags.machine, messages);
     if (flags.transport) {
         reporter.set_work("loading");
-        return run_transport_command(*queue, flags.scene, flags.of_transport, flags.size_text, flags.output, reporter);
+        return run_transport_command(*queue, flags, flags.of_transport, flags.output, reporter);
     }
     LabSettings settings = lab_settings(flags, queue->is_cuda());
     reporter.set_work("loading");
@@ -215,9 +214,6 @@ void add_lab_command(CLI::App& app, int& status) {
         ->check(one_of(names_of<TestKind>()))
         ->capture_default_str();
     add_switch(verb, "--persistent", flags->persistent, "CUDA: threads take rays from a pool");
-    verb.add_option("--size", flags->size_text, "camera rays (1024x768; with --transport pictures of 256x256)")
-        ->type_name("WIDTHxHEIGHT")
-        ->check(picture_size());
     verb.add_option("--depths", flags->depths,
                     fmt::format("frames of paths of FIRST to LAST rays, LAST at most {}; LAST\nalone is 1-LAST (1-3; "
                                 "with --thesis 1-8)",
@@ -250,7 +246,9 @@ void add_lab_command(CLI::App& app, int& status) {
                 "write report.html, .csv and .json here; with --thesis thesis.html\nand .json, its pictures and "
                 "thesis-1 and -2.csv; with --transport\ntransport.html, .csv, .json and EXR files")
             ->type_name("DIR");
-    flags->settings.add(verb, kLab, *flags);
+    flags->render.path.max_depth = kTransportDepth;
+    flags->settings.add(verb, kLab, *flags, all_settings(), {{"size", "1024x768; with --transport 256x256"}});
+    for (const char* flag : {"--max-depth", "--seed"}) verb.get_option(flag)->needs(transport);
     for (CLI::Option* many : {thesis, transport}) many->excludes(verb.get_option("--strict")); // their scenes are known
     add_report_flags(verb, flags->report);
     verb.callback([flags, output, &status] {

@@ -12,14 +12,14 @@
 namespace pertev {
 namespace {
 
-/// `has_own_default`: the verb has another default than pictures have.
-std::string described(const Setting& setting, bool has_own_default) {
+/// `otherwise` says what holds without it; it may be empty.
+std::string described(const Setting& setting, const std::string& otherwise) {
     std::string text = setting.sentence;
     const std::vector<std::string> choices = choices_of(setting);
     if (!choices.empty() && std::string_view(setting.form).find('|') == std::string_view::npos) {
         text += fmt::format(" One of {}.", fmt::join(choices, ", "));
     }
-    if (!has_own_default && *setting.otherwise != '\0') text += fmt::format(" Without it: {}.", setting.otherwise);
+    if (!otherwise.empty()) text += fmt::format("{}{}.", kWithoutIt, otherwise);
     return text;
 }
 
@@ -37,28 +37,31 @@ const Setting* setting_of(const CLI::Option& flag) {
     return setting != nullptr && flag.get_group() == setting->group ? setting : nullptr;
 }
 
-void SettingFlags::add(CLI::App& verb, uint32_t verbs, const PictureOptions& options, std::span<const Setting> table) {
+void SettingFlags::add(CLI::App& verb, uint32_t verbs, const PictureOptions& options, std::span<const Setting> table,
+                       const std::map<std::string_view, std::string>& own) {
     const PictureOptions defaults;
     verbs_ = verbs;
     for (const Setting& setting : table) {
         if ((setting.verbs & verbs) == 0) continue;
         Flag& flag = flags_.emplace_back(Flag{.setting = &setting});
         const std::vector<std::string> now = texts_of(options, setting);
-        const bool has_own_default = now != texts_of(defaults, setting);
-        const std::string name = flag_names(setting), text = described(setting, has_own_default);
+        const auto said = own.find(setting.name);
+        const std::string otherwise = said != own.end()                    ? said->second
+                                      : now == texts_of(defaults, setting) ? setting.otherwise
+                                                                           : "";
+        const std::string name = flag_names(setting), text = described(setting, otherwise);
         if (is_switch(setting)) {
             flag.option = verb.add_flag(name, flag.is_on, text);
         } else if (is_list(setting)) {
             flag.option = verb.add_option(name, flag.texts, text)->allow_extra_args(false);
-            if (!setting.choices.empty()) flag.option->delimiter(',');
+            if (std::string_view(setting.form).ends_with(",...")) flag.option->delimiter(',');
         } else {
             flag.option = verb.add_option(name, flag.text, text);
         }
         flag.option->group(setting.group);
         if (is_switch(setting)) continue;
         flag.option->type_name(setting.form); // set_value checks the text
-        if ((has_own_default || *setting.otherwise == '\0') && !is_list(setting) && !now.empty())
-            flag.option->default_str(now.front());
+        if (otherwise.empty() && !is_list(setting) && !now.empty()) flag.option->default_str(now.front());
     }
 }
 

@@ -4,8 +4,10 @@
 // setting's name with dashes.
 
 #include <list>
+#include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/cli/flag_phrases.h"
@@ -19,15 +21,19 @@ class Option;
 
 namespace pertev {
 
+/// Stands in a flag's description before what holds without it.
+inline constexpr std::string_view kWithoutIt = " Without it: ";
+
 /// The setting of a flag; null if it is none.
 const Setting* setting_of(const CLI::Option& flag);
 
 /// The texts of a line's flags until all of it has been parsed.
 class SettingFlags {
 public:
-    /// Adds a flag for each setting of `verbs`, one bit or several. The values in `options` are the defaults.
+    /// Adds a flag for each setting of `verbs`, one bit or several. The values in `options` are the defaults, and
+    /// `own` says of some settings what else holds without their flags.
     void add(CLI::App& verb, uint32_t verbs, const PictureOptions& options,
-             std::span<const Setting> table = all_settings());
+             std::span<const Setting> table = all_settings(), const std::map<std::string_view, std::string>& own = {});
     /// Adds --settings FILE.
     void add_file(CLI::App& verb);
 

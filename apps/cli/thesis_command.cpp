@@ -144,7 +144,7 @@ void add_pictures_by_chapter(Queue& queue, const LabSettings& settings, const st
                 },
                 &reporter);
             ThesisPicture made = pictures.make(names[i], part);
-            made.command = phrase(made.command);
+            if (!made.command.empty()) made.command = "pertev render " + phrase(made.command);
             write_file(folder, made);
             thesis.pictures.push_back(std::move(made));
         });

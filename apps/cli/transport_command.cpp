@@ -23,7 +23,6 @@
 #include "lab/transport_light.h"
 #include "lab/transport_tables.h"
 #include "session/survey/default_light.h"
-#include "settings/parse_values.h"
 #include "settings/value_names.h"
 
 namespace pertev {
@@ -88,19 +87,20 @@ Image read_linear_image(const std::string& file, Messages& messages) {
     return read_image(bytes, file, &messages);
 }
 
-TransportSettings settings_of(const TransportFlags& flags, const std::string& size, bool is_cuda, Messages& messages) {
+TransportSettings settings_of(const PictureOptions& options, const TransportFlags& flags, bool is_cuda,
+                              Messages& messages) {
     TransportSettings settings;
     for (const std::string& name : flags.integrators) {
         if (std::ranges::find(settings.integrators, name) == settings.integrators.end()) {
             settings.integrators.push_back(name);
         }
     }
-    if (settings.integrators.empty()) settings.integrators = transport_integrators();
+    if (settings.integrators.empty()) settings.integrators = names_of<IntegratorKind>();
     settings.repetitions = flags.repetitions, settings.seconds = flags.seconds;
     settings.max_samples = flags.max_samples;
-    std::tie(settings.picture.width, settings.picture.height) = parse_size("size", size.empty() ? "256x256" : size);
-    settings.picture.path.max_depth = flags.max_depth;
-    settings.picture.path.seed = flags.seed;
+    settings.picture = options.render;
+    const PictureSize size = options.size.value_or(PictureSize{256, 256});
+    settings.picture.width = size.width, settings.picture.height = size.height;
     settings.picture.photon_map.edit().search =
         value_named<PhotonSearch>(flags.photon_search).value_or(PhotonSearch::Grid);
     settings.reference_samples = flags.reference_samples > 0 ? flags.reference_samples
@@ -125,10 +125,11 @@ void write_pictures(const std::filesystem::path& folder, std::size_t number, Tra
 
 } // namespace
 
-int run_transport_command(Queue& queue, const SceneOptions& scene, const TransportFlags& flags, const std::string& size,
+int run_transport_command(Queue& queue, const PictureOptions& options, const TransportFlags& flags,
                           const std::string& output, Reporter& reporter) {
+    const SceneOptions& scene = options.scene;
     const std::vector<const TransportPreset*> presets = presets_of(scene, flags);
-    TransportSettings settings = settings_of(flags, size, queue.is_cuda(), reporter.messages());
+    TransportSettings settings = settings_of(options, flags, queue.is_cuda(), reporter.messages());
     std::vector<Subject> subjects; // all are read before the first is measured
     for (const TransportPreset* preset : presets) {
         subjects.push_back(read_subject(scene, preset, aspect_of(settings.picture.width, settings.picture.height),
@@ -194,6 +195,10 @@ void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags&
     const char* group = "Light transport (--transport)";
     std::vector<std::string> presets = {kAllPresets};
     for (const TransportPreset& preset : the_record().presets) presets.emplace_back(preset.name);
+    std::vector<std::string> references;
+    for (const IntegratorDescriptor& kind : integrators()) {
+        if (!kind.lacks.empty()) references.emplace_back(kind.name);
+    }
     const auto add = [&](CLI::Option* option, const char* type) {
         return option->type_name(type)->group(group)->needs(transport);
     };
@@ -228,17 +233,11 @@ void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags&
     add(verb.add_option("--reference-integrator", flags.reference_integrator,
                         "integrator of the reference (path; bidirectional where it is better)"),
         "NAME")
-        ->check(one_of({"path", "bidirectional", "photon_map"}));
+        ->check(one_of(references));
     add(verb.add_option("--reference-spp", flags.reference_samples,
                         "samples per pixel of the reference (1024; CUDA 16384)"),
         "N")
         ->check(whole_between(2, 1u << 24));
-    add(verb.add_option("--max-depth", flags.max_depth, "maximum number of scatterings on a light path"), "N")
-        ->check(whole_between(0, 255))
-        ->capture_default_str();
-    add(verb.add_option("--seed", flags.seed, "seed of the first repetition"), "N")
-        ->check(whole_between(0, 0x7fffffff))
-        ->capture_default_str();
 }
 
 } // namespace pertev

@@ -17,11 +17,13 @@ class Option;
 
 namespace pertev {
 
+inline constexpr uint32_t kTransportDepth = 8; // the default of max_depth
+
 struct TransportFlags {
     std::string preset; // empty: SCENE, or where that is not given either, cornell
     std::vector<std::string> integrators;
     double seconds = 10;
-    uint32_t repetitions = 4, max_samples = 1u << 16, max_depth = 8, seed = 0;
+    uint32_t repetitions = 4, max_samples = 1u << 16;
     std::string reference, reference_integrator, photon_search;
     uint32_t reference_samples = 0; // 0: by the device
 };
@@ -29,9 +31,9 @@ struct TransportFlags {
 /// Adds the flags that need --transport, except for --transport itself.
 void add_transport_flags(CLI::App& verb, CLI::Option* transport, TransportFlags& flags);
 
-/// Measures the scene, or the presets, that are asked for; `size` and `output` are lab's flags, or empty. Returns the
-/// exit status. Throws Error.
-int run_transport_command(Queue& queue, const SceneOptions& scene, const TransportFlags& flags, const std::string& size,
+/// Measures the scene of `options`, or the presets, that are asked for, and writes into the folder `output` unless it
+/// is empty. Returns the exit status. Throws Error.
+int run_transport_command(Queue& queue, const PictureOptions& options, const TransportFlags& flags,
                           const std::string& output, Reporter& reporter);
 
 } // namespace pertev

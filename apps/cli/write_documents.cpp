@@ -127,6 +127,7 @@ std::string verbs_with(const Setting& setting) {
                                                            {kLab, "lab"},
                                                            {kInfo, "info"},
                                                            {kBench, "bench"},
+                                                           {kBenchRender, "bench render"},
                                                            {kBenchRays, "bench rays"},
                                                            {kBenchBuild, "bench build"},
                                                            {kBenchNoise, "bench noise"},
@@ -156,7 +157,7 @@ std::string common_verbs(std::string_view group) {
 
 std::string range_of(const Setting& setting) {
     const std::vector<std::string> choices = choices_of(setting);
-    if (!choices.empty()) return fmt::format("{}", fmt::join(choices, ", "));
+    if (!choices.empty()) return fmt::format("{}{}", setting.is_by_ray ? "[KIND=]" : "", fmt::join(choices, ", "));
     const bool has_range = setting.high > 0 || setting.low != 0 || setting.above;
     if (!has_range) return setting.form;
     const std::string low = fmt::format("{}{:.10g}", setting.above ? "above " : "from ", setting.low);

@@ -35,10 +35,6 @@ public:
     double round_trip_s() const { return round_trip_s_; }
     /// Bytes that can be sent in `seconds`; for pieces of a large picture.
     std::size_t piece_bytes(double seconds) const;
-    /// Seconds by which the second of two pictures is held back, because a picture that waits at the client for the
-    /// previous one would be outdated when drawn. It grows while pictures take longer than with an idle client, and
-    /// never exceeds the client's time per picture.
-    double hold_s() const { return hold_s_; }
 
 private:
     struct Sent {
@@ -61,6 +57,9 @@ private:
     int calm_ = 0; // consecutive acknowledgements without delay
     // Recent minima, which grow by a hundredth per picture until a smaller value comes.
     double min_round_trip_s_ = 0, min_client_s_ = 0;
+    /// Seconds by which the second of two pictures is held back, because a picture that waits at the client for the
+    /// previous one would be outdated when drawn. It grows while pictures take longer than with an idle client, and
+    /// never exceeds the client's time per picture.
     double hold_s_ = 0;
 };
 

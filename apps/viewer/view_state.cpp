@@ -86,8 +86,7 @@ std::string set_traversal(ViewState& state, const std::string& name) {
 
 std::string set_rta(ViewState& state, const std::string& name) {
     Combination wanted = shown_combination(state);
-    wanted.options.rta = name != "off";
-    wanted.options.rta_at_pops = name != "nodes";
+    wanted.options = rta_named(name, wanted.options).value();
     return set_combination(state, wanted);
 }
 
@@ -204,6 +203,13 @@ std::vector<ViewSetting> make_settings() {
     const auto shared = [&](const char* name, const char* label, const char* group, double step = 1) {
         all.push_back(shared_row(name, label, group, step));
     };
+    constexpr const char* kRays = "Rays (the picture stays the same)";
+    const auto traced = [&](const char* name, const char* label, auto get, auto set) {
+        ViewSetting& row = all.emplace_back(shared_row(name, label, kRays, 1));
+        row.hint = find_setting(name)->sentence; // the rest is about flags
+        row.get = [get](const ViewState& s) { return SettingValue(std::string(get(shown_combination(s)))); };
+        row.set = [set](ViewState& s, const SettingValue& v) { return set(s, text_of(v)); };
+    };
 
     choice(
         "layer", "Show", "Picture",
@@ -262,20 +268,14 @@ std::vector<ViewSetting> make_settings() {
     shared("fov", "Field of view, degrees", "Camera");
     shared("aperture", "Lens radius, m", "Camera", 0.005);
     shared("focus", "Focus distance, m", "Camera", 0.1);
+    traced(
+        "structure", "Structure", [](const Combination& c) { return name_of(c.structure); }, set_structure);
+    traced(
+        "traversal", "Traversal", [](const Combination& c) { return name_of(c.traversal); }, set_traversal);
+    traced(
+        "rta", "Redundant traversal avoidance", [](const Combination& c) { return name_of_rta(c.options); }, set_rta);
     choice(
-        "structure", "Structure", "Rays (the picture stays the same)",
-        "The acceleration structure. It changes only the speed", names_of<StructureKind>(),
-        [](const ViewState& s) { return name_of(shown_combination(s).structure); }, set_structure);
-    choice(
-        "traversal", "Traversal", "Rays (the picture stays the same)",
-        "The traversal algorithm. It changes only the speed", names_of<TraversalKind>(),
-        [](const ViewState& s) { return name_of(shown_combination(s).traversal); }, set_traversal);
-    choice(
-        "rta", "Redundant traversal avoidance", "Rays (the picture stays the same)",
-        "Rays skip nodes behind the nearest hit so far. Off: they test them", {"on", "nodes", "off"},
-        [](const ViewState& s) { return name_of_rta(shown_combination(s).options); }, set_rta);
-    choice(
-        "clocks", "Time", "Rays (the picture stays the same)",
+        "clocks", "Time", kRays,
         "by kind: each kind of ray and shading is timed separately (Stages, below). Stages wait for each other, so "
         "frames take longer",
         {"together", "by kind"}, [](const ViewState& s) { return s.picture.time_kinds ? "by kind" : "together"; },

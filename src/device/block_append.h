@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "base/host_device.h"
-#include "device/atomic_add.h"
+#include "device/atomics.h"
 
 namespace pertev {
 

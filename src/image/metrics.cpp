@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "math/portable_math.h"
+#include "math/scalar.h"
 
 namespace pertev {
 namespace {
@@ -152,14 +152,26 @@ double mean_squared_error(const Image& picture, const Image& reference) {
     return sum / (3 * static_cast<double>(count));
 }
 
-double peak_signal_to_noise(double mean_squared_error, double peak) {
-    if (mean_squared_error == 0) return kInfinite;
-    if (mean_squared_error == kInfinite) return -kInfinite;
-    // Our own log2 is of floats: the exponent goes apart, so that no ratio is out of their range.
-    int exponent = 0;
-    const double mantissa = std::frexp(peak * peak / mean_squared_error, &exponent);
-    constexpr double kDecibelsPerDoubling = 3.0102999566398120; // 10 log10(2)
-    return kDecibelsPerDoubling * (exponent + double(log2(static_cast<float>(mantissa))));
+Image block_means(const Image& image, uint32_t side) {
+    PERTEV_CHECK(side >= 1);
+    Image means{(image.width + side - 1) / side, (image.height + side - 1) / side, image.channels, {}};
+    means.pixels.reserve(std::size_t(means.width) * means.height * means.channels);
+    for (uint32_t block_y = 0; block_y < image.height; block_y += side) {
+        for (uint32_t block_x = 0; block_x < image.width; block_x += side) {
+            const uint32_t end_x = min(block_x + side, image.width), end_y = min(block_y + side, image.height);
+            for (uint32_t c = 0; c < image.channels; ++c) {
+                double sum = 0;
+                for (uint32_t y = block_y; y < end_y; ++y) {
+                    for (uint32_t x = block_x; x < end_x; ++x) {
+                        sum +=
+                            static_cast<double>(image.pixels[(std::size_t(y) * image.width + x) * image.channels + c]);
+                    }
+                }
+                means.pixels.push_back(static_cast<float>(sum / (double(end_x - block_x) * (end_y - block_y))));
+            }
+        }
+    }
+    return means;
 }
 
 } // namespace pertev

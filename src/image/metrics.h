@@ -55,8 +55,10 @@ private:
 /// Mean of (x - r)^2 over pixels and R, G, B; infinite if a value is not finite. Throws as relative_error.
 double mean_squared_error(const Image& picture, const Image& reference);
 
-/// Peak signal-to-noise ratio in dB for values up to `peak`; infinite for equal pictures.
-double peak_signal_to_noise(double mean_squared_error, double peak = 1);
+/// One pixel per block of `side` x `side` pixels, side >= 1; blocks at the right and lower border average fewer
+/// pixels. Sums are in double, row by row. Means over blocks have less
+/// noise, by the block's side.
+Image block_means(const Image& image, uint32_t side);
 
 /// Throws Error(BadInput) with both sizes unless they are equal and each picture has 3 or 4 channels.
 void check_comparable(const Image& picture, const Image& reference);

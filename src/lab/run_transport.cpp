@@ -69,7 +69,7 @@ public:
             report_.rows.push_back({.name = name, .light = light_of(name, scene)});
             TransportRow& row = report_.rows.back();
             row.finds_all = row.light == kAllLight;
-            row.is_solved = settings_of(settings, name, 0).integrator == IntegratorKind::Radiosity;
+            row.is_solved = is_solved(settings_of(settings, name, 0).integrator);
             row.refused = why_not(name);
         }
         check_reference();
@@ -105,7 +105,7 @@ private:
             check_integrator(picture);
             check_camera(picture, camera_);
             check_light(picture, scene_, notes);
-            if (picture.integrator == IntegratorKind::Radiosity) return why_no_solution(scene_);
+            if (is_solved(picture.integrator)) return why_no_solution(scene_);
         } catch (const Error& error) {
             return error.setting() == "integrator" ? error.reason() : error.what();
         }

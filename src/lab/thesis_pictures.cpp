@@ -98,10 +98,9 @@ std::string command_text(const ThesisRecipe& recipe, const RenderSettings& setti
     for (const std::string& setting : recipe.settings) others += fmt::format(" `{}`", setting);
     if (recipe.way == ThesisWay::Radiosity) others += settings_of(recipe.panel, solution_of(recipe.panel, settings));
     if (recipe.has_photons_by_size) others += fmt::format(" `photons={}`", settings.photon_map->photons);
-    return fmt::format(
-        "pertev render {} `integrator={}`{} `size={}x{}` `spp={}` `max_depth={}` `exposure={:g}` `output={}.png`",
-        scene, recipe.integrator, others, settings.width, settings.height, settings.samples, settings.path.max_depth,
-        recipe.stops, recipe.name);
+    return fmt::format("{} `integrator={}`{} `size={}x{}` `spp={}` `max_depth={}` `exposure={:g}` `output={}.png`",
+                       scene, recipe.integrator, others, settings.width, settings.height, settings.samples,
+                       settings.path.max_depth, recipe.stops, recipe.name);
 }
 
 } // namespace
@@ -110,15 +109,6 @@ std::vector<std::string> thesis_picture_names() {
     std::vector<std::string> names;
     for (const ThesisRecipe& recipe : thesis_recipes()) names.emplace_back(recipe.name);
     return names;
-}
-
-std::vector<std::string> thesis_picture_files() {
-    std::vector<std::string> files;
-    for (const ThesisRecipe& recipe : thesis_recipes()) {
-        const bool is_drawn = recipe.way == ThesisWay::KdTree || recipe.way == ThesisWay::Octree;
-        files.push_back(fmt::format("{}.{}", recipe.name, is_drawn ? "svg" : "png"));
-    }
-    return files;
 }
 
 /// The inputs that one picture is made from.

@@ -21,10 +21,10 @@ struct ThesisPicture {
     std::string title;      // such as "radiosity"
     std::string shows;      // content of the picture and its algorithm
     std::string integrator; // integrator's name; empty if the picture is not rendered
-    std::string command; // a command that makes the same bytes on this device, with settings still to phrase; empty if
-                         // there is none
-    Rgba8Image image;    // the pixels, unless the picture is an `svg`
-    std::string svg;     // a complete SVG file
+    std::string command;    // the scene and settings that make the same bytes on this device, to be phrased by a front
+                            // end; empty if there are none
+    Rgba8Image image;       // the pixels, unless the picture is an `svg`
+    std::string svg;        // a complete SVG file
     RenderStats stats;
     double solve_seconds = 0; // solving time, which stats.render_seconds does not include
     bool interrupted = false; // it has fewer samples than requested
@@ -34,8 +34,6 @@ struct ThesisPicture {
 
 /// Returns the names of all pictures in the thesis's order.
 std::vector<std::string> thesis_picture_names();
-/// Returns the names of all files that may hold them.
-std::vector<std::string> thesis_picture_files();
 
 /// Makes pictures one by one. A picture's exposure does not depend on its size.
 class ThesisPictures {

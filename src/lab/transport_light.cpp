@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "settings/value_names.h"
 
 namespace pertev {
@@ -36,43 +38,15 @@ bool has_caustics_of_points(const Scene& scene) {
 
 } // namespace
 
-std::vector<std::string> transport_integrators() {
-    std::vector<std::string> names = integrator_names();
-    std::erase_if(names, [](const std::string& name) { return name == "direct" || name == "indirect"; });
-    return names;
-}
-
 std::string light_of(const std::string& integrator, const Scene& scene) {
     RenderSettings settings;
     if (!set_integrator(settings, integrator)) return {};
-    switch (settings.integrator) {
-    case IntegratorKind::Path:
-    case IntegratorKind::Hybrid:
-        if (settings.path.light == PathLight::Direct) return "a part of path's: direct light";
-        if (settings.path.light == PathLight::Indirect) return "a part of path's: indirect light";
-        return has_caustics_of_points(scene) ? "all but LS+D of point lights" : kAllLight;
-    case IntegratorKind::Bidirectional:
-        return has_caustics_of_points(scene) ? "all but LS+DS+E of point lights" : kAllLight;
-    case IntegratorKind::PhotonMap:
-        return "all, blurred ever less";
-    case IntegratorKind::IrradianceCache:
-        return has_caustics_of_points(scene) ? "as path, interpolated between records"
-                                             : "all, interpolated between records";
-    case IntegratorKind::Radiosity:
-        return is_all_diffuse(scene) ? "all, by patches ever smaller" : "L(D*)S*E, by patches ever smaller";
-    case IntegratorKind::Light:
-        return "L((D|G|S)*(D|G))?E: nothing in mirrors or clear glass";
-    case IntegratorKind::Distributed:
-        return "L(D|G|S)?(G|S)*E: one bounce off what is rough";
-    case IntegratorKind::Whitted:
-        return "L(D|G)S*E of point lights; lamps seen";
-    case IntegratorKind::Cast:
-        return "L(D|G)E of point lights; lamps seen";
-    case IntegratorKind::Raster:
-    case IntegratorKind::Reyes:
-        return "L(D|G)E of point lights, no shadows; lamps seen";
-    }
-    return {};
+    if (settings.path.light != PathLight::Path) return fmt::format("a part of path's: {} light", integrator);
+    const IntegratorDescriptor& kind = describe(settings.integrator);
+    if (!kind.light_with_caustics.empty() && has_caustics_of_points(scene))
+        return std::string(kind.light_with_caustics);
+    const bool is_part = !kind.light_if_not_diffuse.empty() && !is_all_diffuse(scene);
+    return std::string(is_part ? kind.light_if_not_diffuse : kind.light);
 }
 
 std::string why_no_solution(const Scene& scene) {
@@ -83,15 +57,13 @@ std::string why_no_solution(const Scene& scene) {
 }
 
 std::string default_reference_integrator(const Scene& scene) {
-    return has_caustics_of_points(scene) ? "bidirectional" : "path";
+    return std::string(name_of(has_caustics_of_points(scene) ? IntegratorKind::Bidirectional : IntegratorKind::Path));
 }
 
 std::string light_lacking(const std::string& integrator, const Scene& scene) {
-    if (!has_caustics_of_points(scene)) return {};
-    const std::string caustics = "light of point, spot and directional lights that mirrors or clear glass send on to "
-                                 "other surfaces";
-    if (integrator == "photon_map") return "sharpness: what its photons tell is blurred";
-    return integrator == "bidirectional" ? caustics + ", as mirrors and clear glass show it" : caustics;
+    RenderSettings settings;
+    const bool is_known = has_caustics_of_points(scene) && set_integrator(settings, integrator);
+    return is_known ? std::string(describe(settings.integrator).lacks) : "";
 }
 
 } // namespace pertev

@@ -4,7 +4,6 @@
 // (docs/transport.md).
 
 #include <string>
-#include <vector>
 
 #include "scene/scene.h"
 
@@ -12,8 +11,6 @@ namespace pertev {
 
 inline constexpr const char* kAllLight = "all";
 
-/// Returns all integrators except direct and indirect, which are parts of path.
-std::vector<std::string> transport_integrators();
 /// Describes the light that an integrator finds in a scene: kAllLight if it finds all without bias; empty if there is
 /// no such integrator.
 std::string light_of(const std::string& integrator, const Scene& scene);

@@ -9,7 +9,7 @@
 
 #include "base/host_device.h"
 #include "base/limits.h"
-#include "device/atomic_add.h"
+#include "device/atomics.h"
 #include "math/bits.h"
 #include "math/scalar.h"
 

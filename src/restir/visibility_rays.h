@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "device/atomic_add.h"
+#include "device/atomics.h"
 #include "device_scene/accept_hit.h"
 #include "device_scene/ray_queue.h"
 

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "integrators/photon_map/photon_map_settings.h"
 #include "render/raster/pinhole.h"
 #include "settings/value_names.h"
 
@@ -48,14 +47,15 @@ void refuse(bool is_wrong, const char* setting, std::string_view value, std::str
     if (is_wrong) throw Error(ErrorCode::BadInput, setting, std::string(value), std::move(why));
 }
 
+std::string those_that(bool (*has)(IntegratorKind)) { return list_of(integrator_names(integrators_that(has))); }
+
 /// Returns whether there are surfaces to be lit but no lights that the integrator supports.
 bool lacks_lights(const RenderSettings& settings, const Scene& scene) {
     const bool wants_lights = needs_punctual_lights(settings.integrator) && !settings.ambient;
     return wants_lights && settings.path.max_depth > 0 && !has_punctual_light(scene) && !is_all_unlit(scene);
 }
 bool has_own_ambient(const RenderSettings& settings, const Scene& scene) {
-    return needs_punctual_lights(settings.integrator) && settings.integrator != IntegratorKind::Cast &&
-           scene.environment && gives_light(*scene.environment);
+    return describe(settings.integrator).has_mean_ambient && scene.environment && gives_light(*scene.environment);
 }
 
 /// A phrase such as "this scene has only lamps".
@@ -73,37 +73,28 @@ void check_integrator(const RenderSettings& settings) {
     const std::string_view name = integrator_name(settings);
     const bool is_denoised = settings.denoise != Denoise::None;
     refuse(is_denoised && !makes_frames(settings.integrator), "denoise", name_of(settings.denoise),
-           fmt::format("supports `integrator=path` and hybrid, not {}", name));
+           fmt::format("supports {}, not {}", those_that(makes_frames), name));
     if (settings.light_paths) {
-        refuse(
-            !has_light_path_layers(settings.integrator), "lpe", "",
-            fmt::format("`integrator=path`, direct, indirect and hybrid distinguish light paths, {} does not", name));
+        refuse(!has_light_path_layers(settings.integrator), "lpe", "",
+               fmt::format("{} distinguish light paths, {} does not", those_that(has_light_path_layers), name));
         refuse(is_denoised, "lpe", "",
                fmt::format("layers are means of samples, which `denoise={}` does not have; leave out one of them",
                            name_of(settings.denoise)));
     }
     refuse(settings.irradiance && (is_denoised || !has_light_path_layers(settings.integrator)), "false_color",
            "illuminance",
-           fmt::format("only `integrator=path`, direct, indirect and hybrid without denoising find it, not {}{}", name,
+           fmt::format("only {} without denoising find it, not {}{}", those_that(has_light_path_layers), name,
                        is_denoised ? ", denoised" : ""));
     if (settings.path.max_depth > max_depth(settings.integrator)) {
         throw Error(ErrorCode::OverLimit, "max_depth", fmt::format("{}", settings.path.max_depth),
                     fmt::format("the limit with `integrator={}` is {}", name, max_depth(settings.integrator)));
     }
-    const PhotonMapSettings& photons = *settings.photon_map;
-    if (settings.integrator == IntegratorKind::PhotonMap && !photons_fit(photons.photons, settings.path.max_depth)) {
-        throw Error(ErrorCode::OverLimit, "photons", fmt::format("{}", photons.photons),
-                    fmt::format("with `max_depth={}` a pass may store more than {} photons; the limit is {}",
-                                settings.path.max_depth, kMaxStored,
-                                kMaxStored / (2 * uint64_t(settings.path.max_depth - 1))));
-    }
+    describe(settings.integrator).check(settings);
 }
 
 void check_shutter(const RenderSettings& settings) {
     refuse(!has_shutter(settings.integrator), "shutter", "",
-           fmt::format(
-               "`integrator=path`, direct, indirect, distributed, whitted and cast support motion blur, {} does not",
-               integrator_name(settings)));
+           fmt::format("{} support motion blur, {} does not", those_that(has_shutter), integrator_name(settings)));
     refuse(settings.denoise != Denoise::None, "shutter", "",
            fmt::format("`denoise={}` needs one surface per pixel, and motion blur shows several; leave out one of them",
                        name_of(settings.denoise)));
@@ -119,11 +110,10 @@ std::optional<Remark> why_dark(const RenderSettings& settings, const Scene& scen
     const auto why = [&](std::string text) {
         return Remark("integrator", std::string(integrator_name(settings)), std::move(text));
     };
-    if (settings.integrator == IntegratorKind::PhotonMap && settings.path.max_depth > 0 && !has_any_light(scene)) {
-        return why("photons need lights, and this scene has none: " + no_lights_of(scene));
-    }
-    if (settings.integrator == IntegratorKind::Radiosity && !has_any_light(scene)) {
-        return Remark("radiosity needs light, and this scene has none: " + no_lights_of(scene));
+    const IntegratorDescriptor& kind = describe(settings.integrator);
+    if (kind.needs_any_light && (kind.is_solved || settings.path.max_depth > 0) && !has_any_light(scene)) {
+        std::string text = fmt::format("{} needs light, and this scene has none: {}", kind.name, no_lights_of(scene));
+        return kind.is_solved ? Remark(std::move(text)) : why(std::move(text)); // solving has no such setting
     }
     if (!lacks_lights(settings, scene) || has_own_ambient(settings, scene)) return {};
     return why(

@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/machine_memory.h"
 #include "base/message_text.h"
-#include "integrators/photon_map/photon_map_settings.h"
 
 namespace pertev {
 namespace {
@@ -40,21 +39,12 @@ std::string advice(const RenderSettings& settings, bool is_cuda) {
     const std::vector<std::string> layer_names = light_layers_of(settings);
     const std::size_t layers = layer_names.size();
     const std::size_t film = Film::predicted_bytes(settings.width, settings.height, settings.aovs, layer_names);
-    const std::size_t own = predicted_bytes(settings,
-                                            {.width = settings.width,
-                                             .height = settings.height,
-                                             .samples = settings.samples,
-                                             .traverses_on_host = !is_cuda},
-                                            is_cuda);
-    if (settings.integrator == IntegratorKind::PhotonMap && own > film) {
-        return fmt::format("Photons take {} (`photons={}`, `max_depth={}`); a smaller value of either takes less",
-                           amount(own), settings.photon_map->photons, settings.path.max_depth);
-    }
-    if (settings.integrator == IntegratorKind::IrradianceCache && own > film) {
-        const bool has_traversals = is_cuda || settings.body == PathBody::Wavefront;
-        return fmt::format("Records of {}x{} pixels{} take {}; a smaller `size`{} takes less", settings.width,
-                           settings.height, has_traversals ? " and their rays" : "", amount(own),
-                           has_traversals ? ", or fewer `hemisphere_rays`," : "");
+    const WorkSize size = {
+        .width = settings.width, .height = settings.height, .samples = settings.samples, .traverses_on_host = !is_cuda};
+    const std::size_t own = predicted_bytes(settings, size, is_cuda);
+    if (const auto memory = describe(settings.integrator).memory; memory != nullptr && own > film) {
+        const auto [what, less] = memory(settings, size);
+        return fmt::format("{} take {}; {} takes less", what, amount(own), less);
     }
     return fmt::format("{}x{} pixels{} take {} in a film: {} smaller `size`{} takes less", settings.width,
                        settings.height, layers > 0 ? " and " + counted(layers, "layer") + " of `lpe`" : "",

@@ -12,26 +12,10 @@
 namespace pertev {
 
 std::vector<std::string> integrators_with(const Setting& setting) {
-    std::vector<std::string> names = integrator_names();
-    std::erase_if(names, [&](const std::string& name) {
-        RenderSettings settings;
-        set_integrator(settings, name);
-        return !has_setting(settings.integrator, setting);
-    });
-    return names;
+    return integrator_names(setting.integrators != 0 ? setting.integrators : ~0u);
 }
 
 namespace {
-
-std::vector<std::string> words_of(std::string_view text) {
-    std::vector<std::string> words;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find(' '), text.size());
-        words.emplace_back(text.substr(0, end));
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    return words;
-}
 
 const Setting* setting_of(const std::string& condition) {
     return find_setting(condition.substr(0, condition.find('=')));
@@ -80,8 +64,7 @@ Remark remark_of(const SettingConflict& conflict, const PictureOptions& options)
     std::string why;
     switch (conflict.kind) {
     case SettingConflict::Kind::Integrator:
-        why = fmt::format("applies to `integrator={}`{}{}, not to {}", others.front(), others.size() > 1 ? ", " : "",
-                          fmt::join(others.begin() + 1, others.end(), ", "), integrator_name(options.render));
+        why = fmt::format("applies to {}, not to {}", list_of(others), integrator_name(options.render));
         break;
     case SettingConflict::Kind::Needs:
         why = fmt::format("needs `{}`", fmt::join(others, "` or `"));

@@ -1,6 +1,5 @@
 // Settings that apply to one or a few integrators.
 
-#include <initializer_list>
 #include <limits>
 
 #include "base/limits.h"
@@ -16,16 +15,6 @@ namespace {
 
 #define FIELD PERTEV_SETTING_FIELD
 
-constexpr uint32_t bits_of(std::initializer_list<IntegratorKind> kinds) {
-    uint32_t bits = 0;
-    for (const IntegratorKind kind : kinds) bits |= 1u << static_cast<uint32_t>(kind);
-    return bits;
-}
-
-constexpr uint32_t kRaster = bits_of({IntegratorKind::Raster}), kReyes = bits_of({IntegratorKind::Reyes}),
-                   kPhotons = bits_of({IntegratorKind::PhotonMap}),
-                   kRecords = bits_of({IntegratorKind::IrradianceCache}),
-                   kRadiosity = bits_of({IntegratorKind::Radiosity});
 constexpr double kMaxRadius = std::numeric_limits<float>::max();
 
 } // namespace
@@ -34,48 +23,45 @@ std::vector<Setting> integrator_settings() {
     std::vector<Setting> rows = {
         row("ambient", "Raster", "R,G,B", FIELD(render.ambient),
             "A uniform radiance from all directions that diffuse surfaces reflect.",
-            Otherwise{"cast 0, the others the environment's mean"},
-            Of{bits_of({IntegratorKind::Cast, IntegratorKind::Whitted, IntegratorKind::Raster, IntegratorKind::Reyes})},
-            Recorded::WhereUsed),
+            Otherwise{"cast 0, the others the environment's mean"}, Recorded::WhereUsed),
         row("shading", "Raster", "NAME", FIELD(render.display.edit().shading),
             "The points at which light is evaluated: once per triangle, at its vertices, or in every pixel.",
-            Of{kRaster}, Recorded::WhereUsed),
+            Recorded::WhereUsed),
         row("wireframe", "Raster", "", FIELD(render.display.edit().is_wireframe),
-            "The picture shows only the triangles' edges.", Of{kRaster}, Excludes{"shading"}, Recorded::WhereUsed),
+            "The picture shows only the triangles' edges.", Excludes{"shading"}, Recorded::WhereUsed),
         row("shading_rate", "Reyes", "PIXELS", FIELD(render.shading_rate),
             "The longest edge of a micropolygon in the picture.", Range{kMinShadingRate, kMaxShadingRate},
-            Unit{"pixels"}, Of{kReyes}, Recorded::WhereUsed),
+            Unit{"pixels"}, Recorded::WhereUsed),
         row("displacement", "Reyes", "MATERIAL=FILE,SCALE[,MIDDLE]", FIELD(displacement),
             "A height map that displaces surfaces of this material along their normals by SCALE (height - MIDDLE) in "
             "the mesh's own unit; MIDDLE defaults to 0. It may be given again.",
-            Of{kReyes}, Recorded::AsUsed),
+            Recorded::AsUsed),
 
         row("photons", "Photons", "N", FIELD(render.photon_map.edit().photons),
             "The number of photons from the lights per sample; as many again are aimed at mirrors and glass.",
-            Range{1, kMaxPhotons}, Of{kPhotons}, Recorded::WhereUsed),
+            Range{1, kMaxPhotons}, Recorded::WhereUsed),
         row("gather", "Photons", "NAME", FIELD(render.photon_map.edit().gather),
-            "The estimate of indirect light: by final gathering, or directly from the global photon map.", Of{kPhotons},
+            "The estimate of indirect light: by final gathering, or directly from the global photon map.",
             Recorded::WhereUsed),
         row("radius", "Photons", "METRES", FIELD(render.photon_map.edit().radius),
             "The search radius of the first sample; it shrinks from sample to sample.",
-            Range{kMinPhotonRadius, kMaxRadius}, Unit{"m"}, Otherwise{"a hundredth of the scene"}, Of{kPhotons},
-            Recorded::WhereUsed),
+            Range{kMinPhotonRadius, kMaxRadius}, Unit{"m"}, Otherwise{"a hundredth of the scene"}, Recorded::WhereUsed),
         row("caustic_radius", "Photons", "METRES", FIELD(render.photon_map.edit().caustic_radius),
             "The search radius of the caustic map in the first sample.", Range{kMinPhotonRadius, kMaxRadius}, Unit{"m"},
-            Otherwise{"a quarter of the radius"}, Of{kPhotons}, Recorded::WhereUsed),
+            Otherwise{"a quarter of the radius"}, Recorded::WhereUsed),
         row("nearest", "Photons", "N", FIELD(render.photon_map.edit().nearest),
             "The number of nearest photons within the radius that an estimate uses.", Range{2, kMaxNearestPhotons},
-            Otherwise{"all within the radius"}, Of{kPhotons}, Recorded::WhereUsed),
+            Otherwise{"all within the radius"}, Recorded::WhereUsed),
 
         row("accuracy", "Records", "A", FIELD(render.irradiance_cache.edit().accuracy),
             "The distance at which a record is used, relative to the mean distance of the surfaces around it; less is "
             "more exact.",
-            Range{kMinAccuracy, kMaxAccuracy}, Of{kRecords}, Recorded::WhereUsed),
+            Range{kMinAccuracy, kMaxAccuracy}, Recorded::WhereUsed),
         row("hemisphere_rays", "Records", "N", FIELD(render.irradiance_cache.edit().hemisphere_rays),
             "The maximum number of rays that sample a record's hemisphere.",
-            Range{kFewestHemisphereRays, kMaxHemisphereRays}, Of{kRecords}, Recorded::WhereUsed),
+            Range{kFewestHemisphereRays, kMaxHemisphereRays}, Recorded::WhereUsed),
         row("show_records", "Records", "", FIELD(render.irradiance_cache.edit().show_records),
-            "The picture shows the records' positions.", Of{kRecords}, Recorded::WhereUsed),
+            "The picture shows the records' positions.", Recorded::WhereUsed),
 
         row("patch_size", "Radiosity", "METRES", FIELD(radiosity.solving.patch_size), "The longest edge of a patch.",
             Above{0, kMaxCoordinate}, Unit{"m"}, Otherwise{"a 16th of the scene's longest side"}, Excludes{"solution"}),
@@ -111,9 +97,8 @@ std::vector<Setting> integrator_settings() {
             "Patches have constant radiosity, without interpolation.", Recorded::AsUsed),
     };
     for (Setting& row : rows) {
-        const bool is_of_radiosity = row.integrators == 0, is_shown = row.is_name || is_switch(row);
-        row.verbs = kLooking | (is_of_radiosity && !is_shown ? uint32_t(kSolve) : 0);
-        if (is_of_radiosity) row.integrators = kRadiosity;
+        const bool is_solved = std::string_view(row.group) == "Radiosity" && !row.is_name && !is_switch(row);
+        row.verbs = kLooking | (is_solved ? uint32_t(kSolve) : 0);
     }
     return rows;
 }

@@ -16,20 +16,21 @@ SettingField integrator_field(PictureOptions& options) {
     return NamedField{
         &options.render, [](const void* f) { return integrator_name(*static_cast<const RenderSettings*>(f)); },
         [](void* f, std::string_view name) { return set_integrator(*static_cast<RenderSettings*>(f), name); },
-        integrator_names};
+        [] { return integrator_names(); }};
 }
 
 } // namespace
 
 std::vector<Setting> picture_settings() {
     constexpr uint32_t kShown = kRender | kView,
-                       kMachines = kLooking | kMeasure | kLab | kBench | kBenchBuild | kBenchRays;
+                       kMachines = kLooking | kMeasure | kLab | kBenchPictures | kBenchBuild | kBenchRays;
     constexpr uint32_t kExr = 1u << uint32_t(ImageFormat::Exr), kPng = 1u << uint32_t(ImageFormat::Png),
                        kToned = kPng | 1u << uint32_t(ImageFormat::Jpeg);
-    constexpr uint32_t kTracing = kShown | kBench | kBenchRays;
+    constexpr uint32_t kTracing = kShown | kBenchPictures | kBenchRays;
     return {
         row("size", "Picture", "WIDTHxHEIGHT", FIELD(size), "The width and height of the picture in pixels.",
-            Otherwise{"1280x720, or the shape of the scene's camera"}, On{kLooking}, Mark::Common),
+            Otherwise{"1280x720, or the shape of the scene's camera"}, On{kLooking | kLab | kBenchPictures},
+            Mark::Common),
         row("tone_map", "Picture", "NAME", FIELD(tone_map), "The tone mapping of PNG and JPEG output.",
             Otherwise{"agx"}, On{kShown}, In{kToned}, Mark::Common, Recorded::AsUsed),
         row("exposure", "Picture", "STOPS|auto", FIELD(exposure),
@@ -61,7 +62,7 @@ std::vector<Setting> picture_settings() {
 
         row("spp", "Quality", "N", FIELD(render.samples),
             "The number of samples per pixel; four times as many halve the noise.", Range{1, kMaxSamplesPerPixel},
-            On{kShown | kMeasure | kBenchNoise}, Mark::Common),
+            On{kShown | kMeasure | kBenchNoise | kBenchPictures}, Mark::Common),
         row("integrator", "Quality", "NAME", integrator_field, "The light transport algorithm (docs/transport.md).",
             More{"path finds all light; direct and indirect are its parts straight from lamps and sky and by way of "
                  "other surfaces. hybrid is path with rasterised primary visibility. cast, whitted and distributed are "
@@ -73,9 +74,9 @@ std::vector<Setting> picture_settings() {
             On{kLooking}, Recorded::Always, Mark::Common),
         row("max_depth", "Quality", "N", FIELD(render.path.max_depth),
             "The maximum number of scatterings between light and camera: 0 is emission, 1 adds direct light.",
-            Range{0, kMaxPathDepth - 1}, On{kLooking | kMeasure}, Recorded::Always, Mark::Common),
+            Range{0, kMaxPathDepth - 1}, On{kLooking | kMeasure | kLab}, Recorded::Always, Mark::Common),
         row("seed", "Quality", "N", FIELD(render.path.seed), "The seed of the random number generator.",
-            Range{0, UINT32_MAX}, On{kScenes}, Recorded::Always),
+            Range{0, UINT32_MAX}, On{kScenes | kLab | kBenchRender}, Recorded::Always),
         row("sampler", "Quality", "NAME", FIELD(render.path.sampler), "The sample sequence.", On{kShown},
             Recorded::Always),
         row("filter", "Quality", "NAME", FIELD(render.filter), "The pixel reconstruction filter.", On{kLooking},
@@ -84,8 +85,7 @@ std::vector<Setting> picture_settings() {
             Above{0, 64}, Unit{"pixels"}, Otherwise{"the filter's own"}, On{kLooking}, Recorded::AsUsed),
         row("clamp", "Quality", "X", FIELD(render.path.clamp),
             "The largest contribution of one path that scatters twice or more. Clamping is biased.", Above{0},
-            Otherwise{"off"}, On{kShown},
-            Of{1u << uint32_t(IntegratorKind::Path) | 1u << uint32_t(IntegratorKind::Hybrid)}, Recorded::Always),
+            Otherwise{"off"}, On{kShown}, Recorded::Always),
         row("time_limit", "Quality", "SECONDS", FIELD(render.time_limit_s),
             "The time after which the render stops, at the end of a sample. irradiance_cache makes records first and "
             "may stop before its first sample.",
@@ -96,22 +96,21 @@ std::vector<Setting> picture_settings() {
             Excludes{"svgf:max_depth=0"}, Recorded::Changed, Mark::Common),
 
         row("build", "Tracing", "WHICH", FIELD(tracer.build),
-            "The quality of the acceleration structure: fast builds in the least time, best traces in the least time. "
+            "The quality of the acceleration structure: fast builds fastest, best traces fastest. "
             "No setting of this group changes the picture.",
             Otherwise{"balanced"}, Choices{names_of<TreeBuild>()}, On{kTracing}, Mark::NotKept),
         row("structure", "Tracing", "[KIND=]NAME", FIELD(tracer.structures),
-            "The acceleration structure, by its name in the laboratory; it overrules build. It may be given for one "
-            "kind "
-            "of ray: camera=, bounce= or shadow=NAME.",
-            On{kTracing}, Mark::NotKept),
-        row("traversal", "Tracing", "[KIND=]NAME", FIELD(tracer.traversals),
-            "The traversal algorithm, by its name in the laboratory.", On{kTracing}, Mark::NotKept, OldName{"walk"}),
-        row("rta", "Tracing", "[KIND=]WHICH", FIELD(tracer.rta), "Redundant traversal avoidance: on, nodes or off.",
-            On{kTracing}, Mark::NotKept),
-        row("order", "Tracing", "[KIND=]WHICH", FIELD(tracer.order), "Traversal of nearer children first: on or off.",
-            On{kTracing}, Mark::NotKept),
+            "The acceleration structure, which overrules build.", More{"KIND, of rays, is camera, bounce or shadow."},
+            Choices{names_of<StructureKind>()}, On{kTracing}, Mark::ByRay, Mark::NotKept),
+        row("traversal", "Tracing", "[KIND=]NAME", FIELD(tracer.traversals), "The traversal algorithm.",
+            Choices{names_of<TraversalKind>()}, On{kTracing}, Mark::ByRay, Mark::NotKept, OldName{"walk"}),
+        row("rta", "Tracing", "[KIND=]WHICH", FIELD(tracer.rta),
+            "Redundant traversal avoidance: rays skip nodes behind the nearest hit.",
+            Choices{{"on", "nodes", "off"}}, On{kTracing}, Mark::ByRay, Mark::NotKept),
+        row("order", "Tracing", "[KIND=]WHICH", FIELD(tracer.order), "Traversal of nearer children first.",
+            Choices{{"on", "off"}}, On{kTracing}, Mark::ByRay, Mark::NotKept),
         row("distribution", "Tracing", "[KIND=]NAME", FIELD(tracer.distributions),
-            "The assignment of rays to GPU threads: one-a-thread, persistent or dynamic-fetch.", On{kTracing},
+            "The assignment of rays to GPU threads.", Choices{names_of<Distribution>()}, On{kTracing}, Mark::ByRay,
             Mark::NotKept),
 
         row("device", "Machine", "NAME", FIELD(machine.device),
@@ -123,8 +122,8 @@ std::vector<Setting> picture_settings() {
             "The acceleration structure is built anew, even if it is in the cache.", On{kShown | kMeasure | kSolve},
             Mark::NotKept),
         row("max_memory", "Machine", "MIB", FIELD(radiosity.max_memory),
-            "The largest amount of memory that may be used: of the device for a picture, and of the machine for "
-            "solving radiosity. Larger tasks are refused.",
+            "The memory that may be used: of the device for a picture, of the machine for solving radiosity. Larger "
+            "tasks are refused.",
             Above{0}, Unit{"MiB"}, Otherwise{"all there is"}, On{kLooking | kSolve}, Mark::NotKept),
         row("strict", "Machine", "", FIELD(strict),
             "Warnings are errors: the verb fails before rendering if a part of the scene is left out or a file "

@@ -87,6 +87,16 @@ void put_value(PictureOptions& options, const Setting& setting, std::span<const 
 
 } // namespace
 
+std::vector<std::string> words_of(std::string_view text) {
+    std::vector<std::string> words;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find(' '), text.size());
+        words.emplace_back(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return words;
+}
+
 bool is_switch(const Setting& setting) {
     const SettingField field = some_field(setting);
     return std::holds_alternative<bool*>(field) || std::holds_alternative<InverseSwitch>(field);
@@ -110,7 +120,10 @@ bool has_setting(IntegratorKind integrator, const Setting& setting) {
 
 std::string why_no_value(const Setting& setting, const std::string& text) {
     if (const std::vector<std::string> choices = choices_of(setting); !choices.empty()) {
-        return why_no_choice(text, choices);
+        const std::size_t equals = setting.is_by_ray ? text.find('=') : std::string::npos;
+        if (equals == std::string::npos) return why_no_choice(text, choices);
+        const std::string why_no_kind = why_no_choice(text.substr(0, equals), names_of<RayKind>());
+        return why_no_kind.empty() ? why_no_choice(text.substr(equals + 1), choices) : why_no_kind;
     }
     if (setting.is_name) return text.empty() ? "the name is empty" : "";
     return std::visit(

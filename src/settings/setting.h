@@ -76,9 +76,10 @@ enum SettingVerbs : uint32_t {
     kBenchSequence = 64,
     kLab = 128,
     kInfo = 256,
-    kBench = 512, // and bench render
+    kBench = 512,
     kBenchBuild = 1024,
     kBenchRays = 2048,
+    kBenchRender = 4096,
 };
 
 /// Form in which a picture's file records a setting under its name.
@@ -104,8 +105,10 @@ struct Setting {
     const char* otherwise = ""; // text of the default if the setting is not given and its field is empty or 0
     std::vector<std::string> choices = {}; // all values of a text; for named fields their names
     bool is_name = false;                  // a text that must not be empty
+    bool is_by_ray = false;                // whether KIND=, a kind of ray, may stand before a value
     uint32_t verbs = kRender;
-    uint32_t integrators = 0;       // bits by IntegratorKind of those that have it; 0: all
+    uint32_t integrators = 0;       // bits by IntegratorKind of those that have it; 0: all. all_settings() adds those
+                                    // whose IntegratorDescriptor::settings names it
     std::string_view needs = "";    // names of settings, or NAME=VALUE, at least one of which must be satisfied
     std::string_view excludes = ""; // names of settings, or NAME=VALUE, that must not be satisfied; VALUE:NAME is a
                                     // rule for one value of this setting
@@ -115,6 +118,9 @@ struct Setting {
     bool opens_scene = false; // takes effect before the scene's file is read, which thus cannot suggest it
     bool is_common = false;   // used by most people
 };
+
+/// Returns the words of a list such as `needs`.
+std::vector<std::string> words_of(std::string_view list);
 
 bool is_switch(const Setting& setting);
 /// Returns whether the setting accepts any number of values.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/error.h"
+
 namespace pertev {
 
 const std::vector<Setting>& all_settings() {
@@ -9,6 +11,14 @@ const std::vector<Setting>& all_settings() {
         std::vector<Setting> rows;
         for (const auto& part : {scene_settings(), picture_settings(), integrator_settings(), frame_settings()}) {
             rows.insert(rows.end(), part.begin(), part.end());
+        }
+        for (const IntegratorDescriptor& integrator : integrators()) {
+            for (const std::string& name : words_of(integrator.settings)) {
+                const auto own =
+                    std::ranges::find(rows, name, [](const Setting& s) { return std::string_view(s.name); });
+                PERTEV_CHECK(own != rows.end());
+                own->integrators |= 1u << static_cast<uint32_t>(integrator.value);
+            }
         }
         return rows;
     }();
@@ -20,14 +30,6 @@ const Setting* find_setting(std::string_view name) {
         return name == setting.name || (!name.empty() && name == setting.old_name);
     });
     return found != all_settings().end() ? &*found : nullptr;
-}
-
-uint32_t integrators_that(bool (*has)(IntegratorKind)) {
-    uint32_t bits = 0;
-    for (const IntegratorDescriptor& integrator : integrators()) {
-        if (has(integrator.value)) bits |= 1u << static_cast<uint32_t>(integrator.value);
-    }
-    return bits;
 }
 
 } // namespace pertev

@@ -21,9 +21,7 @@ std::vector<Setting> frame_settings();      // settings of real-time frames
 
 inline constexpr uint32_t kLooking = kRender | kView | kBenchNoise | kBenchFrames | kBenchSequence;
 inline constexpr uint32_t kScenes = kLooking | kMeasure | kSolve;
-
-/// Bits of the integrators for which `has` returns true.
-uint32_t integrators_that(bool (*has)(IntegratorKind));
+inline constexpr uint32_t kBenchPictures = kBench | kBenchRender;
 
 /// The field at a path in PictureOptions.
 #define PERTEV_SETTING_FIELD(place) [](PictureOptions& all) { return field_of(all.place); }
@@ -65,7 +63,7 @@ struct Excludes {
 struct In {
     uint32_t formats;
 };
-enum class Mark { Name, NotKept, Common, OpensScene };
+enum class Mark { Name, NotKept, Common, OpensScene, ByRay };
 
 inline void put(Setting& s, Range range) { s.low = range.low, s.high = range.high; }
 inline void put(Setting& s, Above range) { s.low = range.low, s.high = range.high, s.above = true; }
@@ -85,6 +83,7 @@ inline void put(Setting& s, Mark mark) {
     if (mark == Mark::NotKept) s.is_kept = false;
     if (mark == Mark::Common) s.is_common = true;
     if (mark == Mark::OpensScene) s.opens_scene = true;
+    if (mark == Mark::ByRay) s.is_by_ray = true;
 }
 
 /// Makes a row; the parts may be in any order.

@@ -15,7 +15,7 @@ namespace pertev {
 inline bool may_be_better(const TracerOptions& options) { return options.structures.empty(); }
 
 /// Returns the requested tracers, with the device's default for whatever is not given; none if that is the default.
-/// Throws Error(BadInput) if pictures cannot be traced so.
+/// The texts are valid values of the settings. Throws Error(BadInput) if pictures cannot be traced so.
 std::optional<TracerChoice> tracer_choice(const TracerOptions& options, bool on_cuda);
 
 } // namespace pertev

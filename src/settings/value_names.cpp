@@ -1,6 +1,7 @@
 #include "settings/value_names.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/json_text.h"
 
@@ -19,12 +20,30 @@ bool set_integrator(RenderSettings& settings, std::string_view name) {
     return true;
 }
 
-std::vector<std::string> integrator_names() {
-    std::vector<std::string> names = names_of<PathLight>();
+std::vector<std::string> integrator_names(uint32_t kinds) {
+    std::vector<std::string> names;
     for (const IntegratorDescriptor& integrator : integrators()) {
-        if (integrator.value != IntegratorKind::Path) names.emplace_back(integrator.name);
+        if ((kinds >> static_cast<uint32_t>(integrator.value) & 1u) == 0) continue;
+        if (integrator.value == IntegratorKind::Path) {
+            names = names_of<PathLight>(); // it is the first
+        } else {
+            names.emplace_back(integrator.name);
+        }
     }
     return names;
+}
+
+std::string list_of(const std::vector<std::string>& integrators) {
+    return fmt::format("`integrator={}`{}{}", integrators.front(), integrators.size() > 1 ? ", " : "",
+                       fmt::join(integrators.begin() + 1, integrators.end(), ", "));
+}
+
+uint32_t integrators_that(bool (*has)(IntegratorKind)) {
+    uint32_t bits = 0;
+    for (const IntegratorDescriptor& integrator : integrators()) {
+        if (has(integrator.value)) bits |= 1u << static_cast<uint32_t>(integrator.value);
+    }
+    return bits;
 }
 
 std::string json_of(const ReconstructionSettings& settings, const RestirSettings& restir) {

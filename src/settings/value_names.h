@@ -45,7 +45,12 @@ constexpr const auto& names_of_all(Projection) { return kProjections; }
 std::string_view integrator_name(const RenderSettings& settings);
 /// Sets the integrator by its name. Returns false and does nothing if there is none.
 bool set_integrator(RenderSettings& settings, std::string_view name);
-std::vector<std::string> integrator_names();
+/// Returns the names of the integrators whose bits are set.
+std::vector<std::string> integrator_names(uint32_t kinds = ~0u);
+/// Returns "`integrator=path`, direct, indirect".
+std::string list_of(const std::vector<std::string>& integrators);
+/// Returns the bits of the integrators for which `has` returns true.
+uint32_t integrators_that(bool (*has)(IntegratorKind));
 
 /// Returns everything that determines the bytes of a real-time frame, besides the picture's own settings, as a JSON
 /// object.

@@ -95,9 +95,4 @@ HD inline Vec3Of<T> valid_normal(Vec3Of<T> normal, Vec3Of<T> geometric_normal, V
     return select(is_valid, normal, turned);
 }
 
-/// The right-handed frame around `normal` (unit) whose tangent is closest to that of `frame`.
-HD inline Frame frame_about(Vec3 normal, const Frame& frame) {
-    return frame_with_tangent(normal, {frame.tangent.x, frame.tangent.y, frame.tangent.z, 1.0f});
-}
-
 } // namespace pertev

@@ -6,7 +6,7 @@
 // Source: Conty Estevez, Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018, section 5:
 // a node counts by its power and the cosine towards it, over the squared distance.
 
-#include "device/atomic_add.h"
+#include "device/atomics.h"
 #include "integrators/path/film_listener.h"
 #include "tests/seams/path_rounds.h"
 

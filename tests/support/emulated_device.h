@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <source_location>
+#include <utility>
 
 #include "tests/support/emulated_warp.h"
 
@@ -59,6 +60,11 @@ T atomicAdd(T* target, T value) {
     const T old = *target;
     *target += value;
     return old;
+}
+template <class T>
+T atomicExch(T* target, T value) {
+    lane::step();
+    return std::exchange(*target, value);
 }
 
 inline int __popc(uint32_t x) { return __builtin_popcount(x); }

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "image/block_means.h"
+#include "image/metrics.h"
 
 using namespace pertev;
 

@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <tuple>
 
-#include "accel/bvh/check_bvh.h"
 #include "accel/bvh/tlas.h"
 #include "base/error.h"
 #include "base/limits.h"
 #include "base/parallel_for.h"
 #include "tests/support/bvh_bytes.h"
+#include "tests/support/check_bvh.h"
 #include "tests/support/meshes.h"
 
 using namespace pertev;

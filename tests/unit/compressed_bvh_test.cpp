@@ -12,6 +12,7 @@
 #include "accel/builders/build_bvh.h"
 #include "base/limits.h"
 #include "tests/support/check_traversal.h"
+#include "tests/support/check_wide_bvh.h"
 #include "tests/support/meshes.h"
 #include "tests/support/stress_meshes.h"
 #include "trace/intersect/compressed_boxes.h"

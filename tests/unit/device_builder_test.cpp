@@ -10,6 +10,8 @@
 
 #include "accel/builders/builders.h"
 #include "tests/support/built_trees.h"
+#include "tests/support/check_bvh.h"
+#include "tests/support/check_wide_bvh.h"
 #include "tests/support/options.h"
 #include "tests/support/stress_meshes.h"
 

@@ -25,20 +25,16 @@ VarianceOfPictures variance_of(const std::vector<Image>& pictures) {
 
 } // namespace
 
-TEST_CASE("errors of a picture against itself are zero and its PSNR is infinite") {
+TEST_CASE("errors of a picture against itself are zero") {
     const Image image = filled(10, 5, 0.3f);
     CHECK(relative_error(image, image).rel_mse == 0);
     CHECK(mean_squared_error(image, image) == 0);
-    CHECK(std::isinf(peak_signal_to_noise(0)));
 }
 
-TEST_CASE("relMSE, MSE and PSNR of a uniform difference match their formulas") {
+TEST_CASE("relMSE and MSE of a uniform difference match their formulas") {
     const Image x = filled(10, 10, 0.75f), r = filled(10, 10, 0.25f);
     CHECK(relative_error(x, r).rel_mse == doctest::Approx(0.25 / (0.0625 + 0.01)).epsilon(1e-12));
     CHECK(mean_squared_error(x, r) == 0.25);
-    CHECK(peak_signal_to_noise(0.25) == doctest::Approx(6.020599913).epsilon(1e-6));
-    CHECK(peak_signal_to_noise(0.25, 2) == doctest::Approx(12.041199827).epsilon(1e-6));
-    CHECK(peak_signal_to_noise(1e-60) == doctest::Approx(600).epsilon(1e-6));
     CHECK(relative_error(x, r).mean[1] == 0.75);
     CHECK(relative_error(x, r).reference_mean[2] == 0.25);
 }

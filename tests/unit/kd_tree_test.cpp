@@ -8,11 +8,11 @@
 
 #include "accel/clip_triangle.h"
 #include "accel/kd_tree/build_kd_tree.h"
-#include "accel/kd_tree/check_kd_tree.h"
-#include "accel/triangle_points.h"
 #include "base/parallel_for.h"
+#include "tests/support/check_kd_tree.h"
 #include "tests/support/options.h"
 #include "tests/support/stress_meshes.h"
+#include "tests/support/triangle_points.h"
 
 using namespace pertev;
 using namespace pertev::test;

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "accel/octree/build_octree.h"
-#include "accel/octree/check_octree.h"
 #include "base/parallel_for.h"
+#include "tests/support/check_octree.h"
 #include "tests/support/options.h"
 #include "tests/support/stress_meshes.h"
 

@@ -7,12 +7,13 @@
 #include <cstring>
 
 #include "accel/builders/build_bvh.h"
-#include "accel/bvh/check_bvh.h"
 #include "accel/bvh/compressed_bvh.h"
 #include "accel/bvh/wide_bvh.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "tests/support/check_bvh.h"
 #include "tests/support/check_traversal.h"
+#include "tests/support/check_wide_bvh.h"
 #include "tracer/binary_trees.h"
 
 using namespace pertev;

@@ -45,6 +45,15 @@ TEST_CASE("a renamed flag is also taken by its old name, which help and completi
     }
 }
 
+TEST_CASE("a verb says what holds without a flag, in place of the table") {
+    CLI::App app("A program", "program");
+    SettingFlags flags;
+    flags.add(app, kLab, PictureOptions(), all_settings(), {{"size", "7x5"}});
+    const std::string help = Help("").make_help(&app, "", CLI::AppFormatMode::Normal);
+    CHECK(help.find("(7x5)") != std::string::npos);
+    CHECK(help.find("1280x720") == std::string::npos);
+}
+
 TEST_CASE("the word after --help names a group of flags") {
     std::vector<std::string> words = {"render", "--help", "Camera"};
     CHECK(take_help_group(words) == "camera");

@@ -8,6 +8,7 @@
 #include "session/writing/picture_metadata.h"
 #include "settings/check_settings.h"
 #include "settings/settings_file.h"
+#include "settings/value_names.h"
 #include "tests/support/thrown_error.h"
 #include "tests/support/write_text.h"
 
@@ -103,6 +104,18 @@ TEST_CASE("invalid values are refused, and too large ones exceed a limit") {
     CHECK(code_of("size", "65537x1") == ErrorCode::OverLimit);
     CHECK(!code_of("eye", "1,-2e0,.5"));
     CHECK(!code_of("seed", "4294967295"));
+    CHECK(code_of("structure", "sah") == ErrorCode::BadInput);
+    CHECK(code_of("structure", "camera=sah") == ErrorCode::BadInput);
+    CHECK(code_of("structure", "sight=binned") == ErrorCode::BadInput);
+    CHECK(!code_of("structure", "shadow=binned"));
+}
+
+TEST_CASE("integrators name the settings that only they have") {
+    using Names = std::vector<std::string>;
+    CHECK(integrators_with(*find_setting("ambient")) == Names{"cast", "whitted", "raster", "reyes"});
+    CHECK(integrators_with(*find_setting("clamp")) == Names{"path", "direct", "indirect", "hybrid"});
+    CHECK(integrators_with(*find_setting("link_error")) == Names{"radiosity"});
+    CHECK(integrators_with(*find_setting("spp")) == integrator_names());
 }
 
 TEST_CASE("conflicting settings are found") {

@@ -124,14 +124,3 @@ TEST_CASE("shading frame: a corrected normal reflects light above the surface an
     const Vec3 wo = normalize(Vec3{1, 0, 0.2f});
     CHECK(is_near(valid_normal(up, up, wo), up));
 }
-
-TEST_CASE("shading frame: the frame about a bent normal is right-handed and keeps its tangent's side") {
-    Random random(3);
-    for (int i = 0; i < 5000; ++i) {
-        const Vec3 normal = random.direction(), bent = normalize(normal + 0.5f * random.direction());
-        const Frame frame = frame_about(bent, make_frame(normal));
-        check_orthonormal(frame);
-        CHECK(is_near(cross(frame.tangent, frame.bitangent), frame.normal));
-        CHECK(dot(frame.tangent, make_frame(normal).tangent) > 0);
-    }
-}

@@ -202,7 +202,7 @@ TEST_CASE("each preset is a built-in scene, and three integrators find all of it
     }
     CHECK(find_named(the_record().presets, "kitchen") == nullptr);
     Scene emitters, glass;
-    for (const std::string& name : transport_integrators()) {
+    for (const std::string& name : names_of<IntegratorKind>()) {
         CAPTURE(name);
         const bool finds_all = name == "path" || name == "hybrid" || name == "bidirectional";
         CHECK((light_of(name, emitters) == "all") == finds_all);

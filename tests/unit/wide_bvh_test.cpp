@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "accel/builders/build_bvh.h"
+#include "tests/support/check_wide_bvh.h"
 #include "tests/support/meshes.h"
 #include "tests/support/stress_meshes.h"
 

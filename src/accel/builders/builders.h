@@ -39,7 +39,7 @@ inline constexpr ValueName<BvhBuilder> kBvhBuilders[] = {{BvhBuilder::Binned, "b
 constexpr const auto& names_of_all(BvhBuilder) { return kBvhBuilders; }
 
 /// Returns whether the builder splits triangles. Its trees may hold a triangle more than once, in boxes that hold only
-/// a part of it; they are checked by find_split_fault, all others by find_fault.
+/// a part of it.
 bool cuts_triangles(BvhBuilder builder);
 
 Bvh build_bvh(BvhBuilder builder, const std::vector<BvhTriangle>& triangles, const BvhBuildSettings& settings = {});

@@ -1,10 +1,9 @@
 #pragma once
 
-// Validates trees for traversal. Tests use it, and so does everything that reads a tree from a file.
+// Validates the links of trees that are read from files.
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "accel/bvh/bvh.h"
 
@@ -13,13 +12,5 @@ namespace pertev {
 /// Checks that traversal stays within the arrays and within a stack of kMaxBvhDepth: every link in range, every node
 /// and triangle reached exactly once, the depth correct. Returns what is wrong, or nothing.
 std::optional<std::string> find_broken_link(const Bvh& bvh);
-
-/// Checks links as find_broken_link does, and that every box holds its contents.
-std::optional<std::string> find_fault(const Bvh& bvh);
-
-/// Checks a tree over `mesh` with split triangles: links and depth as find_broken_link does, boxes within their
-/// parents', no foreign triangle, none missing, and each covered by the boxes of the leaves that hold it. Coverage is
-/// tested at the corners and on a lattice that is finer if more leaves hold the triangle, up to rounding in double.
-std::optional<std::string> find_split_fault(const Bvh& bvh, const std::vector<BvhTriangle>& mesh);
 
 } // namespace pertev

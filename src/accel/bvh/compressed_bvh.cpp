@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include <fmt/format.h>
-
 #include "accel/bvh/compress_boxes.h"
 #include "base/error.h"
 #include "base/parallel_for.h"
@@ -19,8 +17,6 @@ Bounds3 child_box(const WideBvhNode<8>& node, int k) {
 
 constexpr uint64_t kNodesAtOnce = 256; // nodes per task
 
-int byte_of(const uint32_t (&words)[2], int slot) { return static_cast<int>(words[slot / 4] >> 8 * (slot % 4) & 0xff); }
-
 } // namespace
 
 void set_boxes(CompressedBvhNode& node, const Bounds3 (&slots)[8]) {
@@ -30,18 +26,6 @@ void set_boxes(CompressedBvhNode& node, const Bounds3 (&slots)[8]) {
     compress_boxes(node, all, slots);
     for (int axis = 0; axis < 3; ++axis)
         PERTEV_CHECK((node.exponents_and_inner >> (8 * axis) & 0xff) <= kMaxQuantumExponent);
-}
-
-bool holds(const CompressedBvhNode& node, int slot, const Bounds3& box) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const double scale = 1 / static_cast<double>(quantum(node, axis));
-        const double lower = byte_of(node.planes[2 * axis], slot), upper = byte_of(node.planes[2 * axis + 1], slot);
-        const Difference lo = quanta_from_corner(component(box.lo, axis), node.origin[axis], scale);
-        const Difference hi = quanta_from_corner(component(box.hi, axis), node.origin[axis], scale);
-        if (lower > lo.value || (lower == lo.value && lo.rest < 0)) return false;
-        if (upper < hi.value || (upper == hi.value && hi.rest > 0)) return false;
-    }
-    return true;
 }
 
 void assign_slots(const WideBvhNode<8>& node, int (&child_of_slot)[8]) {
@@ -148,114 +132,6 @@ CompressedBvh compress(const WideBvh<8>& wide) {
 CompressedBvh make_compressed_bvh(const Bvh& bvh, const CollapseSettings& settings) {
     PERTEV_CHECK(settings.max_leaf <= kCompressedLeaf);
     return compress(make_wide_bvh<8>(bvh, settings));
-}
-
-namespace {
-
-class CompressedBvhChecker {
-public:
-    CompressedBvhChecker(const CompressedBvh& bvh, bool clipped) : bvh_(bvh), clipped_(clipped) {}
-
-    std::string run() {
-        node_seen_.resize(bvh_.nodes.size());
-        triangle_seen_.resize(bvh_.triangles.size());
-        if (!bvh_.nodes.empty()) ways_.push_back({0, -1, 0, 1});
-        int depth = 0;
-        for (std::size_t at = 0; at < ways_.size(); ++at) {
-            const uint32_t node = ways_[at].node;
-            if (node >= bvh_.nodes.size()) return fmt::format("a link to node {} of {}", node, bvh_.nodes.size());
-            if (node_seen_[node]) return fmt::format("node {} is reached twice", node);
-            node_seen_[node] = true;
-            depth = max(depth, ways_[at].depth);
-            std::string fault = check_node(static_cast<int>(at));
-            if (!fault.empty()) return fmt::format("node {}: {}", node, fault);
-        }
-        if (ways_.size() != bvh_.nodes.size()) return fmt::format("only {} nodes are reached", ways_.size());
-        if (triangles_ != bvh_.triangles.size()) return fmt::format("only {} triangles are reached", triangles_);
-        if (depth != bvh_.depth || depth > kMaxBvhDepth) return fmt::format("depth {}, stated {}", depth, bvh_.depth);
-        return {};
-    }
-
-private:
-    /// A node and its path from the root: the index of its parent's entry, and its slot there.
-    struct Way {
-        uint32_t node;
-        int parent, slot, depth;
-    };
-
-    std::string check_node(int at) {
-        const CompressedBvhNode node = bvh_.nodes[ways_[static_cast<std::size_t>(at)].node];
-        for (int axis = 0; axis < 3; ++axis) {
-            const uint32_t exponent = node.exponents_and_inner >> 8 * axis & 0xff;
-            if (exponent < kMinQuantumExponent || exponent > kMaxQuantumExponent) return "its grid is out of range";
-        }
-        if (node.byte_base != kByteBase) return "its bytes have another base";
-        if (node.triangles >> 24 != 0) return "its leaves are too large";
-        uint32_t child = node.child_base;
-        for (int slot = 0; slot < 8; ++slot) {
-            const uint32_t run = node.triangles >> slot & 0x010101u;
-            if (run != 0 && run != 1 && run != 0x0101 && run != 0x010101)
-                return fmt::format("slot {} counts wrongly", slot);
-            if (inner_slots(node) >> slot & 1) {
-                if (run != 0) return fmt::format("slot {} is a leaf and a node", slot);
-                ways_.push_back({child++, at, slot, ways_[static_cast<std::size_t>(at)].depth + 1});
-            }
-        }
-        uint64_t triangle = node.triangle_base;
-        for (uint32_t left = node.triangles; left != 0; left &= left - 1) {
-            std::string fault = check_triangle(triangle++, at, std::countr_zero(left) % 8);
-            if (!fault.empty()) return fault;
-        }
-        return {};
-    }
-
-    std::string check_triangle(uint64_t index, int at, int slot) {
-        if (index >= bvh_.triangles.size()) return fmt::format("a leaf runs past triangle {}", index);
-        if (triangle_seen_[index]) return fmt::format("triangle {} is reached twice", index);
-        triangle_seen_[index] = true;
-        ++triangles_;
-        const BvhTriangle& t = bvh_.triangles[index];
-        Bounds3 box;
-        box.extend(t.a);
-        box.extend(t.b);
-        box.extend(t.c);
-        while (at >= 0) {
-            const Way& way = ways_[static_cast<std::size_t>(at)];
-            const CompressedBvhNode& node = bvh_.nodes[way.node];
-            if (clipped_ ? !may_meet(node, slot, box) : !holds(node, slot, box)) {
-                return fmt::format("triangle {} is outside slot {} of node {}", index, slot, way.node);
-            }
-            slot = way.slot;
-            at = way.parent;
-        }
-        return {};
-    }
-
-    /// Returns whether a decoded box may overlap `box`, in double, which suffices to detect a box in the wrong
-    /// position.
-    static bool may_meet(const CompressedBvhNode& node, int slot, const Bounds3& box) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const double step = static_cast<double>(quantum(node, axis));
-            const double origin = static_cast<double>(node.origin[axis]) + kCorner * step;
-            if (origin + byte_of(node.planes[2 * axis], slot) * step > static_cast<double>(component(box.hi, axis)) ||
-                origin + byte_of(node.planes[2 * axis + 1], slot) * step < static_cast<double>(component(box.lo, axis)))
-                return false;
-        }
-        return true;
-    }
-
-    const CompressedBvh& bvh_;
-    const bool clipped_;
-    std::vector<Way> ways_;
-    std::vector<bool> node_seen_, triangle_seen_;
-    uint64_t triangles_ = 0;
-};
-
-} // namespace
-
-std::optional<std::string> find_fault(const CompressedBvh& bvh, bool clipped) {
-    std::string fault = CompressedBvhChecker(bvh, clipped).run();
-    return fault.empty() ? std::nullopt : std::optional(std::move(fault));
 }
 
 } // namespace pertev

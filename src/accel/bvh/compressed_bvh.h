@@ -11,8 +11,6 @@
 // needs no sorting.
 
 #include <cstdint>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "accel/bvh/bvh.h"
@@ -81,16 +79,8 @@ CompressedBvh compress(const WideBvh<8>& wide);
 /// Collapses a binary tree with the least cost and compresses it. max_leaf is at most kCompressedLeaf.
 CompressedBvh make_compressed_bvh(const Bvh& bvh, const CollapseSettings& settings = kCompressedCollapse);
 
-/// Checks that links are valid, each node and triangle is reached once, the depth is correct, and every decoded box,
-/// in exact arithmetic, holds every triangle below it. Returns what is wrong, or nothing. `clipped` means a tree with
-/// spatial splits, whose boxes need only overlap the triangles below.
-std::optional<std::string> find_fault(const CompressedBvh& bvh, bool clipped = false);
-
 /// Sets the grid for `slots`, of which at least one is not empty, and quantizes them outwards.
 void set_boxes(CompressedBvhNode& node, const Bounds3 (&slots)[8]);
-
-/// Returns whether the decoded box of a slot holds a box, in exact arithmetic.
-bool holds(const CompressedBvhNode& node, int slot, const Bounds3& box);
 
 /// Assigns up to 8 children to slots with the least sum of distances along the slots' octants. Slots of kNoLink stay
 /// empty.

@@ -1,7 +1,5 @@
 #include "accel/bvh/parent_links.h"
 
-#include <fmt/format.h>
-
 #include "base/parallel_for.h"
 
 namespace pertev {
@@ -29,23 +27,6 @@ void add_parent_links(Bvh& bvh) {
             bvh.nodes[node.child[k]].parent = static_cast<uint32_t>(i) | (k == 1 ? kSecondChildBit : 0u);
         }
     });
-}
-
-std::optional<std::string> find_parent_link_fault(const Bvh& bvh) {
-    if (bvh.root & kLeafBit) return std::nullopt;
-    if (bvh.nodes[bvh.root].parent != kNoLink) return "the root has a parent";
-    for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {
-        const BvhNode& node = bvh.nodes[i];
-        if (node.split != split_of(node)) return fmt::format("node {} states split {}", i, node.split);
-        for (uint32_t k = 0; k < 2; ++k) {
-            if (node.child[k] & kLeafBit) continue;
-            const uint32_t parent = bvh.nodes[node.child[k]].parent;
-            if (parent != (static_cast<uint32_t>(i) | (k == 1 ? kSecondChildBit : 0u))) {
-                return fmt::format("child {} of node {} states parent {:#x}", k, i, parent);
-            }
-        }
-    }
-    return std::nullopt;
 }
 
 } // namespace pertev

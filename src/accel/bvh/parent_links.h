@@ -5,9 +5,6 @@
 //
 // Source: Hapala, Davidovic, Wald, Havran, Slusallek, "Efficient Stack-less BVH Traversal for Ray Tracing", SCCG 2011.
 
-#include <optional>
-#include <string>
-
 #include "accel/bvh/bvh.h"
 
 namespace pertev {
@@ -20,9 +17,5 @@ inline constexpr uint32_t kSecondIsLower = 4;
 
 /// Fills BvhNode::parent and BvhNode::split. It must be called again after the tree changes.
 void add_parent_links(Bvh& bvh);
-
-/// Checks that links lead from every node to the root. Returns what is wrong, or nothing; a tree without inner nodes
-/// needs no links.
-std::optional<std::string> find_parent_link_fault(const Bvh& bvh);
 
 } // namespace pertev

@@ -6,8 +6,6 @@
 // Source: Smits, "Efficiency Issues for Ray Tracing", Journal of Graphics Tools 3(2), 1998 (skip pointers).
 
 #include <cstdint>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "accel/bvh/bvh.h"
@@ -41,10 +39,5 @@ struct SkipBvhView {
 SkipBvh make_skip_bvh(const Bvh& bvh);
 
 SkipBvhView view_of(const SkipBvh& bvh);
-
-/// Checks for links that lead backwards or out, boxes that do not hold their contents, and triangles that are not
-/// reached exactly once. Returns what is wrong, or nothing. `boxes_hold_triangles` is false for trees with spatial
-/// splits, whose leaves have clipped boxes.
-std::optional<std::string> find_fault(const SkipBvh& bvh, bool boxes_hold_triangles = true);
 
 } // namespace pertev

@@ -82,108 +82,6 @@ WideBvh<kWidth> assemble(const Bvh& bvh, const CollapseSettings& settings) {
     return wide;
 }
 
-bool wide_holds(const Bounds3& box, Vec3 p) {
-    return box.lo.x <= p.x && p.x <= box.hi.x && box.lo.y <= p.y && p.y <= box.hi.y && box.lo.z <= p.z &&
-           p.z <= box.hi.z;
-}
-bool wide_holds(const Bounds3& box, const Bounds3& inner) {
-    return wide_holds(box, inner.lo) && wide_holds(box, inner.hi);
-}
-
-Bounds3 box_of(const BvhTriangle& t) {
-    Bounds3 box;
-    box.extend(t.a);
-    box.extend(t.b);
-    box.extend(t.c);
-    return box;
-}
-
-bool meet(const Bounds3& a, const Bounds3& b) { return !Bounds3{max(a.lo, b.lo), min(a.hi, b.hi)}.is_empty(); }
-
-template <int kWidth>
-class WideBvhChecker {
-public:
-    WideBvhChecker(const WideBvh<kWidth>& bvh, bool clipped) : bvh_(bvh), clipped_(clipped) {}
-
-    std::string run() {
-        node_seen_.resize(bvh_.nodes.size());
-        triangle_seen_.resize(bvh_.triangles.size());
-        std::vector<Pending> pending;
-        if (!bvh_.nodes.empty()) pending.push_back({0, 1, bvh_.bounds});
-        std::size_t nodes = 0;
-        int depth = 0;
-        for (; !pending.empty(); ++nodes) {
-            const Pending at = pending.back();
-            pending.pop_back();
-            if (at.node >= bvh_.nodes.size()) return fmt::format("a link to node {} of {}", at.node, node_seen_.size());
-            if (node_seen_[at.node]) return fmt::format("node {} is reached twice", at.node);
-            node_seen_[at.node] = true;
-            depth = max(depth, at.depth);
-            std::string fault = check_children(at, pending);
-            if (!fault.empty()) return fmt::format("node {}: {}", at.node, fault);
-        }
-        if (nodes != bvh_.nodes.size()) return fmt::format("{} of {} nodes are reached", nodes, bvh_.nodes.size());
-        if (triangles_ != bvh_.triangles.size()) {
-            return fmt::format("{} of {} triangles are reached", triangles_, bvh_.triangles.size());
-        }
-        if (depth != bvh_.depth || depth > kMaxBvhDepth) return fmt::format("depth {}, stated {}", depth, bvh_.depth);
-        return {};
-    }
-
-private:
-    struct Pending {
-        uint32_t node;
-        int depth;
-        Bounds3 box;
-    };
-
-    std::string check_children(const Pending& at, std::vector<Pending>& pending) {
-        const WideBvhNode<kWidth>& node = bvh_.nodes[at.node];
-        bool ended = false;
-        for (int k = 0; k < kWidth; ++k) {
-            const Bounds3 box = child_bounds(node, k);
-            if (node.child[k] == kNoLink) {
-                if (!box.is_empty()) return fmt::format("place {} is empty but has a box", k);
-                ended = true;
-                continue;
-            }
-            if (ended) return fmt::format("child {} stands after an empty place", k);
-            if (!wide_holds(at.box, box)) return fmt::format("child {} is outside it", k);
-            if (!(node.child[k] & kLeafBit)) {
-                pending.push_back({node.child[k], at.depth + 1, box});
-                continue;
-            }
-            std::string fault = check_leaf(node.child[k] & ~kLeafBit, node.count[k], box);
-            if (!fault.empty()) return fault;
-        }
-        return {};
-    }
-
-    std::string check_leaf(uint64_t first, uint64_t count, const Bounds3& box) {
-        if (count == 0) return "a leaf without triangles";
-        if (first + count > bvh_.triangles.size()) return fmt::format("a leaf runs past triangle {}", first);
-        for (uint64_t i = first; i < first + count; ++i) {
-            if (triangle_seen_[i]) return fmt::format("triangle {} is reached twice", i);
-            triangle_seen_[i] = true;
-            const BvhTriangle& t = bvh_.triangles[i];
-            const Bounds3 of_triangle = box_of(t);
-            if (clipped_ ? !meet(box, of_triangle) : !wide_holds(box, of_triangle)) {
-                return fmt::format("triangle {} is outside its leaf", i);
-            }
-            if (((t.flags & kLastInLeaf) != 0) != (i + 1 == first + count)) {
-                return fmt::format("triangle {} says wrongly whether its leaf ends", i);
-            }
-        }
-        triangles_ += count;
-        return {};
-    }
-
-    const WideBvh<kWidth>& bvh_;
-    const bool clipped_;
-    std::vector<bool> node_seen_, triangle_seen_;
-    uint64_t triangles_ = 0;
-};
-
 } // namespace
 
 template <int kWidth>
@@ -200,15 +98,7 @@ WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings) 
     return wide;
 }
 
-template <int kWidth>
-std::optional<std::string> find_fault(const WideBvh<kWidth>& bvh, bool clipped) {
-    std::string fault = WideBvhChecker<kWidth>(bvh, clipped).run();
-    return fault.empty() ? std::nullopt : std::optional(std::move(fault));
-}
-
 template WideBvh<4> make_wide_bvh(const Bvh&, const CollapseSettings&);
 template WideBvh<8> make_wide_bvh(const Bvh&, const CollapseSettings&);
-template std::optional<std::string> find_fault(const WideBvh<4>&, bool);
-template std::optional<std::string> find_fault(const WideBvh<8>&, bool);
 
 } // namespace pertev

@@ -7,8 +7,6 @@
 // Bounding Volume Hierarchies for Fast SIMD Ray Tracing of Incoherent Rays", EGSR 2008.
 
 #include <cstdint>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "accel/bvh/bvh.h"
@@ -63,11 +61,5 @@ WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, const CollapseSettings& settings =
 /// twice the cost of a node's boxes.
 inline constexpr int kWideChildren = 8;
 inline constexpr CollapseSettings kSimdCollapse = {.max_leaf = 4, .triangles_at_once = 4, .triangle_cost = 2};
-
-/// Checks that links and counts are valid, each node and triangle is reached once, the depth is correct and every box
-/// holds its contents. Returns what is wrong, or nothing. `clipped` means a tree with spatial splits, in which a
-/// leaf's box holds only a part of each of its triangles.
-template <int kWidth>
-std::optional<std::string> find_fault(const WideBvh<kWidth>& bvh, bool clipped = false);
 
 } // namespace pertev

@@ -8,10 +8,11 @@
 
 #include "formats/gltf/extensions.h"
 #include "formats/gltf/leave_out.h"
-#include "formats/gltf/triangle_list.h"
 
 namespace pertev::gltf {
 namespace {
+
+enum class Topology : uint8_t { Points, Lines, LineLoop, LineStrip, Triangles, TriangleStrip, TriangleFan };
 
 Topology read_topology(const JsonValue& primitive) {
     const uint64_t mode = primitive.unsigned_or("mode", static_cast<uint64_t>(Topology::Triangles));
@@ -23,6 +24,29 @@ Topology read_topology(const JsonValue& primitive) {
 
 bool draws_triangles(Topology topology) {
     return topology == Topology::Triangles || topology == Topology::TriangleStrip || topology == Topology::TriangleFan;
+}
+
+/// Three indices per triangle, counter-clockwise as seen from the front, from the corners in the order of the file.
+/// Corners that form no complete triangle are ignored. Only for the three triangle topologies. Source: glTF 2.0
+/// section 3.7.2.1.
+std::vector<uint32_t> triangle_list(Topology topology, std::vector<uint32_t> corners) {
+    if (topology == Topology::Triangles) {
+        corners.resize(corners.size() / 3 * 3);
+        return corners;
+    }
+    PERTEV_CHECK(topology == Topology::TriangleStrip || topology == Topology::TriangleFan);
+    std::vector<uint32_t> triangles;
+    if (corners.size() < 3) return triangles;
+    triangles.reserve((corners.size() - 2) * 3);
+    for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
+        if (topology == Topology::TriangleStrip) { // every other triangle of a strip runs the other way round
+            const std::size_t odd = i % 2;
+            triangles.insert(triangles.end(), {corners[i], corners[i + 1 + odd], corners[i + 2 - odd]});
+        } else {
+            triangles.insert(triangles.end(), {corners[i + 1], corners[i + 2], corners[0]});
+        }
+    }
+    return triangles;
 }
 
 class AttributeReader {

@@ -1,16 +1,56 @@
 #include "formats/gltf/read_gltf.h"
 
+#include <fmt/format.h>
+
 #include "base/limits.h"
 #include "base/read_file.h"
+#include "formats/files/file_choices.h"
 #include "formats/files/load_textures.h"
 #include "formats/gltf/animations.h"
-#include "formats/gltf/choices.h"
+#include "formats/gltf/leave_out.h"
 #include "formats/gltf/materials.h"
 #include "formats/gltf/meshes.h"
 #include "formats/gltf/node_shapes.h"
 #include "formats/gltf/place_nodes.h"
 #include "formats/gltf/textures.h"
 #include "scene/scene_origin.h"
+
+namespace pertev::gltf {
+namespace {
+
+std::vector<std::string> names_of(const std::vector<JsonValue>& elements, Buffers& buffers, Messages& messages) {
+    std::vector<std::string> names;
+    for (const JsonValue& element : elements) {
+        names.emplace_back();
+        read_or_leave_out(fmt::format("the name of {}", element.pointer()), messages,
+                          [&] { names.back() = element.string_or("name", ""); });
+        buffers.charge(sizeof(Clip) + names.back().size(), element);
+    }
+    return names;
+}
+
+/// Fills scene.clips, except for their ends, scene.file_scenes and scene.file_scene, by the options or, without any,
+/// by the file: its first animation plays, and its `scene` or else its first scene is shown. Throws Error(BadInput)
+/// with a list of those that exist.
+void choose(const Document& document, Buffers& buffers, const ReadOptions& options, Scene& scene, Messages& messages) {
+    std::vector<JsonValue> animations;
+    read_or_leave_out("/animations", messages, [&] { animations = document.root().elements_of("animations"); });
+    const std::vector<std::string> clips = names_of(animations, buffers, messages);
+    const std::vector<bool> plays = choose_clips(document.file(), clips, options.animation);
+    for (std::size_t i = 0; i < clips.size(); ++i) scene.clips.push_back({.name = clips[i], .plays = plays[i]});
+
+    scene.file_scenes = names_of(document.table("scenes"), buffers, messages);
+    if (!options.file_scene.empty()) {
+        scene.file_scene = choose_file_scene(document.file(), scene.file_scenes, options.file_scene);
+    } else if (const std::optional<JsonValue> chosen = document.root().find("scene");
+               chosen && !scene.file_scenes.empty()) {
+        read_or_leave_out(*chosen, messages, [&] { scene.file_scene = document.index_into("scenes", *chosen); });
+    }
+}
+
+} // namespace
+
+} // namespace pertev::gltf
 
 namespace pertev {
 

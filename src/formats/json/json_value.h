@@ -87,12 +87,6 @@ public:
         return member ? member->to_floats<count>() : fallback;
     }
 
-    template <std::size_t count>
-    std::array<double, count> doubles_or(std::string_view key, std::array<double, count> fallback) const {
-        const std::optional<JsonValue> member = find(key);
-        return member ? member->to_doubles<count>() : fallback;
-    }
-
 private:
     void read_floats(float* numbers, std::size_t count) const;
     void read_doubles(double* numbers, std::size_t count) const;

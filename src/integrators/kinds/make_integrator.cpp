@@ -3,6 +3,9 @@
 #include <array>
 #include <type_traits>
 
+#include <fmt/format.h>
+
+#include "base/error.h"
 #include "integrators/irradiance_cache/irradiance_cache_integrator.h"
 #include "integrators/path/path_integrator.h"
 #include "integrators/photon_map/photon_map_integrator.h"
@@ -84,50 +87,126 @@ constexpr IntegratorDescriptor row(IntegratorDescriptor of) {
     return of;
 }
 
+void check_photons(const IntegratorSettings& settings) {
+    const uint32_t photons = settings.photon_map->photons, depth = settings.path.max_depth;
+    if (photons_fit(photons, depth)) return;
+    throw Error(ErrorCode::OverLimit, "photons", fmt::format("{}", photons),
+                fmt::format("with `max_depth={}` a pass may store more than {} photons; the limit is {}", depth,
+                            kMaxStored, kMaxStored / (2 * uint64_t(depth - 1))));
+}
+
+MemoryUse memory_of_photons(const IntegratorSettings& settings, const WorkSize&) {
+    return {
+        fmt::format("Photons (`photons={}`, `max_depth={}`)", settings.photon_map->photons, settings.path.max_depth),
+        "a smaller value of either"};
+}
+
+MemoryUse memory_of_records(const IntegratorSettings& settings, const WorkSize& size) {
+    const bool has_rays = !size.traverses_on_host || settings.body == PathBody::Wavefront;
+    return {fmt::format("Records of {}x{} pixels{}", size.width, size.height, has_rays ? " and their rays" : ""),
+            fmt::format("a smaller `size`{}", has_rays ? ", or fewer `hemisphere_rays`," : "")};
+}
+
+constexpr const char* kAll = "all";
+constexpr const char* kNoCaustics = "all but LS+D of point lights";
+constexpr const char* kNoShadows = "L(D|G)E of point lights, no shadows; lamps seen";
+
 using Kind = IntegratorKind;
 constexpr std::array kIntegrators = {
-    row<PathIntegrator, path_request>({.value = Kind::Path,
-                                       .name = "path",
-                                       .makes_frames = true,
-                                       .has_light_path_layers = true,
-                                       .finds_all_light = true,
-                                       .has_shutter = true}),
+    row<PathIntegrator, path_request>(
+        {.value = Kind::Path,
+         .name = "path",
+         .light = kAll,
+         .light_with_caustics = kNoCaustics,
+         .lacks = "light of point, spot and directional lights that mirrors or clear glass send on to other surfaces",
+         .settings = "clamp",
+         .makes_frames = true,
+         .has_light_path_layers = true,
+         .finds_all_light = true,
+         .has_shutter = true}),
     row<PathIntegrator, path_request>({.value = Kind::Hybrid,
                                        .name = "hybrid",
+                                       .light = kAll,
+                                       .light_with_caustics = kNoCaustics,
+                                       .settings = "clamp",
                                        .makes_frames = true,
                                        .has_light_path_layers = true,
                                        .finds_all_light = true,
                                        .rasterises_camera = true}),
     row<RayTreeIntegrator<Cast>, tree_settings>({.value = Kind::Cast,
                                                  .name = "cast",
+                                                 .light = "L(D|G)E of point lights; lamps seen",
+                                                 .settings = "ambient",
                                                  .has_shutter = true,
                                                  .needs_punctual_lights = true,
                                                  .max_depth = kMaxTreeDepth}),
     row<RayTreeIntegrator<Whitted>, tree_settings>({.value = Kind::Whitted,
                                                     .name = "whitted",
+                                                    .light = "L(D|G)S*E of point lights; lamps seen",
+                                                    .settings = "ambient",
                                                     .has_shutter = true,
                                                     .needs_punctual_lights = true,
+                                                    .has_mean_ambient = true,
                                                     .max_depth = kMaxTreeDepth}),
-    row<RayTreeIntegrator<Distributed>, tree_settings>(
-        {.value = Kind::Distributed, .name = "distributed", .has_shutter = true, .max_depth = kMaxTreeDepth}),
-    row<RasterIntegrator, raster_settings>(
-        {.value = Kind::Raster, .name = "raster", .rasterises_camera = true, .needs_punctual_lights = true}),
+    row<RayTreeIntegrator<Distributed>, tree_settings>({.value = Kind::Distributed,
+                                                        .name = "distributed",
+                                                        .light = "L(D|G|S)?(G|S)*E: one bounce off what is rough",
+                                                        .has_shutter = true,
+                                                        .max_depth = kMaxTreeDepth}),
+    row<RasterIntegrator, raster_settings>({.value = Kind::Raster,
+                                            .name = "raster",
+                                            .light = kNoShadows,
+                                            .settings = "ambient shading wireframe",
+                                            .rasterises_camera = true,
+                                            .needs_punctual_lights = true,
+                                            .has_mean_ambient = true}),
     row<ReyesIntegrator, reyes_settings>({.value = Kind::Reyes,
                                           .name = "reyes",
+                                          .light = kNoShadows,
+                                          .settings = "ambient shading_rate displacement",
                                           .rasterises_camera = true,
                                           .needs_punctual_lights = true,
+                                          .has_mean_ambient = true,
                                           .samples_at_once = ReyesIntegrator::samples_at_once}),
-    row<SubpathIntegrator<ParticlesAlone>, traversal_settings>({.value = Kind::Light, .name = "light"}),
-    row<SubpathIntegrator<BothDirections>, traversal_settings>({.value = Kind::Bidirectional,
-                                                                .name = "bidirectional",
-                                                                .finds_all_light = true,
-                                                                .max_depth = kMaxConnectedDepth}),
-    row<PhotonMapIntegrator, photon_map_request>(
-        {.value = Kind::PhotonMap, .name = "photon_map", .finds_all_light = true, .max_depth = kMaxPhotonDepth}),
+    row<SubpathIntegrator<ParticlesAlone>, traversal_settings>(
+        {.value = Kind::Light, .name = "light", .light = "L((D|G|S)*(D|G))?E: nothing in mirrors or clear glass"}),
+    row<SubpathIntegrator<BothDirections>, traversal_settings>(
+        {.value = Kind::Bidirectional,
+         .name = "bidirectional",
+         .light = kAll,
+         .light_with_caustics = "all but LS+DS+E of point lights",
+         .lacks = "light of point, spot and directional lights that mirrors or clear glass send on to other surfaces, "
+                  "as mirrors and clear glass show it",
+         .finds_all_light = true,
+         .max_depth = kMaxConnectedDepth}),
+    row<PhotonMapIntegrator, photon_map_request>({.value = Kind::PhotonMap,
+                                                  .name = "photon_map",
+                                                  .light = "all, blurred ever less",
+                                                  .lacks = "sharpness: what its photons tell is blurred",
+                                                  .settings = "photons gather radius caustic_radius nearest",
+                                                  .finds_all_light = true,
+                                                  .needs_any_light = true,
+                                                  .max_depth = kMaxPhotonDepth,
+                                                  .check = check_photons,
+                                                  .memory = memory_of_photons}),
     row<IrradianceCacheIntegrator, irradiance_cache_request>(
-        {.value = Kind::IrradianceCache, .name = "irradiance_cache", .finds_all_light = true}),
+        {.value = Kind::IrradianceCache,
+         .name = "irradiance_cache",
+         .light = "all, interpolated between records",
+         .light_with_caustics = "as path, interpolated between records",
+         .settings = "accuracy hemisphere_rays show_records",
+         .finds_all_light = true,
+         .memory = memory_of_records}),
     row<RadiosityIntegrator, radiosity_settings>(
-        {.value = Kind::Radiosity, .name = "radiosity", .max_depth = kMaxTreeDepth}),
+        {.value = Kind::Radiosity,
+         .name = "radiosity",
+         .light = "all, by patches ever smaller",
+         .light_if_not_diffuse = "L(D*)S*E, by patches ever smaller",
+         .settings = "patch_size subdivisions contrast form_factors patch_rays hemicube solver tolerance steps "
+                     "link_error solution flat_patches",
+         .needs_any_light = true,
+         .is_solved = true,
+         .max_depth = kMaxTreeDepth}),
 };
 
 constexpr bool are_in_order() {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -67,11 +68,24 @@ struct IntegratorSettings {
                                     // other samples
 };
 
+/// Names, for messages, what takes most of an integrator's memory and what makes that less.
+struct MemoryUse {
+    std::string what, less;
+};
+
 /// Describes a kind of integrator to code that does not know it. The table of all rows is in make_integrator.cpp. A new
 /// integrator is a folder, a kind above, and a row.
 struct IntegratorDescriptor {
     IntegratorKind value;
     std::string_view name; // name as text (base/value_names.h)
+    /// The light that it finds, as light-path expressions (docs/transport.md): "all" if it finds all without bias. Then
+    /// the same for scenes that are not all diffuse, and for those in which point lights shine on mirrors or clear
+    /// glass, if it differs.
+    std::string_view light, light_if_not_diffuse = "", light_with_caustics = "";
+    /// The light that its pictures miss in the latter scenes; empty if they are no references at all.
+    std::string_view lacks = "";
+    /// Names of the settings that only this integrator has, and others that name them too, between spaces.
+    std::string_view settings = "";
     /// True if its samples can be separated for frames that are reconstructed (FilmView::frame), for denoised pictures
     /// and for ReSTIR.
     bool makes_frames = false;
@@ -85,10 +99,20 @@ struct IntegratorDescriptor {
     bool has_shutter = false;
     /// True if only point, spot and directional lights illuminate surfaces.
     bool needs_punctual_lights = false;
+    /// True if it replaces an ambient light that was not given by the environment's mean.
+    bool has_mean_ambient = false;
+    /// True if it renders nothing in a scene without any light.
+    bool needs_any_light = false;
+    /// True if the scene's light is solved before the first sample (radiosity/).
+    bool is_solved = false;
     /// The largest PathSettings::max_depth.
     uint32_t max_depth = kMaxPathDepth - 1;
     /// Returns how many samples per pixel together take hardly longer than one.
     uint32_t (*samples_at_once)(uint64_t pixels) = [](uint64_t) { return 1u; };
+    /// Throws Error(OverLimit) if the settings do not fit together.
+    void (*check)(const IntegratorSettings&) = [](const IntegratorSettings&) {};
+    /// Null if its own memory never matters.
+    MemoryUse (*memory)(const IntegratorSettings&, const WorkSize&) = nullptr;
     std::unique_ptr<Integrator> (*make)(Queue&, const IntegratorSettings&) = nullptr;
     void (*change)(Integrator&, const IntegratorSettings&) = nullptr; // applies new settings to the integrator of
                                                                       // `make`
@@ -106,6 +130,7 @@ inline bool finds_all_light(IntegratorKind kind) { return describe(kind).finds_a
 inline bool rasterises_camera(IntegratorKind kind) { return describe(kind).rasterises_camera; }
 inline bool has_shutter(IntegratorKind kind) { return describe(kind).has_shutter; }
 inline bool needs_punctual_lights(IntegratorKind kind) { return describe(kind).needs_punctual_lights; }
+inline bool is_solved(IntegratorKind kind) { return describe(kind).is_solved; }
 inline uint32_t max_depth(IntegratorKind kind) { return describe(kind).max_depth; }
 inline uint32_t samples_at_once(const IntegratorSettings& settings, uint64_t pixels) {
     return describe(settings.integrator).samples_at_once(pixels);

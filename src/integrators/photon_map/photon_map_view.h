@@ -8,7 +8,7 @@
 #include "accel/kd_tree/point_kd_tree.h"
 #include "accel/nearest_points.h"
 #include "accel/octree/point_octree.h"
-#include "device/atomic_add.h"
+#include "device/atomics.h"
 #include "integrators/photon_map/photon_map_settings.h"
 #include "math/float4.h"
 #include "math/random.h"

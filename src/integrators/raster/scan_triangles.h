@@ -5,8 +5,8 @@
 // stays: the nearest triangle, or the first of equally near ones, in any order of threads.
 // integrators/raster/shade_pixels.h then shades the result.
 
-#include "device/atomic_add.h"
 #include "device/atomic_min.h"
+#include "device/atomics.h"
 #include "device_scene/accept_hit.h"
 #include "integrators/raster/raster_settings.h"
 #include "render/picture_view.h"

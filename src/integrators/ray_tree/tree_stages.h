@@ -3,7 +3,7 @@
 // Stages of a round of trees, in order. They are launched one by one on a device; a CPU thread runs the same ones
 // over a few trees of its own.
 
-#include "device/atomic_add.h"
+#include "device/atomics.h"
 #include "integrators/ray_tree/tree_vertex.h"
 #include "render/begin_order.h"
 #include "render/film_view.h"

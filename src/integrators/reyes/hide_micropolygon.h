@@ -7,9 +7,8 @@
 // Two passes run over all micropolygons: the first finds the least (depth, triangle) of a sample, the second the
 // least of that triangle's micropolygons with this depth. Both are minima, so the order of threads does not matter.
 
-#include "device/atomic_add.h"
-#include "device/atomic_exchange.h"
 #include "device/atomic_min.h"
+#include "device/atomics.h"
 #include "device_scene/accept_hit.h"
 #include "integrators/reyes/diced_triangle.h"
 #include "integrators/reyes/piece.h"

@@ -6,7 +6,7 @@
 //
 // Source: Cook, Carpenter, Catmull, "The Reyes Image Rendering Architecture", SIGGRAPH 1987.
 
-#include "device/atomic_add.h"
+#include "device/atomics.h"
 #include "integrators/reyes/hide_micropolygon.h"
 
 namespace pertev {

@@ -6,7 +6,7 @@
 //
 // Source: Dutre, Lafortune, Willems, "Monte Carlo Light Tracing with Direct Computation of Pixel Intensities", 1993.
 
-#include "device/atomic_add.h"
+#include "device/atomics.h"
 #include "integrators/subpaths/emit_particle.h"
 #include "integrators/subpaths/subpath_vertex.h"
 #include "render/begin_order.h"

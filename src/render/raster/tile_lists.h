@@ -11,7 +11,7 @@
 #include <cstdint>
 
 #include "accel/bvh/bvh.h"
-#include "device/atomic_add.h"
+#include "device/atomics.h"
 #include "device_scene/scene_view.h"
 #include "math/float4.h"
 #include "render/raster/screen_bounds.h"

@@ -59,8 +59,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
     sink.set_work(fmt::format("loading {}", options.scene.scene));
     const Stopwatch watch;
     auto ready = std::make_unique<RenderSetup>();
-    const bool shows_solution =
-        options.render.integrator == IntegratorKind::Radiosity && !options.radiosity.solution.empty();
+    const bool shows_solution = is_solved(options.render.integrator) && !options.radiosity.solution.empty();
     const SceneUse use = shows_solution ? SceneUse::Measurement : SceneUse::Picture; // opened as for the solution
     Scene scene = open_scene(options.scene, messages, use, ground_of(options));
     sink.check(); // the file was read to its end, and trees are built to theirs
@@ -83,7 +82,7 @@ std::unique_ptr<RenderSetup> prepare_render(PictureOptions& options, uint32_t ve
                           ready->sequence.shutter);
     sink.check();
     ready->queue = machine.take();
-    if (settings.integrator == IntegratorKind::Radiosity) {
+    if (is_solved(settings.integrator)) {
         if (ready->moving->is_animated() && !options.frames.empty()) {
             throw Error(ErrorCode::BadInput, "frames", "",
                         "radiosity is solved for one time, and this scene moves; set `time` (`camera_path` and "

@@ -199,7 +199,7 @@ ExrMetadata settings_metadata(const PictureRecord& record) {
     append(metadata,
            {{"pertev.version", fmt::format("{} {}", version(), git_commit())}, {"pertev.scene", scene.scene}});
     if (scene.position_origin) metadata.emplace_back("pertev.position_origin", comma_separated(*scene.position_origin));
-    if (settings.integrator == IntegratorKind::Radiosity && settings.radiosity->solution) {
+    if (is_solved(settings.integrator) && settings.radiosity->solution) {
         const RadiositySolution& solution = *settings.radiosity->solution;
         append(metadata, {{"pertev.radiosity", solution.made}, {"pertev.radiosity_hash", solution.hash().hex()}});
     }

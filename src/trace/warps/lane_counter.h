@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-#include "device/atomic_add.h"
+#include "device/atomics.h"
 #include "trace/warps/warp_vote.h"
 
 namespace pertev {

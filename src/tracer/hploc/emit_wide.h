@@ -11,7 +11,7 @@
 #include "accel/bvh/compressed_bvh.h"
 #include "accel/hploc/cluster_tree.h"
 #include "accel/hploc/leaves.h"
-#include "device/atomic_add.h"
+#include "device/atomics.h"
 
 namespace pertev::hploc {
 

@@ -1,4 +1,4 @@
-#include "accel/kd_tree/check_kd_tree.h"
+#include "tests/support/check_kd_tree.h"
 
 #include <algorithm>
 #include <span>
@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "accel/check_cells.h"
+#include "tests/support/check_cells.h"
 
 namespace pertev {
 namespace {

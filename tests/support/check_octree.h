@@ -1,6 +1,6 @@
 #pragma once
 
-// Validates an octree for traversal. Tests use it, and the laboratory before it measures.
+// Validates an octree for traversal.
 
 #include <optional>
 #include <string>

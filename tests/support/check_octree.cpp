@@ -1,4 +1,4 @@
-#include "accel/octree/check_octree.h"
+#include "tests/support/check_octree.h"
 
 #include <algorithm>
 #include <span>
@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "accel/check_cells.h"
 #include "accel/octree/build_octree.h"
+#include "tests/support/check_cells.h"
 
 namespace pertev {
 namespace {

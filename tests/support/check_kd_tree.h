@@ -1,6 +1,6 @@
 #pragma once
 
-// Validates a kd-tree for traversal. Tests use it, and the laboratory before it measures.
+// Validates a kd-tree for traversal.
 
 #include <optional>
 #include <string>

@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 
 #include "accel/clip_triangle.h"
-#include "accel/triangle_points.h"
 #include "base/parallel_for.h"
+#include "tests/support/triangle_points.h"
 
 namespace pertev {
 
