@@ -35,16 +35,6 @@ struct JobFlags {
     bool isolated = false;
 };
 
-RenderSettings settings_of(const RecordJob& job, const JobFlags& flags) {
-    RenderSettings settings = job_settings(job);
-    if (!flags.picture.size_text.empty()) {
-        std::tie(settings.width, settings.height) = parse_size("size", flags.picture.size_text);
-    }
-    if (flags.picture.samples > 0) settings.samples = flags.picture.samples;
-    settings.path.seed = flags.seed;
-    return settings;
-}
-
 /// Seconds that one sample of every pixel takes after the camera has moved, from the call that moves it until the film
 /// has the sample: the median of so many moves. They turn the camera to and fro by a thousandth of a radian, so that
 /// what is seen stays about the same.
@@ -78,7 +68,12 @@ int bench_job(JobFlags& flags) {
     flags.picture.settings.read(flags.picture, messages);
     const RecordJob& job = *find_named(the_record().jobs, flags.job);
     const std::string& file = flags.picture.scenes.front();
-    RenderSettings settings = settings_of(job, flags);
+    RenderSettings settings = job_settings(job);
+    if (!flags.picture.size_text.empty()) {
+        std::tie(settings.width, settings.height) = parse_size("size", flags.picture.size_text);
+    }
+    if (flags.picture.samples > 0) settings.samples = flags.picture.samples;
+    settings.path.seed = flags.seed;
     if (!flags.output.empty()) {
         refuse_list(flags.output);
         note_number_signs(flags.output, messages);

@@ -187,8 +187,7 @@ int bench_sequence(SequenceFlags& flags) {
     if (flags.reference > 0) {
         ResultTable table;
         const auto add = [&](const char* name, const Score& of) {
-            Fields fields = {{"way", "frames by", name}};
-            for (const ResultField& field : fields_of(of)) fields.push_back(field);
+            const Fields fields = Fields{{"way", "frames by", name}} + fields_of(of);
             report.keep("scores", fields);
             table.add(fields);
         };
