@@ -11,14 +11,13 @@ its coordinates are kept; the camera looks along +z and sees +x on its left.
 `make_cornell_box.py --check` writes nothing and fails when the file is not what this script would write.
 """
 
-import argparse
 import json
 import math
 import pathlib
 import struct
-import sys
 
 from gltf_buffer import GltfBuffer
+from written_scenes import write_or_check
 
 TARGET = pathlib.Path(__file__).resolve().parent.parent / "scenes/cornell-box/cornell-box.gltf"
 
@@ -211,18 +210,5 @@ def make_gltf():
     }
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="compare with the file instead of writing it")
-    check = parser.parse_args().check
-    text = json.dumps(make_gltf(), indent=1) + "\n"
-    if check:
-        if not TARGET.is_file() or TARGET.read_text() != text:
-            sys.exit(f"{TARGET} is not what tools/make_cornell_box.py writes; run it and commit the result")
-        return
-    TARGET.parent.mkdir(parents=True, exist_ok=True)
-    TARGET.write_text(text)
-
-
 if __name__ == "__main__":
-    main()
+    write_or_check(__doc__, {TARGET: json.dumps(make_gltf(), indent=1) + "\n"})

@@ -7,16 +7,15 @@ boxes stand in their light. The floor is glossy, the rest is nearly diffuse. Met
 `make_many_lights.py --check` writes nothing and fails when the file is not what this script would write.
 """
 
-import argparse
 import colorsys
 import json
 import math
 import pathlib
 import random
 import struct
-import sys
 
 from gltf_buffer import GltfBuffer
+from written_scenes import write_or_check
 
 TARGET = pathlib.Path(__file__).resolve().parent.parent / "scenes/many-lights/many-lights.gltf"
 SWARMS, TRIANGLES = 100, 100
@@ -145,18 +144,5 @@ def make():
     return document.text()
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--check", action="store_true")
-    text = make()
-    if not parser.parse_args().check:
-        TARGET.parent.mkdir(parents=True, exist_ok=True)
-        TARGET.write_text(text, encoding="utf-8")
-        return
-    if TARGET.read_text(encoding="utf-8") != text:
-        sys.exit(f"{TARGET} is not what this script writes: run it")
-    print("the scene is what this script writes")
-
-
 if __name__ == "__main__":
-    main()
+    write_or_check(__doc__, {TARGET: make()})
