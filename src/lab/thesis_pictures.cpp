@@ -112,15 +112,6 @@ std::vector<std::string> thesis_picture_names() {
     return names;
 }
 
-std::vector<std::string> thesis_picture_files() {
-    std::vector<std::string> files;
-    for (const ThesisRecipe& recipe : thesis_recipes()) {
-        const bool is_drawn = recipe.way == ThesisWay::KdTree || recipe.way == ThesisWay::Octree;
-        files.push_back(fmt::format("{}.{}", recipe.name, is_drawn ? "svg" : "png"));
-    }
-    return files;
-}
-
 /// The inputs that one picture is made from.
 struct ThesisPictures::Job {
     const ThesisRecipe& recipe;

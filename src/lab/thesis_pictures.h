@@ -34,8 +34,6 @@ struct ThesisPicture {
 
 /// Returns the names of all pictures in the thesis's order.
 std::vector<std::string> thesis_picture_names();
-/// Returns the names of all files that may hold them.
-std::vector<std::string> thesis_picture_files();
 
 /// Makes pictures one by one. A picture's exposure does not depend on its size.
 class ThesisPictures {
