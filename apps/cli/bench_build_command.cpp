@@ -32,7 +32,7 @@ struct BuildFlags : PictureOptions {
     ReportFlags report;
 };
 
-/// All triangles that do not move, in one world; where there are none, those of the first mesh.
+/// Returns the triangles that do not move, in world space; if there are none, the first mesh's.
 std::vector<BvhTriangle> read_triangles(const std::string& name, Messages& messages) {
     const Scene scene = read_record_scene(name, messages);
     std::vector<BvhTriangle> triangles = baked_triangles(scene, place_meshes(scene));
@@ -47,7 +47,7 @@ Fields head_of(const std::string& scene, const char* title, std::string_view tre
             {"triangles", "triangles", triangles}};
 }
 
-/// `ratio`: of the tree's cost to that of the SBVH; 0: not known. `scene` may be one of the record.
+/// Reports a build. `ratio` is the tree's cost relative to the SBVH's; 0 if unknown.
 void add_build(const std::string& scene, std::string_view tree, const std::string& device, uint64_t triangles,
                const RunTimes& times, std::size_t nodes, int depth, float cost, double ratio, BenchReport& report) {
     const RecordScene* const record = find_named(the_record().scenes, scene);

@@ -36,10 +36,9 @@ int bench_frames(FramesFlags& flags) {
     Reporter reporter(flags.render.report);
     const std::unique_ptr<BenchedScene> benched = read_benched_scene(flags.render, kBenchFrames, reporter);
     const auto& [queue, scene, settings, camera, prepared] = *benched;
-    if (!makes_frames(settings.integrator) && flags.render.reconstruction.has_frame_options()) {
-        throw Error(ErrorCode::BadInput, "integrator", std::string(integrator_name(settings)),
-                    "its frames are samples as they are; `restir` and `resolution_scale` are for path and hybrid");
-    }
+    refuse(!makes_frames(settings.integrator) && flags.render.reconstruction.has_frame_options(),
+           {"integrator", std::string(integrator_name(settings)),
+            "its frames are plain samples; `restir` and `resolution_scale` are for path and hybrid"});
     BenchReport report(reporter, flags.render.report, *queue, "Frames in real time");
     Session session(*queue, prepared, camera, settings);
     const ToneMap tone_map = ToneMap::Agx;

@@ -48,8 +48,8 @@ struct SetOfScene {
 
 std::string describe(const RayHit& hit) { return fmt::format("({}, {}, {})", hit.t, hit.instance, hit.primitive); }
 
-/// Throws Error(DeviceFault) that names the first ray where the tracer of pictures on this device and the binary
-/// traversal on the host differ.
+/// Compares hits with the binary traversal's on the host. Throws Error(DeviceFault) that names the first ray that
+/// differs.
 void check_hits(const std::vector<RayHit>& hits, const RaySet& set, const PreparedScene& prepared) {
     Queue cpu = Queue::make_cpu();
     RaysOnDevice rays(cpu, set);

@@ -35,9 +35,9 @@ struct JobFlags {
     bool isolated = false;
 };
 
-/// Seconds that one sample of every pixel takes after the camera has moved, from the call that moves it until the film
-/// has the sample: the median of so many moves. They turn the camera to and fro by a thousandth of a radian, so that
-/// what is seen stays about the same.
+/// Returns the median time of one sample per pixel after a move of the camera, from the call that moves it until the
+/// film has the sample. The moves alternate between two directions a thousandth of a radian apart, so the view stays
+/// about the same.
 double seconds_after_moves(Session& session, uint32_t moves) {
     const Camera camera = session.camera();
     std::vector<double> seconds;
@@ -51,7 +51,7 @@ double seconds_after_moves(Session& session, uint32_t moves) {
     return summarize_runs(seconds).median;
 }
 
-/// Rays a second of each kind by themselves, in the job's scene and by what the job traces them by.
+/// Measures the isolated rays of each kind in the job's scene, by the job's tracers.
 IsolatedRates isolated_rates(Queue& queue, const RecordJob& job, const Scene& scene, const TracerChoice& choice,
                              Reporter& reporter) {
     reporter.set_work("measuring rays by themselves");
