@@ -12,7 +12,6 @@ import json
 import math
 import pathlib
 import random
-import struct
 
 from gltf_buffer import GltfBuffer
 from written_scenes import write_or_check
@@ -71,12 +70,7 @@ class Document:
         self.buffer, self.meshes, self.materials, self.nodes = GltfBuffer(), [], [], []
 
     def positions(self, corners):
-        data = b"".join(struct.pack("<3f", *corner) for corner in corners)
-        rounded = [struct.unpack("<3f", struct.pack("<3f", *corner)) for corner in corners]
-        return self.buffer.add(data, {
-            "componentType": 5126, "count": len(corners), "type": "VEC3",
-            "min": [min(c[k] for c in rounded) for k in range(3)],
-            "max": [max(c[k] for c in rounded) for k in range(3)]})
+        return self.buffer.add(corners, "f", "VEC3", has_bounds=True)
 
     def mesh(self, name, accessor, material):
         self.materials.append({"name": name, **material})
